@@ -109,30 +109,22 @@ def _travel(commands: Array, moments: Array) -> tuple[int, int]:
     return low, high
 
 
-def flight_idle(fdm: Fdm, trim: Trim) -> float:
-    """Throttle [-], up to that of level flight, at which the aircraft decelerates most.
+def with_flight_idle(fdm: Fdm, level: Trim) -> AircraftSpec:
+    """Spec with a throttle that closes no further than where the aircraft decelerates most.
 
-    Parameters
-    ----------
-    fdm : the aircraft; its state is changed
-    trim : level flight
+    It is sought up to the throttle of the level flight ``level``; the state of ``fdm`` is changed.
     """
     throttle = fdm.spec.input("throttle")
-    throttles = np.arange(throttle.lower, trim.inputs["throttle"], _IDLE_STEP)
+    throttles = np.arange(throttle.lower, level.inputs["throttle"], _IDLE_STEP)
     decelerations = []
     for value in throttles.tolist():
-        fdm.command({**trim.inputs, "throttle": value})
-        fdm.place(trim.state())
+        fdm.command({**level.inputs, "throttle": value})
+        fdm.place(level.state())
         with fdm.frozen():
             fdm.settle(_IDLE_SETTLED)
             decelerations.append(-fdm.acceleration_body()[0])
     most = int(np.argmax(decelerations))
-    if decelerations[most] > (1.0 + _IDLE_GAIN_MIN) * decelerations[0]:
-        return float(throttles[most])
-    return throttle.lower
-
-
-def with_flight_idle(spec: AircraftSpec, idle: float) -> AircraftSpec:
-    """The aircraft with a throttle that closes no further than ``idle`` [-]."""
-    inputs = tuple(replace(i, lower=idle) if i.name == "throttle" else i for i in spec.inputs)
-    return replace(spec, inputs=inputs)
+    if not decelerations[most] > (1.0 + _IDLE_GAIN_MIN) * decelerations[0]:
+        return fdm.spec
+    idle = replace(throttle, lower=float(throttles[most]))
+    return replace(fdm.spec, inputs=tuple(idle if i == throttle else i for i in fdm.spec.inputs))

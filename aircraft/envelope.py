@@ -24,10 +24,7 @@ _STALL_RESERVE = 1.3
 """Least airspeed over stall in the same turn [-], CS-23's reference landing speed."""
 
 _AIRSPEED_RATIO = 1.6
-"""Largest airspeed over the least [-].
-
-Dynamic pressure then varies by 2.6, which tables at five airspeeds follow.
-"""
+"""Largest airspeed over the least [-]: five airspeeds follow 2.6 times the dynamic pressure."""
 
 _AIRSPEED_RATIO_MIN = 1.12
 """Narrowest range of airspeeds, largest over least [-], within which the guidance varies it."""
@@ -57,10 +54,7 @@ _SURFACE_FRACTION = 0.9
 
 _LIFT_STEP = math.radians(1.0)
 _ALPHA_MAX = 0.4
-"""Step and end of the angles of attack at which the largest lift is sought [rad].
-
-Wings without slots stall below 0.4 rad, 23 deg.
-"""
+"""Step and end of the search for the largest lift [rad]: wings without slots stall below 23 deg."""
 
 _START_LIFT_COEFFICIENTS = (0.5, 0.35, 0.7, 0.25)
 """Lift coefficients of cruising aircraft, at which a first equilibrium is sought in turn [-]."""
@@ -110,14 +104,7 @@ def find_envelope(fdm: Fdm, altitude: float) -> Envelope:
 
 
 def with_reserve_note(envelope: Envelope, trims: Sequence[Trim], spec: AircraftSpec) -> Envelope:
-    """Envelope with a note if equilibria in it lack the reserves that a found envelope has.
-
-    Parameters
-    ----------
-    envelope : as a spec states it
-    trims : equilibria at its airspeeds and banks
-    spec : the aircraft as it was trimmed
-    """
+    """Envelope that a spec states, with a note if equilibria in it lack a found one's reserves."""
     lacking = [reason for t in trims if (reason := _lacking_reserve(t, spec))]
     if not lacking:
         return envelope

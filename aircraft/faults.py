@@ -26,10 +26,7 @@ _FAILED = "fault/{}/failed"
 _HELD = "fault/{}/held"
 
 _SHUT_DOWN = (("propulsion/magneto_cmd", 0.0), ("propulsion/cutoff_cmd", 1.0))
-"""Properties that shut engines down, if a model has them.
-
-With ``set-running`` alone a windmilling engine restarts.
-"""
+"""Properties that shut engines down, if a model has them: a windmilling engine would restart."""
 
 
 def fault_names(spec: AircraftSpec) -> tuple[str, ...]:
@@ -38,13 +35,7 @@ def fault_names(spec: AircraftSpec) -> tuple[str, ...]:
 
 
 def failable_root(spec: AircraftSpec, root: Path, directory: Path) -> Path:
-    """Write a copy of a JSBSim root whose aircraft can fail; return ``directory``.
-
-    Parameters
-    ----------
-    spec : the aircraft
-    root : with the aircraft and its autopilot; it is not changed
-    directory : where to write the copy
+    """Write a copy of a JSBSim root, whose aircraft can fail, to ``directory``; return that.
 
     Raises
     ------
@@ -103,11 +94,7 @@ def _insert_before_actuator(
 
 
 class Faults:
-    """The faults of one aircraft in flight.
-
-    Parameters
-    ----------
-    fdm : loaded from a ``failable_root``
+    """The faults of one aircraft in flight, loaded from a ``failable_root``.
 
     Attributes
     ----------

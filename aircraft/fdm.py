@@ -2,10 +2,8 @@
 
 import contextlib
 import ctypes
-import functools
 import math
 import os
-import re
 import sys
 import tempfile
 import time
@@ -16,7 +14,7 @@ from pathlib import Path
 import jsbsim
 
 from aircraft.model import copy_model, remove_ground_contacts
-from aircraft.spec import AircraftError, AircraftSpec, UnknownPropertyError
+from aircraft.spec import PROPERTY, AircraftError, AircraftSpec
 from aircraft.state import RigidBodyState, Vector, with_wind
 from common.physics import METRES_PER_FOOT
 
@@ -63,10 +61,11 @@ _INITIAL_STATE = (
 )
 """JSBSim's initial conditions, in the order in which they must be set: each may change others."""
 
-_VELOCITY = "velocities/{}-aero-fps"
-_ACCELERATION = "accelerations/{}dot-ft_sec2"
-_RATE = "velocities/{}-rad_sec"
-_ANGULAR_ACCELERATION = "accelerations/{}dot-rad_sec2"
+_ACCELERATIONS = (
+    *(f"accelerations/{component}dot-ft_sec2" for component in "uvw"),
+    *(f"accelerations/{component}dot-rad_sec2" for component in "pqr"),
+)
+"""Rates of the body's velocity and of its rates of rotation [ft/s^2, rad/s^2]."""
 
 _WIND = ("atmosphere/wind-north-fps", "atmosphere/wind-east-fps", "atmosphere/wind-down-fps")
 """Velocity of the air [ft/s]."""
@@ -91,8 +90,6 @@ They are still short against the second that a piston engine takes to change its
 
 _FLIGHTGEAR = '<output name="{host}" type="FLIGHTGEAR" port="{port}" protocol="UDP" rate="30"/>'
 """JSBSim's output of FlightGear's packets, 30 a second."""
-
-_PROPERTY_NAME = re.compile(r"[A-Za-z_][\w.\-]*(\[\d+\])?(/[A-Za-z_][\w.\-]*(\[\d+\])?)*")
 
 
 class Fdm:
@@ -136,8 +133,7 @@ class Fdm:
         self._nodes: dict[str, jsbsim.FGPropertyNode] = {}
         self._initial = [self.writable_node(name) for name in _INITIAL_STATE]
         self._wind = [self.writable_node(name) for name in _WIND]
-        accelerations = (*_names(_ACCELERATION, "uvw"), *_names(_ANGULAR_ACCELERATION, "pqr"))
-        self._accelerations = [self.node(name) for name in accelerations]
+        self._accelerations = [self.node(name).get_double_value for name in _ACCELERATIONS]
         self._engines_started = False
         self.cranked = False
         # Bound directly to JSBSim: the innermost call of every flight.
@@ -173,10 +169,10 @@ class Fdm:
         return self._find(name) is not None
 
     def node(self, name: str) -> jsbsim.FGPropertyNode:
-        """Node of an existing property, for repeated access at the least cost."""
+        """Node of an existing property, for repeated access; JSBSim itself would create one."""
         node = self._find(name)
         if node is None:
-            raise UnknownPropertyError(
+            raise AircraftError(
                 f"aircraft '{self.spec.name}' has no JSBSim property '{name}'; check its spelling"
             )
         return node
@@ -185,7 +181,7 @@ class Fdm:
         if name in self._nodes:
             return self._nodes[name]
         # An invalid name would end the whole process in JSBSim's property tree.
-        if not _PROPERTY_NAME.fullmatch(name):
+        if not PROPERTY.fullmatch(name):
             return None
         node = self._properties.get_node(name)
         if not node:
@@ -390,13 +386,12 @@ class Fdm:
 
     def _comes_to_rest(self, tolerance: float, steps_max: int) -> bool:
         run = self.run
-        reads = [node.get_double_value for node in self._accelerations]
         limit = _SETTLE_STRIDE * tolerance
-        before = [math.nan] * len(reads)
+        before = [math.nan] * len(_ACCELERATIONS)
         for _ in range(0, steps_max, _SETTLE_STRIDE):
             for _ in range(_SETTLE_STRIDE):
                 run()
-            after = [read() for read in reads]
+            after = [read() for read in self._accelerations]
             for a, b in zip(after, before, strict=True):
                 if not abs(a - b) <= limit * max(1.0, abs(a)):
                     break
@@ -405,31 +400,15 @@ class Fdm:
             before = after
         return False
 
-    def velocity_body(self) -> Vector:
-        """Forward, right and down velocity against the air [m/s]."""
-        return self._vector(_VELOCITY, "uvw", METRES_PER_FOOT)
-
     def acceleration_body(self) -> Vector:
         """Rates of the body velocity components after the last step [m/s^2]."""
-        return self._vector(_ACCELERATION, "uvw", METRES_PER_FOOT)
-
-    def rates_body(self) -> Vector:
-        """Roll, pitch and yaw rate [rad/s]."""
-        return self._vector(_RATE, "pqr", 1.0)
+        u_dot, v_dot, w_dot = (read() * METRES_PER_FOOT for read in self._accelerations[:3])
+        return u_dot, v_dot, w_dot
 
     def angular_acceleration(self) -> Vector:
         """Rates of p, q and r after the last step [rad/s^2]."""
-        return self._vector(_ANGULAR_ACCELERATION, "pqr", 1.0)
-
-    def _vector(self, pattern: str, components: str, scale: float) -> Vector:
-        x, y, z = (self.read(name) * scale for name in _names(pattern, components))
-        return x, y, z
-
-
-@functools.cache
-def _names(pattern: str, components: str) -> tuple[str, ...]:
-    """Properties of a vector: ``pattern`` with each of the components, such as "uvw"."""
-    return tuple(pattern.format(component) for component in components)
+        p_dot, q_dot, r_dot = (read() for read in self._accelerations[3:])
+        return p_dot, q_dot, r_dot
 
 
 def initial_conditions(state: RigidBodyState) -> list[tuple[str, float]]:

@@ -41,17 +41,14 @@ _AIRSPEED_STEP = 0.0025
 _ALTITUDE_STEP = 5.0
 _STEP = 0.002
 _INPUT_STEP = 0.01
-"""Steps of the differences: airspeed over itself [-], altitude [m], angles and body rates
-[rad, rad/s], inputs [-].
+"""Steps of airspeed over itself [-], altitude [m], angles and rates [rad, rad/s] and inputs [-].
 
 They are large against what is left of settling, ``_SETTLED``, and small against the curvature of a
 model's tables.
 """
 
 _LAG_STEP = {"throttle": 0.05}
-"""Input steps for measuring lags [-]; a turbine spools at a steady rate, so a small step would show
-no lag.
-"""
+"""Larger input steps for lags [-]: a turbine spools at a steady rate, so a small one shows none."""
 
 _SETTLED = 3e-8
 """Change of acceleration in a step below which engines count as settled [m/s^2, rad/s^2].
@@ -66,9 +63,7 @@ _LAG_SETTLED = 0.002
 """Fraction of the effect that may be left when the measurement of a lag ends [-]."""
 
 _SECOND_ORDER = 0.05
-"""Product of two time constants over the square of their sum above which a lag is of second order
-[-].
-"""
+"""Product of two time constants over their sum squared above which a lag is of second order [-]."""
 
 _AT_ONCE = 1e-6
 """Fraction of its way that a driven state may have left one step after its input moved [-].
@@ -77,8 +72,7 @@ With less it follows at once and is no state; rounding leaves less.
 """
 
 _NO_LAG = 0.6
-"""Number of time steps up to which a time constant is no lag but the hold of an input, half a step.
-"""
+"""Time steps up to which a time constant is no lag but the hold of an input, half a step [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -4,6 +4,7 @@ JSBSim's own models write files, open sockets and fly under autopilots of their 
 this project flies have none of these.
 """
 
+import contextlib
 import re
 import shutil
 import tempfile
@@ -113,12 +114,19 @@ def copy_model(files: ModelFiles, directory: Path, *, play: bool = True) -> Path
     config = document.getroot()
     at_rest = [*_remove_autopilots_and_io(config, files), *_flightgear_properties(config, files)]
     if at_rest:
-        insert_before_flight_control(config, _system_at_rest(at_rest))
+        system = ET.Element("system", name="The model's own autopilot, off")
+        for name in at_rest:
+            ET.SubElement(system, "property", value="0").text = name
+        insert_before_flight_control(config, system)
     _copy_referenced(config, files, directory)
     if not play:
         for folder in (target, directory / "systems"):
             for path in folder.rglob("*.xml"):
-                _remove_play_from_file(path)
+                # Files that are no XML may stand beside a model: JSBSim does not read them.
+                with contextlib.suppress(AircraftError):
+                    part = read_xml(path)
+                    if _remove_play(part.getroot()):
+                        write_xml(part, path)
         _remove_play(config)
     model_file = target / f"{files.model}.xml"
     write_xml(document, model_file)
@@ -196,13 +204,6 @@ def _flightgear_properties(config: ET.Element, files: ModelFiles) -> list[str]:
     return list(dict.fromkeys(found))
 
 
-def _system_at_rest(names: list[str]) -> ET.Element:
-    system = ET.Element("system", name="The model's own autopilot, off")
-    for name in names:
-        ET.SubElement(system, "property", value="0").text = name
-    return system
-
-
 def _copy_referenced(config: ET.Element, files: ModelFiles, directory: Path) -> None:
     """Copy engines, thrusters and systems that stand outside the model's folder.
 
@@ -220,15 +221,6 @@ def _copy_referenced(config: ET.Element, files: ModelFiles, directory: Path) -> 
         folder = directory / shared_folder
         folder.mkdir(parents=True, exist_ok=True)
         shutil.copy(found, folder / found.name)
-
-
-def _remove_play_from_file(path: Path) -> None:
-    try:
-        document = read_xml(path)
-    except AircraftError:
-        return  # a file beside the model that JSBSim does not read
-    if _remove_play(document.getroot()):
-        write_xml(document, path)
 
 
 def _remove_play(config: ET.Element) -> bool:

@@ -14,7 +14,7 @@ import types
 import typing
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from reprlib import repr as shortened
 from typing import Any
@@ -29,6 +29,9 @@ NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.\-]*")
 
 NAME_RULE = "use letters, digits, '_', '-' and '.'"
 """``NAME`` in words, for messages."""
+
+PROPERTY = re.compile(r"[A-Za-z_][\w.\-]*(\[\d+\])?(/[A-Za-z_][\w.\-]*(\[\d+\])?)*")
+"""Names of JSBSim properties."""
 
 SETTLE_TIMES = (0.1, 120.0)
 """Range of the time in which servos and engines come to rest [s]."""
@@ -58,10 +61,6 @@ _OPTIONAL_INPUTS = ("rudder",)
 
 class AircraftError(ValueError):
     """An aircraft cannot be found, loaded, trimmed or linearised; the message is one line."""
-
-
-class UnknownPropertyError(AircraftError):
-    """A JSBSim property does not exist. JSBSim itself would create it silently on writing."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -284,10 +283,6 @@ class AircraftSpec:
         """Where the model's files are."""
         folder = self.folder or self.root / "aircraft" / self.model
         return ModelFiles(model=self.model, folder=folder, roots=(self.root, *self.other_roots))
-
-    def with_files_of(self, other: "AircraftSpec") -> "AircraftSpec":
-        """This aircraft with its files where those of ``other`` are."""
-        return replace(self, root=other.root, folder=other.folder, other_roots=other.other_roots)
 
     @property
     def actuators(self) -> tuple[Actuator, ...]:

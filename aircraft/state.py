@@ -54,13 +54,7 @@ def level(vector: Vector, roll: float, pitch: float) -> Vector:
 
 
 def with_wind(state: RigidBodyState, wind: tuple[float, float]) -> RigidBodyState:
-    """State over the ground of an aircraft whose ``state`` is against the air.
-
-    Parameters
-    ----------
-    state : against the air
-    wind : velocity of the air, north and east [m/s]
-    """
+    """State over the ground of a state against the air, whose velocity is north and east [m/s]."""
     north, east = wind
     sin_roll, cos_roll = math.sin(state.roll), math.cos(state.roll)
     sin_pitch, cos_pitch = math.sin(state.pitch), math.cos(state.pitch)

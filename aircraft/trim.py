@@ -17,7 +17,7 @@ import numpy.typing as npt
 from scipy.optimize import fsolve, least_squares
 
 from aircraft.fdm import Fdm
-from aircraft.spec import AircraftError, AircraftSpec, check_spec
+from aircraft.spec import AircraftError
 from aircraft.state import RigidBodyState, Vector, body_velocity, level, turn_rates
 
 Array = npt.NDArray[np.float64]
@@ -38,19 +38,12 @@ _GOOD = 0.05
 """Acceleration at which a search ends, over ``TOLERANCE`` [-]; the rest is left to settling."""
 
 _NEAR_LIMIT = 0.05
-"""Distance at which an unknown counts as at its limit, over its scale [-].
-
-Bounded searches stop short of a limit.
-"""
+"""Distance at which an unknown counts as at its limit, over its scale [-]: searches stop short."""
 
 _ALPHA_MAX = 0.5
 _BETA_MAX = 0.3
 _BANK_MAX = 1.2
-"""Limits of the unknown angles [rad], wider than any flight.
-
-Angle of attack beyond stall, 29 deg; sideslip, 17 deg; the bank that balances a propeller's torque
-in straight flight, 69 deg.
-"""
+"""Limits of angle of attack, sideslip and the bank of straight flight [rad], beyond any flight."""
 
 _TURN_RATE_RATIO_MAX = 3.0
 """Limit of the unknown yaw rate, over that of a coordinated turn [-]."""
@@ -195,20 +188,6 @@ def trim(
     )
 
 
-def level_trim(
-    spec: AircraftSpec, airspeed: float, altitude: float, start: Trim | None = None
-) -> Trim:
-    """Straight and level equilibrium of the bare aircraft.
-
-    Parameters
-    ----------
-    spec : the aircraft
-    airspeed, altitude : true airspeed [m/s] and altitude [m]
-    start : an equilibrium nearby
-    """
-    return trim(Fdm(spec), airspeed=airspeed, altitude=altitude, start=start)
-
-
 def search_trim(
     fdm: Fdm,
     *,
@@ -233,24 +212,19 @@ def search_trim(
 
     Raises
     ------
-    AircraftError : an impossible condition, such as a negative airspeed, or a spec that no
-        autopilot can be designed for
+    AircraftError : an impossible condition, such as a negative airspeed
     """
-    where = f"trim of '{fdm.spec.name}'"
-    if not (math.isfinite(airspeed) and airspeed > 0.0):
-        raise AircraftError(f"{where}: airspeed is {airspeed} m/s; it must be finite and above 0")
-    for name, value, unit in (
-        ("altitude", altitude, "m"),
-        ("bank", bank, "rad"),
-        ("climb angle", climb_angle, "rad"),
+    for name, value, low, high, unit in (
+        ("airspeed", airspeed, 0.0, math.inf, "m/s"),
+        ("altitude", altitude, -math.inf, math.inf, "m"),
+        ("bank", math.degrees(bank), -90.0, 90.0, "deg"),
+        ("climb angle", math.degrees(climb_angle), -90.0, 90.0, "deg"),
     ):
-        if not math.isfinite(value):
-            raise AircraftError(f"{where}: {name} is {value} {unit}; it must be finite")
-    if not abs(bank) < 0.5 * math.pi:
-        raise AircraftError(
-            f"{where}: bank is {math.degrees(bank):g} deg; it must lie between -90 and 90 deg"
-        )
-    check_spec(fdm.spec)
+        if not low < value < high:
+            raise AircraftError(
+                f"trim of '{fdm.spec.name}': {name} is {value:g} {unit}; it must lie between"
+                f" {low:g} and {high:g} {unit}"
+            )
     problem = _TrimProblem(
         fdm, airspeed=airspeed, altitude=altitude, bank=bank, climb_angle=climb_angle
     )
@@ -266,10 +240,7 @@ def search_trim(
 
 
 class _FoundError(Exception):
-    """Ends a search at its first good point.
-
-    MINPACK would seek digits that a settling engine does not have.
-    """
+    """Ends a search at a good point: MINPACK would seek digits that a settling engine lacks."""
 
     def __init__(self, unknowns: Array) -> None:
         super().__init__()

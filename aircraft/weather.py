@@ -86,57 +86,49 @@ TURBULENCE = {
     "moderate": Turbulence(wind_at_20ft=30.0 * METRES_PER_SECOND_PER_KNOT, severity=4),
     "severe": Turbulence(wind_at_20ft=45.0 * METRES_PER_SECOND_PER_KNOT, severity=6),
 }
-"""Turbulence by name.
-
-W20 of 15, 30 and 45 knots (MIL-F-8785C, figure 9), and the severities that JSBSim's manual gives
-them.
-"""
+"""W20 of 15, 30 and 45 knots (MIL-F-8785C, figure 9), with the severities of JSBSim's manual."""
 
 
-def intensities(altitude: float, wind_at_20ft: float) -> tuple[float, float, float]:
-    """Standard deviations sigma_u, sigma_v, sigma_w [m/s] of the air along, across and down.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GustStatistics:
+    """Turbulence at one altitude: standard deviations of the wind [m/s], and scale lengths [m]."""
+
+    horizontal: float
+    vertical: float
+    horizontal_length: float
+    vertical_length: float
+
+
+def low_altitude_turbulence(altitude: float, wind_at_20ft: float) -> GustStatistics:
+    """Statistics of the turbulence at an altitude [m] by MIL-F-8785C, below 10 ft same as at 10 ft.
+
+    MIL-HDBK-1797 calls half of the scale lengths across and down by the same names and has its
+    spectra make up for it.
 
     Parameters
     ----------
-    altitude : above the surface [m]; below 10 ft same as at 10 ft
-    wind_at_20ft : [m/s]
+    altitude : above the surface [m]
+    wind_at_20ft : mean wind 20 ft above the surface [m/s]
 
     Raises
     ------
     AircraftError : an altitude above 1,000 ft, where other laws hold
     """
-    vertical = 0.1 * wind_at_20ft
-    horizontal = vertical / _shape(_height_ft(altitude)) ** 0.4
-    return horizontal, horizontal, vertical
-
-
-def scale_lengths(altitude: float) -> tuple[float, float, float]:
-    """Scale lengths L_u, L_v, L_w [m] of the air along, across and down at an altitude [m].
-
-    They are MIL-F-8785C's; MIL-HDBK-1797 calls half of the last two by the same names and has its
-    spectra make up for it.
-
-    Raises
-    ------
-    AircraftError : an altitude above 1,000 ft, where other laws hold
-    """
-    height = _height_ft(altitude)
-    horizontal = height / _shape(height) ** 1.2 * METRES_PER_FOOT
-    return horizontal, horizontal, height * METRES_PER_FOOT
-
-
-def _height_ft(altitude: float) -> float:
     height = altitude / METRES_PER_FOOT
     if not height <= _ALTITUDE_MAX_FT:
         highest = _ALTITUDE_MAX_FT * METRES_PER_FOOT
         raise AircraftError(
             f"low-altitude turbulence: altitude is {altitude:g} m; it holds up to {highest:g} m"
         )
-    return max(height, _ALTITUDE_MIN_FT)
-
-
-def _shape(height_ft: float) -> float:
-    return 0.177 + 0.000823 * height_ft
+    height = max(height, _ALTITUDE_MIN_FT)
+    shape = 0.177 + 0.000823 * height
+    vertical = 0.1 * wind_at_20ft
+    return GustStatistics(
+        horizontal=vertical / shape**0.4,
+        vertical=vertical,
+        horizontal_length=height / shape**1.2 * METRES_PER_FOOT,
+        vertical_length=height * METRES_PER_FOOT,
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -231,13 +223,10 @@ def begin_weather(fdm: Fdm, weather: Weather) -> Callable[[], object]:
 
     It is JSBSim's own ``run`` if the wind is constant and there are no gusts, so that they cost no
     time. Turbulence rises from smooth air, and the same seed gives the same turbulence. It takes a
-    few times ``scale_lengths()[0]`` over the airspeed to reach its strength: some 30 s for 220 m at
-    20 m/s.
+    few times its horizontal scale length over the airspeed to reach its strength: some 30 s for
+    220 m at 20 m/s.
 
-    Parameters
-    ----------
-    fdm : the aircraft at its release, placed in the wind of that time
-    weather : timed from now
+    The aircraft is at its release, placed in the wind of that time; the weather is timed from then.
 
     Raises
     ------

@@ -15,7 +15,7 @@ from common.command_line import INTERRUPTED, refuse, run_command
 from common.run_layout import DESIGN_RECORD, FORMAT, MANIFEST, MODEL
 
 if TYPE_CHECKING:
-    from innerloop.store import Designed, Record
+    from innerloop.store import Record
 
 _RUNS = Path("runs")
 """Directory of designs if none is given."""
@@ -189,6 +189,7 @@ def _design(
 
     from common.files import remove_reports, write_json
     from common.provenance import command_line
+    from innerloop.flight.turn_reversal import repeat_search
     from innerloop.jsbsim.script import write_script
     from innerloop.jsbsim.system import write_root
     from innerloop.store import designed
@@ -207,7 +208,17 @@ def _design(
     root = write_root(found.design.schedule, out / MODEL)
     write_script(found.design.schedule, root)
     if reversals:
-        record = _with_repeated_search(found, root, reversals)
+        searched = repeat_search(
+            found.design.schedule,
+            record,
+            root,
+            reversals,
+            done=lambda count, deviation: print(
+                f"{count} of {reversals} reversals, largest deviation {deviation:.2f} m",
+                file=sys.stderr,
+            ),
+        )
+        record = record | {"turn_reversal": record["turn_reversal"] | {"repeated_search": searched}}
     write_json(out / DESIGN_RECORD, record, indent=None)
     command = command_line("innerloop.design", sys.argv)
     write_json(out / MANIFEST, _manifest(record, command, time.monotonic() - started))
@@ -215,22 +226,6 @@ def _design(
     print(f"\ndesign: {out}\nJSBSim root with the autopilot: {root}")
     for path in () if no_report else build_reports(out, settings=overrides):
         print(f"report: {path}")
-
-
-def _with_repeated_search(found: "Designed", root: Path, reversals: int) -> "Record":
-    """Return the design's record with the result of a search over so many reversals."""
-    from innerloop.reversal_record import repeat_search
-
-    def report_progress(count: int, deviation: float) -> None:
-        print(
-            f"{count} of {reversals} reversals, largest deviation {deviation:.2f} m",
-            file=sys.stderr,
-        )
-
-    searched = repeat_search(found, root, reversals, done=report_progress)
-    return found.record | {
-        "turn_reversal": found.record["turn_reversal"] | {"repeated_search": searched}
-    }
 
 
 def _manifest(record: "Record", command_line: str, wall_time: float) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from aircraft.controls import flight_idle, with_flight_idle, with_linearised_controls
+from aircraft.controls import with_flight_idle, with_linearised_controls
 from aircraft.envelope import find_envelope, first_trim, with_reserve_note
 from aircraft.fdm import Fdm
 from aircraft.linearise import LinearModel, linearise
@@ -27,20 +27,13 @@ from innerloop.schedule import (
     table_banks,
 )
 from innerloop.store import Design, DesignError
-from innerloop.synthesis import (
-    control_weights,
-    design_gains,
-    design_weights,
-    reachable_bandwidths,
-)
+from innerloop.synthesis import control_weights, design_gains, design_weights, reachable_bandwidths
 
 _SLOWER = 0.8
 """Factor on the bandwidths of an axis with too little margin [-]."""
 
 _ATTEMPTS = 10
-"""Number of designs after which an aircraft is refused: the last is at 13 % of the first
-bandwidths.
-"""
+"""Designs after which an aircraft is refused: the last has 13 % of the first bandwidths."""
 
 _PHASE_LOSS_MAX = 5.0
 """Phase margin that a loop may lose to a period of more than one time step [deg]."""
@@ -54,13 +47,7 @@ _AIRSPEED_LOOPS = ("throttle", "airspeed")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Grid:
-    """Equilibria and linear models over airspeed and bank, which a design starts from.
-
-    Attributes
-    ----------
-    spec, envelope, altitude : the aircraft, its envelope, and the altitude [m]
-    trims, models, edges : same as in ``Schedule``
-    """
+    """Equilibria and linear models that a design starts from, with the names of ``Schedule``."""
 
     spec: AircraftSpec
     envelope: Envelope
@@ -138,9 +125,8 @@ def linear_grid(spec: AircraftSpec, altitude: float) -> Grid:
         edges.append((linearise(beyond, row[0]), linearise(beyond, row[-1])))
     if spec.envelope is not None:
         envelope = with_reserve_note(envelope, [t for row in trims for t in row], spec)
-    spec = with_flight_idle(spec, flight_idle(fdm, trims[len(trims) // 2][LEVEL]))
     return Grid(
-        spec=spec,
+        spec=with_flight_idle(fdm, trims[len(trims) // 2][LEVEL]),
         envelope=envelope,
         altitude=altitude,
         trims=tuple(trims),
@@ -156,10 +142,9 @@ def schedule_at(grid: Grid, bandwidths: LoopBandwidths) -> Schedule:
     gains = []
     for row, models in zip(grid.trims, grid.models, strict=True):
         controls = control_weights(models[LEVEL_GAINS], bandwidths, weights)
-        at = [row[TRIM_BANKS.index(share)] for share in GAIN_BANKS]
         of_row = [
-            design_gains(model, equilibrium, weights, controls)
-            for model, equilibrium in zip(models, at, strict=True)
+            design_gains(model, row[TRIM_BANKS.index(share)], weights, controls)
+            for model, share in zip(models, GAIN_BANKS, strict=True)
         ]
         gains.append(tuple(of_row))
     return Schedule(
@@ -208,13 +193,11 @@ def phase_loss(before: Sequence[Check], after: Sequence[Check]) -> float:
 def _slowed(bandwidths: LoopBandwidths, short: Sequence[Check]) -> LoopBandwidths:
     """Return the bandwidths, lower in the axes whose loops have too little margin."""
     loops = {name for check in short for name in check.short_loops}
-    lateral = any(name in _LATERAL_LOOPS for name in loops)
-    airspeed = any(name in _AIRSPEED_LOOPS for name in loops)
-    longitudinal = bool(loops - set(_LATERAL_LOOPS) - set(_AIRSPEED_LOOPS)) or not (
-        lateral or airspeed
-    )
-    return bandwidths.scaled(
-        lateral=_SLOWER if lateral else 1.0,
-        longitudinal=_SLOWER if longitudinal else 1.0,
-        airspeed=_SLOWER if airspeed or longitudinal else 1.0,
+    lateral = not loops.isdisjoint(_LATERAL_LOOPS)
+    longitudinal = bool(loops.difference(_LATERAL_LOOPS, _AIRSPEED_LOOPS))
+    airspeed = longitudinal or not loops.isdisjoint(_AIRSPEED_LOOPS)
+    return LoopBandwidths(
+        lateral=bandwidths.lateral * (_SLOWER if lateral else 1.0),
+        longitudinal=bandwidths.longitudinal * (_SLOWER if longitudinal else 1.0),
+        airspeed=bandwidths.airspeed * (_SLOWER if airspeed else 1.0),
     )

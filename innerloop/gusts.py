@@ -1,10 +1,9 @@
 """Turbulence as filtered white noise, and the linear aircraft in moving air.
 
-Low-altitude turbulence is that of MIL-F-8785C. Intensities and scale lengths are those of
-``aircraft.weather``. The filters are the factors of its Dryden spectra, section
-3.7.1.2, with the rotations of JSBSim (Yeager, NASA CR-1998-206937): p is independent, q and r are
-the slopes of w and v along the path, seen by a wing of some span. JSBSim's ``atmosphere/turb-type``
-4 is the same, in Tustin's steps.
+Low-altitude turbulence is that of MIL-F-8785C (``aircraft.weather``). The filters are the factors
+of its Dryden spectra, section 3.7.1.2, with the rotations of JSBSim (Yeager, NASA CR-1998-206937):
+p is independent, q and r are the slopes of w and v along the path, seen by a wing of some span.
+JSBSim's ``atmosphere/turb-type`` 4 is the same, in Tustin's steps.
 
 Moving air acts through the velocity of the body against it: on the forces and moments of the air,
 and on the propeller. The linear model was made in still air, where that velocity is the body's own,
@@ -12,11 +11,10 @@ so its columns contain more: how velocity components turn with the body (-omega 
 up to climb, and how angles follow rates. Those are known in closed form and subtracted; the rest,
 times minus the air's velocity, is the effect of a gust.
 
-python-control is imported where it computes: a flight reads ``GustStatistics`` without it.
+python-control is imported where it computes.
 """
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,7 +23,7 @@ import numpy.typing as npt
 from aircraft.linearise import LinearModel
 from aircraft.state import body_velocity, level
 from aircraft.trim import Trim
-from aircraft.weather import intensities, scale_lengths
+from aircraft.weather import GustStatistics
 from innerloop.law import ControlLaw, linear_controller
 from innerloop.margins import closed_loop
 from innerloop.schedule import LEVEL_GAINS, Schedule
@@ -34,9 +32,7 @@ if TYPE_CHECKING:
     import control
 
 GUSTS = ("gust_along", "gust_right", "gust_down", "gust_p", "gust_q", "gust_r")
-"""Velocity of the air along the trimmed course, right and down [m/s], and its rotation about these
-axes [rad/s].
-"""
+"""Velocity of the air along the trimmed course, right and down [m/s], and its rotation [rad/s]."""
 
 MOTION = ("speed", "course_rate")
 """Motion against the mean air: horizontal speed [m/s] and rate of the course [rad/s].
@@ -49,39 +45,6 @@ _AIR = ("airspeed", "alpha", "beta", "p", "q", "r")
 _RATES = ("p", "q", "r")
 
 Array = npt.NDArray[np.float64]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class GustStatistics:
-    """Turbulence at one altitude.
-
-    Attributes
-    ----------
-    horizontal, vertical : standard deviations of the horizontal and the vertical wind [m/s]
-    horizontal_length, vertical_length : scale lengths of the same [m]
-    """
-
-    horizontal: float
-    vertical: float
-    horizontal_length: float
-    vertical_length: float
-
-
-def low_altitude_turbulence(altitude: float, wind_at_20ft: float) -> GustStatistics:
-    """Return the turbulence at an altitude [m], by the mean wind [m/s] 20 ft above the surface.
-
-    Raises
-    ------
-    AircraftError : same as ``aircraft.weather.intensities``
-    """
-    horizontal, _, vertical = intensities(altitude, wind_at_20ft)
-    horizontal_length, _, vertical_length = scale_lengths(altitude)
-    return GustStatistics(
-        horizontal=horizontal,
-        vertical=vertical,
-        horizontal_length=horizontal_length,
-        vertical_length=vertical_length,
-    )
 
 
 def dryden_filters(
@@ -146,12 +109,7 @@ def gust_loop(schedule: Schedule, index: int, bank_index: int) -> "control.State
     """Return aircraft and autopilot at an airspeed and a gain bank, from commands and gusts.
 
     Inputs are ``COMMANDS`` and ``GUSTS``. Outputs are those of ``aircraft_in_gusts`` and the
-    command of each control.
-
-    Parameters
-    ----------
-    schedule : the design
-    index, bank_index : of the airspeed and of the gain bank
+    command of each control. The indices are those of ``Schedule.gain_trim``.
     """
     models = schedule.models[index]
     trim = schedule.gain_trim(index, bank_index)
@@ -185,7 +143,10 @@ def aircraft_in_gusts(model: LinearModel, trim: Trim, level_model: LinearModel) 
     moments = [states.index(name) for name in _RATES]
     at = velocity_by_polar(trim.airspeed, trim.alpha, trim.beta)
     by_air = model.A[:, air].copy()
-    by_air[:3] -= np.linalg.solve(at, _turning(trim, at))
+    # The derivatives of -omega x v by the components of ``_AIR``.
+    velocity = body_velocity(trim.airspeed, trim.alpha, trim.beta)
+    turning = np.hstack([-_cross(trim.rates_body) @ at, _cross(velocity)])
+    by_air[:3] -= np.linalg.solve(at, turning)
     by_air[moments, 3:] = level_model.A[np.ix_(moments, air[3:])]
     by_air[[states.index(name) for name in ("roll", "pitch", "altitude")]] = 0.0
 
@@ -222,12 +183,7 @@ def aircraft_in_gusts(model: LinearModel, trim: Trim, level_model: LinearModel) 
 
 
 def velocity_by_polar(airspeed: float, alpha: float, beta: float) -> Array:
-    """Return the derivatives of body velocity [m/s] by airspeed, alpha and beta, shape (3, 3).
-
-    Parameters
-    ----------
-    airspeed, alpha, beta : [m/s, rad, rad]
-    """
+    """Return the derivatives of body velocity by airspeed, alpha, beta [m/s, rad], shape (3, 3)."""
     ca, sa = math.cos(alpha), math.sin(alpha)
     cb, sb = math.cos(beta), math.sin(beta)
     return np.array(
@@ -237,12 +193,6 @@ def velocity_by_polar(airspeed: float, alpha: float, beta: float) -> Array:
             [sa * cb, airspeed * ca * cb, -airspeed * sa * sb],
         ]
     )
-
-
-def _turning(trim: Trim, at: Array) -> Array:
-    """Return the derivatives of -omega x v [m/s^2] by ``_AIR``, shape (3, 6)."""
-    velocity = body_velocity(trim.airspeed, trim.alpha, trim.beta)
-    return np.hstack([-_cross(trim.rates_body) @ at, _cross(velocity)])
 
 
 def _cross(vector: tuple[float, float, float]) -> Array:

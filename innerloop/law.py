@@ -9,7 +9,7 @@ import bisect
 import functools
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import NamedTuple
+from dataclasses import fields
 
 import numpy as np
 import numpy.typing as npt
@@ -30,9 +30,7 @@ STATES = (
     "model_rate",
     "model_acceleration",
 )
-"""States of the autopilot: integrals, and the heading rate and heading acceleration of the
-reference model [rad/s, rad/s^2].
-"""
+"""States of the autopilot: integrals, and the heading-rate model's rate and acceleration [SI]."""
 
 _STEP = 1e-4
 """Step of the differences that linearise the law [SI].
@@ -100,10 +98,7 @@ class ControlLaw:
     ) -> tuple[dict[str, float], dict[str, float]]:
         """Return the rates of ``STATES`` and the controls [-].
 
-        Parameters
-        ----------
-        commands, measured, states : absolute values by the names of ``COMMANDS``, ``measurements``
-            and ``STATES``
+        Arguments are absolute values by the names of ``COMMANDS``, ``measurements`` and ``STATES``.
         """
         airspeed = commands["airspeed_command"]
         at_bank = self.trim_tables(measured["roll"], airspeed)
@@ -238,39 +233,18 @@ def bank_slopes(schedule: Schedule) -> list[float]:
 
 
 def gain_vector(gains: Gains) -> Array:
-    """Return all gains in one vector, shape (28,)."""
-    return np.concatenate(
-        [
-            gains.longitudinal.ravel(),
-            gains.longitudinal_integral.ravel(),
-            gains.lateral.ravel(),
-            [gains.heading_integral, gains.sideslip_integral],
-            gains.roll_rate_feedforward,
-            gains.roll_acceleration_feedforward,
-        ]
-    )
+    """Return all gains in one vector in the order of their fields, shape (28,)."""
+    return np.concatenate([np.ravel(getattr(gains, field.name)) for field in fields(Gains)])
 
 
-class _InterpolatedGains(NamedTuple):
-    """The gains of a vector, with the names and shapes of ``Gains``."""
-
-    longitudinal: Array
-    longitudinal_integral: Array
-    lateral: Array
-    heading_integral: float
-    sideslip_integral: float
-    roll_rate_feedforward: Array
-    roll_acceleration_feedforward: Array
-
-
-def _split(vector: Array) -> _InterpolatedGains:
+def _split(vector: Array) -> Gains:
     """Return the gains of a vector that ``gain_vector`` ordered."""
-    return _InterpolatedGains(
+    return Gains(
         longitudinal=vector[:10].reshape(2, 5),
         longitudinal_integral=vector[10:14].reshape(2, 2),
         lateral=vector[14:22].reshape(2, 4),
-        heading_integral=vector[22],
-        sideslip_integral=vector[23],
+        heading_integral=float(vector[22]),
+        sideslip_integral=float(vector[23]),
         roll_rate_feedforward=vector[24:26],
         roll_acceleration_feedforward=vector[26:28],
     )

@@ -17,17 +17,15 @@ from innerloop.store import designed, is_cached
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Discovered:
-    """An aircraft and whether it can be flown.
+    """An aircraft by the user's name for it, and whether it can be flown.
 
     Attributes
     ----------
-    name, title : by which the user calls the aircraft, and in its model
     flies : whether an autopilot could be designed; None if it was not tried before
     text : envelope and margins, or the reason why it cannot be flown
     """
 
     name: str
-    title: str
     flies: bool | None
     text: str
 
@@ -35,26 +33,20 @@ class Discovered:
 def look_up(name: str, altitude: float) -> Discovered:
     """Return whether one aircraft flies at ``altitude`` [m], if that is known without a design."""
     try:
-        spec = find_spec(name)
-        known = is_cached(spec, altitude)
+        known = is_cached(find_spec(name), altitude)
     except AircraftError:
         # ``examine`` finds the same error, and says it.
         known = True
     if known:
         return examine(name, altitude)
-    return Discovered(
-        name=name, title=spec.title, flies=None, text=f"not designed before for {altitude:g} m"
-    )
+    return Discovered(name=name, flies=None, text=f"not designed before for {altitude:g} m")
 
 
 def discover(names: Sequence[str], altitude: float, jobs: int) -> Iterator[Discovered]:
     """Yield aircraft in the order of ``names``, each as soon as it is known whether it flies.
 
-    Parameters
-    ----------
-    names : of known aircraft, or paths of their folders
-    altitude : of the designs [m]
-    jobs : processes; an aircraft that JSBSim cannot survive costs its process, not the list
+    They are designed at ``altitude`` [m] in ``jobs`` processes: an aircraft that JSBSim cannot
+    survive costs its process, not the list.
     """
     context = multiprocessing.get_context("spawn")
     pool = ProcessPoolExecutor(max_workers=jobs, mp_context=context, initializer=follow_parent)
@@ -81,24 +73,17 @@ def _alone(name: str, altitude: float) -> Discovered:
         try:
             return pool.submit(examine, name, altitude).result()
         except BrokenProcessPool:
-            return Discovered(
-                name=name, title=name, flies=False, text="JSBSim ends the whole process with it"
-            )
+            return Discovered(name=name, flies=False, text="JSBSim ends the whole process with it")
 
 
 def examine(name: str, altitude: float) -> Discovered:
     """Return whether one aircraft flies, from the design of its autopilot at ``altitude`` [m]."""
-    title = name
     try:
-        spec = find_spec(name)
-        title = spec.title
-        design = designed(spec, altitude).design
+        design = designed(find_spec(name), altitude).design
     except AircraftError as error:
-        return Discovered(name=name, title=title, flies=False, text=_reason(name, str(error)))
+        return Discovered(name=name, flies=False, text=_reason(name, str(error)))
     except Exception as error:  # noqa: BLE001 - one aircraft's failure does not end the list
-        return Discovered(
-            name=name, title=title, flies=False, text=f"{type(error).__name__}: {error}"
-        )
+        return Discovered(name=name, flies=False, text=f"{type(error).__name__}: {error}")
     envelope = design.schedule.envelope
     nominal = [check for check in design.checks if check.case == NOMINAL]
     gain = min(check.worst_gain.gain_db for check in nominal)
@@ -108,7 +93,7 @@ def examine(name: str, altitude: float) -> Discovered:
         f" {math.degrees(envelope.bank):.0f} deg of bank,"
         f" margins {math.floor(10.0 * gain) / 10.0:.1f} dB and {math.floor(phase):.0f} deg"
     )
-    return Discovered(name=name, title=title, flies=True, text=text)
+    return Discovered(name=name, flies=True, text=text)
 
 
 def _reason(name: str, message: str) -> str:

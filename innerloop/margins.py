@@ -40,9 +40,7 @@ BREAK_NAMES = {"beta": "sideslip"}
 """Names of breaks in reports, where they differ from the model's."""
 
 FREQUENCIES = np.logspace(-3.0, 2.4, 300)
-"""Frequencies at which loops are evaluated [rad/s]: from below any integral action to beyond any
-servo.
-"""
+"""Frequencies at which loops are evaluated [rad/s]: below integral action to beyond any servo."""
 
 _MU_STRIDE = 4
 """Stride over the frequencies of the structured singular value [-].
@@ -54,9 +52,7 @@ _MU_ACCURACY = 1.01
 """Factor by which a structured singular value, found by iteration, may exceed its bound [-]."""
 
 _WELL_CONDITIONED = 1e7
-"""Condition number of the eigenvectors up to which they give frequency responses to nine digits
-[-].
-"""
+"""Condition number of eigenvectors that give frequency responses to nine digits [-]."""
 
 Array = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
@@ -101,9 +97,7 @@ class Requirement:
 
 
 REQUIRED = Requirement()
-"""Nominal: MIL-F-9490D's 6 dB and 45 deg. A fifth of effectiveness is 1.6 to 1.9 dB, so 4 dB must
-remain.
-"""
+"""MIL-F-9490D as modelled; a fifth of effectiveness is 1.6 to 1.9 dB, so 4 dB must remain."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -212,20 +206,16 @@ class Loops:
 
     def with_aircraft(self, aircraft: LinearModel) -> "Loops":
         """Return the loops of a changed aircraft; the autopilot's response is reused."""
-        loops = self._copy_to_change()
+        loops = self.with_delay(self._delay)
         loops._aircraft = aircraft
         loops._plant = self._response_of(aircraft)
         return loops
 
     def with_delay(self, delay: float) -> "Loops":
         """Return the loops with another delay [s]; both responses are reused."""
-        loops = self._copy_to_change()
-        loops._delay = delay
-        return loops
-
-    def _copy_to_change(self) -> "Loops":
         loops = copy.copy(self)
         vars(loops).pop("_closed", None)
+        loops._delay = delay
         return loops
 
     def _response_of(self, aircraft: LinearModel) -> Complex:
@@ -270,14 +260,14 @@ class Loops:
 
     def margin_at_all_controls(self) -> Margin:
         """Return the disk margins for independent changes in all controls at once."""
-        disk = _disk_margin(1.0 / self._peak_structured_singular_value())
+        disk_gain_db, disk_phase_deg = _disk_margin(1.0 / self._peak_structured_singular_value())
         return Margin(
             loop=ALL_CONTROLS,
             gain_db=math.nan,
             phase_deg=math.nan,
             crossover=math.nan,
-            disk_gain_db=disk.gain_db,
-            disk_phase_deg=disk.phase_deg,
+            disk_gain_db=disk_gain_db,
+            disk_phase_deg=disk_phase_deg,
         )
 
     def _peak_structured_singular_value(self) -> float:
@@ -360,17 +350,10 @@ def _series(first: _Matrices, then: _Matrices) -> _Matrices:
     return _Matrices(a, b, c, then.d @ first.d)
 
 
-class _DiskMargin(NamedTuple):
-    """Guaranteed gain [dB] and phase [deg] margins."""
-
-    gain_db: float
-    phase_deg: float
-
-
-def _disk_margin(size: float) -> _DiskMargin:
-    """Return the margins of a balanced disk of a size [-]."""
+def _disk_margin(size: float) -> tuple[float, float]:
+    """Return the gain [dB] and phase [deg] margins of a balanced disk of a size [-]."""
     gain_db = 20.0 * math.log10((2.0 + size) / (2.0 - size)) if size < 2.0 else math.inf
-    return _DiskMargin(gain_db, math.degrees(2.0 * math.atan(0.5 * size)))
+    return gain_db, math.degrees(2.0 * math.atan(0.5 * size))
 
 
 def _response(system: LinearModel, frequencies: Array) -> Complex:
@@ -409,28 +392,21 @@ def loop_margins(names: Sequence[str], loops: Complex, frequencies: Array) -> li
     ]
 
 
-class _Crossover(NamedTuple):
-    """A frequency at which a loop's gain is 1 [rad/s], and the loop's phase there [rad]."""
-
-    frequency: float
-    phase: float
-
-
 def _loop_margin(
-    name: str, gains: list[float], crossovers: list[_Crossover], disk_size: float
+    name: str, gains: list[float], crossovers: list[tuple[float, float]], disk_size: float
 ) -> Margin:
     """Return the margins of a loop, by its logarithmic gains at half turns and its crossovers."""
     from_half_turn = [
-        abs(math.remainder(each.phase - math.pi, 2.0 * math.pi)) for each in crossovers
+        abs(math.remainder(phase - math.pi, 2.0 * math.pi)) for _, phase in crossovers
     ]
-    disk = _disk_margin(disk_size)
+    disk_gain_db, disk_phase_deg = _disk_margin(disk_size)
     return Margin(
         loop=name,
         gain_db=min((abs(20.0 * gain / math.log(10.0)) for gain in gains), default=math.inf),
         phase_deg=math.degrees(min(from_half_turn, default=math.inf)),
-        crossover=max((each.frequency for each in crossovers), default=math.nan),
-        disk_gain_db=disk.gain_db,
-        disk_phase_deg=disk.phase_deg,
+        crossover=max((frequency for frequency, _ in crossovers), default=math.nan),
+        disk_gain_db=disk_gain_db,
+        disk_phase_deg=disk_phase_deg,
     )
 
 
@@ -463,19 +439,19 @@ def _at_zero(x0: float, y0: float, x1: float, y1: float) -> float:
     return (y1 - y0) / (x1 - x0) * -x0 + y0
 
 
-def _crossovers(logs: Array, phases: Array, frequencies: Array) -> list[list[_Crossover]]:
-    """Return the crossovers of each loop."""
+def _crossovers(logs: Array, phases: Array, frequencies: Array) -> list[list[tuple[float, float]]]:
+    """Return where each loop's gain is 1: frequencies [rad/s], and its phases there [rad]."""
     signs = np.sign(logs)
     loops, i = np.nonzero(signs[:, :-1] != signs[:, 1:])
     shares = logs[loops, i] / (logs[loops, i] - logs[loops, i + 1])
     at = phases[loops, i] + shares * (phases[loops, i + 1] - phases[loops, i])
     # Powers of arrays can differ from those of numbers in the last bit.
     ratios = (frequencies[i + 1] / frequencies[i]).tolist()
-    found: list[list[_Crossover]] = [[] for _ in logs]
+    found: list[list[tuple[float, float]]] = [[] for _ in logs]
     for loop, frequency, ratio, share, phase in zip(
         loops.tolist(), frequencies[i].tolist(), ratios, shares.tolist(), at.tolist(), strict=True
     ):
-        found[loop].append(_Crossover(frequency * ratio**share, phase))
+        found[loop].append((frequency * ratio**share, phase))
     return found
 
 

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from aircraft.fdm import TIME_STEP, Fdm
-from aircraft.spec import ControlInput, Envelope
+from aircraft.model import Perturbation
+from aircraft.spec import Envelope
 from aircraft.trim import Trim, TrimOutcome, search_trim
 from common.physics import heading_rate_for_bank
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
@@ -20,9 +21,9 @@ from innerloop.flight.responses import (
     predicted_step,
     verify_model,
 )
+from innerloop.flight.turn_reversal import perturbed_aircraft, reversal_record
 from innerloop.law import ControlLaw, linear_controller
 from innerloop.margins import BREAK_NAMES, NOMINAL, REQUIRED, Check, Loops, Margin
-from innerloop.reversal_record import aircraft_as_modelled, reversal_record
 from innerloop.robustness import CASES
 from innerloop.schedule import LEVEL_GAINS, Schedule
 from innerloop.store import Design, Record
@@ -52,16 +53,11 @@ _CHANNEL_NAMES = {
 def design_record(design: Design, root: Path) -> Record:
     """Return trims, poles, margins, loop shapes and responses of a design, as plain data.
 
-    The responses are predicted, and flown in JSBSim.
-
-    Parameters
-    ----------
-    design : from ``innerloop.designer.design_autopilot``
-    root : JSBSim root that ``write_root`` wrote for it
+    The responses are predicted, and flown in JSBSim from the ``root`` of ``write_root``.
     """
     schedule = design.schedule
     spec, envelope = schedule.spec, schedule.envelope
-    aircraft = aircraft_as_modelled(spec, root)
+    aircraft = perturbed_aircraft(spec, root, Perturbation())
     level = schedule.level(schedule.middle)
     slow_lag = measure_lag(aircraft, level, envelope.bank)
     nominal = [check for check in design.checks if check.case == NOMINAL]
@@ -72,7 +68,10 @@ def design_record(design: Design, root: Path) -> Record:
         "source": spec.source,
         "altitude_m": schedule.altitude,
         "envelope": _envelope_record(envelope),
-        "inputs": [_input_record(i) for i in spec.inputs],
+        "inputs": [
+            {"name": i.name, "lower": i.lower, "upper": i.upper, "is_effect": bool(i.effectiveness)}
+            for i in spec.inputs
+        ],
         "design_airspeed_mps": level.airspeed,
         "airspeeds_mps": list(schedule.airspeeds),
         "banks_deg": [math.degrees(bank) for bank in schedule.banks],
@@ -129,21 +128,8 @@ def _envelope_record(envelope: Envelope) -> Record:
     }
 
 
-def _input_record(control_input: ControlInput) -> Record:
-    """Return a control's range under the autopilot; a throttle closes to flight idle."""
-    return {
-        "name": control_input.name,
-        "lower": control_input.lower,
-        "upper": control_input.upper,
-        "is_effect": bool(control_input.effectiveness),
-    }
-
-
 def _trim_record(t: Trim, bank: float) -> Record:
-    """Return an equilibrium; ``bank`` is that of the grid [rad].
-
-    It is 0 in straight flight, even if a small roll balances the propeller's torque.
-    """
+    """Return an equilibrium; the grid's ``bank`` [rad] is 0 even if a roll balances a propeller."""
     return {
         "airspeed_mps": t.airspeed,
         "bank_rad": bank,
@@ -176,15 +162,18 @@ def _climbs(schedule: Schedule) -> list[Record]:
     return [_trim_record(t, 0.0) for t in found if t.outcome is TrimOutcome.CONVERGED]
 
 
-def _margin_records(check: Check) -> list[Record]:
-    point = {
+def _point_record(check: Check) -> Record:
+    return {
         "airspeed_mps": check.airspeed,
         "bank_rad": check.bank,
         "between": check.between,
         "stable": check.stable,
     }
+
+
+def _margin_records(check: Check) -> list[Record]:
     return [
-        point | {f.name: _finite(getattr(margin, f.name)) for f in fields(Margin)}
+        _point_record(check) | {f.name: _finite(getattr(margin, f.name)) for f in fields(Margin)}
         for margin in check.margins
     ]
 
@@ -194,10 +183,7 @@ def _robustness_record(check: Check) -> Record:
     return {
         "case": check.case,
         "periods_late": CASES[check.case].periods_late,
-        "airspeed_mps": check.airspeed,
-        "bank_rad": check.bank,
-        "between": check.between,
-        "stable": check.stable,
+        **_point_record(check),
         "gain_db": _finite(gain.gain_db),
         "gain_loop": gain.loop,
         "phase_deg": _finite(phase.phase_deg),

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -16,18 +16,15 @@ from innerloop.law import ControlLaw, linear_controller
 from innerloop.margins import NOMINAL, Check, Loops
 from innerloop.schedule import GAIN_BANKS, TRIM_BANKS, Schedule, loop_delay
 
+_AVERAGED = ("airspeed", "altitude", "climb_angle", "alpha", "beta", "roll", "pitch", "yaw_rate")
+"""Numbers of an equilibrium whose means are those of the point midway."""
+
 _DIFFERENCE = 1e-5
 """Step of the differences of the rigid body's equations [SI]."""
 
 
 class Case(NamedTuple):
-    """An aircraft and its autopilot as they may differ from the model.
-
-    Attributes
-    ----------
-    by : factors on effectiveness, mass and inertia
-    periods_late : additional delay of the autopilot [periods]
-    """
+    """Factors by which an aircraft differs from its model, and its autopilot's delay [periods]."""
 
     by: Perturbation
     periods_late: int
@@ -65,11 +62,6 @@ class OperatingPointMargins:
 
     The changed aircraft and its response do not depend on the period. Each is computed once, and so
     is each check.
-
-    Parameters
-    ----------
-    point : the operating point
-    as_modelled : its loops without any perturbation
     """
 
     def __init__(self, point: OperatingPoint, as_modelled: Loops) -> None:
@@ -119,11 +111,7 @@ def check_design(
 ) -> list[Check]:
     """Return the margins at every operating point, as modelled and, if ``perturbed``, in all cases.
 
-    Parameters
-    ----------
-    period : of the autopilot, one of ``PERIODS``
-    points : of the schedule, from ``operating_point_margins``
-    perturbed : whether the aircraft is perturbed, too
+    The period is one of ``PERIODS``; the points are those of ``operating_point_margins``.
     """
     cases = tuple(CASES) if perturbed else (NOMINAL,)
     return [point.check(case, period) for point in points for case in cases]
@@ -132,20 +120,14 @@ def check_design(
 def with_all_controls(
     period: int, points: Sequence[OperatingPointMargins], checks: Sequence[Check]
 ) -> list[Check]:
-    """Return the checks with disk margins at all controls at once, for the grid as modelled.
+    """Return the checks of ``check_design``, with disk margins at all controls of the grid at once.
 
     Nothing is required of those, and they take as long as all other margins.
-
-    Parameters
-    ----------
-    period, points : as for ``check_design``
-    checks : that it returned
     """
-    grid = iter([each for each in points if not each.point.between])
     found = []
-    for check in checks:
+    for point, check in zip((point for point in points for _ in CASES), checks, strict=True):
         if check.case == NOMINAL and not check.between:
-            margin = next(grid).loops(NOMINAL, period).margin_at_all_controls()
+            margin = point.loops(NOMINAL, period).margin_at_all_controls()
             found.append(replace(check, margins=(*check.margins, margin)))
         else:
             found.append(check)
@@ -187,55 +169,30 @@ def operating_points(schedule: Schedule) -> list[OperatingPoint]:
 
 
 def _midway(first: OperatingPoint, second: OperatingPoint) -> list[OperatingPoint]:
-    def mean(a: float, b: float) -> float:
-        return 0.5 * (a + b)
+    def means(one: object, other: object, names: Sequence[str]) -> dict[str, Any]:
+        return {name: 0.5 * (getattr(one, name) + getattr(other, name)) for name in names}
 
     p, q = first.trim, second.trim
-    trim = Trim(
-        airspeed=mean(p.airspeed, q.airspeed),
-        altitude=mean(p.altitude, q.altitude),
-        climb_angle=mean(p.climb_angle, q.climb_angle),
-        alpha=mean(p.alpha, q.alpha),
-        beta=mean(p.beta, q.beta),
-        roll=mean(p.roll, q.roll),
-        pitch=mean(p.pitch, q.pitch),
-        rates_body=(
-            mean(p.rates_body[0], q.rates_body[0]),
-            mean(p.rates_body[1], q.rates_body[1]),
-            mean(p.rates_body[2], q.rates_body[2]),
-        ),
-        yaw_rate=mean(p.yaw_rate, q.yaw_rate),
-        inputs={name: mean(value, q.inputs[name]) for name, value in p.inputs.items()},
+    roll_rate, pitch_rate, yaw_rate = (
+        0.5 * (a + b) for a, b in zip(p.rates_body, q.rates_body, strict=True)
+    )
+    trim = replace(
+        p,
+        **means(p, q, _AVERAGED),
+        rates_body=(roll_rate, pitch_rate, yaw_rate),
+        inputs={name: 0.5 * (value + q.inputs[name]) for name, value in p.inputs.items()},
         driven={},
-        outcome=p.outcome,
-        residuals=p.residuals,
         limits=(),
     )
     models = [first.model, second.model]
     if first.model.state_labels == second.model.state_labels:
-        models = [_mean_model(first.model, second.model)]
-    bank = mean(first.bank, second.bank)
+        models = [replace(first.model, **means(first.model, second.model, "ABCD"))]
+    bank = 0.5 * (first.bank + second.bank)
     return [OperatingPoint(trim=trim, bank=bank, model=model, between=True) for model in models]
 
 
-def _mean_model(first: LinearModel, second: LinearModel) -> LinearModel:
-    return replace(
-        first,
-        A=0.5 * (first.A + second.A),
-        B=0.5 * (first.B + second.B),
-        C=0.5 * (first.C + second.C),
-        D=0.5 * (first.D + second.D),
-    )
-
-
 def perturbed_model(model: LinearModel, trim: Trim, by: Perturbation) -> LinearModel:
-    """Return the linear model of a perturbed aircraft; ``model`` itself if nothing changes.
-
-    Parameters
-    ----------
-    model, trim : the aircraft as modelled, linear about an equilibrium
-    by : factors on effectiveness, mass and inertia
-    """
+    """Return the linear model of a perturbed aircraft; ``model`` itself if nothing changes."""
     if by.effectiveness != 1.0:
         model = _with_effectiveness(model, by.effectiveness)
     if by.mass != 1.0:
@@ -248,10 +205,9 @@ def perturbed_model(model: LinearModel, trim: Trim, by: Perturbation) -> LinearM
 def _with_effectiveness(model: LinearModel, factor: float) -> LinearModel:
     """Return the model with the effectiveness of every control multiplied by a factor.
 
-    The throttle is one of the controls: thrust changes by the factor, too. In a perturbed model,
-    which the search over reversals flies, only surfaces change
-    (``aircraft.model``): less effectiveness leaves the throttle's loop less
-    margin there than here, where it also lowers the loop's gain.
+    The throttle is one of them. In the perturbed models that fly reversals only surfaces change
+    (``aircraft.model``): less effectiveness leaves the throttle's loop less margin there than here,
+    where it also lowers the loop's gain.
     """
     rows = [i for i, name in enumerate(model.state_labels) if name in BODY_STATES]
     driven = [i for i, name in enumerate(model.state_labels) if name not in BODY_STATES]

@@ -51,28 +51,11 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoopBandwidths:
-    """Bandwidths of the loops of a design.
-
-    Attributes
-    ----------
-    lateral : of the heading-rate response [rad/s]
-    longitudinal : of pitch and altitude [rad/s]
-    airspeed : of airspeed by throttle [rad/s]
-    """
+    """Bandwidths of heading rate, of pitch and altitude, and of airspeed by throttle [rad/s]."""
 
     lateral: float
     longitudinal: float
     airspeed: float
-
-    def scaled(
-        self, *, lateral: float = 1.0, longitudinal: float = 1.0, airspeed: float = 1.0
-    ) -> "LoopBandwidths":
-        """Return the bandwidths multiplied by factors."""
-        return LoopBandwidths(
-            lateral=self.lateral * lateral,
-            longitudinal=self.longitudinal * longitudinal,
-            airspeed=self.airspeed * airspeed,
-        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -117,7 +100,6 @@ class Gains:
 
     Attributes
     ----------
-    airspeed, bank : [m/s, rad]
     longitudinal : shape (2, 5), from deviations of ``LONGITUDINAL`` to elevator and throttle [-]
     longitudinal_integral : shape (2, 2), from the integrals of airspeed and altitude error to
         elevator and throttle [-]
@@ -129,8 +111,6 @@ class Gains:
         model's roll rate and roll acceleration [s, s^2]
     """
 
-    airspeed: float
-    bank: float
     longitudinal: Matrix
     longitudinal_integral: Matrix
     lateral: Matrix

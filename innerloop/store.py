@@ -25,7 +25,6 @@ from pathlib import Path
 from typing import Any, Literal, TypeVar
 
 import numpy as np
-import numpy.typing as npt
 
 import aircraft
 import common
@@ -127,15 +126,8 @@ def design_key(spec: AircraftSpec, altitude: float) -> str:
     That is the aircraft's spec and files but not their place on disk, the altitude [m], and
     ``program_hash``.
     """
-    digest = hashlib.sha256()
-    for text in (
-        repr(replace(spec, root=Path(), folder=None, other_roots=())),
-        repr(altitude),
-        model_hash(spec.files),
-        program_hash(),
-    ):
-        digest.update(text.encode())
-    return digest.hexdigest()
+    wherever = repr(replace(spec, root=Path(), folder=None, other_roots=()))
+    return _digest(f"{wherever}{altitude!r}{model_hash(spec.files)}{program_hash()}")
 
 
 @functools.cache
@@ -145,16 +137,13 @@ def program_hash() -> str:
     It covers the source of ``aircraft``, ``common`` and ``innerloop``, and the versions of Python,
     JSBSim and the numerical packages.
     """
-    digest = hashlib.sha256()
-    for text in (
-        platform.python_version(),
-        *(f"{package} {importlib.metadata.version(package)}" for package in _PACKAGES),
-    ):
-        digest.update(text.encode())
-    for package in (aircraft, common, innerloop):
-        for folder in package.__path__:
-            digest.update(files_hash(Path(folder), sorted(Path(folder).rglob("*.py"))).encode())
-    return digest.hexdigest()
+    versions = [f"{package} {importlib.metadata.version(package)}" for package in _PACKAGES]
+    sources = [
+        files_hash(Path(folder), sorted(Path(folder).rglob("*.py")))
+        for package in (aircraft, common, innerloop)
+        for folder in package.__path__
+    ]
+    return _digest("".join([platform.python_version(), *versions, *sources]))
 
 
 def cache_directory() -> Path | None:
@@ -188,7 +177,9 @@ def _with_model_of(spec: AircraftSpec, found: Designed) -> Designed:
     The same files may have been elsewhere on disk when the design was made.
     """
     schedule = found.design.schedule
-    placed = schedule.spec.with_files_of(spec)
+    placed = replace(
+        schedule.spec, root=spec.root, folder=spec.folder, other_roots=spec.other_roots
+    )
     if placed == schedule.spec:
         return found
     schedule = replace(schedule, spec=placed)
@@ -293,7 +284,8 @@ def _value(found: Any, kind: Any) -> Any:
 def _generic_value(found: Any, origin: Any, arguments: tuple[Any, ...]) -> Any:
     """Return an array, an optional value, a tuple or a mapping from its JSON."""
     if origin is np.ndarray:
-        return _array(found)
+        values = np.array(found["values"], dtype=np.float64)
+        return values.reshape(found["shape"], order=found["order"])
     if origin in (typing.Union, types.UnionType):
         (kind,) = (argument for argument in arguments if argument is not types.NoneType)
         return None if found is None else _value(found, kind)
@@ -303,11 +295,4 @@ def _generic_value(found: Any, origin: Any, arguments: tuple[Any, ...]) -> Any:
     return {key: _value(item, arguments[1]) for key, item in found.items()}
 
 
-def _array(found: Any) -> npt.NDArray[np.float64]:
-    values = np.array(found["values"], dtype=np.float64)
-    return values.reshape(found["shape"], order=found["order"])
-
-
-@functools.cache
-def _hints(kind: type) -> dict[str, Any]:
-    return typing.get_type_hints(kind)
+_hints = functools.cache(typing.get_type_hints)

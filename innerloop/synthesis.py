@@ -39,13 +39,10 @@ _STATIC_GAIN_MIN = 1e-9
 """Final value of a unit step below which a state does not follow an input: a rate ends at 0."""
 
 _LAG_PHASE = 0.18
-"""Phase that a loop may lose at its frequency to its servo and to the computing delay, if the
-autopilot computes at every time step [rad]: 10 degrees."""
+"""Phase that a loop may lose to servo and computing delay, with the shortest period [rad]."""
 
 _AUTHORITY_FRACTION = 0.5
-"""Fraction of the control authority that a step of a command may take [-]: the rest is for gusts
-and feedback.
-"""
+"""Share of the control authority for a step of a command [-]; gusts and feedback take the rest."""
 
 _BANK_STEP_FRACTION = 0.5
 """Step of bank that takes this authority, over the bank limit [-]."""
@@ -54,24 +51,16 @@ _PITCH_STEP = 0.15
 """Step of pitch that takes this authority [rad]: half the acceptable deviation."""
 
 _MODEL_DAMPING = 0.9
-"""Damping of the heading-rate response [-]: it overshoots by 0.15 %, exp(-pi 0.9 / sqrt(1 -
-0.9^2)).
-"""
+"""Damping of the heading-rate response [-]: exp(-pi 0.9 / sqrt(1 - 0.9^2)) = 0.15 % overshoot."""
 
 _PEAK_RATE = 0.42
-"""Largest rate of a second-order response to a unit step, over its frequency [-].
-
-It is 0.39 with a damping of 0.9 and 0.42 with a damping of 0.8, so a little is to spare.
-"""
+"""Largest rate of a step response over its frequency [-]: 0.39, or 0.42 with a damping of 0.8."""
 
 _LIFT_FRACTION = 0.75
-"""Fastest altitude loop, over the rate -Z_alpha at which lift turns the flight path towards the
-nose [-].
-"""
+"""Fastest altitude loop, over -Z_alpha, at which lift turns the path towards the nose [-]."""
 
 _ENGINE_FRACTION = 0.3
-"""Fastest airspeed loop, over one over the lag of engine and delay [-]: at that frequency the
-engine takes 0.3 rad, 17 degrees, of phase."""
+"""Fastest airspeed loop times the lag of engine and delay [-]: the phase that they take [rad]."""
 
 _AIRSPEED_TO_ALTITUDE = 0.27
 """Fastest airspeed loop, over the altitude loop [-].
@@ -90,14 +79,11 @@ _SIDESLIP = 0.05
 
 _PITCH_RATE = 0.5
 _ROLL_RATE = 3.3
-"""Acceptable rates of pitch and roll, over their angle per unit of time [-]; roll rate is hardly
-penalised.
-"""
+"""Acceptable rates of pitch and, hardly penalised, of roll, over angle per unit of time [-]."""
 
 _CLIMB_TIME = 0.5
 _SLOWDOWN_TIME = 2.0
-"""Time in which the acceptable pitch makes the acceptable deviation of altitude, by climbing, and
-of airspeed, by gravity [units of time]."""
+"""Time in which the acceptable pitch makes acceptable altitude and airspeed [units of time]."""
 
 _AIRSPEED_HELD = 2.4
 _ALTITUDE_HELD = 12.0
@@ -109,13 +95,10 @@ The deviation of the heading rate is the rate at which the acceptable roll turns
 """
 
 _ERROR_MAX = 2.0
-"""Error of altitude or airspeed at which it is clipped, in acceptable deviations [-]: a larger one
-demands a steady climb or acceleration."""
+"""Clipping of altitude and airspeed errors, over acceptable ones [-]: beyond, a steady climb."""
 
 _ANTI_WINDUP = 0.33
-"""Rate at which integrators follow a saturated control, over the longitudinal bandwidth [-]: three
-units of time.
-"""
+"""Rate at which integrators follow a saturated control, over the longitudinal bandwidth [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -166,10 +149,8 @@ def state_lag(model: LinearModel, control_input: str) -> float:
 def reachable_bandwidths(models: Sequence[LinearModel], bank: float) -> LoopBandwidths:
     """Return the bandwidths that an aircraft can follow at every airspeed.
 
-    Parameters
-    ----------
-    models : linear models of level flight, one for each airspeed
-    bank : largest bank of its turns [rad]
+    The models are linear about level flight, one for each airspeed; its turns bank by ``bank``
+    [rad] at most.
     """
     each = [_reachable(model, bank) for model in models]
     longitudinal = min(bandwidths.longitudinal for bandwidths in each)
@@ -274,21 +255,15 @@ def control_weights(
 def design_gains(
     model: LinearModel, trim: Trim, weights: DesignWeights, controls: ControlWeights
 ) -> Gains:
-    """Return the feedback gains for a linear model from ``aircraft.linearise``.
+    """Return the feedback gains for a model from ``aircraft.linearise`` about ``trim``.
 
-    Parameters
-    ----------
-    model, trim : the linear model, and the equilibrium about which it is linear
-    weights : acceptable deviations of the states
-    controls : acceptable deviations of the controls at the airspeed of ``trim``
+    The acceptable deviations of states and controls are those at its airspeed.
     """
     plant = quasi_static(model)
     longitudinal, longitudinal_integral = _longitudinal(plant, weights, controls)
     lateral, heading_integral, sideslip_integral = _lateral(plant, weights, controls)
     by_rate, by_acceleration = _feedforward(plant, trim)
     return Gains(
-        airspeed=trim.airspeed,
-        bank=trim.roll,
         longitudinal=longitudinal,
         longitudinal_integral=longitudinal_integral,
         lateral=lateral,

@@ -102,18 +102,12 @@ def folder_names(directory: Path) -> list[str]:
             f"aircraft directory '{directory}': there is no such directory; check the path"
         )
     names = sorted(entry.name for entry in directory.iterdir() if entry.is_dir() and _models(entry))
-    if names:
-        return names
-    where = directory.absolute()
-    if _models(directory):
+    if not names:
         raise AircraftError(
-            f"aircraft directory '{directory}' is the folder of an aircraft itself, '{where.name}';"
-            f" give the directory that it is in, '{where.parent}'"
+            f"aircraft directory '{directory}' holds no aircraft; each needs a folder and a model,"
+            " NAME/NAME.xml"
         )
-    raise AircraftError(
-        f"aircraft directory '{directory}' holds no aircraft; each needs a folder and a model,"
-        " NAME/NAME.xml"
-    )
+    return names
 
 
 def folder_path(directory: Path, name: str | None) -> str:
@@ -122,13 +116,8 @@ def folder_path(directory: Path, name: str | None) -> str:
     Raises
     ------
     AircraftError : there is no such directory, no such aircraft in it, or, without a name, more
-        than one; the name is a path
+        than one
     """
-    if name is not None and is_path(name):
-        raise AircraftError(
-            f"aircraft '{name}' is a path; leave out --aircraft-dir, or give the name of a folder"
-            f" in '{directory}'"
-        )
     names = folder_names(directory)
     if name is None and len(names) > 1:
         raise AircraftError(
@@ -159,12 +148,10 @@ def folder_spec(path: str) -> AircraftSpec:
     """
     folder = Path(path).absolute()
     if not folder.is_dir():
-        remedy = (
-            f"give its folder, '{Path(path).parent}'"
-            if folder.is_file()
-            else "check the path, or name another with --aircraft-dir"
+        raise AircraftError(
+            f"aircraft '{path}': there is no such directory; check the path, or name another with"
+            " --aircraft-dir"
         )
-        raise AircraftError(f"aircraft '{path}': there is no such directory; {remedy}")
     model = _only_model(folder)
     for name in (folder.name, model):
         if not NAME.fullmatch(name):

@@ -6,7 +6,6 @@ settings say is found by trimming (``aircraft.envelope``).
 
 import json
 import math
-import re
 import tomllib
 import xml.etree.ElementTree as ET
 from dataclasses import replace
@@ -26,6 +25,7 @@ from pydantic import (
 
 from aircraft.model import read_model, read_xml
 from aircraft.spec import (
+    PROPERTY,
     SETTLE_TIMES,
     AircraftError,
     AircraftSpec,
@@ -37,8 +37,6 @@ from aircraft.spec import (
     throttle,
 )
 from common.text import did_you_mean
-
-_PROPERTY = re.compile(r"^[A-Za-z_][\w.\-]*(\[\d+\])?(/[A-Za-z_][\w.\-]*(\[\d+\])?)*$")
 
 _SURFACES = ("elevator", "aileron", "rudder")
 _STARTED_ENGINES = ("piston_engine", "turbine_engine", "turboprop_engine")
@@ -52,7 +50,7 @@ _SETTLE_TIME = 20.0
 
 
 def _property(name: str) -> str:
-    if not _PROPERTY.match(name):
+    if not PROPERTY.fullmatch(name):
         raise ValueError(f"'{name}' is not a JSBSim property, such as fcs/elevator-cmd-norm")
     return name
 

@@ -31,9 +31,7 @@ _CLIMB_STEP = 0.5
 """Time between the altitude commands of the climb [s]."""
 
 _ROOM = 1000.0
-"""Altitude of a glide's start above that of flights, so that it does not end in the sea, and depth
-to which it is commanded [m].
-"""
+"""Height of a glide's start above flights, not to end in the sea, and its commanded depth [m]."""
 
 _KNOWN_AFTER = 2.0
 """Time for which the airspeed may fall below the slowest commanded until a failure is known [s]."""
@@ -164,12 +162,8 @@ def _airspeed_fall(turn: _Turn) -> float:
 def _glide_deviation(turn: _Turn, glide: float, begins: float) -> float:
     """Return how far from the commanded turn at its airspeed the aircraft comes in half a turn [m].
 
-    Parameters
-    ----------
-    turn : in which a part fails
-    glide : airspeed commanded in the glide [m/s]
-    begins : airspeed at which the glide begins after the engine has failed [m/s]; infinite if it
-        begins at once, with the engine's power
+    The engine fails, and the aircraft is commanded to ``glide`` [m/s] when its airspeed is down to
+    ``begins`` [m/s]. If that is infinite, it is at once, with the engine's power.
     """
     airspeeds = turn.airspeeds(engine_fails=math.isfinite(begins))
     for airspeed in itertools.islice(airspeeds, round(_FALL_MAX / TIME_STEP)):

@@ -35,9 +35,7 @@ CHANNELS: dict[str, tuple[str, float]] = {
     "aileron_command": ("autopilot/aileron-command", 1.0),
     "throttle_command": ("autopilot/throttle-command", 1.0),
 }
-"""Recorded quantities of a step, by their name in the closed loop: JSBSim property and SI value of
-its unit.
-"""
+"""Recorded quantities of a step, named as in the closed loop: JSBSim property, SI of its unit."""
 
 OUTPUTS: dict[str, tuple[str, float]] = {
     "airspeed": ("velocities/vt-fps", METRES_PER_FOOT),
@@ -49,7 +47,7 @@ OUTPUTS: dict[str, tuple[str, float]] = {
     "roll": ("attitude/phi-rad", 1.0),
     "pitch": ("attitude/theta-rad", 1.0),
 }
-"""States that are compared after a doublet: JSBSim property and SI value of its unit."""
+"""States that are compared after a doublet: JSBSim property, SI of its unit."""
 
 _MOVED_BY = {
     "elevator": ("alpha", "q", "pitch"),
@@ -69,10 +67,7 @@ _DOUBLET_SIZE = 0.01
 """Deflection of each half of a doublet [-]."""
 
 _SUBSTEPS = 8
-"""Substeps of a time step in the flight of a doublet [-].
-
-The linear model does not have JSBSim's first-order integration errors.
-"""
+"""Substeps of a time step in a doublet [-]: JSBSim's integration errors are of first order."""
 
 _SETTLED = 1e-9
 """Change of acceleration per substep below which servos and engines count as settled.
@@ -123,8 +118,7 @@ def predicted_step(
     Parameters
     ----------
     schedule, index : the design, and the index of its airspeed
-    command, size : name of the command, and its step [SI]
-    duration : of the response [s]
+    command, size, duration : name of the command, its step [SI], and how long it is recorded [s]
     """
     autopilot = linear_controller(ControlLaw(schedule), schedule.level(index))
     loop = closed_loop(schedule.models[index][LEVEL_GAINS], autopilot, schedule.delay)
@@ -155,14 +149,7 @@ def model_step(schedule: Schedule, size: float, duration: float) -> Response:
 def flown_step(
     aircraft: AutopilotedAircraft, start: Trim, command: str, size: float, duration: float
 ) -> Response:
-    """Return the response in JSBSim to a step of a command from the equilibrium ``start``.
-
-    Parameters
-    ----------
-    aircraft, start : under its autopilot, and where it begins
-    command, size : name of the command, and its step [SI]
-    duration : of the response [s]
-    """
+    """Return the response in JSBSim to a step from an equilibrium; see ``predicted_step``."""
     aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
     if command == "airspeed":
         aircraft.command_airspeed(start.airspeed + size)
@@ -203,21 +190,18 @@ def verify_model(fdm: Fdm, model: LinearModel, level: Trim) -> list[dict[str, An
     """Return the largest error of each prediction over the largest excursion flown.
 
     There is one record for each control and each state it is meant to move: ``input``, ``output``
-    and ``error``, which is None if the state did not move.
-
-    Parameters
-    ----------
-    fdm : the aircraft; another simulation of it flies at a finer time step
-    model, level : its linear model, and the straight and level equilibrium
+    and ``error``, which is None if the state did not move. The ``model`` is that of ``fdm`` about
+    the equilibrium ``level``; another simulation of the aircraft flies at a finer time step.
     """
     fine = Fdm(fdm.spec, time_step=fdm.time_step / _SUBSTEPS)
+    time = fine.time_step * np.arange(round(_DOUBLET_RECORDED / fine.time_step), dtype=np.float64)
+    second_half = np.where(time < 2.0 * _DOUBLET_HALF, -_DOUBLET_SIZE, 0.0)
+    doublet = np.where(time < _DOUBLET_HALF, _DOUBLET_SIZE, second_half)
     system = control.ss(model.A, model.B, model.C, model.D, inputs=model.input_labels)
     records = []
     for control_input in fdm.spec.inputs:
         name = control_input.name
-        time, flown = _flown_doublet(fine, level, name)
-        second_half = np.where(time < 2.0 * _DOUBLET_HALF, -_DOUBLET_SIZE, 0.0)
-        doublet = np.where(time < _DOUBLET_HALF, _DOUBLET_SIZE, second_half)
+        flown = _flown_with(fine, level, name, doublet)
         response = control.forced_response(system[:, name], time, doublet)
         for output in _MOVED_BY.get(name, ()):
             predicted = response.outputs[model.output_labels.index(output)]
@@ -229,29 +213,19 @@ def verify_model(fdm: Fdm, model: LinearModel, level: Trim) -> list[dict[str, An
     return records
 
 
-def _flown_doublet(fdm: Fdm, level: Trim, name: str) -> tuple[Array, dict[str, Array]]:
-    """Return time [s] and the deviations of ``OUTPUTS`` after a doublet of a control."""
+def _flown_with(fdm: Fdm, level: Trim, name: str, deflections: Array) -> dict[str, Array]:
+    """Return the deviations of ``OUTPUTS`` under deflections [-] of a control from equilibrium."""
     fdm.command(dict(level.inputs))
     fdm.allow_engine_restart()
     fdm.place(level.state())
     with fdm.frozen():
         fdm.settle(_SETTLED, round(fdm.spec.settle_time / fdm.time_step))
-    moved = fdm.spec.input(name)
-    commands = [fdm.writable_node(commanded).set_double_value for commanded in moved.commands]
-    time = fdm.time_step * np.arange(round(_DOUBLET_RECORDED / fdm.time_step), dtype=np.float64)
+    at_rest = level.inputs[name]
 
     def deflect(step: int) -> None:
-        t = step * fdm.time_step
-        deflection = 0.0
-        if t < _DOUBLET_HALF:
-            deflection = _DOUBLET_SIZE
-        elif t < 2.0 * _DOUBLET_HALF:
-            deflection = -_DOUBLET_SIZE
-        value = moved.command(level.inputs[name] + deflection)
-        for command in commands:
-            command(value)
+        fdm.command({name: at_rest + float(deflections[step])})
 
-    return time, _deviations(fdm, OUTPUTS, len(time), deflect)
+    return _deviations(fdm, OUTPUTS, len(deflections), deflect)
 
 
 def _deviations(
@@ -262,12 +236,7 @@ def _deviations(
 ) -> dict[str, Array]:
     """Fly some time steps; return the deviations of quantities from their first values [SI].
 
-    Parameters
-    ----------
-    fdm : of the aircraft
-    quantities : JSBSim property and SI value of its unit, by name
-    steps : number of time steps
-    before_step : called with the number of each step, after its values are read
+    ``before_step`` is called with the number of each step, after its values are read.
     """
     reads = [fdm.node(name).get_double_value for name, _ in quantities.values()]
     rows = []

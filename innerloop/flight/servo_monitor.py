@@ -15,8 +15,7 @@ from aircraft.spec import Feedback
 from innerloop.jsbsim.system import commanded_property
 
 _TRAVEL_TIME = 0.4
-"""Longest time a sound surface may trail its command [s]: the X8's takes 0.30 s from stop to stop
-and lags by 25 ms."""
+"""Longest time a sound surface may trail its command [s]: the X8's travels 0.30 s, lags 25 ms."""
 
 
 class _Surface(NamedTuple):

@@ -1,5 +1,6 @@
 """A JSBSim script that flies an aircraft under its autopilot without Python."""
 
+import itertools
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -17,7 +18,7 @@ from aircraft.fdm import (
     before_hold,
     initial_conditions,
 )
-from aircraft.spec import Envelope, UnknownPropertyError
+from aircraft.spec import Envelope
 from aircraft.trim import Trim
 from common.physics import heading_rate_for_bank
 from innerloop.jsbsim.system import (
@@ -57,15 +58,7 @@ _MOTION = (
 
 
 class Command(NamedTuple):
-    """A command to the autopilot.
-
-    Attributes
-    ----------
-    time : when it is given, from the release [s]
-    name : its JSBSim property, one of ``innerloop.jsbsim.system``
-    value : [m/s, m or rad/s]
-    note : the same in words
-    """
+    """A command's time after the release [s], JSBSim property, value [SI], and note in words."""
 
     time: float
     name: str
@@ -78,21 +71,17 @@ def demonstration(envelope: Envelope, start: Trim) -> tuple[Command, ...]:
 
     The turns are flown at a quarter of the heading rate of the largest commanded bank. The altitude
     changes by the distance flown in half a second. The airspeed changes towards the farther end of
-    the envelope, by a tenth or by half the distance to that end, whichever is less.
-
-    Parameters
-    ----------
-    envelope, start : the airspeeds and banks of the aircraft, and the level equilibrium it starts
-        from
+    the envelope, by a tenth or by half the distance to that end, whichever is less. It begins in
+    the level equilibrium ``start``.
     """
     heading_rate = 0.25 * heading_rate_for_bank(envelope.bank_max, start.airspeed)
     altitude_step = 0.5 * start.airspeed
     below, above = start.airspeed - envelope.airspeed_min, envelope.airspeed_max - start.airspeed
     airspeed_step = math.copysign(min(0.1 * start.airspeed, 0.5 * max(below, above)), above - below)
+    higher, faster = start.altitude + altitude_step, start.airspeed + airspeed_step
     turn = f"{math.degrees(heading_rate):.3g} degrees a second"
     climb = f"Change altitude by {altitude_step:+.3g} m."
     accelerate = f"Change airspeed by {airspeed_step:+.3g} m/s."
-    higher, faster = start.altitude + altitude_step, start.airspeed + airspeed_step
     return (
         Command(5.0, HEADING_RATE_COMMAND, heading_rate, f"Turn right at {turn}."),
         Command(20.0, HEADING_RATE_COMMAND, 0.0, "Fly straight on."),
@@ -106,15 +95,10 @@ def demonstration(envelope: Envelope, start: Trim) -> tuple[Command, ...]:
 
 
 def write_script(schedule: Schedule, root: Path) -> Path:
-    """Write a JSBSim script of ``demonstration``, and its initialisation file; return the script.
+    """Write a JSBSim script of ``demonstration`` into a root of ``write_root``; return its path.
 
     The script releases the aircraft as ``AutopilotedAircraft.release`` does, at 0 s of its clock,
     from level flight at the middle design airspeed.
-
-    Parameters
-    ----------
-    schedule : the design
-    root : JSBSim root with its autopilot, from ``innerloop.jsbsim.system.write_root``
     """
     spec, start = schedule.spec, schedule.level(schedule.middle)
     commands = demonstration(schedule.envelope, start)
@@ -160,23 +144,13 @@ def _preparations(fdm: Fdm, period: int) -> tuple[int, list[str]]:
     still = [(integrator, 0.0) for integrator in INTEGRATORS]
     cranking = CRANK if fdm.cranked else ()
     start = [*START_ENGINES, *cranking, *fdm.spec.configuration, *still]
-    events = [
-        _event(
-            "Start the engines, and hold the body still while servos and engines settle.",
-            -held,
-            start,
-        )
-    ]
+    begin = "Start the engines, and hold the body still while servos and engines settle."
+    events = [_event(begin, -held, start)]
     if fdm.cranked:
         events.append(_event("Let the starter go.", -held + RUN_UP_STEPS, STOP_CRANKING))
     if run_up:
-        events.append(
-            _event(
-                "Gear, fuel and levers again, as they are in flight.",
-                -settle,
-                fdm.spec.configuration,
-            )
-        )
+        again = "Gear, fuel and levers again, as they are in flight."
+        events.append(_event(again, -settle, fdm.spec.configuration))
     return held, events
 
 
@@ -190,18 +164,9 @@ def columns(fdm: Fdm) -> list[str]:
         *(command for i in fdm.spec.inputs for command in i.commands),
         *(s.position for s in fdm.spec.driven_states),
     ]
-    for name in names:
-        fdm.node(name)
-    engine = 0
-    while True:
-        # Not set-running, which stays 0 for an electric motor that runs.
-        thrust = f"propulsion/engine[{engine}]/thrust-lbs"
-        try:
-            fdm.node(thrust)
-        except UnknownPropertyError:
-            return names
-        names.append(thrust)
-        engine += 1
+    # Not set-running, which stays 0 for an electric motor that runs.
+    thrusts = (f"propulsion/engine[{engine}]/thrust-lbs" for engine in itertools.count())
+    return [*names, *itertools.takewhile(fdm.has, thrusts)]
 
 
 def _before(start: Trim, held: float) -> str:

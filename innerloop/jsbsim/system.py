@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from aircraft.fdm import TIME_STEP
-from aircraft.model import copy_model, read_xml
+from aircraft.model import copy_model, insert_before_flight_control, read_xml, write_xml
 from aircraft.spec import AircraftSpec, ControlInput
 from common.physics import METRES_PER_FOOT, STANDARD_GRAVITY
 from innerloop.law import bank_slopes
@@ -62,13 +62,8 @@ Array = npt.NDArray[np.float64]
 def hold_steps(spec: AircraftSpec, period: int) -> int:
     """Return how many time steps a body is held before its release while servos and engines settle.
 
-    These are whole periods of the autopilot, so that it computes in the last of them. Guidance and
-    record read a whole number of periods later, and so read what it computed at that moment.
-
-    Parameters
-    ----------
-    spec : the aircraft
-    period : of the autopilot [JSBSim time steps]
+    These are whole periods [time steps] of the autopilot, so that it computes in the last of them.
+    Guidance and record read a whole number of periods later, and so what it computed then.
     """
     settle = round(spec.settle_time / TIME_STEP)
     return settle + -settle % period
@@ -95,15 +90,11 @@ def write_root(schedule: Schedule, directory: Path) -> Path:
     spec = schedule.spec
     model_file = copy_model(spec.files, directory)
     model = read_xml(model_file)
-    root = model.getroot()
     systems = directory / "systems"
     systems.mkdir(exist_ok=True)
     (systems / f"{system_name(spec)}.xml").write_text(system_xml(schedule), encoding="utf-8")
-    before = next(
-        (i for i, element in enumerate(root) if element.tag == "flight_control"), len(root)
-    )
-    root.insert(before, ET.Element("system", file=system_name(spec)))
-    model.write(model_file, encoding="utf-8", xml_declaration=True)
+    insert_before_flight_control(model.getroot(), ET.Element("system", file=system_name(spec)))
+    write_xml(model, model_file)
     return directory
 
 
@@ -210,8 +201,6 @@ def _longitudinal(schedule: Schedule) -> list[str]:
     )
     for row, name in enumerate(("elevator", "throttle")):
         unlimited = f"autopilot/{name}-unlimited"
-        integral = f"autopilot/{name}-integral"
-        integral_rate = f"autopilot/{name}-integral-rate"
         feedback = [
             times(_gain_table(schedule, "longitudinal", row, j), errors[state])
             for j, state in enumerate(LONGITUDINAL)
@@ -224,21 +213,13 @@ def _longitudinal(schedule: Schedule) -> list[str]:
         if name == "elevator":
             demand = operation("ifthen", read(ELEVATOR_HELD), read(HELD_ELEVATOR), demand)
         components += [
-            # The integral of the last step enters here; back-calculation then holds it to what the
-            # control can give.
-            function(unlimited, total(_trim_table(schedule, name), read(integral), *feedback)),
-            *_control(schedule.spec.input(name), demand),
+            # The integral of the last step enters here.
             function(
-                integral_rate,
-                total(
-                    *growth,
-                    times(
-                        number(weights.anti_windup_rate),
-                        minus(read(CONTROL_COMMAND.format(name)), read(unlimited)),
-                    ),
-                ),
+                unlimited,
+                total(_trim_table(schedule, name), read(f"autopilot/{name}-integral"), *feedback),
             ),
-            integrator(integral, integral_rate, RESET),
+            *_control(schedule.spec.input(name), demand),
+            *_integral(schedule, name, CONTROL_COMMAND.format(name), unlimited, growth),
         ]
     return components
 
@@ -276,22 +257,21 @@ def _lateral(schedule: Schedule) -> list[str]:
             function(unlimited, total(trim, *integral, *feedback, *ahead)),
             *_control(schedule.spec.input(name), read(unlimited)),
         ]
-    if "rudder" in controls:
-        components += _rudder_integral(schedule)
+        if name == "rudder":
+            # It removes the remaining sideslip.
+            growth = [times(_gain_table(schedule, "sideslip_integral"), read(_SIDESLIP))]
+            command = CONTROL_COMMAND.format(name)
+            components += _integral(schedule, name, command, unlimited, growth)
     return components
 
 
-def _rudder_integral(schedule: Schedule) -> list[str]:
-    """Return components that remove the remaining sideslip, within the limits of the rudder."""
-    held = minus(read("autopilot/rudder-command"), read("autopilot/rudder-unlimited"))
-    growth = total(
-        times(_gain_table(schedule, "sideslip_integral"), read(_SIDESLIP)),
-        times(number(schedule.weights.anti_windup_rate), held),
-    )
-    return [
-        function("autopilot/rudder-integral-rate", growth),
-        integrator("autopilot/rudder-integral", "autopilot/rudder-integral-rate", RESET),
-    ]
+def _integral(
+    schedule: Schedule, name: str, command: str, unlimited: str, growth: Sequence[str]
+) -> list[str]:
+    """Return an integral that back-calculation holds to what the ``command`` can be."""
+    rate = f"autopilot/{name}-integral-rate"
+    held = times(number(schedule.weights.anti_windup_rate), minus(read(command), read(unlimited)))
+    return [function(rate, total(*growth, held)), integrator(f"autopilot/{name}-integral", rate)]
 
 
 def _heading_rate_model(schedule: Schedule) -> list[str]:
@@ -307,8 +287,8 @@ def _heading_rate_model(schedule: Schedule) -> list[str]:
     )
     return [
         function(_MODEL_JERK, jerk),
-        integrator(_MODEL_ACCELERATION, _MODEL_JERK, RESET),
-        integrator(_MODEL_RATE, _MODEL_ACCELERATION, RESET),
+        integrator(_MODEL_ACCELERATION, _MODEL_JERK),
+        integrator(_MODEL_RATE, _MODEL_ACCELERATION),
     ]
 
 
@@ -318,7 +298,6 @@ def _bank_command(schedule: Schedule) -> list[str]:
     turns = schedule.turns()
     model_turn, model_bank = "autopilot/model-turn", "autopilot/model-bank-rad"
     unlimited = "autopilot/bank-unlimited-rad"
-    integral, integral_rate = "autopilot/bank-integral", "autopilot/bank-integral-rate"
     by_gravity = number(1.0 / STANDARD_GRAVITY)
     banks = schedule.bank_for_turn(turns)
     rate_to_bank_rate = times(
@@ -327,24 +306,17 @@ def _bank_command(schedule: Schedule) -> list[str]:
         read(_AIRSPEED),
         by_gravity,
     )
-    growth = total(
-        times(
-            _gain_table(schedule, "heading_integral"), minus(read(_MODEL_RATE), read(HEADING_RATE))
-        ),
-        times(
-            number(schedule.weights.anti_windup_rate), minus(read(BANK_COMMAND), read(unlimited))
-        ),
-    )
+    error = minus(read(_MODEL_RATE), read(HEADING_RATE))
+    growth = [times(_gain_table(schedule, "heading_integral"), error)]
     return [
         function(model_turn, times(read(_MODEL_RATE), read(_AIRSPEED), by_gravity)),
         function(
             model_bank, table_2d(model_turn, _SCHEDULE, list(turns), schedule.airspeeds, banks)
         ),
         function(_BANK_RATE, rate_to_bank_rate),
-        function(unlimited, total(read(model_bank), read(integral))),
+        function(unlimited, total(read(model_bank), read("autopilot/bank-integral"))),
         function(BANK_COMMAND, clipped(read(unlimited), -bank_max, bank_max)),
-        function(integral_rate, growth),
-        integrator(integral, integral_rate, RESET),
+        *_integral(schedule, "bank", BANK_COMMAND, unlimited, growth),
     ]
 
 
@@ -455,11 +427,11 @@ def channel(name: str, period: int, components: Sequence[str]) -> str:
     return f'<channel name="{name}" execrate="{period}">\n' + "\n".join(components) + "\n</channel>"
 
 
-def integrator(name: str, source: str, reset: str) -> str:
+def integrator(name: str, source: str) -> str:
     """Return a component that integrates ``source`` by the trapezoidal rule.
 
-    It is held at 0 while property ``reset`` is negative. JSBSim's ``<integrator>`` can be held but
+    It is held at 0 while ``RESET`` is negative. JSBSim's ``<integrator>`` can be held but
     not reset, so this is a ``<pid>`` with its integral alone.
     """
     gains = '<kp>0</kp><ki type="trap">1</ki><kd>0</kd>'
-    return f'<pid name="{name}"><input>{source}</input>{gains}<trigger>{reset}</trigger></pid>'
+    return f'<pid name="{name}"><input>{source}</input>{gains}<trigger>{RESET}</trigger></pid>'

@@ -15,8 +15,9 @@ import control
 import numpy as np
 import numpy.typing as npt
 
+from aircraft.weather import GustStatistics
 from gnc.reference.reference import Orbit
-from innerloop.gusts import GUSTS, GustStatistics, dryden_filters
+from innerloop.gusts import GUSTS, dryden_filters
 
 _SIDEBANDS = np.arange(-12, 13)
 """J_13(2.4)^2 is below 1e-15, and eta is no more than 2.405; a course whose roll rate jumps leaves

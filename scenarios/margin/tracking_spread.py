@@ -27,11 +27,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from aircraft.weather import GustStatistics
 from common.physics import SECONDS_PER_HOUR
 from gnc.airspeed import SpeedHold
 from gnc.reference.reference import Orbit
 from gnc.tracker import TrackingParameters
-from innerloop.gusts import GustStatistics
 from innerloop.schedule import Schedule
 
 FREQUENCIES = np.logspace(-2.5, 1.9, 400)

@@ -5,11 +5,10 @@ from dataclasses import dataclass, field
 
 from aircraft.fdm import Fdm
 from aircraft.spec import AircraftSpec
-from aircraft.weather import TURBULENCE
+from aircraft.weather import TURBULENCE, low_altitude_turbulence
 from common.physics import METRES_PER_FOOT
 from gnc.errors import InfeasibleError
 from gnc.reference.reference import Orbit
-from innerloop.gusts import low_altitude_turbulence
 from innerloop.store import Designed
 from scenarios.errors import InputError
 from scenarios.margin.tracking_spread import SpreadTable, tracking_spreads

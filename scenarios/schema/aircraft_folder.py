@@ -28,8 +28,7 @@ def aircraft_from(directory: Path, name: str, overrides: Sequence[str]) -> list[
 
     Raises
     ------
-    InputError : no such scenario, directory or aircraft, several to choose from, or one that is
-        given by a path already
+    InputError : no such scenario, directory or aircraft, or several to choose from
     """
     keys = [parse_override(override) for override in overrides]
     demanded = next((str(value) for key, value in reversed(keys) if key == KEY), None)
@@ -48,7 +47,7 @@ def folder_of(directory: Path, name: str | None) -> str:
 
     Raises
     ------
-    InputError : there is none of this name, or there are several, or the name is a path
+    InputError : there is none of this name, or there are several
     """
     with _explained():
         return folder_path(directory, name)

@@ -7,7 +7,7 @@ from typing import Any
 from aircraft.faults import fault_names
 from aircraft.fleet.find import find_spec
 from aircraft.spec import AircraftError, Envelope
-from aircraft.weather import scale_lengths
+from aircraft.weather import TURBULENCE, low_altitude_turbulence
 from common.files import is_data_file
 from common.registry import PluginError, Registry
 from common.run_layout import NAME_BYTES_MAX, is_file_name
@@ -128,7 +128,7 @@ def _check_turbulence(scenario: Scenario) -> None:
     level = scenario.turbulence.level
     if level != "none" and scenario.fidelity == "six_dof":
         try:
-            scale_lengths(scenario.altitude)
+            low_altitude_turbulence(scenario.altitude, TURBULENCE[level].wind_at_20ft)
         except AircraftError as error:
             raise InputError(
                 f"turbulence.level is '{level}': {error}; fly lower (flight.altitude_m, else plume.source_height_m, else the funnel"

@@ -11,14 +11,15 @@ from pathlib import Path
 import numpy as np
 
 from aircraft.faults import fault_names
+from aircraft.fdm import Fdm
 from aircraft.fleet.find import find_spec
 from aircraft.spec import AircraftError, AircraftSpec, Envelope
-from aircraft.trim import Trim, level_trim
+from aircraft.trim import Trim, trim
 from aircraft.user_check import check_user_aircraft
 from common.files import write_tree
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.part_failure import PartFailure, measure_part_failure
-from innerloop.flight.turn_reversal import TurnReversalResponse
+from innerloop.flight.turn_reversal import TurnReversalResponse, reversal_record
 from innerloop.jsbsim.system import write_root
 from innerloop.schedule import Schedule
 from innerloop.store import Designed, designed
@@ -182,18 +183,16 @@ def aircraft_setup(
     with tempfile.TemporaryDirectory() as folder:
         write_tree(write_root(schedule, Path(folder)), run.model)
     run.write_text(run.innerloop, found.record_text)
-    start = level_trim(
-        schedule.spec,
-        scenario.guidance.airspeed_mps,
-        scenario.altitude,
-        schedule.level(schedule.middle),
+    start = trim(
+        Fdm(schedule.spec),
+        airspeed=scenario.guidance.airspeed_mps,
+        altitude=scenario.altitude,
+        start=schedule.level(schedule.middle),
     )
     turns = schedule.trims[schedule.middle]
     reversal, slow_lag = found.record["turn_reversal"], float(found.record["heading_rate_lag_s"])
     slower_or_faster = abs(start.airspeed / reversal["airspeed_mps"] - 1.0)
     if bank > schedule.envelope.bank + _SAME_BANK or slower_or_faster > _SAME_AIRSPEED:
-        from innerloop.reversal_record import reversal_record  # needs scipy.signal
-
         reversal = reversal_record(
             schedule.spec, run.model, start, max(bank, schedule.envelope.bank), slow_lag
         )

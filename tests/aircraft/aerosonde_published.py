@@ -27,13 +27,8 @@ CL_0, CL_A, CL_Q, CL_DE = 0.23, 5.61, 7.95, 0.13
 CD_P, CD_Q, CD_DE = 0.043, 0.0, 0.0135
 CM_0, CM_A, CM_Q, CM_DE = 0.0135, -2.74, -38.21, -0.99
 CY_B, CY_P, CY_R, CY_DA, CY_DR = -0.98, 0.0, 0.0, 0.075, 0.19
-CR_B, CR_P, CR_R, CR_DA, CR_DR = (
-    -0.13,
-    -0.51,
-    0.25,
-    0.17,
-    0.0024,
-)  # rolling moment, "C_ell" in the source
+# Rolling moment, "C_ell" in the source.
+CR_B, CR_P, CR_R, CR_DA, CR_DR = -0.13, -0.51, 0.25, 0.17, 0.0024
 CN_B, CN_P, CN_R, CN_DA, CN_DR = 0.073, 0.069, -0.095, -0.011, -0.069
 STALL_BLEND, STALL_ALPHA = 50.0, 0.47  # 1/rad, rad
 
@@ -166,11 +161,13 @@ def angular_acceleration(rates, moment):
     g1, g2 = JXZ * (JX - JY + JZ) / gamma, (JZ * (JZ - JY) + JXZ**2) / gamma
     g3, g4, g5, g6 = JZ / gamma, JXZ / gamma, (JZ - JX) / JY, JXZ / JY
     g7, g8 = ((JX - JY) * JX + JXZ**2) / gamma, JX / gamma
-    return np.array([
-        g1 * p * q - g2 * q * r + g3 * roll + g4 * yaw,
-        g5 * p * r - g6 * (p**2 - r**2) + pitch / JY,
-        g7 * p * q - g1 * q * r + g4 * roll + g8 * yaw,
-    ])  # fmt: skip
+    return np.array(
+        [
+            g1 * p * q - g2 * q * r + g3 * roll + g4 * yaw,
+            g5 * p * r - g6 * (p**2 - r**2) + pitch / JY,
+            g7 * p * q - g1 * q * r + g4 * roll + g8 * yaw,
+        ]
+    )
 
 
 def state_rates(state, surfaces, thrust_force, shaft_moment, world, parasitic=CD_P):
@@ -183,16 +180,18 @@ def state_rates(state, surfaces, thrust_force, shaft_moment, world, parasitic=CD
     fx, fy, fz = force / MASS + np.array([thrust_force / MASS, 0.0, 0.0])
     gx, gy, gz = -world.gravity * sp, world.gravity * cp * sr, world.gravity * cp * cr
     yaw_rate = (q * sr + r * cr) / cp
-    return np.array([
-        r * v - q * w + fx + gx,
-        p * w - r * u + fy + gy,
-        q * u - p * v + fz + gz,
-        p + yaw_rate * sp,
-        q * cr - r * sr,
-        yaw_rate,
-        *angular_acceleration((p, q, r), moment + shaft_moment),
-        u * sp - v * sr * cp - w * cr * cp,
-    ])  # fmt: skip
+    return np.array(
+        [
+            r * v - q * w + fx + gx,
+            p * w - r * u + fy + gy,
+            q * u - p * v + fz + gz,
+            p + yaw_rate * sp,
+            q * cr - r * sr,
+            yaw_rate,
+            *angular_acceleration((p, q, r), moment + shaft_moment),
+            u * sp - v * sr * cp - w * cr * cp,
+        ]
+    )
 
 
 def trim_level(airspeed: float, altitude: float, world: World, parasitic: float = CD_P):

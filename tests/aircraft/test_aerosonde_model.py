@@ -219,9 +219,8 @@ def test_the_poles_of_the_linear_model_are_those_of_the_published_equations(bank
         / (2.0 * step.sum())
         for step in steps
     ]
-    without_yaw = [
-        i for i, name in enumerate(bm.FLOWN_STATES) if name != "yaw"
-    ]  # yaw does not act back: a pole at zero
+    # Yaw does not act back: a pole at zero.
+    without_yaw = [i for i, name in enumerate(bm.FLOWN_STATES) if name != "yaw"]
     expected = np.linalg.eigvals(np.column_stack(columns)[np.ix_(without_yaw, without_yaw)])
     found_poles = model.poles()
     for pole in expected:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from aircraft.controls import AXES, flight_idle, with_flight_idle, with_linearised_controls
+from aircraft.controls import AXES, with_flight_idle, with_linearised_controls
 from aircraft.envelope import first_trim
 from aircraft.fdm import Fdm
 from aircraft.fleet.find import find_spec
@@ -142,15 +142,8 @@ def test_controls_that_are_linearised_already_are_left_as_they_are(twin):
 
 @pytest.mark.parametrize(
     ("effect", "command"),
-    [
-        (-1.5, -1.0),
-        (-0.75, -0.5),
-        (0.0, 0.0),
-        (0.25, 0.5),
-        (0.5, 1.0),
-        (-3.0, -2.0),
-        (1.0, 2.0),
-    ],  # past the ends as before them
+    # Past the ends as before them.
+    [(-1.5, -1.0), (-0.75, -0.5), (0.0, 0.0), (0.25, 0.5), (0.5, 1.0), (-3.0, -2.0), (1.0, 2.0)],
 )
 def test_an_effect_is_named_by_the_command_that_has_it(effect, command):
     assert KINKED.command(effect) == pytest.approx(command)
@@ -176,7 +169,7 @@ def deceleration(fdm, level, throttle):
 
 def test_an_electric_propeller_brakes_most_while_it_still_turns(cruise):
     fdm, level = cruise
-    idle = flight_idle(fdm, level)
+    idle = with_flight_idle(fdm, level).input("throttle").lower
     # Read at 5 s after each throttle, many times the propeller's 0.04 s: a twentieth of the way to
     # either side brakes less, and closed throttle, where the propeller stands, by almost half.
     at_idle = deceleration(fdm, level, idle)
@@ -185,7 +178,7 @@ def test_an_electric_propeller_brakes_most_while_it_still_turns(cruise):
     assert at_idle > 1.8 * deceleration(fdm, level, 0.0)
 
 
-def test_an_aircraft_that_idles_keeps_the_rest_of_its_throttle():
-    throttle = with_flight_idle(X8, 0.4).input("throttle")
-    assert (throttle.lower, throttle.upper) == (0.4, 1.0)
-    assert with_flight_idle(X8, 0.4).input("elevator") == X8.input("elevator")
+def test_an_aircraft_that_idles_keeps_the_rest_of_its_throttle(cruise):
+    idling = with_flight_idle(*cruise)
+    assert 0.0 < idling.input("throttle").lower < idling.input("throttle").upper == 1.0
+    assert idling.input("elevator") == X8.input("elevator")

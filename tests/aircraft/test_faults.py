@@ -83,9 +83,8 @@ def test_a_lost_engine_of_any_kind_gives_no_thrust_until_it_is_repaired(failable
     with fdm.frozen():
         fdm.step(1200)
     assert all(fdm.read(engine) <= 0.0 for engine in thrust)
-    assert all(
-        fdm.read(running) == 0.0 for running in fdm.spec.engine_flags
-    )  # nor does it come to life while it wind-mills
+    # Nor does it come to life while it wind-mills.
+    assert all(fdm.read(running) == 0.0 for running in fdm.spec.engine_flags)
     faults.clear()
     fdm.reset()
     fdm.command({"throttle": 0.8})

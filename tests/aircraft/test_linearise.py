@@ -189,9 +189,8 @@ def test_servos_settle_at_full_deflection_times_command(models):
         gain = -entry(models["level"], f"{name}_position", name) / entry(
             models["level"], f"{name}_position", f"{name}_position"
         )
-        assert gain == pytest.approx(
-            x8.ELEVON_FULL, rel=1e-7
-        )  # linear in the model; settled to 1e-8
+        # Linear in the model; settled to 1e-8.
+        assert gain == pytest.approx(x8.ELEVON_FULL, rel=1e-7)
 
 
 @pytest.mark.parametrize("name", BANKS)
@@ -227,9 +226,8 @@ def test_the_modes_are_where_textbooks_put_them(models):
     m_q = force * x8.CHORD**2 * x8.CM_Q / (2.0 * v * x8.JY)
     z_alpha = -force * x8.CL_A / (x8.MASS * v)
     q_gain = 1.0 - force * x8.CL_Q * x8.CHORD / (2.0 * v * x8.MASS * v)
-    assert abs(short_period) == pytest.approx(
-        math.sqrt(m_q * z_alpha - m_alpha * q_gain), rel=0.02
-    )  # two states of twelve
+    # Two states of twelve.
+    assert abs(short_period) == pytest.approx(math.sqrt(m_q * z_alpha - m_alpha * q_gain), rel=0.02)
     assert short_period.real == pytest.approx(0.5 * (m_q + z_alpha), rel=0.02)
     # Roll mode: L_p, changed by a few per cent by its coupling to yaw and sideslip.
     roll_rate = force * x8.SPAN**2 * x8.CR_P / (2.0 * v * x8.JX)

@@ -99,9 +99,6 @@ def test_the_limits_themselves_are_allowed():
 def test_lists_and_numbers_of_numpy_will_do_in_a_spec():
     check_spec(
         replace(
-            X8,
-            inputs=list(X8.inputs),
-            settle_time=np.float32(2.0),
-            configuration=[("fcs/flap", 1)],
+            X8, inputs=list(X8.inputs), settle_time=np.float32(2.0), configuration=[("fcs/flap", 1)]
         )
     )

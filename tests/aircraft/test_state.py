@@ -46,9 +46,8 @@ def test_level_keeps_lengths(vector, roll, pitch):
 
 
 def test_level_follows_the_frames_definition():
-    assert (
-        level((1.0, 0.0, 0.0), 0.0, 0.1)[2] < 0.0
-    )  # nose up: ahead points above the horizon, down is positive
+    # Nose up: ahead points above the horizon, down is positive.
+    assert level((1.0, 0.0, 0.0), 0.0, 0.1)[2] < 0.0
     assert level((0.0, 1.0, 0.0), 0.1, 0.0)[2] > 0.0  # right wing down
 
 
@@ -82,9 +81,10 @@ def test_euler_rates_put_together_again_are_the_body_rates(rates, roll, pitch):
     # Euler angles.
     across = np.array([0.0, math.cos(roll), -math.sin(roll)])
     down = x8.body_from_ned(roll, pitch) @ np.array([0.0, 0.0, 1.0])
+    # / cos 1.4.
     np.testing.assert_allclose(
         np.array([roll_rate, 0.0, 0.0]) + pitch_rate * across + yaw_rate * down, rates, atol=1e-10
-    )  # / cos 1.4
+    )
 
 
 @given(

@@ -1,7 +1,6 @@
 """Equilibria against Newton's and Euler's equations: the X8's published, the T-37's of JSBSim."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +11,7 @@ from hypothesis import strategies as st
 from aircraft.fdm import Fdm
 from aircraft.fleet.find import find_spec
 from aircraft.fleet.x8 import X8
-from aircraft.spec import AircraftError, surface
+from aircraft.spec import AircraftError
 from aircraft.state import body_velocity, level
 from aircraft.trim import TrimOutcome, pitch_for_climb, search_trim, trim
 from common.physics import METRES_PER_FOOT, NEWTONS_PER_POUND
@@ -131,9 +130,8 @@ def test_in_a_level_turn_the_horizontal_force_is_centripetal_and_the_vertical_on
     assert across == pytest.approx(
         x8.MASS * found.airspeed * found.yaw_rate, abs=x8.MASS * 2.0 * 7.292e-5 * found.airspeed
     )
-    assert -down == pytest.approx(
-        x8.MASS * x8.equatorial_gravity(found.altitude), rel=1e-3
-    )  # earth's rotation, see above: 3e-4
+    # Earth's rotation, see above: 3e-4.
+    assert -down == pytest.approx(x8.MASS * x8.equatorial_gravity(found.altitude), rel=1e-3)
 
 
 def test_a_turn_to_the_right_is_clockwise_and_needs_more_lift(trims):
@@ -160,9 +158,8 @@ def test_the_course_offset_of_a_trim_is_course_less_yaw(trims):
     north, east, _ = x8.body_from_ned(found.roll, found.pitch).T @ np.array(
         body_velocity(found.airspeed, found.alpha, found.beta)
     )
-    assert found.course_offset() == pytest.approx(
-        math.atan2(east, north), abs=1e-12
-    )  # rounding of one rotation
+    # Rounding of one rotation.
+    assert found.course_offset() == pytest.approx(math.atan2(east, north), abs=1e-12)
     # Sideslip and angle of attack, seen from above: beta cos(bank) - alpha sin(bank) and the square
     # of either.
     small = found.beta * math.cos(found.roll) - found.alpha * math.sin(found.roll)
@@ -189,26 +186,22 @@ def test_without_sideslip_and_bank_pitch_is_angle_of_attack_plus_climb():
 
 @pytest.mark.parametrize("airspeed", [-3.0, 0.0, math.nan, math.inf])
 def test_an_impossible_airspeed_is_refused_in_one_line_that_names_it(x8_fdm, airspeed):
-    with pytest.raises(
-        AircraftError, match=rf"'x8'.* airspeed is {airspeed:g}|'x8'.* airspeed is {airspeed} m/s"
-    ) as caught:
+    with pytest.raises(AircraftError, match=f"'x8': airspeed is {airspeed:g} m/s") as caught:
         trim(x8_fdm, airspeed=airspeed, altitude=100.0)
-    assert "must be finite and above 0" in str(caught.value)
+    assert "must lie between 0 and inf m/s" in str(caught.value)
     assert "\n" not in str(caught.value)
 
 
 IMPOSSIBLE = {
-    "bank 85 deg": {
-        "bank": math.radians(85.0)
-    },  # needs eleven times the weight in lift: alpha 0.6 rad
+    # Needs eleven times the weight in lift: alpha 0.6 rad.
+    "bank 85 deg": {"bank": math.radians(85.0)},
     # Full throttle gives 1.9 N at 35 m/s, where drag is 11 N.
     "35 m/s": {"airspeed": 35.0},
     "60 m/s": {"airspeed": 60.0},
     "5 m/s": {"airspeed": 5.0},  # needs a lift coefficient of 2.9: alpha 0.7 rad
     "climb 57.2958 deg": {"climb_angle": 1.0},  # needs 28 N of thrust, of which there are 19
-    "15000 m": {
-        "altitude": 15000.0
-    },  # a sixth of the density: 20 m/s there is 8 m/s here, and thrust a sixth
+    # A sixth of the density: 20 m/s there is 8 m/s here, and thrust a sixth.
+    "15000 m": {"altitude": 15000.0},
 }
 
 
@@ -252,12 +245,6 @@ def test_a_refused_trim_leaves_an_aircraft_that_can_be_trimmed_and_flown(x8_fdm,
 def test_a_turn_on_its_side_or_back_is_refused(x8_fdm, bank_deg):
     with pytest.raises(AircraftError, match="must lie between -90 and 90 deg"):
         trim(x8_fdm, airspeed=20.0, altitude=100.0, bank=math.radians(bank_deg))
-
-
-def test_a_fourth_input_that_is_no_rudder_is_refused_by_name():
-    flapped = Fdm(replace(X8, inputs=(*X8.inputs, surface("flap"))))
-    with pytest.raises(AircraftError, match="the inputs elevator, aileron, throttle, flap; it"):
-        trim(flapped, airspeed=20.0, altitude=100.0)
 
 
 JET = {"airspeed": 80.0, "altitude": 1000.0}
@@ -373,7 +360,6 @@ def test_an_impossible_airspeed_of_a_jet_names_its_throttle(jet):
 def test_a_trim_found_from_a_neighbour_is_the_one_found_from_nothing(jet, jet_trims):
     nearby = trim(jet, airspeed=84.0, altitude=1000.0)
     found = trim(jet, **JET, start=nearby)
-    assert found.alpha == pytest.approx(
-        jet_trims["level"].alpha, abs=1e-6
-    )  # both solved to 1e-5 m/s^2 of 50 m/s^2 per rad
+    # Both solved to 1e-5 m/s^2 of 50 m/s^2 per rad.
+    assert found.alpha == pytest.approx(jet_trims["level"].alpha, abs=1e-6)
     assert found.inputs == pytest.approx(jet_trims["level"].inputs, abs=1e-5)

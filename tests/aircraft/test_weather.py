@@ -15,8 +15,7 @@ from aircraft.weather import (
     Weather,
     begin_weather,
     end_weather,
-    intensities,
-    scale_lengths,
+    low_altitude_turbulence,
 )
 
 FOOT = 0.3048
@@ -29,21 +28,25 @@ so nothing fails by chance.
 def test_at_1000_feet_all_scale_lengths_are_1000_feet_and_all_intensities_a_tenth_of_the_wind():
     # MIL-F-8785C, figures 10 and 11: the curves along and across meet those of the vertical at
     # 1,000 ft. Tolerance: 0.177 + 0.823.
-    assert scale_lengths(1000.0 * FOOT) == pytest.approx([1000.0 * FOOT] * 3, rel=1e-12)
-    assert intensities(1000.0 * FOOT, 20.0) == pytest.approx([2.0] * 3, rel=1e-12)
+    air = low_altitude_turbulence(1000.0 * FOOT, 20.0)
+    assert (air.horizontal, air.vertical) == pytest.approx((2.0, 2.0), rel=1e-12)
+    lengths = (air.horizontal_length, air.vertical_length)
+    assert lengths == pytest.approx((1000.0 * FOOT, 1000.0 * FOOT), rel=1e-12)
 
 
 def test_at_50_metres_scale_lengths_are_those_of_the_published_table():
     # Beard and McLain, Small Unmanned Aircraft, table 4.1, low altitude: L_u = L_v = 200 m, L_w =
     # 50 m; printed to two digits.
-    assert scale_lengths(50.0) == pytest.approx([200.0, 200.0, 50.0], rel=0.025)
+    air = low_altitude_turbulence(50.0, 10.0)
+    lengths = (air.horizontal_length, air.vertical_length)
+    assert lengths == pytest.approx((200.0, 50.0), rel=0.025)
 
 
 def test_light_moderate_and_severe_turbulence_shake_with_1_5_3_and_4_5_knots():
     # MIL-F-8785C, figures 9 and 11: a tenth of the wind at 20 ft, which is 15, 30 and 45 knots; a
     # knot is 1852 m an hour.
     shaking = [
-        intensities(60.0, TURBULENCE[name].wind_at_20ft)[2]
+        low_altitude_turbulence(60.0, TURBULENCE[name].wind_at_20ft).vertical
         for name in ("light", "moderate", "severe")
     ]
     assert shaking == pytest.approx(
@@ -53,14 +56,13 @@ def test_light_moderate_and_severe_turbulence_shake_with_1_5_3_and_4_5_knots():
 
 def test_below_ten_feet_turbulence_is_that_at_ten_feet():
     # Figures 10 and 11 of MIL-F-8785C begin at 10 ft.
-    assert scale_lengths(0.0) == scale_lengths(10.0 * FOOT)
-    assert intensities(0.0, 9.0) == intensities(10.0 * FOOT, 9.0)
+    assert low_altitude_turbulence(0.0, 9.0) == low_altitude_turbulence(10.0 * FOOT, 9.0)
 
 
-@pytest.mark.parametrize("ask", [lambda: scale_lengths(305.0), lambda: intensities(305.0, 10.0)])
-def test_above_1000_feet_the_low_altitude_laws_are_refused(ask):
-    with pytest.raises(AircraftError, match=r"305 m; it holds up to 304\.8 m"):
-        ask()
+@pytest.mark.parametrize("altitude", [305.0, math.nan])
+def test_above_1000_feet_the_low_altitude_laws_are_refused(altitude):
+    with pytest.raises(AircraftError, match=rf"{altitude:g} m; it holds up to 304\.8 m"):
+        low_altitude_turbulence(altitude, 10.0)
 
 
 @pytest.mark.parametrize(
@@ -107,9 +109,10 @@ def test_jsbsim_shakes_as_strongly_as_the_standard_says_and_has_the_spectra_of_d
         Weather(turbulence=Turbulence(wind_at_20ft=10.0), seed=2), steps, altitude, airspeed
     )
     duration = steps / 120.0
-    for measured, sigma, length in zip(
-        log.std(axis=0), intensities(altitude, 10.0), scale_lengths(altitude), strict=True
-    ):
+    air = low_altitude_turbulence(altitude, 10.0)
+    sigmas = (air.horizontal, air.horizontal, air.vertical)
+    lengths = (air.horizontal_length, air.horizontal_length, air.vertical_length)
+    for measured, sigma, length in zip(log.std(axis=0), sigmas, lengths, strict=True):
         # Of a process with the correlation exp(-t/tau), a standard deviation over T is known to
         # sqrt(tau / 2T) of itself (Bendat and Piersol, Random Data, 8.2); those across and down
         # forget sooner. The start from smooth air is within that.
@@ -120,7 +123,7 @@ def test_jsbsim_shakes_as_strongly_as_the_standard_says_and_has_the_spectra_of_d
     # wind along has the correlation exp(-x), those across and down have exp(-x) (1 - x/2):
     # transforms of the spectra of MIL-F-8785C. First-order filters, as of JSBSim's type 3, would
     # have exp(-2x) there: at half a scale length 0.37 in place of 0.45.
-    for wind, length, factor in zip(log.T, scale_lengths(altitude), (1.0, 0.75, 0.75), strict=True):
+    for wind, length, factor in zip(log.T, lengths, (1.0, 0.75, 0.75), strict=True):
         lag = round(0.5 * 120.0 * length / airspeed)
         correlation = np.mean(wind[:-lag] * wind[lag:]) / np.mean(wind**2)
         # A correlation is known to about sqrt(tau / T) or better (Bendat and Piersol, 8.4): 0.03
@@ -149,12 +152,13 @@ def test_a_seed_gives_its_own_turbulence_each_time(blown, x8_fdm):
     end_weather(x8_fdm)
     np.testing.assert_array_equal(blown(weather, 200, 60.0, 20.0), first)
     end_weather(x8_fdm)
+    # Of 0.8 m/s.
     assert (
         np.abs(
             blown(Weather(turbulence=TURBULENCE["light"], seed=6), 200, 60.0, 20.0) - first
         ).max()
         > 0.1
-    )  # of 0.8 m/s
+    )
 
 
 def test_a_seed_that_jsbsim_cannot_hold_is_refused():

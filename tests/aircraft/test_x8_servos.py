@@ -50,9 +50,8 @@ def test_a_large_step_is_followed_at_200_degrees_a_second(x8_fdm, sign):
     # Tolerance of the lag: as above. It is met at 0.12 s, when 1 % of the step is left, so the
     # limit is what shows until then.
     np.testing.assert_allclose(positions, np.minimum(RATE_LIMIT * time, lagged), atol=0.012 * size)
-    assert np.diff(positions).max() == pytest.approx(
-        RATE_LIMIT * TIME_STEP, rel=1e-9
-    )  # a clip: rounding alone
+    # A clip: rounding alone.
+    assert np.diff(positions).max() == pytest.approx(RATE_LIMIT * TIME_STEP, rel=1e-9)
 
 
 @pytest.mark.parametrize(

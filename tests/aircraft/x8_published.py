@@ -15,29 +15,19 @@ import numpy as np
 
 MASS = 3.364  # kg
 WING_AREA, SPAN, CHORD = 0.75, 2.1, 0.35714  # m^2, m, m
-ELEVON_FULL = (
-    0.5236  # rad of symmetric (elevator) or antisymmetric (aileron) elevon for a command of 1
-)
-JX, JY, JZ, JXZ = (
-    0.335,
-    0.140,
-    0.400,
-    -0.029,
-)  # kg m^2; Jxz is the integral of x z dm, forward-right-down
-INERTIA = np.array(
-    [[JX, 0.0, -JXZ], [0.0, JY, 0.0], [-JXZ, 0.0, JZ]]
-)  # products of inertia enter negated
+# rad of symmetric (elevator) or antisymmetric (aileron) elevon for a command of 1.
+ELEVON_FULL = 0.5236
+# kg m^2; Jxz is the integral of x z dm, forward-right-down.
+JX, JY, JZ, JXZ = 0.335, 0.140, 0.400, -0.029
+# Products of inertia enter negated.
+INERTIA = np.array([[JX, 0.0, -JXZ], [0.0, JY, 0.0], [-JXZ, 0.0, JZ]])
 
 CL_0, CL_A, CL_Q, CL_DE = 0.08674, 4.0203, 3.87, 0.27807
 CD_0, CD_A, CD_AA, CD_B, CD_BB, CD_DEDE = 0.01970, 0.07909, 1.05547, -0.00584, 0.14781, 0.06335
 CM_0, CM_A, CM_Q, CM_DE = 0.02275, -0.4629, -1.3012, -0.2292
 CY_B, CY_P, CY_R, CY_DA = -0.22387, -0.13736, 0.08387, 0.04328
-CR_B, CR_P, CR_R, CR_DA = (
-    -0.08490,
-    -0.40420,
-    0.05552,
-    0.12019,
-)  # rolling moment, "C_l" in the source
+# Rolling moment, "C_l" in the source.
+CR_B, CR_P, CR_R, CR_DA = -0.08490, -0.40420, 0.05552, 0.12019
 CN_B, CN_P, CN_R, CN_DA = 0.0283, 0.004366, -0.0720, -0.00339
 
 PROPELLER_DIAMETER = 14.0 * 0.0254  # m

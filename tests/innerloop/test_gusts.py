@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 
 from aircraft.state import course_rate
+from aircraft.weather import low_altitude_turbulence
 from common.physics import METRES_PER_FOOT
 from innerloop.gusts import (
     GUSTS,
     aircraft_in_gusts,
     dryden_filters,
     gust_loop,
-    low_altitude_turbulence,
     velocity_by_polar,
 )
 from innerloop.schedule import LEVEL_GAINS
@@ -97,20 +97,6 @@ def test_velocities_are_as_strong_as_the_standard_says(filters):
     )
 
 
-def test_at_a_thousand_feet_low_altitude_turbulence_is_the_same_in_every_direction():
-    # MIL-F-8785C, figures 10 and 11: there 0.177 + 0.000823 h is 1, so all deviations are 0.1 W20,
-    # and all lengths 1,000 ft.
-    air = low_altitude_turbulence(1000.0 * METRES_PER_FOOT, 20.0)
-    assert (air.horizontal, air.vertical) == pytest.approx((2.0, 2.0), rel=1e-12)
-    assert (air.horizontal_length, air.vertical_length) == pytest.approx((304.8, 304.8), rel=1e-12)
-
-
-@pytest.mark.parametrize(("altitude", "wind"), [(305.0, 7.7), (math.nan, 7.7)])
-def test_other_turbulence_is_refused(altitude, wind):
-    with pytest.raises(ValueError, match="altitude"):
-        low_altitude_turbulence(altitude, wind)
-
-
 def in_gusts(schedule, bank_index):
     models = schedule.models[MIDDLE]
     return aircraft_in_gusts(
@@ -127,7 +113,8 @@ def read_in_wind(fdm, trim, wind_ned):
             fdm.write(f"atmosphere/wind-{name}-fps", value / METRES_PER_FOOT)
         fdm.step()
         assert fdm.settle(3e-8)
-        velocity, rates = fdm.velocity_body(), np.array(fdm.rates_body())
+        velocity = [METRES_PER_FOOT * fdm.read(f"velocities/{name}-aero-fps") for name in "uvw"]
+        rates = np.array([fdm.read(f"velocities/{name}-rad_sec") for name in "pqr"])
         dot = np.array(fdm.acceleration_body())
         # Held in inertial motion: omega x v is that of the body's own velocity, which the wind has
         # been taken out of.
@@ -178,9 +165,8 @@ def test_moments_by_rates_hardly_depend_on_bank(x8_schedule, x8_fdm):
         x8_fdm.read(f"inertia/i{axes}-slugs_ft2") * KG_M2_PER_SLUG_FT2
         for axes in ("xx", "yy", "zz", "xz")
     )
-    inertia = np.array(
-        [[xx, 0.0, xz], [0.0, yy, 0.0], [xz, 0.0, zz]]
-    )  # JSBSim's ixz is that of the matrix, its sign included
+    # JSBSim's ixz is that of the matrix, its sign included.
+    inertia = np.array([[xx, 0.0, xz], [0.0, yy, 0.0], [xz, 0.0, zz]])
     rates = np.array(trim.rates_body)
     gyroscopic = -np.linalg.solve(inertia, cross(rates) @ inertia - cross(inertia @ rates))
     # What is left in a steep turn is what the model takes from level flight. Measured 0.029 1/s, by
@@ -197,9 +183,8 @@ def cross(vector):
 
 def test_in_air_that_has_come_to_move_along_its_course_the_aircraft_is_as_much_faster(x8_schedule):
     loop = gust_loop(x8_schedule, MIDDLE, LEVEL_GAINS)
-    gain = np.real(
-        loop(1e-9j)
-    )  # a hundred thousand times slower than the slowest pole, 0.3 rad/s: steady to 1e-8
+    # A hundred thousand times slower than the slowest pole, 0.3 rad/s: steady to 1e-8.
+    gain = np.real(loop(1e-9j))
     along, outputs = loop.input_labels.index("gust_along"), list(loop.output_labels)
     assert gain[outputs.index("speed"), along] == pytest.approx(1.0, abs=1e-6)
     assert gain[outputs.index("airspeed"), along] == pytest.approx(0.0, abs=1e-6)

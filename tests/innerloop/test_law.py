@@ -13,13 +13,7 @@ import pytest
 from aircraft.state import RigidBodyState, body_velocity
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.jsbsim.system import HEADING_RATE, RESET, write_root
-from innerloop.law import (
-    STATES,
-    ControlLaw,
-    gain_vector,
-    measurements,
-    operating_point,
-)
+from innerloop.law import STATES, ControlLaw, gain_vector, measurements, operating_point
 from innerloop.schedule import LATERAL
 
 NAMES = ("x8", "aerosonde")

@@ -38,14 +38,12 @@ def test_the_tables_reach_past_the_largest_commanded_bank_and_gains_are_those_of
     assert math.degrees(x8_schedule.banks[-1]) == pytest.approx(TABLE_REACH * 50.0)
     assert set(x8_schedule.gain_banks) < set(x8_schedule.banks)
     for i, row in enumerate(x8_schedule.trims):
-        assert [t.roll for t in row] == pytest.approx(
-            x8_schedule.banks, abs=1e-3
-        )  # level: 0.3 mrad against the propeller's torque
-        for j, gains in enumerate(x8_schedule.gains[i]):
-            assert (gains.airspeed, gains.bank) == (
-                x8_schedule.airspeeds[i],
-                x8_schedule.gain_trim(i, j).roll,
-            )
+        # Level: 0.3 mrad against the propeller's torque.
+        assert [t.roll for t in row] == pytest.approx(x8_schedule.banks, abs=1e-3)
+        for j in range(len(x8_schedule.gains[i])):
+            at = x8_schedule.gain_trim(i, j)
+            assert at.airspeed == x8_schedule.airspeeds[i]
+            assert at.roll == pytest.approx(x8_schedule.gain_banks[j], abs=1e-3)
 
 
 def test_level_is_the_straight_equilibrium_of_each_airspeed(x8_schedule):
@@ -107,9 +105,8 @@ def test_the_bank_for_a_turn_is_that_of_the_equilibrium_with_this_yaw_rate(x8_sc
     airspeed = x8_schedule.airspeeds[index]
     turns = np.array([airspeed * t.yaw_rate / STANDARD_GRAVITY for t in x8_schedule.trims[index]])
     banks = x8_schedule.bank_for_turn(turns)[:, index]
-    np.testing.assert_allclose(
-        banks, [t.roll for t in x8_schedule.trims[index]], atol=1e-12
-    )  # at the nodes: rounding
+    # At the nodes: rounding.
+    np.testing.assert_allclose(banks, [t.roll for t in x8_schedule.trims[index]], atol=1e-12)
 
 
 @pytest.mark.parametrize("bank", [-50.0, -28.0, -11.0, 11.0, 28.0, 50.0])
@@ -152,9 +149,7 @@ def test_a_slower_heading_rate_model_is_designed_when_asked_for(x8_design, tmp_p
         models=old.models,
         edges=old.edges,
     )
-    schedule = schedule_at(
-        grid, x8_design.bandwidths.scaled(lateral=3.0 / x8_design.bandwidths.lateral)
-    )
+    schedule = schedule_at(grid, replace(x8_design.bandwidths, lateral=3.0))
     aircraft = AutopilotedAircraft(X8, write_root(schedule, tmp_path))
     flown = flown_step(aircraft, schedule.level(1), "heading_rate", 0.1, 6.0)
     # From 10 to 90 % a second-order answer with a damping of 0.9 takes 2.9/omega_n (1.8 at 0.5, 3.4

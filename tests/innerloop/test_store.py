@@ -75,16 +75,12 @@ def test_a_design_is_made_once_and_found_again_whole(requests, designs):
     assert second is not first
     # What is found is what was made, to the last bit: tables, gains, models, checks and record.
     assert second.record == first.record
-    assert repr(second.design.checks) == repr(
-        first.design.checks
-    )  # all controls at once have margins that are nan
+    # All controls at once have margins that are nan.
+    assert repr(second.design.checks) == repr(first.design.checks)
     assert second.design.bandwidths == first.design.bandwidths
     one, two = first.design.schedule, second.design.schedule
-    assert (repr(one.spec), one.weights, one.trims) == (
-        repr(two.spec),
-        two.weights,
-        two.trims,
-    )  # a stall of nan is not itself
+    # A stall of nan is not itself.
+    assert (repr(one.spec), one.weights, one.trims) == (repr(two.spec), two.weights, two.trims)
     for mine, other in zip(sum(one.models, ()), sum(two.models, ()), strict=True):
         for matrix in "ABCD":
             np.testing.assert_array_equal(getattr(mine, matrix), getattr(other, matrix))
@@ -175,11 +171,7 @@ def test_a_design_made_of_the_same_model_elsewhere_flies_the_model_that_is_here(
 
 @pytest.mark.parametrize(
     ("package", "file"),
-    [
-        ("aircraft", "spec.py"),
-        ("common", "physics.py"),
-        ("innerloop", "synthesis.py"),
-    ],
+    [("aircraft", "spec.py"), ("common", "physics.py"), ("innerloop", "synthesis.py")],
 )
 def test_any_changed_source_file_is_another_key(monkeypatch, tmp_path, package, file):
     before = design_key(X8, 100.0)
@@ -198,8 +190,7 @@ def test_another_version_of_a_package_is_another_key(monkeypatch, package):
     before = design_key(X8, 100.0)
     version = importlib.metadata.version
     monkeypatch.setattr(
-        "importlib.metadata.version",
-        lambda name: "0.0" if name == package else version(name),
+        "importlib.metadata.version", lambda name: "0.0" if name == package else version(name)
     )
     store.program_hash.cache_clear()
     assert design_key(X8, 100.0) != before

@@ -15,8 +15,7 @@ from gnc.estimation.vessel import Tube
 from gnc.guard.guard import CommandHistory, GuardParameters, HeadingRateFilter
 from gnc.guard.turn import TurnStart, pending_turn_rate
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from innerloop.flight.reversal_search import _Flight
-from innerloop.flight.turn_reversal import TurnReversalResponse
+from innerloop.flight.turn_reversal import TurnReversalResponse, _Flight
 from innerloop.jsbsim.system import HEADING_RATE
 
 RADIUS, STEP = 200.0, 0.05
@@ -147,7 +146,9 @@ def test_search_and_guard_agree_on_the_course_that_is_still_to_come(x8_root, x8_
     response = TurnReversalResponse(delay=record["delay_s"], lag=record["lag_s"])
     slow_lag = record["slow_lag_s"]
     rate = STANDARD_GRAVITY * math.tan(X8.envelope.bank) / level.airspeed
-    searched = _Flight(AutopilotedAircraft(X8, x8_root), level, response, slow_lag, rate)
+    aircraft = AutopilotedAircraft(X8, x8_root)
+    searched = _Flight(aircraft, level, response, slow_lag, rate)
+    turning = aircraft.fdm.node(HEADING_RATE).get_double_value
     guarded = CommandHistory(
         lag=response.lag,
         delay=response.delay,
@@ -159,12 +160,12 @@ def test_search_and_guard_agree_on_the_course_that_is_still_to_come(x8_root, x8_
     lacks, courses = [], []
     for share, duration in ((1.0, 4.0), (-1.0, 0.5), (0.3, 1.0), (-1.0, 2.0)):
         for _ in range(round(duration / STEP)):
-            guarded.append(share * rate, searched.heading_rate)
+            guarded.append(share * rate, turning())
             searched.fly(share * rate, STEP)
-            turning, lack = searched.heading_rate, searched.lack
+            lack = searched.lack
             pending = (
-                pending_turn_rate(lack, turning, slow_lag, response.lag),
-                guarded.take_in(turning),
+                pending_turn_rate(lack, turning(), slow_lag, response.lag),
+                guarded.take_in(turning()),
             )
             lacks.append(lack)
             courses.append([response.lag * each for each in pending])

@@ -11,7 +11,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from aircraft.weather import TURBULENCE, intensities, scale_lengths
+from aircraft.weather import TURBULENCE, low_altitude_turbulence
 from aircraft.wind import WindField
 from gnc.estimation.navigation import NOISE_DEVIATIONS
 from scenarios.planning.air.estimated_wind import (
@@ -140,8 +140,9 @@ def _by_turbulence(scenario: Scenario, age: Array) -> Array:
     """
     if scenario.turbulence.level == "none":
         return np.zeros_like(age)
-    sigma = intensities(scenario.altitude, TURBULENCE[scenario.turbulence.level].wind_at_20ft)[0]
-    correlated = scale_lengths(scenario.altitude)[0] / scenario.guidance.airspeed_mps
+    wind_at_20ft = TURBULENCE[scenario.turbulence.level].wind_at_20ft
+    air = low_altitude_turbulence(scenario.altitude, wind_at_20ft)
+    correlated = air.horizontal_length / scenario.guidance.airspeed_mps
     lasting = np.maximum(0.0, age + correlated * np.expm1(-age / correlated))
-    displaced: Array = _DEVIATIONS * sigma * np.sqrt(2.0 * correlated * lasting)
+    displaced: Array = _DEVIATIONS * air.horizontal * np.sqrt(2.0 * correlated * lasting)
     return displaced

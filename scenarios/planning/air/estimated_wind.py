@@ -4,7 +4,7 @@ until its estimate has followed.
 
 import math
 
-from aircraft.weather import TURBULENCE, intensities, scale_lengths
+from aircraft.weather import TURBULENCE, low_altitude_turbulence
 from aircraft.wind import WindField
 from gnc.estimation.navigation import (
     NOISE_DEVIATIONS,
@@ -179,12 +179,8 @@ def _gust_sigma(scenario: Scenario) -> float:
     """
     if scenario.turbulence.level == "none":
         return 0.0
-    g, height = scenario.guidance, scenario.source_height
-    sigma = intensities(height, TURBULENCE[scenario.turbulence.level].wind_at_20ft)[0]
-    return sigma * math.sqrt(
-        2.0
-        * scale_lengths(height)[0]
-        / g.airspeed_mps
-        * g.rate_hz
-        / plan_interval(scenario.guidance)
+    g, wind_at_20ft = scenario.guidance, TURBULENCE[scenario.turbulence.level].wind_at_20ft
+    air = low_altitude_turbulence(scenario.source_height, wind_at_20ft)
+    return air.horizontal * math.sqrt(
+        2.0 * air.horizontal_length / g.airspeed_mps * g.rate_hz / plan_interval(scenario.guidance)
     )

@@ -275,21 +275,17 @@ def test_a_directory_lists_the_aircraft_that_it_holds(heavy, tmp_path):
     for name, why in [
         (None, "holds 2 aircraft; name one of them: heavy, second"),
         ("heavi", "did you mean 'heavy'"),
-        ("../fleet/heavy", "is a path; leave out --aircraft-dir"),
+        ("../fleet/heavy", "holds no aircraft '../fleet/heavy'"),
         ("..", "holds no aircraft '..'"),
     ]:
         with pytest.raises(AircraftError, match=re.escape(why)):
             folder_path(fleet, name)
     with pytest.raises(AircraftError, match="there is no such directory"):
         folder_names(tmp_path / "none")
-    with pytest.raises(
-        AircraftError,
-        match="is the folder of an aircraft itself, 'heavy'; give the directory that it is in",
-    ):
-        folder_names(tmp_path / "fleet" / "heavy")
     (tmp_path / "empty").mkdir()
-    with pytest.raises(AircraftError, match="holds no aircraft"):
-        folder_names(tmp_path / "empty")
+    for without in (tmp_path / "empty", heavy):
+        with pytest.raises(AircraftError, match="holds no aircraft; each needs a folder and a"):
+            folder_names(without)
 
 
 def test_a_model_that_ends_jsbsims_process_and_a_property_that_does_not_exist_are_refused_in_a_line(

@@ -114,9 +114,8 @@ def test_without_its_engine_it_glides_and_turns_at_the_commanded_airspeed_if_com
     )
     drag = x8.drag_coefficient(x8.Air(airspeed=20.0, alpha=alpha, elevator=elevator)) * pressure
     sink = (log[-480, ALTITUDE] - log[-1, ALTITUDE]) * FOOT / (479 * TIME_STEP)
-    assert sink == pytest.approx(
-        drag * 20.0 / weight, rel=0.03
-    )  # the turn's rates and what is left of settling are left out
+    # The turn's rates and what is left of settling are left out.
+    assert sink == pytest.approx(drag * 20.0 / weight, rel=0.03)
 
 
 def test_the_next_flight_of_an_aircraft_that_failed_is_whole(x8_schedule, x8_root, failable):

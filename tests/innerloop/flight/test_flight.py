@@ -67,9 +67,8 @@ def test_two_fresh_aircraft_fly_the_same_flight(x8_schedule, x8_root):
         for _ in range(2)
     )
     for name in CHANNELS:
-        np.testing.assert_array_equal(
-            first[name], second[name], err_msg=name
-        )  # nothing in it is random
+        # Nothing in it is random.
+        np.testing.assert_array_equal(first[name], second[name], err_msg=name)
 
 
 @pytest.mark.parametrize("altitude", [10.0, 1000.0, 2000.0])

@@ -79,9 +79,8 @@ def test_an_airspeed_command_outside_the_envelope_is_held_at_its_limit(
 
 def test_a_wide_open_throttle_winds_nothing_up(x8_schedule, x8_aircraft):
     flight = fly(x8_aircraft, x8_schedule.level(MIDDLE), 35.0, [(1.0, "airspeed", 25.0)])
-    assert (
-        np.count_nonzero(flight["throttle"] == 1.0) > 60
-    )  # saturated for half a second at least, or nothing was tried
+    # Saturated for half a second at least, or nothing was tried.
+    assert np.count_nonzero(flight["throttle"] == 1.0) > 60
     # Wound up, it would go on past 25 m/s. Within 0.3 m/s five seconds after full throttle ends,
     # and in 15 s within 0.02.
     ended = np.nonzero(flight["throttle"] == 1.0)[0][-1] / 120.0

@@ -9,7 +9,7 @@ from aircraft.fleet.find import find_spec
 from aircraft.fleet.x8 import X8
 from aircraft.model import copy_model, perturb
 from aircraft.state import RigidBodyState
-from innerloop.reversal_record import AIRCRAFT, perturbed_aircraft
+from innerloop.flight.turn_reversal import AIRCRAFT, perturbed_aircraft
 from tests.aircraft.split_model import split_model
 
 
@@ -17,7 +17,7 @@ from tests.aircraft.split_model import split_model
 def flown(x8_root, x8_schedule):
     """Return the X8 of each case, a tenth of a second into a turn."""
     level = x8_schedule.level(x8_schedule.middle)
-    aircraft = dict(zip(AIRCRAFT, perturbed_aircraft(X8, x8_root), strict=True))
+    aircraft = {name: perturbed_aircraft(X8, x8_root, by) for name, by in AIRCRAFT.items()}
     for each in aircraft.values():
         each.release(level.state(), airspeed=level.airspeed, altitude=level.altitude)
         each.command_heading_rate(0.3)

@@ -5,10 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from aircraft.fdm import TIME_STEP, Fdm
+from aircraft.fdm import TIME_STEP
 from aircraft.fleet.x8 import X8
-from aircraft.trim import level_trim
-from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.responses import CHANNELS, Response, flown_step, measure_lag, predicted_step
 
 MIDDLE = 2
@@ -76,9 +74,8 @@ def test_the_lag_of_a_slower_command_is_that_lag_too(x8_schedule, x8_aircraft):
     # A bank of 32 degrees turns at 0.3 rad/s.
     lag = measure_lag(x8_aircraft, x8_schedule.level(MIDDLE), math.radians(32.0))
     weights = x8_schedule.weights
-    assert lag == pytest.approx(
-        2.0 * weights.model_damping / weights.model_frequency, abs=0.03
-    )  # as above
+    # As above.
+    assert lag == pytest.approx(2.0 * weights.model_damping / weights.model_frequency, abs=0.03)
 
 
 def second_order(command="airspeed", size=2.0, damping=0.4, frequency=3.0):
@@ -138,19 +135,7 @@ def test_a_predicted_step_starts_at_rest_and_scales_with_its_size(x8_schedule):
     for name in CHANNELS:
         if not name.endswith("_command"):  # a control is commanded as soon as there is an error
             assert float(one.channels[name][0]) == pytest.approx(0.0, abs=1e-9)
+        # Linear.
         np.testing.assert_allclose(
             np.asarray(three.channels[name]), -3.0 * np.asarray(one.channels[name]), atol=1e-9
-        )  # linear
-
-
-def test_level_trim_and_an_autopiloted_aircraft_are_what_their_names_say(x8_schedule, x8_root):
-    found = level_trim(X8, 20.0, 100.0)
-    assert (found.airspeed, found.altitude, found.yaw_rate, found.climb_angle) == (
-        20.0,
-        100.0,
-        0.0,
-        0.0,
-    )
-    aircraft = AutopilotedAircraft(x8_schedule.spec, x8_root)
-    assert isinstance(aircraft, AutopilotedAircraft)
-    assert isinstance(aircraft.fdm, Fdm)
+        )

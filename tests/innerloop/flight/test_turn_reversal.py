@@ -1,11 +1,34 @@
+"""The response to a turn reversal, and the search for the one with the largest deviation."""
+
+import functools
 import math
+from collections import deque
+from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from aircraft.fdm import TIME_STEP
 from aircraft.fleet.x8 import X8
+from common.physics import METRES_PER_FOOT
+from gnc.unicycle import lagged_move
+from innerloop.flight import turn_reversal
+from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.responses import measure_lag
-from innerloop.flight.turn_reversal import TurnReversalResponse, displacement, measure_turn_reversal
+from innerloop.flight.turn_reversal import (
+    TurnReversalResponse,
+    _deviation,
+    _Flight,
+    displacement,
+    measure_turn_reversal,
+    repeat_search,
+    reversals_of_a_design,
+    search_reversals,
+)
+from innerloop.jsbsim.system import HEADING_RATE
+
+REVERSALS = 12
 
 
 @pytest.mark.parametrize(
@@ -62,3 +85,143 @@ def test_the_model_is_nowhere_ahead_of_the_aircraft_that_it_is_measured_on(
     # no longer than needed.
     assert np.max(ahead) <= 0.015 * flown[-1]
     assert np.max(ahead) >= 0.005 * flown[-1]
+
+
+@pytest.fixture(scope="module")
+def flown(x8_schedule, x8_root):
+    """Return the response of the X8 at the bank of its studies, and a function that searches a few
+    reversals of a new one.
+    """
+    level, bank = x8_schedule.level(x8_schedule.middle), X8.envelope.bank
+    measuring = AutopilotedAircraft(X8, x8_root)
+    measured, slow_lag = (
+        measure_turn_reversal(measuring, level, bank),
+        measure_lag(measuring, level, bank),
+    )
+
+    @functools.cache
+    def flown(response=measured, seed=0, slow_lag_times=1.0, settled=False):
+        aircraft, behind = [AutopilotedAircraft(X8, x8_root)], slow_lag_times * slow_lag
+        return search_reversals(
+            aircraft, level, bank, response, behind, reversals=REVERSALS, seed=seed, settled=settled
+        )
+
+    return measured, flown
+
+
+def test_it_finds_a_deviation_and_the_same_for_the_same_seed(flown):
+    _, search = flown
+    found = search()
+    assert 0.0 < found.p99_deviation <= found.deviation
+    # Rolling to a turn costs the X8 decimetres of altitude.
+    assert 0.05 < found.altitude_error < 1.0
+    # Of a turn radius of 38 m; measured 0.5 to 1.7 m, where 4 to 8 m were before what is to come
+    # was predicted.
+    assert found.deviation < 2.5
+    assert found.reversals == REVERSALS
+    assert X8.envelope.airspeed_min < found.airspeed_before < X8.envelope.airspeed_max
+    assert abs(found.command_before) <= 1.0
+    assert search(seed=0) == found
+    assert search(seed=1) != found
+
+
+def test_a_settled_turn_is_reversed_from_either_side_as_well(flown):
+    _, search = flown
+    found, more = search(), search(settled=True)
+    assert more.reversals == REVERSALS + 2
+    assert more.deviation >= found.deviation
+    assert (found.random_reversals, more.random_reversals) == (REVERSALS // 2, REVERSALS // 2 + 2)
+    assert more.p99_deviation >= found.p99_deviation
+
+
+def test_it_strays_several_times_as_far_from_a_response_or_a_slow_lag_that_is_not_its_own(flown):
+    response, search = flown
+    fast = replace(response, delay=0.5 * response.delay, lag=0.5 * response.lag)
+    # Measured 0.3 to 2 m, and 11 to 14 m and 6 to 7 m.
+    own = search().deviation
+    assert search(fast).deviation > 3.0 * own
+    assert search(slow_lag_times=2.0).deviation > 2.0 * own
+
+
+class Exact:
+    """A stand-in for the aircraft: a vehicle at 20 m/s with just a dead time and a lag."""
+
+    def __init__(self, response):
+        self.fdm, self._lag = self, response.lag
+        self._acting = deque([0.0] * round(response.delay / TIME_STEP))
+        self._command = self._rate = self._course = 0.0
+
+    def release(self, state, *, airspeed, altitude):
+        del state, airspeed, altitude
+
+    def node(self, name):
+        read = {"velocities/v-north-fps": lambda: 20.0 / METRES_PER_FOOT * math.cos(self._course)}
+        read["velocities/v-east-fps"] = lambda: 20.0 / METRES_PER_FOOT * math.sin(self._course)
+        read[HEADING_RATE] = lambda: self._rate
+        read["position/h-sl-ft"] = lambda: 100.0 / METRES_PER_FOOT
+        return SimpleNamespace(get_double_value=read[name])
+
+    def command_heading_rate(self, rate):
+        self._command = rate
+
+    def run(self):
+        self._acting.append(self._command)
+        _, _, self._course, self._rate = lagged_move(
+            0.0, 0.0, self._course, self._rate, 20.0, self._acting.popleft(), self._lag, TIME_STEP
+        )
+
+
+def test_a_vehicle_of_just_that_response_is_predicted(x8_schedule):
+    response = TurnReversalResponse(delay=0.5, lag=0.4)
+    flight = _Flight(Exact(response), x8_schedule.level(x8_schedule.middle), response, 0.9, 0.5)
+    for rate, duration in ((0.5, 4.0), (-0.5, 0.3), (0.2, 1.0), (-0.5, 0.6)):
+        flight.fly(rate, duration)
+    predicted, change = flight.predicted_turn(0.5, 5.0, 20.0)
+    flown = flight.fly(0.5, 5.0)
+    # Rates at the ends of steps of 1/120 s: half a step of turning at 1 rad/s, over 80 m.
+    np.testing.assert_allclose(predicted, flown, rtol=0.0, atol=0.35)
+    # By hand, from 0.5 rad/s: -0.5 + exp(-0.3/0.4), then 0.2 + (.. - 0.2) exp(-1/0.4), then -0.5 +
+    # (.. + 0.5) exp(-0.6/0.4) is -0.348 rad/s when the reversal acts, and half of 1 + 0.348/0.5 the
+    # change.
+    assert change == pytest.approx(0.848, abs=2e-3)
+
+
+def test_the_deviation_is_the_way_that_is_lacking_in_the_direction_of_the_turn():
+    # Northbound; to the right, away is east, or up to 60 degrees forward of it. 3 m less of the
+    # east, and 1 m more of the north.
+    north = np.arange(1.0, 101.0)
+    predicted = np.column_stack([north, np.zeros(100)])
+    flown = predicted + np.outer(np.linspace(0.0, 1.0, 100), [1.0, -3.0])
+    assert _deviation(flown, predicted, 1.0) == pytest.approx(3.0, rel=1e-12)
+    # To the left the same is a gain in the west, and a lack of none of the directions.
+    assert _deviation(flown, predicted, -1.0) <= 0.0
+    # 2 m behind: by 30 and 60 degrees forward of abeam, that is sin(60 deg) of it.
+    behind = predicted - np.outer(np.linspace(0.0, 1.0, 100), [2.0, 0.0])
+    assert _deviation(behind, predicted, 1.0) == pytest.approx(
+        2.0 * math.sin(math.radians(60.0)), rel=1e-12
+    )
+
+
+@pytest.mark.parametrize(
+    ("bank_deg", "airspeed", "expected"), [(45.0, 19.42, 150), (30.0, 76.5, 24), (25.0, 144.6, 20)]
+)
+def test_a_design_flies_as_many_reversals_as_a_thousand_seconds_hold(bank_deg, airspeed, expected):
+    # A quarter of a turn takes pi/2 V/(g tan(bank)): 3.1, 21 and 50 s, and twice that with what
+    # comes before it; 20 to 150.
+    assert reversals_of_a_design(math.radians(bank_deg), airspeed) == expected
+
+
+def test_a_repeated_search_reports_part_by_part_and_counts_all(designs, x8_root, monkeypatch):
+    monkeypatch.setattr(turn_reversal, "PART", 8)
+    told = []
+    made = designs("x8")
+    found = repeat_search(
+        made.design.schedule,
+        made.record,
+        x8_root,
+        10,
+        done=lambda count, deviation: told.append((count, deviation)),
+    )
+    assert found["reversals"] == 10
+    assert len(told) == 2
+    assert told[-1] == (10, found["deviation_max_m"])

@@ -109,9 +109,8 @@ def test_a_used_aircraft_flies_a_weather_as_a_fresh_one_does(x8_schedule, x8_roo
         for seed, gust in enumerate(gusts)
     )
     used = AutopilotedAircraft(X8, x8_root)
-    fly(
-        used, start, other, 181 * TIME_STEP
-    )  # and ends in the middle of a gust, and of a period of the autopilot
+    # And ends in the middle of a gust, and of a period of the autopilot.
+    fly(used, start, other, 181 * TIME_STEP)
     for weather in (rough, None):
         fresh = fly(AutopilotedAircraft(X8, x8_root), start, weather, 5.0)
         # Servos and propeller come to rest from elsewhere, to a millionth

@@ -100,9 +100,8 @@ def test_jsbsim_alone_flies_the_trajectory_that_python_flies(flights):
     alone = released(alone)
     same = python.iloc[:: STEPS_PER_SECOND // 20].reset_index(drop=True)
     assert len(alone) == len(same) == 95 * 20 + 1
-    np.testing.assert_allclose(
-        alone["Time"], same["Time"], atol=1e-9
-    )  # JSBSim adds up 12000 steps and prints ten digits
+    # JSBSim adds up 12000 steps and prints ten digits.
+    np.testing.assert_allclose(alone["Time"], same["Time"], atol=1e-9)
     assert set(alone) == set(python)
     for name in set(python) - {"Time"}:
         # To the last bit: 18 digits are printed, one more than a number has, and both set the same
@@ -140,9 +139,8 @@ def test_the_engine_runs_at_its_trim_when_the_aircraft_is_released(flights):
     schedule, alone, _ = flights
     first = released(alone).iloc[0]
     rpm = schedule.level(MIDDLE).driven["propeller_speed"] * 30.0 / math.pi
-    assert first["propulsion/engine/propeller-rpm"] == pytest.approx(
-        rpm, rel=1e-3
-    )  # two seconds from standstill
+    # Two seconds from standstill.
+    assert first["propulsion/engine/propeller-rpm"] == pytest.approx(rpm, rel=1e-3)
     assert first["propulsion/engine[0]/thrust-lbs"] > 0.1
 
 
@@ -230,9 +228,8 @@ def test_run_without_options_a_script_of_a_name_with_two_dashes_writes_its_resul
 
 @pytest.mark.parametrize(("index", "step"), [(1, 1.75), (2, 2.0), (3, -2.25)])
 def test_the_airspeed_step_goes_where_the_envelope_has_room(x8_schedule, index, step):
-    start = x8_schedule.level(
-        index
-    )  # 17.5, 20, 22.5 m/s in an envelope of 15 to 25 m/s: a tenth of each
+    # 17.5, 20, 22.5 m/s in an envelope of 15 to 25 m/s: a tenth of each.
+    start = x8_schedule.level(index)
     assert demonstration(x8_schedule.envelope, start)[3].value - start.airspeed == pytest.approx(
         step
     )

@@ -18,6 +18,7 @@ from innerloop.jsbsim.system import (
     AIRSPEED_COMMAND,
     ALTITUDE_COMMAND,
     HEADING_RATE_COMMAND,
+    RESET,
     clipped,
     function,
     integrator,
@@ -161,7 +162,7 @@ def run(tmp_path):
         shutil.copytree(MODELS, tmp_path, dirs_exist_ok=True)
         (tmp_path / "systems").mkdir()
         properties = "".join(
-            f'<property value="0">test/{name}</property>' for name in ("x", "y", "reset")
+            f'<property value="0">{name}</property>' for name in ("test/x", "test/y", RESET)
         )
         body = "".join(components)
         document = (
@@ -265,27 +266,25 @@ def test_a_function_writes_its_outputs_as_well(run):
 
 
 def test_an_integrator_integrates_by_the_trapezoidal_rule(run):
-    fdm = run(integrator("test/out", "test/x", "test/reset"))
+    fdm = run(integrator("test/out", "test/x"))
     assert value_at(fdm, 0.0) == 0.0
     inputs = np.sin(np.arange(1, 60))
     found = [value_at(fdm, float(x)) for x in inputs]
     before = np.concatenate([[0.0], inputs[:-1]])
-    np.testing.assert_allclose(
-        found, np.cumsum(0.5 * (inputs + before) * TIME_STEP), atol=1e-14
-    )  # rounding
+    # Rounding.
+    np.testing.assert_allclose(found, np.cumsum(0.5 * (inputs + before) * TIME_STEP), atol=1e-14)
 
 
 def test_an_integrator_is_held_at_zero_by_its_reset_and_starts_from_there(run):
-    fdm = run(integrator("test/out", "test/x", "test/reset"))
+    fdm = run(integrator("test/out", "test/x"))
     for _ in range(30):
         value_at(fdm, 1.0)
     # The first step is a trapezium from 0.
     assert fdm.read("test/out") == pytest.approx(29.5 * TIME_STEP, abs=1e-14)
-    fdm.write("test/reset", -1.0)
+    fdm.write(RESET, -1.0)
     assert value_at(fdm, 1.0) == 0.0
     assert value_at(fdm, 1.0) == 0.0
-    fdm.write("test/reset", 0.0)
-    assert value_at(fdm, 1.0) == pytest.approx(
-        TIME_STEP, rel=0.51
-    )  # one step, or half of one by the trapezium
+    fdm.write(RESET, 0.0)
+    # One step, or half of one by the trapezium.
+    assert value_at(fdm, 1.0) == pytest.approx(TIME_STEP, rel=0.51)
     assert value_at(fdm, 1.0) == pytest.approx(2.0 * TIME_STEP, rel=0.26)

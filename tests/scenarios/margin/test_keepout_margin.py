@@ -11,12 +11,13 @@ import numpy as np
 import pytest
 
 from aircraft.fleet.x8 import X8
+from aircraft.weather import low_altitude_turbulence
 from common.physics import METRES_PER_FOOT
 from gnc.airspeed import PaceHold, SpeedHold, air_turn, design_speed_hold
 from gnc.paper import Oscillation
 from gnc.tracker import Tracker
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from innerloop.gusts import GUSTS, low_altitude_turbulence
+from innerloop.gusts import GUSTS
 from innerloop.schedule import LEVEL_GAINS
 from scenarios.margin.gusts_on_orbit import gusts_on_orbit
 from scenarios.margin.steering_gains import STEERED_BY, steering_gains

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from flight_cases import plan, scenario
 
-from aircraft.weather import TURBULENCE, intensities, scale_lengths
+from aircraft.weather import TURBULENCE, low_altitude_turbulence
 from aircraft.wind import CALM, WindField
 from gnc.estimation.navigation import EstimatedNavigation, SatelliteFix, SensorReadings
 from scenarios.planning.air.dead_reckoning import drift_rate
@@ -88,10 +88,8 @@ def test_turbulence_displaces_by_more_than_is_reckoned_with_about_as_often_as_th
     level,
 ):
     height, speed, step = 60.0, scenario().guidance.airspeed_mps, 0.1
-    sigma, correlated = (
-        intensities(height, TURBULENCE[level].wind_at_20ft)[0],
-        scale_lengths(height)[0] / speed,
-    )
+    air = low_altitude_turbulence(height, TURBULENCE[level].wind_at_20ft)
+    sigma, correlated = air.horizontal, air.horizontal_length / speed
     noise, kept = np.random.default_rng(1), math.exp(-step / correlated)
     velocity, moved, exceeded = sigma * noise.standard_normal(20_000), np.zeros(20_000), []
     added = in_air(level=level)
