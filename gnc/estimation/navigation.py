@@ -13,12 +13,10 @@ NOISE_DEVIATIONS = 3.0
 """Standard deviations of noise that are allowed for [-]."""
 
 _SPEED_MIN = 1.0
-"""Least speed in the ratio of airspeed to speed over the mean air [m/s]: no vehicle flies as
-slowly.
-"""
+"""Least speed in the ratio of airspeed to speed over the mean air [m/s]."""
 
 
-class Motion(NamedTuple):
+class MeasuredMotion(NamedTuple):
     """A vehicle's motion.
 
     Attributes
@@ -139,7 +137,7 @@ class OwnMotion(AirMotion):
 class TrueNavigation(OwnMotion):
     """The exact motion, in still air."""
 
-    def update(self, measurement: Motion) -> None:
+    def update(self, measurement: MeasuredMotion) -> None:
         """Take in the motion now."""
         north, east, v_north, v_east, self.heading_rate = measurement
         self.north = self.ground_north = north

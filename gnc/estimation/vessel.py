@@ -26,9 +26,7 @@ REPORTED_SCATTER = 0.03
 """Scatter of the estimated acceleration of a steady vessel whose reports have errors [m/s^2]."""
 
 _EXACT = 1e-3
-"""Standard deviation of a position below which its error grows with that of the velocity at once
-[m].
-"""
+"""Deviation of a position below which its error grows with the velocity's at once [m]."""
 
 _SHORT = 0.005
 """Time over the filter's memory below which the leading terms of its process noise are used [-]."""

@@ -27,9 +27,7 @@ _HORIZON = 8
 """Number of passes that the search plans ahead [-]."""
 
 _KNOWN = 0.3
-"""Deviation of the height over the spread of a pass [-], below which nothing is gained by flying
-anywhere else.
-"""
+"""Deviation of the height over the spread of a pass [-], below which the search stays there."""
 
 _PROBE_REACH = 1.6
 """Farthest that a height beside the estimated one is flown, over its deviation [-]."""
@@ -38,9 +36,7 @@ _PROBES = np.linspace(0.0, 1.0, 9)
 """Heights that are weighed, from the lowest to the highest probe [-]."""
 
 _PASSES_INFORMED = 3.0
-"""Passes over which the information of this one counts [-]: after those the later ones have given
-as much.
-"""
+"""Passes over which the information of one counts [-]: later ones have given as much."""
 
 _RUNG = 15.0
 """Between the heights of a ladder [m]."""
@@ -52,9 +48,7 @@ _MODES = {
 }
 
 _BEARING_TIME = 15.0
-"""Time constant with which the centre of oscillation follows the estimated bearing [s]: it is swung
-round the vessel gently.
-"""
+"""Time constant with which the centre of oscillation follows the estimated bearing [s]."""
 
 _NOTED = 0.75
 """Time between readings beyond which the estimator gets a position in between [s]."""
@@ -63,9 +57,7 @@ _SILENT = 2.0
 """Time without readings beyond which the estimator is informed of it [s]."""
 
 _DECIDED = 10.0
-"""Least time for which a chosen height is held once the plume is found [s]: what is known of it
-changes more slowly.
-"""
+"""Least time for which a chosen height is held once the plume is found [s]."""
 
 _PASS_TIME = 8.0
 """Time between passes that is assumed before the first two [s]."""

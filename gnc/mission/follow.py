@@ -16,9 +16,7 @@ from gnc.reference.steered import SteeredReference
 from gnc.tracker import Tracker, TrackingParameters
 
 MANOEUVRE_RANGE = 200.0
-"""Distance that the orbit is moved off per acceleration of the vessel [s^2]: the centre follows a
-manoeuvre late.
-"""
+"""Distance that the orbit is moved off per acceleration of the vessel [s^2]: the centre lags."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -37,9 +37,7 @@ for _i, _mode in enumerate(Mode):
     _mode.number = _i
 
 LOST = (Mode.GLIDING, Mode.TERMINATING)
-"""Modes from which an aircraft does not come back: it glides, or flies away from the vessel, until
-it is down.
-"""
+"""Modes from which an aircraft does not come back: it leaves until it is down."""
 
 LEAVING = (*LOST, Mode.DEPARTING)
 """Modes in which the vehicle leaves for good, and tracks no reference."""

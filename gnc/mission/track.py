@@ -14,9 +14,7 @@ from gnc.reference.reference import ClosingReference, JoinedOrbit, Reference
 from gnc.tracker import Tracker, TrackingParameters
 
 STANDOFF = 2.0
-"""How far outside its place the orbit is joined, over the distance from the reference that counts
-as tracked [-].
-"""
+"""How far outside its place the orbit is joined, over the distance that counts as tracked [-]."""
 
 CLOSING_RATE = 0.2
 """Rate at which it then closes in, over V_r [-]."""

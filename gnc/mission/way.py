@@ -13,14 +13,10 @@ COURSE_GAIN = 2.0
 """Heading rate per course error off the reference, in units of omega_max [-]."""
 
 LOST_TRACK = 3.0
-"""Distance from the reference at which it no longer counts as tracked, over that at which it does
-[-].
-"""
+"""Distance from the reference at which it is lost, over that at which it is tracked [-]."""
 
 _GLIDE_ALTITUDE = -1000.0
-"""Altitude that a gliding vehicle is commanded [m]: so far below that the autopilot holds its
-airspeed by pitch, and sinks.
-"""
+"""Altitude commanded in a glide [m]: so low that the autopilot holds its airspeed by pitch."""
 
 _BLOCKED_WITHIN = 0.97
 """Largest radius of the blocked area, over the centre's distance from the vessel [-]."""
@@ -42,9 +38,7 @@ turn it away all the time.
 """
 
 _EITHER_WAY = 0.95 * math.pi
-"""Course left to turn beyond which both turns are about as long [rad]: the vehicle keeps to the one
-that it flies, which is quicker.
-"""
+"""Course left to turn beyond which the vehicle keeps to the side that it turns to [rad]."""
 
 
 def course_ahead(own: OwnMotion, last_command: float, lag: float) -> float:

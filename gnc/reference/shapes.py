@@ -23,14 +23,10 @@ from gnc.paper import Oscillation, available_heading_rate, design_oscillation
 from gnc.reference.reference import Array, Swing, reference_shape
 
 ETA_FREQUENCY = 0.2
-"""Amplitude below which the frequency of a steered reference no longer rises [rad]: nearly straight
-flight needs none.
-"""
+"""Amplitude below which the frequency of a steered reference no longer rises [rad]."""
 
 SPEED_RATIO_MIN = -0.2
-"""Least mean speed over speed in the tables [-]: a reference may back away from its vessel at a
-fifth of its speed.
-"""
+"""Least mean speed over speed in the tables [-]: a reference may back away from its vessel."""
 
 ETA_STEP = 0.005
 """Step of the tables [rad].
@@ -40,9 +36,7 @@ Values are linear between rows: good to the square of the step over 8, 3e-6, tim
 """
 
 _SINUSOID_ORDERS = 4
-"""Pairs of Bessel functions in the series of the sinusoid's orbit [-]; what is left out is below
-1e-4 of its width at the largest eta.
-"""
+"""Pairs of Bessel functions in its orbit [-]; the rest is below 1e-4 of the largest width."""
 
 _SINUSOID_ETA_MAX = 2.9
 """Largest amplitude in the sinusoid's tables [rad]: J_0(2.9) = -0.224 is beyond the least ratio."""
@@ -54,9 +48,7 @@ _BANK_SWING_ETA_MIN = 1e-9
 """Least amplitude for which a bank swing is computed [rad]: a smaller one is as straight."""
 
 _FASTEST_ETA_MAX = 3.2
-"""Amplitude whose mean speed is below 0 at any roll rate [rad]: sin(3.2)/3.2 = -0.02 at an infinite
-one.
-"""
+"""Amplitude whose mean speed is below 0 at any roll rate [rad]: sin(3.2)/3.2 = -0.02."""
 
 _FRACTION_UNTIL_TRACKED = 0.8
 """Fraction of the heading rate of a fastest oscillation or loiter until it is tracked [-].
@@ -67,9 +59,7 @@ with 0.985 of omega_max, 5 with 0.95, and none with 0.9.
 """
 
 _PATH_PIECES = 1024
-"""Pieces of a period [-]: a cubic over each is good to 1e-7 of V_r/omega_0, also where the roll
-rate jumps.
-"""
+"""Pieces of a period [-]: a cubic over each is good to 1e-7 of V_r/omega_0."""
 
 _FOURIER_SAMPLES = 128
 """Samples of a period [-]: Fourier coefficients fall with the third power, so 1e-6 is left out."""

@@ -18,22 +18,16 @@ from gnc.numeric import limited, wrap
 from gnc.reference.reference import Swing
 
 _GATE = 0.2
-"""Fraction of their rates that mean course and amplitude keep where the reference is farthest from
-the centre [-].
-"""
+"""Fraction of their rates that mean course and amplitude keep farthest from the centre [-]."""
 
 _RATE_GAIN = 0.8
-"""Rate of mean course and amplitude per difference from what is demanded, in units of the heading
-rate [-].
-"""
+"""Rate of mean course and amplitude per difference from the demand, over the heading rate [-]."""
 
 _RATE_FRACTION = 0.3
 """Fraction of the heading rate that either of them may take [-]."""
 
 _SMOOTHING = 0.25
-"""Time constant of their rates, over one through the heading rate [-]: that of a rolling aircraft
-does not jump.
-"""
+"""Time constant of their rates, over one through the heading rate [-]: an aircraft has to roll."""
 
 _STATE = (
     "north",

@@ -34,22 +34,16 @@ from gnc.numeric import clip
 Array = npt.NDArray[np.float64]
 
 SIGNAL_TO_NOISE = 5.0
-"""Peak of the readings over their noise from which a pass detects the plume [-] (Kattner 2015, of
-CO2).
-"""
+"""Least peak of the readings over their noise of a detection [-] (Kattner 2015, of CO2)."""
 
 HIT = 0.6
 """Concentration in a pass over that in the plume's centre from which it hits [-]."""
 
 STRENGTH_STEP = 0.5
-"""Step of the logarithm of strengths [-]: half of it is 25 %, about as well as the shape of a plume
-determines it.
-"""
+"""Step of the logarithm of strengths [-]: a plume's shape determines it to about half of it."""
 
 _FADE = 13
-"""Steps of strength from the centre of a plume out to where it counts as nothing [-]: e^-6.3 of the
-centre.
-"""
+"""Steps of strength from a plume's centre to where it counts as nothing [-]: e^-6.3 of it."""
 
 _HEIGHTS, _BEARINGS = 35, 25
 """Cells over height and bearing [-]."""
@@ -64,9 +58,7 @@ _LOWEST = 5.0
 """Least height of an axis [m]."""
 
 _SPREADS, _SPREAD_STEP = 5, 0.8
-"""Cells of spread, an odd number, and their step in deviations of its logarithm [-]: together they
-have 0.94 of the deviation.
-"""
+"""Cells of spread, an odd number, and their step in deviations of its logarithm [-]."""
 
 _MIDDLE = _SPREADS // 2
 """Index of the expected spread [-]."""
@@ -91,9 +83,7 @@ plume, 0.2 at 0.6 to 1, 0.32 at 1 to 2 and 0.69 at 2 to 4.
 """
 
 _RANGE_MIN = 1e-3
-"""Least deviation of the stack's height over that of the rise [-]: for a range without a width, its
-likelihood would be 0 over 0.
-"""
+"""Least deviation of the stack's height over that of the rise [-], to divide by."""
 
 _TINY = 1e-300
 """Least probability that is divided by [-]."""
@@ -102,9 +92,7 @@ _SPREAD_MIN = 0.4
 """Least spread over that at the expected height [-]."""
 
 _FORGET = 6000.0
-"""Time in which a posterior falls back to the prior, if nothing is read [s]: a ship may change its
-load.
-"""
+"""Time in which a posterior falls back to the prior [s]: a ship may change its load."""
 
 _DIFFUSED = 10.0
 """Least time between random walks of the axis [s]: in less it wanders by less than a cell."""
@@ -116,34 +104,25 @@ _MEMORY = 10.0
 """Passes that the mean of the innovations is over [-]."""
 
 _CHANCE = 0.02
-"""Least probability of a hit or a miss that innovations are judged with [-]: models are no better.
-"""
+"""Least probability of a hit or a miss that innovations are judged with [-]."""
 
 _BELIEVED = 0.75
-"""Exponent of the likelihood of a pass [-]: passes have errors in common. The heights of 80 flights
-were likeliest with it.
-"""
+"""Exponent of a pass's likelihood [-], likeliest over 80 flights: passes share errors."""
 
 _UNLIKELY = 1e-5
 """Probability of a height below which it does not count where passes to come are weighed [-]."""
 
 _LOOK = 2.0
-"""Way along the plume to an independent centre, over the correlation length of the meander [-]: its
-integral scale.
-"""
+"""Way along the plume to an independent centre, over the meander's correlation length [-]."""
 
 _NEAREST = 0.3
-"""Least distance behind the stack at which a pass is believed, over the prior's [-]: nearer it is
-another plume.
-"""
+"""Least distance of a believed pass over the prior's [-]: nearer it is another plume."""
 
 _NOMINAL_RESPONSE = 0.5
 """Largest reading over strength, before a pass has shown it [-]."""
 
 _RESPONSE_MIN = 1e-6
-"""Least reading over strength that counts [-]: a pass far from every place that the axis may have
-detects nothing.
-"""
+"""Least reading over strength [-]: a pass far from the axis detects nothing."""
 
 
 class PlumeGrid:
@@ -768,9 +747,7 @@ class PlumeEstimator:
 
     @property
     def height_interval(self) -> tuple[float, float]:
-        """2.5 % and 97.5 % quantiles of the height [m], which benchmarks/plume compares with the
-        truth.
-        """
+        """2.5 % and 97.5 % quantiles of the height [m]."""
         step = self._heights[1] - self._heights[0]
         below = np.concatenate([[0.0], np.cumsum(self._of_heights)])
         edges = np.concatenate([[self._heights[0] - 0.5 * step], self._heights + 0.5 * step])
@@ -779,9 +756,7 @@ class PlumeEstimator:
 
     @property
     def measurable(self) -> float:
-        """Probability that a pass at the best altitude within the limits detects the plume more
-        often than not [-].
-        """
+        """Probability that a pass at the best altitude rather detects the plume than not [-]."""
         best = np.clip(
             self.grid.coarse_heights(self._heights), self.prior.lowest, self.prior.highest
         )

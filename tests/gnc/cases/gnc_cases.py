@@ -13,7 +13,7 @@ from hypothesis import settings
 from hypothesis import strategies as st
 
 from gnc.airspeed import AlongTrackTrim
-from gnc.estimation.navigation import Motion
+from gnc.estimation.navigation import MeasuredMotion
 from gnc.guidance import GuidanceParameters, compose
 from gnc.laws import CascadeLaw
 from gnc.mission.track import DirectParameters
@@ -194,7 +194,9 @@ def make_guidance(reference, **how):
 
 def motion(north, east, course, speed=SPEED, heading_rate=0.0):
     """Return a motion as the guidance takes it: velocities instead of course and speed."""
-    return Motion(north, east, speed * math.cos(course), speed * math.sin(course), heading_rate)
+    return MeasuredMotion(
+        north, east, speed * math.cos(course), speed * math.sin(course), heading_rate
+    )
 
 
 @dataclass(frozen=True, slots=True)
