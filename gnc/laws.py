@@ -14,7 +14,7 @@ import numpy as np
 
 from common.registry import Registry
 from gnc.errors import LawError
-from gnc.numeric import limited, wrap
+from gnc.numeric import wrap
 from gnc.paper import (
     LookAhead,
     RelativeState,
@@ -194,8 +194,6 @@ class LimitedLaw:
     time_step : time between two calls [s]
     """
 
-    __slots__ = ("_limit", "_name", "_steer")
-
     def __init__(self, law: SteeringLaw, limit: float, time_step: float) -> None:
         self._name = type(law).__qualname__
         self._steer = started(law, time_step).heading_rate
@@ -218,7 +216,11 @@ class LimitedLaw:
             rate = self._number(rate)
         if math.isnan(rate) and _is_finite(reference, own):
             raise self._no_number(rate)
-        return rate, limited(rate, self._limit)
+        # Same as ``limited``, without a call.
+        limit = self._limit
+        if rate > limit:
+            return rate, limit
+        return rate, -limit if rate < -limit else rate
 
     def _number(self, rate: Any) -> float:
         """Return a real number as a float: one of NumPy would pass its precision on."""

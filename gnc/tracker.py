@@ -2,8 +2,9 @@
 
 from collections import deque
 from dataclasses import dataclass
-from typing import Generic, NamedTuple, Protocol, TypeVar
+from typing import Generic, NamedTuple, TypeVar
 
+from gnc.estimation.navigation import AirMotion
 from gnc.laws import STILL_AIR, Air, LimitedLaw, Motion, SteeringLaw
 from gnc.reference.reference import Reference
 from gnc.unicycle import lag_ahead
@@ -29,18 +30,6 @@ class TrackingParameters:
     lag: float
 
 
-class Wind(Protocol):
-    """The velocity of the air mass over the ground, as it is known now.
-
-    Attributes
-    ----------
-    wind_north, wind_east : [m/s]
-    """
-
-    wind_north: float
-    wind_east: float
-
-
 class _Instant(NamedTuple):
     """The reference at an instant, waiting to become that of now."""
 
@@ -50,25 +39,15 @@ class _Instant(NamedTuple):
     heading_rate: float
 
 
+@dataclass(slots=True)
 class PlacedReference:
-    """A reference that is moved from outside; attributes are those of ``Reference``.
+    """A reference that is moved from outside; attributes are those of ``Reference``."""
 
-    Parameters
-    ----------
-    reference : where it starts
-    """
-
-    def __init__(self, reference: Reference) -> None:
-        self.speed = reference.speed
-        self.place(_instant(reference))
-
-    def place(self, instant: _Instant) -> None:
-        """Move there."""
-        self.north, self.east, self.course, self.heading_rate = instant
-
-
-def _instant(reference: Reference) -> _Instant:
-    return _Instant(reference.north, reference.east, reference.course, reference.heading_rate)
+    speed: float
+    north: float = 0.0
+    east: float = 0.0
+    course: float = 0.0
+    heading_rate: float = 0.0
 
 
 AnyReference = TypeVar("AnyReference", bound=Reference)
@@ -85,7 +64,7 @@ class Tracker(Generic[AnyReference]):
     ----------
     parameters : of the tracking
     reference : at time 0; from then on the tracker moves it
-    wind : for the law; none for still air
+    wind : motion whose wind the law gets; none for still air
 
     Attributes
     ----------
@@ -100,11 +79,18 @@ class Tracker(Generic[AnyReference]):
         self,
         parameters: TrackingParameters,
         reference: AnyReference,
-        wind: Wind | None = None,
+        wind: AirMotion | None = None,
     ) -> None:
         self._law = LimitedLaw(parameters.law, parameters.heading_rate_max, parameters.time_step)
         self._wind = wind
-        self.reference = PlacedReference(reference)
+        self._air = STILL_AIR
+        self.reference = PlacedReference(
+            reference.speed,
+            reference.north,
+            reference.east,
+            reference.course,
+            reference.heading_rate,
+        )
         self.ahead = reference
         # The reference moves once, ahead of time; here it waits until that time has come.
         self._until_ahead: deque[_Instant] = deque()
@@ -139,16 +125,23 @@ class Tracker(Generic[AnyReference]):
             )
             heading_rate = last
         own = Motion(north, east, course, speed, heading_rate)
+        air = self._air
         wind = self._wind
-        air = STILL_AIR if wind is None else Air(wind.wind_north, wind.wind_east)
+        if wind is not None and (
+            wind.wind_north != air.wind_north or wind.wind_east != air.wind_east
+        ):
+            self._air = air = Air(wind.wind_north, wind.wind_east)
         demand, command = self._law.demand(self.ahead, own, air)
         self.heading_rate_demand = demand
         self.heading_rate_command = command
         self.saturated = command != demand
         self._move_ahead()
-        self.reference.place(self._until_ahead.popleft())
+        now = self.reference
+        now.north, now.east, now.course, now.heading_rate = self._until_ahead.popleft()
         return command
 
     def _move_ahead(self) -> None:
-        self.ahead.step()
-        self._until_ahead.append(_instant(self.ahead))
+        ahead = self.ahead
+        ahead.step()
+        instant = _Instant(ahead.north, ahead.east, ahead.course, ahead.heading_rate)
+        self._until_ahead.append(instant)

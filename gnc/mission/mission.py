@@ -6,6 +6,7 @@ from typing import NamedTuple, Protocol
 from gnc.estimation.health import Fault
 from gnc.estimation.navigation import OwnMotion
 from gnc.estimation.vessel import TargetMotion
+from gnc.tracker import PlacedReference
 
 
 class Mode(Enum):
@@ -96,15 +97,6 @@ class OrbitStatus(NamedTuple):
     in_place: bool
 
 
-class ReferencePoint(Protocol):
-    """Where a reference is; attributes same as ``gnc.reference.reference.Reference``."""
-
-    north: float
-    east: float
-    course: float
-    heading_rate: float
-
-
 class Tracking(Protocol):
     """What tracks the reference.
 
@@ -119,7 +111,7 @@ class Tracking(Protocol):
     saturated: bool
 
     @property
-    def reference(self) -> ReferencePoint:
+    def reference(self) -> PlacedReference:
         """Reference point."""
 
     def step(

@@ -19,7 +19,7 @@ from gnc.mission.track import CLOSING_RATE, STANDOFF
 from gnc.mission.way import COURSE_GAIN, Egress
 from gnc.numeric import limited, wrap
 from gnc.path_laws.lgvf import heading_for
-from gnc.tracker import TrackingParameters
+from gnc.tracker import PlacedReference, TrackingParameters
 from gnc.unicycle import lag_ahead
 from gnc.vectors import Vector, along, course_of, minus, norm, plus, scaled
 
@@ -54,15 +54,8 @@ class StandoffParameters:
     climb: Climb
 
 
-@dataclass(slots=True)
-class CirclePoint:
-    """A reference on the circle, placed from outside; see ``gnc.reference.reference.Reference``."""
-
-    speed: float
-    north: float = 0.0
-    east: float = 0.0
-    course: float = 0.0
-    heading_rate: float = 0.0
+class CirclePoint(PlacedReference):
+    """A reference on the circle."""
 
     def place(self, centre: Vector, drift: Vector, vehicle: Vector, radius: float) -> None:
         """Move to the point of the circle nearest to the vehicle.
