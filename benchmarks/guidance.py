@@ -22,7 +22,7 @@ from benchmarks.vehicle import x8_setup
 from common.run_layout import SUMMARY, time_history_path
 from gnc.estimation.navigation import MeasuredMotion
 from gnc.estimation.vessel import ReportedTarget
-from gnc.guidance import Guidance, compose
+from gnc.guidance import Guidance
 from gnc.mission.axis import SearchedAxis
 from scenarios.engine.task import Task
 from scenarios.experiment.requests import Experiment
@@ -190,7 +190,7 @@ def _reports(plan: FlightPlan) -> list[Any]:
 
 def _step_time(plan: FlightPlan, measured: Measured, passed_on: PlumeReadings = ()) -> float:
     """Return the CPU time of a step of a settled flight [us]."""
-    guidance, reports = compose(plan.guidance), _reports(plan)
+    guidance, reports = Guidance(plan.guidance), _reports(plan)
     first = next(i for i, (at, _) in enumerate(measured) if at >= SETTLED)
     _step_through(guidance, measured[:first], reports, passed_on[:first])
     began = time.process_time()

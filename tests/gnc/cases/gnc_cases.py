@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from gnc.airspeed import AlongTrackTrim
 from gnc.estimation.navigation import MeasuredMotion
-from gnc.guidance import GuidanceParameters, compose
+from gnc.guidance import Guidance, GuidanceParameters
 from gnc.laws import CascadeLaw
 from gnc.mission.track import DirectParameters
 from gnc.paper import (
@@ -189,7 +189,7 @@ def paper_parameters(reference, *, vessel=(0.0, 0.0), guard=None, airspeed_gain=
 
 def make_guidance(reference, **how):
     """Return the paper's guidance; ``how`` same as in ``paper_parameters``."""
-    return compose(paper_parameters(reference, **how))
+    return Guidance(paper_parameters(reference, **how))
 
 
 def motion(north, east, course, speed=SPEED, heading_rate=0.0):
