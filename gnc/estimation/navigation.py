@@ -69,6 +69,7 @@ class SensorReadings(NamedTuple):
     servo_error: float
 
 
+@dataclass(kw_only=True, eq=False)
 class AirMotion:
     """The part of a vehicle's motion that a turn away is predicted from.
 
@@ -83,28 +84,15 @@ class AirMotion:
     speed : of the motion through the mean air [m/s]
     """
 
-    def __init__(
-        self,
-        *,
-        ground_north: float,
-        ground_east: float,
-        course: float,
-        heading_rate: float = 0.0,
-        wind_north: float = 0.0,
-        wind_east: float = 0.0,
-        wind_error: float = 0.0,
-        lost: float = 0.0,
-        speed: float = 0.0,
-    ) -> None:
-        self.ground_north = ground_north
-        self.ground_east = ground_east
-        self.course = course
-        self.heading_rate = heading_rate
-        self.wind_north = wind_north
-        self.wind_east = wind_east
-        self.wind_error = wind_error
-        self.lost = lost
-        self.speed = speed
+    ground_north: float
+    ground_east: float
+    course: float
+    heading_rate: float = 0.0
+    wind_north: float = 0.0
+    wind_east: float = 0.0
+    wind_error: float = 0.0
+    lost: float = 0.0
+    speed: float = 0.0
 
 
 class OwnMotion(AirMotion):
@@ -270,7 +258,7 @@ class EstimatedNavigation(OwnMotion):
     """The motion estimated from sensors, by dead reckoning while satellite navigation is lost.
 
     An autopilot turns against the gusty air, the guidance over the mean air:
-    ``gnc.airspeed.pace_hold.air_turn``.
+    ``gnc.airspeed.air_turn``.
 
     Parameters
     ----------

@@ -192,8 +192,20 @@ class VesselFilter:
             self.north = self._predicted(self.north, ahead)
             self.east = self._predicted(self.east, ahead)
             self.covariance = self._predicted_covariance(ahead)
-            self._correct_position(report.north, report.east)
-            self._correct_velocity(report.velocity_north, report.velocity_east)
+            p = self.covariance
+            self._correct(
+                AxisState(p.pp, p.pv, p.pa),
+                p.pp + self._position_variance,
+                report.north - self.north.position,
+                report.east - self.east.position,
+            )
+            p = self.covariance
+            self._correct(
+                AxisState(p.pv, p.vv, p.va),
+                p.vv + self._velocity_variance,
+                report.velocity_north - self.north.velocity,
+                report.velocity_east - self.east.velocity,
+            )
         self.time = report.time
 
     def at(self, time: float) -> VesselMotion:
@@ -252,20 +264,6 @@ class VesselFilter:
             va=d * va + q.va,
             aa=d * d * p.aa + q.aa,
         )
-
-    def _correct_position(self, north: float, east: float) -> None:
-        p = self.covariance
-        total = p.pp + self._position_variance
-        off_north = north - self.north.position
-        off_east = east - self.east.position
-        self._correct(AxisState(p.pp, p.pv, p.pa), total, off_north, off_east)
-
-    def _correct_velocity(self, north: float, east: float) -> None:
-        p = self.covariance
-        total = p.vv + self._velocity_variance
-        off_north = north - self.north.velocity
-        off_east = east - self.east.velocity
-        self._correct(AxisState(p.pv, p.vv, p.va), total, off_north, off_east)
 
     def _correct(self, column: AxisState, total: float, off_north: float, off_east: float) -> None:
         """Correct both axes by one measured coordinate.

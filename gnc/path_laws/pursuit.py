@@ -14,8 +14,8 @@ from gnc.laws import (
     ONLY_CIRCLES,
     ONLY_MOVING_POINTS,
     Air,
+    CheckedLaw,
     Motion,
-    check_parameters,
     steering_law,
 )
 from gnc.numeric import limited, wrap
@@ -77,7 +77,7 @@ def collision_course(to_target: Vector, target_course: float, speed_ratio: float
 
 @steering_law("pure_pursuit")
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PurePursuitLaw:
+class PurePursuitLaw(CheckedLaw):
     """Pure pursuit of the reference itself (M3).
 
     Attributes
@@ -89,9 +89,6 @@ class PurePursuitLaw:
     unsupported_tasks: ClassVar[dict[str, str]] = ONLY_MOVING_POINTS
     range_min_m: float = 30.0
 
-    def __post_init__(self) -> None:
-        check_parameters(self)
-
     def heading_rate(self, reference: Reference, own: Motion, _air: Air, /) -> float:
         """Return the demanded heading rate [rad/s]; parameters are those of ``SteeringLaw``."""
         to_target = _to_reference(reference, own)
@@ -100,7 +97,7 @@ class PurePursuitLaw:
 
 @steering_law("proportional_navigation")
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ProportionalNavigationLaw:
+class ProportionalNavigationLaw(CheckedLaw):
     """Proportional navigation to the reference itself (M3). Its demand is unbounded close by.
 
     Attributes
@@ -111,9 +108,6 @@ class ProportionalNavigationLaw:
     inputs: ClassVar[str] = "the reference's place and velocity (M3)"
     unsupported_tasks: ClassVar[dict[str, str]] = ONLY_MOVING_POINTS
     navigation_constant: float = 3.0
-
-    def __post_init__(self) -> None:
-        check_parameters(self)
 
     def heading_rate(self, reference: Reference, own: Motion, _air: Air, /) -> float:
         """Return the demanded heading rate [rad/s]; parameters are those of ``SteeringLaw``."""
@@ -126,7 +120,7 @@ class ProportionalNavigationLaw:
 
 @steering_law("constant_bearing")
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ConstantBearingLaw:
+class ConstantBearingLaw(CheckedLaw):
     """Constant bearing to the reference itself (M3).
 
     Attributes
@@ -137,9 +131,6 @@ class ConstantBearingLaw:
     inputs: ClassVar[str] = "the reference's place and velocity (M3)"
     unsupported_tasks: ClassVar[dict[str, str]] = ONLY_MOVING_POINTS
     bearing_gain_per_s: float = 1.0
-
-    def __post_init__(self) -> None:
-        check_parameters(self)
 
     def heading_rate(self, reference: Reference, own: Motion, _air: Air, /) -> float:
         """Return the demanded heading rate [rad/s]; parameters are those of ``SteeringLaw``."""
@@ -323,7 +314,7 @@ def look_ahead_line_of_sight(
 
 @steering_law("look_ahead_line_of_sight")
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LookAheadLineOfSightLaw:
+class LookAheadLineOfSightLaw(CheckedLaw):
     """Line-of-sight guidance of marine craft on the reference's tangent (M1).
 
     Attributes
@@ -335,9 +326,6 @@ class LookAheadLineOfSightLaw:
     inputs: ClassVar[str] = "tangent of the path through the air (M1), and its turn rate"
     sight_distance_m: float = 30.0
     sight_gain_per_s: float = 1.0
-
-    def __post_init__(self) -> None:
-        check_parameters(self)
 
     def heading_rate(self, reference: Reference, own: Motion, _air: Air, /) -> float:
         """Return the demanded heading rate [rad/s]; parameters are those of ``SteeringLaw``."""

@@ -8,11 +8,11 @@ parameters of ROSplane (BSD-3-Clause). Written from equations, not from code.
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
-from gnc.laws import ONLY_CIRCLES, Air, Motion, check_parameters, steering_law
+from gnc.laws import ONLY_CIRCLES, Air, CheckedLaw, Motion, steering_law
 from gnc.numeric import limited, wrap
-from gnc.path_laws.lgvf import heading_for
+from gnc.path_laws.lgvf import Field, heading_for
 from gnc.path_laws.path import PathLaw, PathMotion
 from gnc.reference.reference import Reference
 from gnc.vectors import Vector, along, course_of, cross, dot, minus, norm, scaled
@@ -21,19 +21,6 @@ _HALF_PI = 0.5 * math.pi
 
 
 # ---------------------------------------------------------------- Nelson, Barber, McLain, Beard
-
-
-class Field(NamedTuple):
-    """A field of courses, at the place of the vehicle.
-
-    Attributes
-    ----------
-    course : chi_d [rad]
-    rate : its rate as the vehicle moves [rad/s]
-    """
-
-    course: float
-    rate: float
 
 
 def line_field(
@@ -107,7 +94,7 @@ def field_heading_rate(field: Field, course: float, *, kappa: float, width: floa
 
 @steering_law("vector_field")
 @dataclass(frozen=True, slots=True, kw_only=True)
-class VectorFieldLaw:
+class VectorFieldLaw(CheckedLaw):
     """The vector field of the reference's tangent, which turns with the reference (M1).
 
     Attributes
@@ -123,9 +110,6 @@ class VectorFieldLaw:
     field_approach_rad: float = _HALF_PI
     field_rate_rad_s: float = _HALF_PI
     field_width_rad: float = 1.0
-
-    def __post_init__(self) -> None:
-        check_parameters(self)
 
     def heading_rate(self, reference: Reference, own: Motion, _air: Air, /) -> float:
         """Return the demanded heading rate [rad/s]; parameters are those of ``SteeringLaw``."""
@@ -172,7 +156,7 @@ class OrbitFieldLaw(PathLaw):
             relative = orbit_field(
                 motion.position, motion.velocity, *motion.circle, gain=self.field_gain_per_m
             )
-            field = Field(*heading_for(relative.course, relative.rate, motion.airspeed, drift))
+            field = heading_for(relative.course, relative.rate, motion.airspeed, drift)
         else:
             field = Field(course_of(drift), 0.0)
         return field_heading_rate(

@@ -103,7 +103,7 @@ def test_rates_of_the_fields_are_their_changes_along_the_way(side):
     def field(p):
         return lgvf(p, heading, airspeed, ORIGIN, 100.0, side, drift, ORIGIN)
 
-    assert field(position).rate == pytest.approx(slope(lambda p: field(p).heading), abs=1e-9)
+    assert field(position).rate == pytest.approx(slope(lambda p: field(p).course), abs=1e-9)
 
 
 def test_the_lyapunov_guidance_vector_field():
