@@ -35,7 +35,7 @@ from gnc.estimation.vessel import (
 from gnc.guard.guard import Guarded, GuardParameters, GuardStatus
 from gnc.guidance import Guidance, GuidanceParameters, ReportedVessel
 from gnc.laws import CascadeLaw, LineOfSightLaw, LyapunovLaw
-from gnc.mission.axis import AxisHeight, PredictedPlume
+from gnc.mission.axis import AxisHeight, Climb, PredictedPlume
 from gnc.mission.follow import FollowingParameters, PlumeFollowing
 from gnc.mission.mission import Mode, Order
 from gnc.mission.track import DirectTracking
@@ -414,7 +414,11 @@ def following(*, guard=GUARD, climb=0.0):
         reach_time=9.0,
         drift_rate=1.0,
         plan_interval=PLAN_INTERVAL,
-        axis=PredictedPlume(height=AxisHeight(source=60.0, climb=climb), altitude=60.0),
+        axis=PredictedPlume(
+            height=AxisHeight(source=60.0, climb=climb),
+            altitude=60.0,
+            climb=Climb(time=20.0, gradient=0.05),
+        ),
     )
     return GuidanceParameters(
         speed=SPEED,
