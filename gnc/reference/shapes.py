@@ -8,7 +8,7 @@ import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -19,7 +19,7 @@ from scipy.special import j0, jv
 from common.physics import STANDARD_GRAVITY, bank_for_heading_rate
 from gnc.errors import InfeasibleError
 from gnc.numeric import clip
-from gnc.paper import Oscillation, available_heading_rate, design_oscillation
+from gnc.paper import available_heading_rate, design_oscillation
 from gnc.reference.reference import Array, Swing, reference_shape
 
 ETA_FREQUENCY = 0.2
@@ -239,30 +239,8 @@ class SinusoidSwing:
 class Sinusoid:
     """The paper's reference: its course oscillates about the vessel's as a sinusoid."""
 
-    @property
-    def turn_rate_fraction_until_tracked(self) -> float:
-        """Return all of the heading rate, which is needed at the peaks alone [-]."""
-        return 1.0
-
-    def design(
-        self,
-        *,
-        nu: float,
-        speed: float,
-        heading_rate_max: float,
-        reserve: float,
-        vessel_heading_rate: float,
-        roll_rate_max: float,
-    ) -> Oscillation:
-        """Return the fastest oscillation that the vehicle can follow; see ``ReferenceShape``."""
-        return design_oscillation(
-            nu=nu,
-            speed=speed,
-            heading_rate_max=heading_rate_max,
-            reserve=reserve,
-            vessel_heading_rate=vessel_heading_rate,
-            roll_rate_max=roll_rate_max,
-        )
+    turn_rate_fraction_until_tracked: ClassVar[float] = 1.0
+    design = staticmethod(design_oscillation)
 
     def swing(self, *, speed: float, heading_rate: float, roll_rate_max: float) -> Swing:
         """Return the sinusoids of every amplitude; see ``ReferenceShape``."""
@@ -461,11 +439,7 @@ class FastestOscillation:
     crossing_interval: float
     omega_0: float
     courses: BankSwing
-
-    @property
-    def symmetric(self) -> bool:
-        """Return that the second half of the orbit mirrors the first."""
-        return True
+    symmetric: ClassVar[bool] = True
 
     @property
     def period(self) -> float:
@@ -518,10 +492,7 @@ class Fastest:
     moments alone.
     """
 
-    @property
-    def turn_rate_fraction_until_tracked(self) -> float:
-        """Fraction of its heading rate that a reference turns with until it is tracked [-]."""
-        return _FRACTION_UNTIL_TRACKED
+    turn_rate_fraction_until_tracked: ClassVar[float] = _FRACTION_UNTIL_TRACKED
 
     def design(
         self,
@@ -610,16 +581,9 @@ class LoiterOrbit:
     roll_rate: float
     least_bank: float
     straight: float
-
-    @property
-    def eta(self) -> float:
-        """Largest course offset from that of the vessel [rad]."""
-        return math.pi
-
-    @property
-    def symmetric(self) -> bool:
-        """Return that the second half of the orbit does not mirror the first."""
-        return False
+    eta: ClassVar[float] = math.pi
+    limit: ClassVar[str] = "heading rate"
+    symmetric: ClassVar[bool] = False
 
     @property
     def crossing_interval(self) -> float:
@@ -635,11 +599,6 @@ class LoiterOrbit:
     def omega_0(self) -> float:
         """Angular frequency [rad/s]."""
         return math.pi / self.crossing_interval
-
-    @property
-    def limit(self) -> str:
-        """Return what sets the period."""
-        return "heading rate"
 
     @property
     def turned(self) -> float:
@@ -720,10 +679,7 @@ class LoiterShape:
     plume is crossed more often so: below a speed ratio of 0.33, than by any oscillation.
     """
 
-    @property
-    def turn_rate_fraction_until_tracked(self) -> float:
-        """Fraction of its heading rate that a reference turns with until it is tracked [-]."""
-        return _FRACTION_UNTIL_TRACKED
+    turn_rate_fraction_until_tracked: ClassVar[float] = _FRACTION_UNTIL_TRACKED
 
     def design(
         self,
