@@ -308,7 +308,7 @@ class EstimatedNavigation(OwnMotion):
         self.course = math.atan2(v_east, v_north)
         self.speed = math.hypot(v_north, v_east)
         self.airspeed = airspeed
-        self.air_ratio = _at_least(airspeed, _SPEED_MIN) / _at_least(self.speed, _SPEED_MIN)
+        self.air_ratio = max(_SPEED_MIN, airspeed) / max(_SPEED_MIN, self.speed)
         self.heading_rate = heading_rate * self.air_ratio
 
     def _measure_wind(self, airspeed: float, air_course: float) -> None:
@@ -321,19 +321,15 @@ class EstimatedNavigation(OwnMotion):
         self.wind_east = wind.east
         self._step_north = p.time_step * wind.north
         self._step_east = p.time_step * wind.east
-        self.wind_error = self._error_of_few_measurements(wind.sigma)
-
-    def _error_of_few_measurements(self, sigma: float) -> float:
-        """Return the error of the wind beyond its final one, by its filter's deviation [m/s]."""
-        p = self._parameters
+        # While few measurements are in it. The share of the first one falls with the variance.
+        sigma = wind.sigma
         variance = sigma**2
         if not self._first_variance:
             self._first_variance = variance
-        # The share of the first measurement in the estimate falls with the variance, as in a mean.
-        error = p.first_wind_error * variance / self._first_variance
+        self.wind_error = p.first_wind_error * variance / self._first_variance
         if p.wind_noise > p.wind_error:
-            error += max(0.0, min(p.wind_noise, NOISE_DEVIATIONS * sigma) - p.wind_error)
-        return error
+            beyond = min(p.wind_noise, NOISE_DEVIATIONS * sigma) - p.wind_error
+            self.wind_error += max(0.0, beyond)
 
     def _reckon(self, airspeed: float, air_course: float) -> None:
         time_step = self._parameters.time_step
@@ -354,7 +350,3 @@ class EstimatedNavigation(OwnMotion):
         i = min(max(bisect.bisect(banks, roll), 1), len(banks) - 1)
         share = (roll - banks[i - 1]) / (banks[i] - banks[i - 1])
         return offsets[i - 1] + share * (offsets[i] - offsets[i - 1])
-
-
-def _at_least(value: float, least: float) -> float:
-    return value if value > least else least

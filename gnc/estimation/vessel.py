@@ -541,34 +541,28 @@ class ReportedTarget(TargetMotion):
 
     def update(self, time: float, planning: bool) -> None:
         """Move on to ``time`` [s]; renew the estimate where the mission is ``planning``."""
-        if planning:
-            self._renew(time)
-        else:
+        if not planning:
             self.north += self._time_step * self.velocity_north
             self.east += self._time_step * self.velocity_east
             self.velocity_north += self._gain_north
             self.velocity_east += self._gain_east
-
-    def age(self, time: float) -> float:
-        """Return the age of the last report [s] at ``time`` [s]."""
-        return time - self.vessel.time
-
-    def _renew(self, time: float) -> None:
+            return
         self.tubes = self._reach.tubes(time)
         vessel = self.vessel.at(time)
         self.north = vessel.north
         self.east = vessel.east
         self.velocity_north = vessel.velocity_north
         self.velocity_east = vessel.velocity_east
-        share = self._manoeuvre_share(vessel)
+        # The share of the acceleration that is no scatter of reports.
+        share = 1.0
+        if not self.vessel.exact:
+            size = math.hypot(vessel.acceleration_north, vessel.acceleration_east)
+            share = 1.0 - REPORTED_SCATTER / size if size > REPORTED_SCATTER else 0.0
         self.acceleration_north = share * vessel.acceleration_north
         self.acceleration_east = share * vessel.acceleration_east
         self._gain_north = self._time_step * vessel.acceleration_north
         self._gain_east = self._time_step * vessel.acceleration_east
 
-    def _manoeuvre_share(self, vessel: VesselMotion) -> float:
-        """Return the share of the estimated acceleration that is no scatter of reports [-]."""
-        if self.vessel.exact:
-            return 1.0
-        size = math.hypot(vessel.acceleration_north, vessel.acceleration_east)
-        return 1.0 - REPORTED_SCATTER / size if size > REPORTED_SCATTER else 0.0
+    def age(self, time: float) -> float:
+        """Return the age of the last report [s] at ``time`` [s]."""
+        return time - self.vessel.time

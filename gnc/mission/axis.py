@@ -414,14 +414,7 @@ class PlumeEstimate:
 
 
 class _Fix(NamedTuple):
-    """Where the vehicle was.
-
-    Attributes
-    ----------
-    time : [s]
-    north, east : of the vessel [m]
-    altitude : above the sea [m]
-    """
+    """Where the vehicle was at a time [s], north and east of the vessel and above the sea [m]."""
 
     time: float
     north: float

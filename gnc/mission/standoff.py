@@ -23,8 +23,6 @@ from gnc.tracker import PlacedReference, TrackingParameters
 from gnc.unicycle import lag_ahead
 from gnc.vectors import Vector, along, course_of, minus, norm, plus, scaled
 
-_CLOCKWISE = 1
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StandoffParameters:
@@ -58,7 +56,7 @@ class CirclePoint(PlacedReference):
     """A reference on the circle."""
 
     def place(self, centre: Vector, drift: Vector, vehicle: Vector, radius: float) -> None:
-        """Move to the point of the circle nearest to the vehicle.
+        """Move to the point of the circle, flown clockwise, nearest to the vehicle.
 
         Parameters
         ----------
@@ -69,11 +67,11 @@ class CirclePoint(PlacedReference):
         """
         bearing = course_of(minus(vehicle, centre))
         self.north, self.east = plus(centre, along(bearing), radius)
-        course = bearing + _CLOCKWISE * 0.5 * math.pi
+        course = bearing + 0.5 * math.pi
         # On the circle the velocity relative to the centre turns by that speed over the radius.
         self.course, turn = heading_for(course, 1.0, self.speed, drift)
         relative = norm(minus(scaled(along(self.course), self.speed), drift))
-        self.heading_rate = turn * _CLOCKWISE * relative / radius
+        self.heading_rate = turn * relative / radius
 
     def step(self) -> None:
         """Do nothing: the point is placed anew at every step."""

@@ -38,14 +38,7 @@ _SPEED_RATIO_MIN = 0.1
 
 
 class _Ahead(NamedTuple):
-    """The direction in which an orbit goes on.
-
-    Attributes
-    ----------
-    north, east : unit vector [-]
-    moving : speed of the centre or vessel that gives the direction [m/s]
-    along : speed of the centre in that direction [m/s]
-    """
+    """Direction in which an orbit goes on, speed that gives it, centre's speed along it [m/s]."""
 
     north: float
     east: float

@@ -261,14 +261,7 @@ def _sinusoid_tables() -> OrbitTables:
 
 
 class _Quarter(NamedTuple):
-    """A quarter of a bank swing's period.
-
-    Attributes
-    ----------
-    time : length [s]
-    ramp : time until bank is largest [s]
-    heading_rate : then [rad/s]
-    """
+    """A quarter period: its length, the time until bank is largest, and the heading rate then."""
 
     time: float
     ramp: float
@@ -542,21 +535,6 @@ def _oscillation_path(courses: BankSwing, eta: float) -> CoursePath:
 # The loiter: a circle that moves with the vessel and meets its plume twice a turn.
 
 
-class _LoiterPath(NamedTuple):
-    """The path of a loiter.
-
-    Attributes
-    ----------
-    path : from the middle of its straight leg
-    side : how far to the right of that the plume lies [V_r/omega_0]
-    unit : V_r/omega_0 [m]
-    """
-
-    path: CoursePath
-    side: float
-    unit: float
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoiterOrbit:
     """One turn of a loiter; same as ``Orbit``, with phase 0 in the middle of its straight leg.
@@ -607,13 +585,15 @@ class LoiterOrbit:
 
     def offset(self, time: npt.ArrayLike) -> tuple[Array, Array]:
         """Return the offset from the point of the plume that it crosses every half turn [m]."""
-        path, side, unit = _loiter_path(self)
+        path, side = _loiter_path(self)
+        unit = self.speed / self.omega_0
         along, right = path.offset(self.omega_0 * np.asarray(time, dtype=np.float64))
         return unit * along, unit * (right - side)
 
     def half_widths(self) -> tuple[float, float]:
         """Return how far the orbit reaches from that point, along its course and across [m]."""
-        path, side, unit = _loiter_path(self)
+        path, side = _loiter_path(self)
+        unit = self.speed / self.omega_0
         along, _ = path.half_widths()
         _, far = path.offset(math.pi)
         return unit * along, unit * max(side, float(far) - side)
@@ -758,7 +738,8 @@ def _checked(loiter: LoiterOrbit) -> LoiterOrbit:
 
 
 @functools.lru_cache(maxsize=128)
-def _loiter_path(loiter: LoiterOrbit) -> _LoiterPath:
+def _loiter_path(loiter: LoiterOrbit) -> tuple[CoursePath, float]:
+    """Return the path from the middle of the straight leg, and the plume right of it [V/omega_0]."""
     path = CoursePath(loiter.course)
     _, side = path.offset(0.5 * math.pi)
-    return _LoiterPath(path, float(side), loiter.speed / loiter.omega_0)
+    return path, float(side)

@@ -261,7 +261,7 @@ class PlumeGrid:
         array, shape (w, h, f)
         """
         reach = self._edges * self.sigma_z[..., np.newaxis]
-        return _differences(self._within(reach, off[:, np.newaxis], looks))
+        return _differences(self.within(reach, off[:, np.newaxis], looks))
 
     def chances(self, off: Array, looks: float, least: float, sigma_z: Array) -> Array:
         """Return the probability that a pass reads at least some strength, shape (..., h', c).
@@ -274,17 +274,7 @@ class PlumeGrid:
         sigma_z : spread in height of each axis, shape (h',) [m]
         """
         reach = np.sqrt(2.0 * np.log(np.maximum(self.strength / least, 1.0)))
-        return self._within(reach * sigma_z[:, np.newaxis], off[..., np.newaxis], looks)
-
-    def hits(self, off: Array, looks: float, sigma_z: Array, fraction: float) -> Array:
-        """Return the probability that a pass reads a fraction of the strength, shape (..., h').
-
-        Parameters
-        ----------
-        off, looks, sigma_z : same as ``chances``
-        fraction : of the plume's own strength that is read at least [-]
-        """
-        return self._within(math.sqrt(-2.0 * math.log(fraction)) * sigma_z, off, looks)
+        return self.within(reach * sigma_z[:, np.newaxis], off[..., np.newaxis], looks)
 
     def place_likelihood(self, distance: float, widened: float, duration: float) -> Array:
         """Return the probability of each place of the centre, given each bearing, shape (b, j).
@@ -340,7 +330,7 @@ class PlumeGrid:
         looks, sigma_z : same as ``chances``
         """
         reach = self._edges * sigma_z[:, np.newaxis]
-        fading = _differences(self._within(reach, off[..., np.newaxis], looks))
+        fading = _differences(self.within(reach, off[..., np.newaxis], looks))
         of_heights = weights.sum(axis=1)
         # By height and reading, summed over the strengths that lead to it; the last is nothing.
         joint = np.empty((len(heights), len(off), len(self.faint) + 1))
@@ -385,10 +375,13 @@ class PlumeGrid:
         result: Array = read.reshape(len(read), -1) @ self._fainter
         return result
 
-    def _within(self, reach: Array, off: Array, looks: float) -> Array:
+    def within(self, reach: Array, off: Array, looks: float) -> Array:
         """Return the probability that the centre of the best look is nearer than ``reach`` [m].
 
-        The axis is ``off`` above the pass [m].
+        Parameters
+        ----------
+        reach, off : of the centre, and height of the axis above the pass, of one shape [m]
+        looks : same as ``fading``
         """
         meander = self._expected.meander_z
         far = reach / meander
@@ -654,7 +647,8 @@ class PlumeEstimator:
     def hits(self, altitudes: Array) -> Array:
         """Return the probability that a pass at each altitude [m] hits the plume in height."""
         off = self.grid.coarse_heights(self._heights) - altitudes[:, np.newaxis]
-        hits = self.grid.hits(off / self._widened, self._looks, self._spread, HIT)
+        reach = math.sqrt(-2.0 * math.log(HIT)) * self._spread
+        hits = self.grid.within(reach, off / self._widened, self._looks)
         result: Array = hits @ self._weights.sum(axis=1)
         return result
 
