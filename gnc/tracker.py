@@ -50,54 +50,25 @@ class PlacedReference:
     heading_rate: float = 0.0
 
 
-AnyReference = TypeVar("AnyReference", bound=Reference)
-
-
-class Tracker(Generic[AnyReference]):
+class ReferenceTracker:
     """Tracks one reference point, stepped at a fixed rate.
-
-    Preview: a vehicle that answers ``lag`` seconds late is steered by the law's demand at that
-    later time. The reference then is known in advance. The vehicle's motion until then follows from
-    its heading rate, which goes from the measured value to the last command.
 
     Parameters
     ----------
     parameters : of the tracking
-    reference : at time 0; from then on the tracker moves it
-    wind : motion whose wind the law gets; none for still air
+    reference : the reference point at time 0
 
     Attributes
     ----------
     reference : the reference point now
-    ahead : the reference point at the end of the preview; it is the one that may be steered
     heading_rate_demand : last demand of the law, before omega_max limits it [rad/s]
     heading_rate_command : last command [rad/s]; to be set if another one is flown in its place
     saturated : whether omega_max limited the last demand
     """
 
-    def __init__(
-        self,
-        parameters: TrackingParameters,
-        reference: AnyReference,
-        wind: AirMotion | None = None,
-    ) -> None:
+    def __init__(self, parameters: TrackingParameters, reference: PlacedReference) -> None:
         self._law = LimitedLaw(parameters.law, parameters.heading_rate_max, parameters.time_step)
-        self._wind = wind
-        self._air = STILL_AIR
-        self.reference = PlacedReference(
-            reference.speed,
-            reference.north,
-            reference.east,
-            reference.course,
-            reference.heading_rate,
-        )
-        self.ahead = reference
-        # The reference moves once, ahead of time; here it waits until that time has come.
-        self._until_ahead: deque[_Instant] = deque()
-        steps_ahead = round(parameters.lag / parameters.time_step)
-        for _ in range(steps_ahead):
-            self._move_ahead()
-        self._lag = steps_ahead * parameters.time_step
+        self.reference = reference
         self.heading_rate_demand = 0.0
         self.heading_rate_command = 0.0
         self.saturated = False
@@ -118,6 +89,60 @@ class Tracker(Generic[AnyReference]):
         ------
         LawError : the law cannot be called, or returned no number
         """
+        raise NotImplementedError
+
+
+AnyReference = TypeVar("AnyReference", bound=Reference)
+
+
+class Tracker(ReferenceTracker, Generic[AnyReference]):
+    """Tracks a reference that moves by itself.
+
+    Preview: a vehicle that answers ``lag`` seconds late is steered by the law's demand at that
+    later time. The reference then is known in advance. The vehicle's motion until then follows from
+    its heading rate, which goes from the measured value to the last command.
+
+    Parameters
+    ----------
+    parameters : of the tracking
+    reference : at time 0; from then on the tracker moves it
+    wind : motion whose wind the law gets; none for still air
+
+    Attributes
+    ----------
+    ahead : the reference point at the end of the preview; it is the one that may be steered
+
+    Further attributes are those of ``ReferenceTracker``.
+    """
+
+    def __init__(
+        self,
+        parameters: TrackingParameters,
+        reference: AnyReference,
+        wind: AirMotion | None = None,
+    ) -> None:
+        now = PlacedReference(
+            reference.speed,
+            reference.north,
+            reference.east,
+            reference.course,
+            reference.heading_rate,
+        )
+        super().__init__(parameters, now)
+        self.ahead = reference
+        self._wind = wind
+        self._air = STILL_AIR
+        # The reference moves once, ahead of time; here it waits until that time has come.
+        self._until_ahead: deque[_Instant] = deque()
+        steps_ahead = round(parameters.lag / parameters.time_step)
+        for _ in range(steps_ahead):
+            self._move_ahead()
+        self._lag = steps_ahead * parameters.time_step
+
+    def step(
+        self, north: float, east: float, course: float, speed: float, heading_rate: float
+    ) -> float:
+        """Return the heading rate to command [rad/s]; see ``ReferenceTracker``."""
         if self._lag > 0.0:
             last = self.heading_rate_command
             north, east, course = lag_ahead(

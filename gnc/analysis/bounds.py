@@ -192,7 +192,7 @@ def fastest_within(
         )
 
     def design(fractions: _Array, least_radius: _LeastRadius) -> tuple[LookAhead, float]:
-        """Return look-ahead and steering_max for fractions of the largest sigma and of the latter."""
+        """Return look-ahead and steering_max at fractions of the largest sigma and steering_max."""
         sigma_fraction, steering_fraction = fractions.tolist()
         steering_max = steering_fraction * min(limit - turning, gain * math.pi)
         room = limit - steering_max

@@ -77,18 +77,8 @@ class PlumeFollowing:
         self._parameters = parameters
         self._tracking_parameters = tracking
         self._speed = parameters.centre.speed
-        self._approach = Approach(
-            parameters.approach,
-            speed=self._speed,
-            heading_rate_max=tracking.heading_rate_max,
-            lag=tracking.lag,
-            time_step=tracking.time_step,
-        )
-        self._egress = Egress(
-            heading_rate_max=tracking.heading_rate_max,
-            lag=tracking.lag,
-            glide_airspeed=parameters.glide_airspeed,
-        )
+        self._approach = Approach(parameters.approach, tracking, self._speed)
+        self._egress = Egress(tracking, parameters.glide_airspeed)
         self.tracker: Tracker[SteeredReference]
         self._reference: SteeredReference
         self.orbit: OrbitStatus | None = None

@@ -6,7 +6,7 @@ from typing import NamedTuple, Protocol
 from gnc.estimation.health import Fault
 from gnc.estimation.navigation import OwnMotion
 from gnc.estimation.vessel import TargetMotion
-from gnc.tracker import PlacedReference
+from gnc.tracker import ReferenceTracker
 
 
 class Mode(Enum):
@@ -97,29 +97,6 @@ class OrbitStatus(NamedTuple):
     in_place: bool
 
 
-class Tracking(Protocol):
-    """What tracks the reference.
-
-    Attributes
-    ----------
-    reference : the reference point now
-    heading_rate_demand, heading_rate_command, saturated : same as ``gnc.tracker.Tracker``
-    """
-
-    heading_rate_demand: float
-    heading_rate_command: float
-    saturated: bool
-
-    @property
-    def reference(self) -> PlacedReference:
-        """Reference point."""
-
-    def step(
-        self, north: float, east: float, course: float, speed: float, heading_rate: float
-    ) -> float:
-        """Return the heading rate to command [rad/s]; see ``gnc.tracker.Tracker``."""
-
-
 class Mission(Protocol):
     """Plans where the reference goes, and takes over where tracking would lead the wrong way.
 
@@ -132,7 +109,7 @@ class Mission(Protocol):
     orbit: OrbitStatus | None
 
     @property
-    def tracker(self) -> Tracking:
+    def tracker(self) -> ReferenceTracker:
         """Tracker of the reference."""
 
     def plan(

@@ -12,14 +12,14 @@ from dataclasses import dataclass
 from gnc.estimation.health import Fault
 from gnc.estimation.navigation import OwnMotion
 from gnc.estimation.vessel import TargetMotion
-from gnc.laws import Air, LimitedLaw, Motion
+from gnc.laws import Air, Motion
 from gnc.mission.axis import AxisHeight, Climb
 from gnc.mission.mission import LOST, TRACK, Centre, Mode, OrbitStatus, Order
 from gnc.mission.track import CLOSING_RATE, STANDOFF
 from gnc.mission.way import COURSE_GAIN, Egress
 from gnc.numeric import limited, wrap
 from gnc.path_laws.lgvf import heading_for
-from gnc.tracker import PlacedReference, TrackingParameters
+from gnc.tracker import PlacedReference, ReferenceTracker, TrackingParameters
 from gnc.unicycle import lag_ahead
 from gnc.vectors import Vector, along, course_of, minus, norm, plus, scaled
 
@@ -77,8 +77,8 @@ class CirclePoint(PlacedReference):
         """Do nothing: the point is placed anew at every step."""
 
 
-class CircleTracker:
-    """Steers to the circle, ahead of time by the vehicle's lag; see ``gnc.tracker.Tracker``.
+class CircleTracker(ReferenceTracker):
+    """Steers to the circle, ahead of time by the vehicle's lag.
 
     Parameters
     ----------
@@ -98,29 +98,21 @@ class CircleTracker:
         own: OwnMotion,
         target: TargetMotion,
     ) -> None:
+        self._point = CirclePoint(parameters.speed)
+        super().__init__(tracking, self._point)
         self._own = own
         self._target = target
         self._time_step = tracking.time_step
         self.radius = parameters.radius + STANDOFF * parameters.tracked
-        self._law = LimitedLaw(tracking.law, tracking.heading_rate_max, tracking.time_step)
         self._limit = tracking.heading_rate_max
         self._lag = tracking.lag
-        self.reference = CirclePoint(parameters.speed)
         self.ahead = CirclePoint(parameters.speed)
-        self.heading_rate_demand = 0.0
-        self.heading_rate_command = 0.0
-        self.saturated = False
 
     def step(
         self, north: float, east: float, course: float, speed: float, heading_rate: float
     ) -> float:
-        """Return the heading rate to command [rad/s]; parameters same as ``Tracker.step``.
-
-        Raises
-        ------
-        LawError : the law returned no number
-        """
-        own, target, reference, ahead = self._own, self._target, self.reference, self.ahead
+        """Return the heading rate to command [rad/s]; see ``ReferenceTracker``."""
+        own, target, reference, ahead = self._own, self._target, self._point, self.ahead
         drift = target.velocity_north - own.wind_north, target.velocity_east - own.wind_east
         if norm(drift) >= reference.speed:
             demand = COURSE_GAIN * self._limit * wrap(course_of(drift) - course)
@@ -160,11 +152,7 @@ class StandoffOrbit:
         self._tracking_parameters = tracking
         self._plan_time = parameters.plan_interval * tracking.time_step
         self._closing = CLOSING_RATE * parameters.speed * self._plan_time
-        self._egress = Egress(
-            heading_rate_max=tracking.heading_rate_max,
-            lag=tracking.lag,
-            glide_airspeed=parameters.glide_airspeed,
-        )
+        self._egress = Egress(tracking, parameters.glide_airspeed)
         self.tracker: CircleTracker
         self.orbit: OrbitStatus | None = None
         self._altitude = parameters.altitude

@@ -739,7 +739,7 @@ def _checked(loiter: LoiterOrbit) -> LoiterOrbit:
 
 @functools.lru_cache(maxsize=128)
 def _loiter_path(loiter: LoiterOrbit) -> tuple[CoursePath, float]:
-    """Return the path from the middle of the straight leg, and the plume right of it [V/omega_0]."""
+    """Return the path from its straight leg's middle, and the plume to its right [V_r/omega_0]."""
     path = CoursePath(loiter.course)
     _, side = path.offset(0.5 * math.pi)
     return path, float(side)

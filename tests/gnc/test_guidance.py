@@ -185,10 +185,8 @@ def test_the_airspeed_is_trimmed_by_the_along_track_error_within_its_limit(
     reference = make_reference(paper_oscillation(0.5), centre=(100.0, 50.0), vessel_course=0.8)
     guidance = make_guidance(reference, airspeed_gain=0.15, lag=lag)
     cos, sin = math.cos(reference.course), math.sin(reference.course)
-    north, east = (
-        reference.north + along * cos - right * sin,
-        reference.east + along * sin + right * cos,
-    )
+    north = reference.north + along * cos - right * sin
+    east = reference.east + along * sin + right * cos
     guidance.step(0.0, motion(north, east, reference.course))
     # Rounding of 100 m.
     assert guidance.airspeed_command == pytest.approx(expected, abs=1e-12)
@@ -321,10 +319,8 @@ def test_from_astern_a_guarded_vehicle_settles_and_keeps_out(nu, seed):
     # Starts as in scenarios/schema/sections/flight.py: 400 to 800 m away, within 30 degrees of
     # astern, on any course.
     generator = np.random.default_rng(seed)
-    distance, bearing = (
-        generator.uniform(400.0, 800.0),
-        math.pi + generator.uniform(-math.pi / 6.0, math.pi / 6.0),
-    )
+    distance = generator.uniform(400.0, 800.0)
+    bearing = math.pi + generator.uniform(-math.pi / 6.0, math.pi / 6.0)
     start = (
         distance * math.cos(bearing),
         distance * math.sin(bearing),

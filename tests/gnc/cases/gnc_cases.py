@@ -120,11 +120,9 @@ def tracking_starts(draw, *, phi_max=math.pi, reach=300.0):
     """The reference at the origin, the vehicle up to ``reach`` [m] about it, phi no more than
     ``phi_max`` [rad] to either side.
     """
-    north, east, reference_course = (
-        draw(st.floats(-reach, reach)),
-        draw(st.floats(-reach, reach)),
-        draw(courses),
-    )
+    north = draw(st.floats(-reach, reach))
+    east = draw(st.floats(-reach, reach))
+    reference_course = draw(courses)
     z_course = -relative([0.0, 0.0, reference_course, north, east, 0.0]).phi
     return [0.0, 0.0, reference_course, north, east, z_course + draw(st.floats(-phi_max, phi_max))]
 

@@ -124,10 +124,8 @@ def test_a_vehicle_that_has_fallen_behind_is_led_back_up():
 
 
 def test_a_plume_is_where_it_is_predicted_until_the_true_axis_is_set():
-    axis, around = (
-        PredictedPlume(height=RISING, altitude=60.0, climb=CLIMB).begin(),
-        situation(wind=(0.0, 3.0)),
-    )
+    axis = PredictedPlume(height=RISING, altitude=60.0, climb=CLIMB).begin()
+    around = situation(wind=(0.0, 3.0))
     axis.plan(0.0, around, tracking=False)
     assert axis.demanded == RISING.at(around.centre.distance, math.hypot(8.0, 3.0))
     assert (axis.bearing, axis.mode) == (0.0, Mode.TRACKING)
@@ -263,11 +261,9 @@ def test_hits_are_those_of_centres_drawn_at_random() -> None:
 
 
 def test_a_ladder_goes_up_and_down_between_its_ends() -> None:
-    search, estimator, altitude = (
-        LadderSearch(lowest=20.0, highest=120.0),
-        PlumeEstimator(PRIOR),
-        65.0,
-    )
+    search = LadderSearch(lowest=20.0, highest=120.0)
+    estimator = PlumeEstimator(PRIOR)
+    altitude = 65.0
     steps = []
     for _ in range(10):
         altitude = search.next_altitude(estimator, altitude, PASS_TIME)

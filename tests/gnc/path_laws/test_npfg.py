@@ -81,10 +81,8 @@ def test_every_state_has_a_finite_command():
         position, velocity, wind = (
             tuple(float(x) for x in generator.normal(0.0, s, 2)) for s in (100.0, 12.0, 12.0)
         )
-        course, curvature = (
-            generator.uniform(-math.pi, math.pi),
-            float(generator.choice([0.0, generator.normal(0.0, 0.1)])),
-        )
+        course = generator.uniform(-math.pi, math.pi)
+        curvature = float(generator.choice([0.0, generator.normal(0.0, 0.1)]))
         tangent = (math.cos(course), math.sin(course))
         parameters = NpfgParameters(period=float(generator.uniform(3.0, 30.0)))
         command = npfg(position, velocity, wind, ORIGIN, tangent, curvature, parameters)
