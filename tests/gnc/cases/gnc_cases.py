@@ -24,7 +24,7 @@ from gnc.paper import (
     relative_velocity,
     unicycle_rates,
 )
-from gnc.reference.reference import OscillatingReference, start_reference
+from gnc.reference.reference import OscillatingReference
 from gnc.tracker import TrackingParameters
 from gnc.unicycle import unicycle_move
 
@@ -151,15 +151,17 @@ def tracking_parameters(**changes):
     return TrackingParameters(**(defaults | changes))
 
 
-def make_reference(oscillation, *, phase=0.0, centre=(0.0, 0.0), vessel_course=0.0):
-    start = start_reference(
+def make_reference(
+    oscillation, *, phase=0.0, centre=(0.0, 0.0), vessel_course=0.0, time_step=TIME_STEP
+):
+    return OscillatingReference(
         oscillation,
         phase=phase,
         centre_north=centre[0],
         centre_east=centre[1],
         vessel_course=vessel_course,
+        time_step=time_step,
     )
-    return OscillatingReference(oscillation, start, phase=phase, time_step=TIME_STEP)
 
 
 def paper_parameters(reference, *, vessel=(0.0, 0.0), guard=None, airspeed_gain=0.0, **tracking):
