@@ -48,12 +48,6 @@ class TurningReferences:
         return len(self.course)
 
     @property
-    def heading_rate_bound(self) -> Array:
-        """|c| + sum |a_k|, a bound of |omega_r|, shape (n,) [rad/s]."""
-        bound: Array = np.abs(self.rate) + np.abs(self.amplitude).sum(axis=0)
-        return bound
-
-    @property
     def anisotropy(self) -> Array:
         """Mean of cos 2(chi_r - mean course), shape (n,), from -1 to 1 [-].
 

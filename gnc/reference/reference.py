@@ -134,9 +134,6 @@ class Swing(Protocol):
     def eta(self, speed_ratio: float) -> float:
         """Return the amplitude for a mean speed over speed between -0.2 and 1 [rad]."""
 
-    def speed_ratio(self, eta: float) -> float:
-        """Return the mean speed over speed of an amplitude [-]."""
-
     def frequency(self, eta: float, heading_rate: float) -> float:
         """Return the largest omega_0 within a heading rate [rad/s] and the roll rate [rad/s].
 

@@ -205,15 +205,6 @@ class SinusoidSwing:
         """Return eta for a mean speed over speed, equation (6), within 1e-5 [rad]."""
         return _sinusoid_tables().eta(speed_ratio)
 
-    def speed_ratio(self, eta: float) -> float:
-        """Return the mean speed over speed, J_0(eta), equation (5) [-]."""
-        # The power series of J_0 in (eta/2)^2, whose k-th term is -x/k^2 times the one before: good
-        # to 5e-7 up to eta = 2.4.
-        x = 0.25 * eta * eta
-        return 1.0 - x * (
-            1.0 - x / 4.0 * (1.0 - x / 9.0 * (1.0 - x / 16.0 * (1.0 - x / 25.0 * (1.0 - x / 36.0))))
-        )
-
     def frequency(self, eta: float, heading_rate: float) -> float:
         """Return omega_0 by the heading rate or the roll rate, the lower one [rad/s]."""
         eta = max(ETA_FREQUENCY, eta)

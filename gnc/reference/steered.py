@@ -110,7 +110,7 @@ class SteeredReference:
             north=self.north,
             east=self.east,
             mean_course=self.mean_course,
-            speed_ratio=self.speed_ratio,
+            speed_ratio=1.0,  # replaced by the state
             phase=self.phase,
             swing=self._swing,
             speed=self.speed,
@@ -177,11 +177,6 @@ class SteeredReference:
         self.omega_0 = omega_0
         self.phase = phase
         self.course = last
-
-    @property
-    def speed_ratio(self) -> float:
-        """Return the mean speed over the speed; of the sinusoid J_0(eta), equation (5) [-]."""
-        return self._swing.speed_ratio(self.eta)
 
     def centre(self) -> tuple[float, float]:
         """Return north and east of the orbit's centre, if its parameters stayed as they are [m]."""
