@@ -1,5 +1,6 @@
 """Pictures that a user gives, such as the logo of a report."""
 
+import base64
 import hashlib
 import io
 import xml.etree.ElementTree as ET
@@ -36,6 +37,11 @@ class Picture:
     def sha256(self) -> str:
         """Hash of the file."""
         return hashlib.sha256(self.content).hexdigest()
+
+    @property
+    def data_uri(self) -> str:
+        """The picture as a ``data:`` address, for the HTML report."""
+        return f"data:{self.media_type};base64,{base64.b64encode(self.content).decode('ascii')}"
 
 
 def read_picture(path: Path) -> Picture:

@@ -1,9 +1,8 @@
-"""Guidance and control of the paper, for any constant-speed nonholonomic vehicle. Knows neither
-JSBSim nor aircraft.
+"""The guidance: the paper's, extended for an aircraft in wind and a ship that manoeuvres.
 
-Escudeiro, "UAV-based Measurement of Marine Vessels Smoke Plumes - Guidance and Control System".
-``EQUATIONS.md`` maps its equations to functions and tests. The plane is north-east, in metres;
-course angles are clockwise from north, in radians.
+It knows neither JSBSim nor aircraft. ``paper.py`` has the paper's equations, and ``EQUATIONS.md``
+lists where the code differs. The plane is north-east, in metres; courses are clockwise from north,
+in radians.
 """
 
 from gnc.compiled import choose

@@ -129,7 +129,7 @@ class Oscillation:
     def heading_rate(self, phase: float) -> float:
         """Return omega_r [rad/s] at a phase omega_0 t + phi_0, beside a vessel that does not turn.
 
-        Third line of equation (2); the first two are those of (1).
+        Third line of equation (2) with omega_V = 0; the first two are those of (1).
         """
         return -self.amplitude * math.sin(phase)  # (2)
 
@@ -470,7 +470,7 @@ def relative_state(
         parameters, to_reference_north * to_reference_north + to_reference_east * to_reference_east
     )
     z_north = to_reference_north + delta * math.cos(reference_course)  # (14)
-    z_east = to_reference_east + delta * math.sin(reference_course)
+    z_east = to_reference_east + delta * math.sin(reference_course)  # (14)
     rho, z_course = math.hypot(z_north, z_east), math.atan2(z_east, z_north)  # (16)
     phi_r, phi = wrap(reference_course - z_course), wrap(course - z_course)
     return RelativeState(delta, rho, phi_r, phi)  # (19)
@@ -503,7 +503,7 @@ def relative_velocity(
 ) -> tuple[float, float]:
     """Return the rates of rho [m/s] and of the course of z, omega_rho [rad/s]: equation (18).
 
-    (18) is (17), the rate of z in the inertial frame, resolved along z and across it.
+    (17) is the rate of z in the inertial frame; (18) is that rate along z and across it.
 
     Parameters
     ----------
@@ -520,9 +520,9 @@ def relative_velocity(
     delta_rate = parameters.epsilon * (
         2.0 * ((rho - delta * cos_r) * along - delta * sin_r * across)
     )
-    swing = delta * reference_heading_rate
-    rho_rate = along - swing * sin_r + delta_rate * cos_r  # (17)  # (18)
-    omega_rho = (across + swing * cos_r + delta_rate * sin_r) / rho  # (18)
+    delta_turn_speed = delta * reference_heading_rate
+    rho_rate = along - delta_turn_speed * sin_r + delta_rate * cos_r  # (17)  # (18)
+    omega_rho = (across + delta_turn_speed * cos_r + delta_rate * sin_r) / rho  # (18)
     return rho_rate, omega_rho
 
 
@@ -577,6 +577,8 @@ def v_1_rate(state: RelativeState, speed: float) -> float:
 def lyapunov_law(state: RelativeState, speed: float, omega_rho: float, k_1: float) -> float:
     """Return omega by the Lyapunov-based law, equation (24) [rad/s]. It is singular at phi = pi.
 
+    The print has sin(phi)/(1 + cos(phi)), which is tan(phi/2).
+
     Parameters
     ----------
     state : relative state
@@ -602,7 +604,7 @@ def v_2_rate(state: RelativeState, speed: float) -> float:
     return -speed * (rho * (1.0 - math.cos(phi_r)) + delta * (1.0 - math.cos(phi_r - phi)))  # (26)
 
 
-def v_2_acceleration(state: RelativeState, rates: RelativeState, speed: float) -> float:
+def v_2_second_rate(state: RelativeState, rates: RelativeState, speed: float) -> float:
     """Return the second rate of V_2 under law (24), equation (27) [m^2/s^2].
 
     It is bounded, so the rate of V_2 goes to zero. Two limits follow, which tests verify by
@@ -615,8 +617,8 @@ def v_2_acceleration(state: RelativeState, rates: RelativeState, speed: float) -
         + (rates.phi_r - rates.phi) * delta * math.sin(phi_r - phi)
         + rates.delta * (1.0 - math.cos(phi_r - phi))
     )  # (27)
-    # (28) is the limit phi_r, phi -> 0, since (26) goes to zero with them alone;
-    # (29) is the limit of the rate of phi_r, which goes to zero with phi_r (Barbalat).
+    # (28): the rate (26) goes to zero, and it is zero only where phi_r and phi are; so both do.
+    # (29): with phi_r its rate goes to zero, by Barbalat, if omega_r and its rate are bounded.
 
 
 # --- IV.D Nonlinear cascade system approach
@@ -678,12 +680,13 @@ def unforced_rates(
     """
     delta, rho, phi_r = driven
     cos_r, sin_r = math.cos(phi_r), math.sin(phi_r)
-    swing = delta * reference_heading_rate
+    delta_turn_speed = delta * reference_heading_rate
     shrinking = 2.0 * parameters.epsilon * speed * (rho + delta) * (1.0 - cos_r)
     return DrivenState(
         -shrinking,
-        -speed * (1.0 - cos_r) - swing * sin_r - cos_r * shrinking,
-        reference_heading_rate - (speed * sin_r + swing * cos_r - sin_r * shrinking) / rho,
+        -speed * (1.0 - cos_r) - delta_turn_speed * sin_r - cos_r * shrinking,
+        reference_heading_rate
+        - (speed * sin_r + delta_turn_speed * cos_r - sin_r * shrinking) / rho,
     )  # (32)
 
 
@@ -692,7 +695,7 @@ def v_1_unforced_rate(driven: DrivenState, speed: float) -> float:
     return -speed * (driven.rho + driven.delta) * (1.0 - math.cos(driven.phi_r))  # (33)
 
 
-def v_1_unforced_acceleration(driven: DrivenState, rates: DrivenState, speed: float) -> float:
+def v_1_unforced_second_rate(driven: DrivenState, rates: DrivenState, speed: float) -> float:
     """Return the second rate of V_1 along (32), equation (34) [m^2/s^2].
 
     It is bounded, so the rate of V_1 goes to zero.

@@ -6,31 +6,38 @@ right until the vehicle heads straight away from the disc, then straight on. The
 invariant holds the states from which a turn away keeps off. It takes the place of the safe set of a
 control barrier function. It is not written down, but evaluated by prediction (``turn.py``)::
 
-    demanded command, one step     then a turn away, predicted     decision
+                         .--<-- turn away to the left
+                       .'                                 .-----.
+    vehicle --->----+-'                                  (   *   )  disc
+        the demand,  `-.                                  '-----'
+        for one step    `-<-- turn away to the right
 
-      ---->----                    .-> left   keeps off            the demand passes
-                                  /
-      ---->----  then            <-
-                                  \\
-      ---->----                    '-> right  enters the disc      neither keeps off: the least
-                                                                   fraction of the turn away that
-                                                                   was safe at the last step is
-                                                                   mixed in until one does
+A **look** predicts both turns that may follow the demand (the nominal command). If one keeps off,
+the demand passes. If neither does, a fraction of the turn that was safe at the last look is mixed
+in, found by bisection, after which that turn keeps off. If there is none, that turn is flown.
 
-**Theorem.** Let a turn away keep off at the start. Then the distance from the vessel never falls
-below the radius, for any demand and whether reports of the vessel arrive, arrive late or never
-arrive. Proof by induction: what passes, or is mixed, leaves a turn away that keeps off after the
-step; the disc of that turn contains the vessel for certain, and later reports add discs and
-invalidate none; so that turn can still be flown, and the guard flies it where it finds nothing
-better.
+**Theorem.** Under the assumptions, the distance from the vessel never falls below r_min, for any
+demand, and whether reports of the vessel arrive, arrive late or do not arrive. Proof by induction:
+what passes, or is mixed, leaves a turn away that keeps off after the step. The vessel is in the
+disc of that turn; later reports add discs and invalidate none. So that turn can still be flown, and
+the guard flies it where it finds nothing better.
 
-**Assumptions.** (1) Heading rate follows its command by a dead time, a lag and the deviation that
-was measured for the aircraft. (2) Commands within omega_max are flown, and the filter is called
-once per time step. (3) The vessel stays within its discs. (4) Own velocity and wind are in error by
-no more than ``speed_error`` and what the wind's filter says. (5) Flying straight away outruns the
-disc. (6) A turn away keeps off at the start. ``docs/keepout_guard.md`` has the proof, what each
-assumption rests on, and what happens where one fails. The guard plans no way round: it keeps out,
-and no more.
+**Assumptions.**
+
+1. Heading rate follows its command by a dead time and a lag, and in the end through all of the
+   commanded course, to within the deviation that a search over the aircraft's reversals found.
+2. Commands within omega_max are flown, up to the airspeed at which the largest bank limits the
+   turn, and in proportion above it. The filter is called once per time step.
+3. The vessel is in each of its discs.
+4. Airspeed stays between the fastest and the slowest that are predicted with. Velocity and wind are
+   in error by no more than ``speed_error`` and what the wind's filter says, and by ``drift_rate``
+   without satellite navigation.
+5. Flying straight away outruns the growth of the disc. Without reports that holds for a limited
+   time, since discs grow ever faster.
+6. A turn away keeps off at the start.
+
+``docs/keepout_guard.md`` has the proof, what each assumption rests on, and what happens where one
+fails. The guard plans no way round: it keeps out, and no more.
 """
 
 import math
@@ -57,12 +64,12 @@ from gnc.guard.turn import (
 from gnc.numeric import limited
 
 _RESOLUTION = 1e-3
-"""Turn radii kept beyond the radius, the accuracy of the predicted closest approach: 4 cm at a turn
-radius of 40 m [-]."""
+"""Turn radii kept beyond the radius for what is not evaluated, such as the error of the predicted
+closest approach: 4 cm at a turn radius of 40 m [-]."""
 
 _SAME_SPEED = 0.05
-"""Airspeeds that differ by no more count as one, the faster: a turn away then keeps off by the same
-to 2 cm [m/s]."""
+"""Airspeeds that differ by no more count as one, the faster [m/s]. A turn away then keeps off by
+the same to some centimetres, at most 0.2 m at a turn radius of 40 m."""
 
 _UNSTEADY = 0.05
 """Share of the difference between the turn radii when fast and slow by which a vehicle may come
@@ -72,8 +79,7 @@ _BISECTIONS = 5
 """Halvings of the fraction of the turn away that is mixed in: it is found to 1/32."""
 
 _PACE_TOLERANCE = 0.05
-"""Rise of the pace that the guard is not consulted about [m/s]: a turn away comes nearer by less
-than 0.1 m for it."""
+"""Rise of the pace that the guard is not consulted about [m/s]; see ``_SAME_SPEED``."""
 
 _SKIPPED_LESS = 0.5
 """By how much skipped commands may be less of the turn away than the one that was looked at, over
@@ -91,7 +97,7 @@ class GuardParameters:
 
     Attributes
     ----------
-    radius : distance that the vehicle's path must keep from the vessel [m]
+    radius : distance that the vehicle's path must keep from the vessel, r_min and ``allowance`` [m]
     heading_rate_max : omega_max, the largest command [rad/s]
     lag : time constant of the heading rate behind its command; 0 if it follows at once [s]
     delay : dead time before that [s]
@@ -101,8 +107,8 @@ class GuardParameters:
         [m/s]
     deviation : how much nearer than predicted the vehicle may come in a full reversal [m]
     drift_rate : how fast dead reckoning may go wrong, where satellite navigation may be lost [m/s]
-    allowance : distance kept for what takes the vehicle off any predicted turn: turbulence, a
-        failed part [m]
+    allowance : part of ``radius`` that is kept for what takes the vehicle off any predicted turn:
+        turbulence, a failed part [m]
     wander : how much the error of the vehicle's position may change during a turn away [m]
     turn_speed : airspeed up to which it can turn at ``heading_rate_max``; faster it turns at the
         same acceleration across [m/s]
@@ -128,7 +134,7 @@ class GuardParameters:
 class GuardStatus(IntEnum):
     """What the guard did at a step.
 
-    ``LOST``: no turn away kept off by more than the declared errors explain; the best is flown.
+    ``LOST``: the turn to be flown falls short by more than the declared errors explain.
     """
 
     FREE = 0
@@ -175,7 +181,8 @@ class KeepoutGuard:
 
     A faster pace is flown only where the faster vehicle can turn away as well: a turn that was safe
     must remain so. A vehicle that catches up turns wider, so V_r is flown while the guard acts, and
-    for a quarter of a turn after: a faster pace would make the guard act again, and so in turns.
+    for a quarter of a turn after that. A faster pace would make the guard act again at once, and
+    the two would alternate.
 
     Parameters
     ----------
@@ -202,7 +209,7 @@ class KeepoutGuard:
         ----------
         demand : of the guidance
         own : the vehicle's motion
-        vessels : discs, at least one, each of which contains the vessel for certain
+        vessels : discs, at least one, in each of which the vessel is
         """
         time, command, pace, leaving = demand
         heading_rates, speeds = self._heading_rates, self._speeds
@@ -219,7 +226,9 @@ class KeepoutGuard:
         if status is not GuardStatus.FREE and not leaving:
             pace, pace_held = self._speed, True
             self._hold_until = time + self._quarter_turn
-        speeds.note(pace if rises or pace < speeds.highest else speeds.highest)
+        # A rise that the guard was not consulted about must not raise the speeds that it predicts.
+        noted = pace if rises else min(pace, speeds.highest)
+        speeds.note(noted)
         return Guarded(command, pace, pace_held, status)
 
     def _speeds_with(self, pace: float, measured: float) -> tuple[float, float]:
@@ -302,8 +311,8 @@ class HeadingRateFilter:
         self._turn_time = 1.5 * math.pi / p.heading_rate_max + 2.0 * p.lag + p.delay + p.time_step
         # Slack that the declared errors may take from a turn that was safe.
         self._explained = p.deviation + self._speed_error * self._turn_time + p.allowance + p.wander
-        # Within a step a command may lead off the turn that was safe by all of a reversal: by
-        # V omega_max dt^2. In turn radii:
+        # In one step the command may differ from the turn by 2 omega_max, which displaces the
+        # vehicle by V omega_max dt^2. In turn radii:
         self._resolution = max(_RESOLUTION, (p.heading_rate_max * p.time_step) ** 2)
         # The turn that was safe: to which side, and from which disc.
         self._side = 0.0
@@ -326,7 +335,7 @@ class HeadingRateFilter:
         command : demanded heading rate [rad/s]
         time : now [s]
         own : the vehicle's motion
-        vessels : discs, at least one, each of which contains the vessel for certain
+        vessels : discs, at least one, in each of which the vessel is
         fastest, slowest : airspeeds that the vehicle may come to; a turn away has to keep off at
             all speeds between them. The slowest counts where it is below the fastest [m/s]
         """
@@ -374,19 +383,19 @@ class HeadingRateFilter:
     ) -> float:
         """Return by how much the better turn away, begun now, keeps off [m]; negative if none does.
 
-        No other commands do better, as docs/keepout_guard.md argues. What the path may come nearer
-        within a step is taken off.
+        At one airspeed, and from a disc that the vehicle outruns, no other commands do better
+        (docs/keepout_guard.md). What the path may come nearer within a step is taken off.
 
         Parameters
         ----------
         time : now [s]
         own : the vehicle's motion
-        vessels : discs, at least one, each of which contains the vessel for certain
+        vessels : discs, at least one, in each of which the vessel is
         speed : airspeed of the vehicle [m/s]
         enough : clearance above which the search may end early [m]
         """
         within_step = (self._resolution - _RESOLUTION) / self._rate * speed
-        pending = self.history.pending_turn_rate(own.heading_rate)
+        pending = self.history.take_in(own.heading_rate)
         best = -math.inf
         for disc in vessels:
             relative = self.relative_motion(disc, time, own, speed, speed, pending)
@@ -423,7 +432,7 @@ class HeadingRateFilter:
     ) -> list[Encounter] | None:
         """Return None if a turn away keeps off some disc after the command, or the encounters."""
         history = self.history
-        pending = history.pending_turn_rate(own.heading_rate)
+        pending = history.take_in(own.heading_rate)
         change = history.change_with(command)
         encounters: list[Encounter] = []
         side, turn = 0.0, None
@@ -454,12 +463,14 @@ class HeadingRateFilter:
 
     def _candidates(self, vessels: Sequence[Tube], time: float, own: AirMotion) -> Sequence[Tube]:
         """Return the disc that reaches least far towards the vehicle, and the one kept off last."""
-        nearest = vessels[0]
+        least_reaching = vessels[0]
         if len(vessels) > 1:
             gaps = [self._gap(disc, time, own) for disc in vessels]
-            nearest = vessels[gaps.index(max(gaps))]
+            least_reaching = vessels[gaps.index(max(gaps))]
         last = self._kept_off
-        return (nearest,) if last is None or last is nearest else (nearest, last)
+        return (
+            (least_reaching,) if last is None or last is least_reaching else (least_reaching, last)
+        )
 
     def _gap(self, disc: Tube, time: float, own: AirMotion) -> float:
         """Return the distance from a disc after a quarter of a turn, if the vehicle stayed [m]."""
@@ -603,10 +614,10 @@ class HeadingRateFilter:
         return mixed
 
     def _backup_turn(self, encounters: Sequence[Encounter]) -> _BackupTurn:
-        """Return the turn away to fly: one that keeps off, or that to the side that was safe.
+        """Return the turn away to fly: one that keeps off, if there is one.
 
-        That one is flown as long as declared errors explain what it lacks, and the better one if
-        they do not.
+        Else the turn to the side that was safe is continued, as long as the declared errors explain
+        the slack that it lacks. Beyond that it is the turn with the most slack.
         """
         safe_side = self._side
         turns: list[_BackupTurn] = []
@@ -633,24 +644,24 @@ class HeadingRateFilter:
 
     def _turn_command(self, side: float, motion: RelativeMotion) -> float:
         """Return the command of a turn away [rad/s]: straight away from the disc and no farther."""
-        left = math.remainder(
+        to_turn = math.remainder(
             math.atan2(motion.y, motion.x) - motion.course - self._p.lag * motion.heading_rate,
             2.0 * math.pi,
         )
+        if side * to_turn >= self._rate * self._time_step or abs(to_turn) >= 0.5 * math.pi:
+            return side * self._rate
         # From less than a right angle beyond straight away it turns back: going on would lead once
         # round, towards the disc.
-        if side * left >= self._rate * self._time_step or abs(left) >= 0.5 * math.pi:
-            return side * self._rate
-        return limited(left / self._time_step, self._rate)
+        return limited(to_turn / self._time_step, self._rate)
 
 
 class CommandHistory:
-    """Heading-rate commands, one per time step, and what is still to come of them.
+    """Heading-rate commands, one per time step, and the course that is still to come of them.
 
-    In the end a vehicle has turned by all of its commands. A prediction from its heading rate and
-    from the commands under way knows of some course to come. An aircraft in the middle of a roll,
-    or one whose autopilot makes up for course that it lacks, has another course ahead of it. The
-    difference is the lack; it is 0 for a vehicle with just that dead time and lag
+    In the middle of a roll an aircraft will turn farther than its heading rate and a first-order
+    lag predict. Its autopilot integrates, so in the end it turns through all the course that was
+    commanded. The **lack** is the commanded course, less what was turned, less what the lag and the
+    commands under way will still turn. It is 0 for a vehicle with just that dead time and lag
     (docs/keepout_guard.md, "Course that earlier commands still bring").
 
     Parameters
@@ -687,9 +698,10 @@ class CommandHistory:
         # The course of a full reversal that has not begun yet.
         self._lack_max = self._reversal * (delay + lag)
         count, self._first = commands_under_way(delay, time_step)
-        # Course turned in a step in which a lag follows one command, from the heading rates at its
-        # ends; and what is added where another command begins to act within the step. So the lack
-        # is exactly 0 for a vehicle with just that dead time and lag.
+        # Course turned in a step in which a lag follows one command, from the heading rates r_0 and
+        # r_1 at its ends: dt r_0 + (dt/(1 - exp(-dt/lag)) - lag) (r_1 - r_0). Where another command
+        # begins to act within the step, a share of the change of command is added. So the lack is
+        # exactly 0 for a vehicle with just that dead time and lag.
         self._kept = self._fading = self._course_at_end = self._course_of_change = 0.0
         if lag > 0.0:
             self._kept = math.exp(-time_step / (FORGOTTEN * lag))
@@ -722,14 +734,12 @@ class CommandHistory:
         self._commands.append(command)
         self._rates.append(rate)
 
-    def pending_turn_rate(self, rate: float) -> float:
-        """Return the change of heading rate that stands for the lack [rad/s].
-
-        Commands since the last look are taken in.
+    def take_in(self, rate: float) -> float:
+        """Take in the commands since the last look; return ``pending_turn_rate`` [rad/s].
 
         Parameters
         ----------
-        rate : heading rate now [rad/s]. Course is its sum, and not that of the motion over the mean
+        rate : heading rate of the aircraft now [rad/s], not the rate of the course over the mean
             air: no autopilot makes up for what a gust or a better estimate of the wind does to that
         """
         if self._commands:
@@ -763,11 +773,12 @@ class CommandHistory:
         lack = remembered + acted - turned - self._slow_lag_after_delay * rate_change
         self._lack = limited(lack, self._lack_max)
         # What changed little by little since the last look counts as if it had changed at once.
+        newest = commands[-1]
         commands.append(self.last)
         highest, lowest = max(commands), min(commands)
         faded = self.change * self._fading ** len(rates)
         self.change = max((highest - lowest) / self._reversal, faded, LEAST_CHANGE)
-        self.last = commands[-2]
+        self.last = newest
         commands.clear()
         rates.clear()
 
@@ -782,9 +793,11 @@ class CommandHistory:
 class SkipBudget:
     """Counts the commands that need no look, since they cannot spoil the turn away found last.
 
-    A command that is less of that turn than omega_max takes course from it. A look says how much
-    course the turn can lose, for how long, and at which commands and airspeeds. The budget lasts
-    until one of these is used up (docs/keepout_guard.md, "Evaluating less often").
+    A look says how much course that turn can lose, for how many steps, and at which commands and
+    airspeeds. Each command that passes without a look withdraws a step, and the course by which it
+    is less of the turn than omega_max. When less than two steps' course is left, or a command or an
+    airspeed lies outside of its range, the guard looks again (docs/keepout_guard.md, "Evaluating
+    less often").
 
     Parameters
     ----------

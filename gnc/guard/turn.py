@@ -5,17 +5,19 @@ reversals measures how far an aircraft strays from it. The vehicle's heading rat
 command after a dead time and with a first-order lag; a **turn away** is omega_max to one side until
 the vehicle heads straight away from the disc, then straight on::
 
-          straight away
-               ^            slack: the least, along the turn, of the distance r from the
-           .---'            disc's centre less what is allowed for there: the radius to
-         /                  keep, the disc's growth, errors, the vehicle's deviation
-        |     r . '  .-.
-        ^   . '     ( * )   the disc, which moves and grows
-     vehicle         '-'
+       straight away  <-----.
+                             `.        .---.
+                               |      (  *  )  disc, which moves and grows
+                             .'        '---'
+       vehicle  ---->------'
+
+The **slack** (the margin) is the least, along the turn, of the distance r from the disc's centre
+less what is allowed for there: the radius to keep, the disc's growth, errors of velocity, and the
+deviation of the vehicle from the prediction.
 
 All is relative to the disc's centre, in the air mass: x north, y east [m], courses clockwise from
-north [rad], the side of a turn 1 to the right and -1 to the left. ``docs/keepout_guard.md`` derives
-what is used here.
+north [rad]. Heading rate is the rate of that course. The side of a turn is 1 to the right and -1 to
+the left. ``docs/keepout_guard.md`` derives what is used here.
 """
 
 import math
@@ -50,8 +52,8 @@ _TURN_MAX = 2.5 * math.pi
 and the disc's motion add."""
 
 _ROLLING_TIMES = 3.0
-"""What commands before the turn add to its deviation by rolling is kept for this many times the
-shortest time in which commands against the turn use up its slack [-]."""
+"""The 3 of docs/keepout_guard.md, "Evaluating less often": commands may go on for this many times
+the shortest time in which they can use up the slack by the course that they take [-]."""
 
 _NEWTON_STEPS = 3
 """Steps that find the closest approach between two points: each squares the error of the one before
@@ -155,8 +157,8 @@ class TurnAway(NamedTuple):
     Attributes
     ----------
     slack : by how much it keeps off [m]; negative if it does not
-    free_time : for which any command may be given before it [s]
-    free_course : course that these commands may take from the turn [rad]
+    free_time : for how long other commands may be given before it [s]
+    free_course : course that these may take from the turn in all [rad]
     change : share of a full reversal that its deviation counts, by rolling into it or by recent
         changes of command [-]
     """
@@ -188,14 +190,16 @@ class TurnPoint:
 class HeldResponse(NamedTuple):
     """Coefficients of a first-order lag under a held command.
 
+    From a heading rate r, under a command u that is held for ``duration``,
+
+    course turned     = turned r + (duration - turned) u,
+    its mean          = mean r + (duration/2 - mean) u,
+    heading rate then = decay r + (1 - decay) u.
+
     Attributes
     ----------
-    duration : for which the command is held [s]
-    turned : course, per heading rate at the start [s]; the rest of the duration is course per
-        command
-    mean : course on the mean of the duration, per heading rate at the start [s]; the rest of half
-        the duration is per command
-    decay : heading rate at the end, per heading rate at the start [-]; the rest of 1 is per command
+    duration, turned, mean : [s]
+    decay : [-]
     """
 
     duration: float
@@ -420,10 +424,10 @@ class TurnPrediction:
         acting = time - self._delay
         fade = self._step.decay if time > self._delay else 1.0
         least_rate = math.inf
-        # Where the vehicle is now it has not deviated yet.
+        # At the start itself the vehicle has not deviated yet.
         least = path.slack + deviation
         outward = self._outward(side, start)
-        gain, rise = -1.0, 0.0
+        slack_per_lever, rise = -1.0, 0.0
         for point in range(math.ceil(self._points_max * leg.stretch)):
             if least < floor:
                 break
@@ -436,7 +440,7 @@ class TurnPrediction:
             lever = acting - lag * (1.0 - fade) + rolling
             least_rate = min(least_rate, path.slack / lever)
             if rise < 0.0:
-                if gain >= 0.0:
+                if slack_per_lever >= 0.0:
                     break
                 least = min(least, path.slack)
                 past_straight_away = last_outward >= 0.0 > outward and path.away
@@ -452,12 +456,13 @@ class TurnPrediction:
             # Passing straight away between two points counts as well: it would have stopped there.
             if side * path.heading_rate >= 0.0 and (outward >= 0.0 or last_outward >= 0.0):
                 # The turn is over. One point more may allow more time until the next look.
-                last_gain, gain = gain, max(gain, min(least_rate, rise / duration))
-                if gain == last_gain or outward < 0.0:
+                last_best = slack_per_lever
+                slack_per_lever = max(slack_per_lever, min(least_rate, rise / duration))
+                if slack_per_lever == last_best or outward < 0.0:
                     break
-        gained = max(gain, 0.0)
-        free_time = min(gained / loss_rate, self.time_until_once_round(side, start, motion))
-        return TurnAway(least, free_time, gained / motion.fastest, counted)
+        free_rate = max(slack_per_lever, 0.0)
+        free_time = min(free_rate / loss_rate, self.time_until_once_round(side, start, motion))
+        return TurnAway(least, free_time, free_rate / motion.fastest, counted)
 
     def _leg(self, side: float, speed: float) -> _Leg:
         """Return what is flown between two points of a full turn at an airspeed [m/s]."""
@@ -486,22 +491,21 @@ class TurnPrediction:
         return 0.0 if beyond and x * cos + y * sin > 0.0 else outward
 
     def time_until_once_round(self, side: float, start: TurnStart, motion: RelativeMotion) -> float:
-        """Return how soon the vehicle may be so far beyond straight away that the turn leads once
-        round [s].
+        """Return how soon the turn may lead once round, being too far beyond straight away [s].
 
-        Its course turns at omega_max at most. The direction in which the disc lies turns the other
-        way, by what crosses it: all of the disc's speed, and the vehicle's speed across while it
-        has so far left to turn.
+        The vehicle's course turns at omega_max at most. The direction in which the disc lies turns
+        the other way, by what crosses it: all of the disc's speed, and the vehicle's speed across
+        while it has so far left to turn.
         """
         x, y, course, _ = start
-        left = side * math.remainder(math.atan2(y, x) - course, 2.0 * math.pi) + self.overshoot
-        if left < 0.0:
+        to_turn = side * math.remainder(math.atan2(y, x) - course, 2.0 * math.pi) + self.overshoot
+        if to_turn < 0.0:
             return math.inf
         speed, disc_speed = motion.fastest, math.hypot(motion.disc_north, motion.disc_east)
-        until_away = min(max(left - self.overshoot, 0.0), 0.5 * math.pi)
+        until_away = min(max(to_turn - self.overshoot, 0.0), 0.5 * math.pi)
         across = speed * math.sin(until_away) + disc_speed
-        nearest = max(motion.radius, math.hypot(x, y) - (speed + disc_speed) * left / self._rate)
-        return left / (self._rate + across / nearest) if nearest > 0.0 else 0.0
+        nearest = max(motion.radius, math.hypot(x, y) - (speed + disc_speed) * to_turn / self._rate)
+        return to_turn / (self._rate + across / nearest) if nearest > 0.0 else 0.0
 
 
 class _TurnPath:
@@ -552,7 +556,7 @@ class _TurnPath:
         self._last = self._before_last = self._now
         self._leg = leg
         # Where the vehicle flies away, it is slower.
-        self._slow_leg: _Leg | None = None
+        self._other_leg: _Leg | None = None
         self._slowed = False
         self._radii_difference = 0.0
         self._start_course = course
@@ -560,7 +564,7 @@ class _TurnPath:
 
     def slow_down_while_receding(self, slow_leg: _Leg, radii_difference: float) -> None:
         """Fly a slower leg while the vehicle flies away; the radii differ by so much [m]."""
-        self._slow_leg = slow_leg
+        self._other_leg = slow_leg
         self._radii_difference = radii_difference
 
     def advance(self) -> None:
@@ -571,11 +575,11 @@ class _TurnPath:
         north, east = self._disc_north, self._disc_east
         middle = course + mean * heading_rate + leg.course_to_middle
         cos, sin = math.cos(middle), math.sin(middle)
-        if self._slow_leg is not None:
+        if self._other_leg is not None:
             away = recedes(x, y, cos, sin, leg.way, north, east)
             if away != self._slowed:
                 # The other leg is kept for when the vehicle flies towards the disc again.
-                self._leg, self._slow_leg = self._slow_leg, leg
+                self._leg, self._other_leg = self._other_leg, leg
                 leg = self._leg
                 self._slowed = away
                 self._switch = point
@@ -606,7 +610,7 @@ class _TurnPath:
         """Keep to the course and to the airspeed from here on."""
         self.heading_rate = 0.0
         self._leg = self._leg._replace(course_to_middle=0.0, course_turned=0.0, rate_gained=0.0)
-        self._slow_leg = None
+        self._other_leg = None
 
     def closest_about_last_point(self, *, first: bool) -> float:
         """Return the least slack before or after the last point, from which on slack rises [m].

@@ -177,7 +177,7 @@ def test_a_design_made_of_the_same_model_elsewhere_flies_the_model_that_is_here(
     ("package", "file"),
     [
         ("aircraft", "spec.py"),
-        ("common", "physics/units.py"),
+        ("common", "physics.py"),
         ("innerloop", "synthesis.py"),
     ],
 )

@@ -99,7 +99,7 @@ def lacking(flights, record, *, remembers):
         far_off = (Tube(0.0, 1e5, 0.0, 0.0, 0.0),)
         for step, (own, command) in enumerate(given):
             assert guard.limit(command, step * STEP, own, far_off, speed) == command
-        pending = guard.history.pending_turn_rate(now.heading_rate)
+        pending = guard.history.take_in(now.heading_rate)
         time = len(given) * STEP
         after = TIME_STEP * np.arange(1, len(path) + 1)
         for closing in (0.0, 0.5 * speed, 0.85 * speed):
@@ -155,7 +155,7 @@ def test_search_and_guard_agree_on_the_course_that_is_still_to_come(x8_root, x8_
         time_step=STEP,
         heading_rate_max=rate,
     )
-    guarded.pending_turn_rate(0.0)
+    guarded.take_in(0.0)
     lacks, courses = [], []
     for share, duration in ((1.0, 4.0), (-1.0, 0.5), (0.3, 1.0), (-1.0, 2.0)):
         for _ in range(round(duration / STEP)):
@@ -164,7 +164,7 @@ def test_search_and_guard_agree_on_the_course_that_is_still_to_come(x8_root, x8_
             turning, lack = searched.heading_rate, searched.lack
             pending = (
                 pending_turn_rate(lack, turning, slow_lag, response.lag),
-                guarded.pending_turn_rate(turning),
+                guarded.take_in(turning),
             )
             lacks.append(lack)
             courses.append([response.lag * each for each in pending])

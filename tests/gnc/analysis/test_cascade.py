@@ -34,8 +34,8 @@ from gnc.paper import (
     unforced_rates,
     v_1_rate,
     v_1_rate_split,
-    v_1_unforced_acceleration,
     v_1_unforced_rate,
+    v_1_unforced_second_rate,
 )
 
 heading_rates = st.floats(-0.5, 0.5)
@@ -164,7 +164,7 @@ def test_equation_34_is_the_numerical_rate_of_33_along_the_unforced_system(start
     step = 1e-5
     ahead, behind = (DrivenState(*moved(motion, time, here, way)) for way in (step, -step))
     numerical = (v_1_unforced_rate(ahead, SPEED) - v_1_unforced_rate(behind, SPEED)) / (2.0 * step)
-    acceleration = v_1_unforced_acceleration(here, DrivenState(*motion(time, here)), SPEED)
+    acceleration = v_1_unforced_second_rate(here, DrivenState(*motion(time, here)), SPEED)
     # Over 3,000 random states it erred by 1.3e-5 m^2/s^2, a hundred times more at ten times the
     # step; corners are allowed some ten times that. The second rate itself reaches 6e3.
     assert acceleration == pytest.approx(numerical, rel=0.0, abs=2e-4)

@@ -29,8 +29,8 @@ from gnc.paper import (
     state_rates,
     v_1_rate,
     v_2,
-    v_2_acceleration,
     v_2_rate,
+    v_2_second_rate,
 )
 
 offsets = st.floats(-300.0, 300.0)
@@ -94,7 +94,7 @@ def test_under_law_24_the_rates_of_v_2_are_equations_26_and_27(
     # hundred times more at ten times the step. Corners are allowed ten times that; the rates
     # themselves reach some 1e4 and 1e6.
     assert v_2_rate(here, SPEED) == pytest.approx(first, rel=0.0, abs=3e-3)
-    assert v_2_acceleration(here, rates, SPEED) == pytest.approx(second, rel=0.0, abs=0.1)
+    assert v_2_second_rate(here, rates, SPEED) == pytest.approx(second, rel=0.0, abs=0.1)
 
 
 @examples(200)

@@ -22,7 +22,7 @@ def begun(lag, delay, *, rate=0.0, sooner=0.0):
         time_step=TIME_STEP,
         heading_rate_max=HEADING_RATE_MAX,
     )
-    history.pending_turn_rate(rate)
+    history.take_in(rate)
     return history
 
 
@@ -49,7 +49,7 @@ def test_a_vehicle_with_just_that_dead_time_and_lag_lacks_no_course(lag, delay):
             if first < TIME_STEP:
                 state = moved(state, commands[-count], lag, TIME_STEP - first)
         # Sums of thirty numbers below 1, rounded.
-        assert history.pending_turn_rate(state[3]) == pytest.approx(0.0, abs=1e-12)
+        assert history.take_in(state[3]) == pytest.approx(0.0, abs=1e-12)
 
 
 def test_a_vehicle_that_has_not_begun_to_turn_lacks_all_of_the_commanded_course():
@@ -57,14 +57,14 @@ def test_a_vehicle_that_has_not_begun_to_turn_lacks_all_of_the_commanded_course(
     # is to be turned.
     history = begun(0.4, 0.0)
     append(history, [-0.3] * 4, 0.0)
-    assert history.pending_turn_rate(0.0) == pytest.approx(-0.3 * 4 * TIME_STEP / 0.4, rel=1e-12)
+    assert history.take_in(0.0) == pytest.approx(-0.3 * 4 * TIME_STEP / 0.4, rel=1e-12)
 
 
 def test_commands_under_way_do_not_count_twice():
     # With a dead time of two steps only the first of three commands has acted, for one step.
     history = begun(0.4, 2.0 * TIME_STEP)
     append(history, [0.3, 0.4, 0.5], 0.0)
-    assert history.pending_turn_rate(0.0) == pytest.approx(0.3 * TIME_STEP / 0.4, rel=1e-12)
+    assert history.take_in(0.0) == pytest.approx(0.3 * TIME_STEP / 0.4, rel=1e-12)
     assert list(history.under_way) == [0.4, 0.5]
 
 
@@ -73,7 +73,7 @@ def test_the_newest_command_can_be_replaced():
     append(history, [-0.3, 0.5], 0.0)
     assert history.newest == 0.5
     history.newest = 0.1
-    assert history.pending_turn_rate(0.0) == pytest.approx(-0.2 * TIME_STEP / 0.4, rel=1e-12)
+    assert history.take_in(0.0) == pytest.approx(-0.2 * TIME_STEP / 0.4, rel=1e-12)
     assert history.last == 0.1
 
 
@@ -81,9 +81,9 @@ def test_a_constant_lack_is_forgotten():
     # A steady wrong trim keeps the vehicle from turning, and the commands end: exp(-t/(64 lag)).
     history = begun(0.4, 0.0)
     append(history, [0.3], 0.0)
-    pending = history.pending_turn_rate(0.0)
+    pending = history.take_in(0.0)
     append(history, [0.0] * 100, 0.0)
-    assert history.pending_turn_rate(0.0) == pytest.approx(
+    assert history.take_in(0.0) == pytest.approx(
         pending * math.exp(-100 * TIME_STEP / (FORGOTTEN * 0.4)), rel=1e-9
     )
 
@@ -97,7 +97,7 @@ def test_a_vehicle_that_follows_slow_commands_sooner_lacks_no_course_in_a_slow_t
         history.append(rise * (step + 0.5) * TIME_STEP, rise * (step * TIME_STEP - 0.3))
     # A ramp's integral from the rates at the beginnings of steps is off by half a step: 0.025 s,
     # which the lag turns into 0.0002 rad/s.
-    pending = history.pending_turn_rate(rise * (200 * TIME_STEP - 0.3))
+    pending = history.take_in(rise * (200 * TIME_STEP - 0.3))
     assert pending == pytest.approx(0.0, abs=1e-3)
 
 
@@ -106,19 +106,17 @@ def test_a_lack_within_the_error_of_the_slow_lag_does_not_count():
     history = begun(0.4, 0.0, rate=0.2)
     append(history, [0.2, 0.2, 0.36], 0.2)
     # 0.008 rad are lacking, less what slow commands may be followed sooner or later.
-    assert history.pending_turn_rate(0.2) == pytest.approx(
-        (0.16 * TIME_STEP - doubt) / 0.4, rel=1e-9
-    )
+    assert history.take_in(0.2) == pytest.approx((0.16 * TIME_STEP - doubt) / 0.4, rel=1e-9)
     history = begun(0.4, 0.0, rate=0.2)
     append(history, [0.2 + 0.9 * doubt / TIME_STEP], 0.2)
-    assert history.pending_turn_rate(0.2) == 0.0
+    assert history.take_in(0.2) == 0.0
 
 
 def test_the_lack_is_at_most_that_of_a_full_reversal():
     history = begun(0.4, 0.2)
     append(history, [HEADING_RATE_MAX] * 100, -HEADING_RATE_MAX)
     doubt = SLOW_LAG_ERROR * 0.6 * HEADING_RATE_MAX
-    assert history.pending_turn_rate(-HEADING_RATE_MAX) == pytest.approx(
+    assert history.take_in(-HEADING_RATE_MAX) == pytest.approx(
         (2.0 * HEADING_RATE_MAX * 0.6 - doubt) / 0.4, rel=1e-12
     )
 
@@ -127,16 +125,16 @@ def test_the_largest_recent_change_counts_less_with_time():
     history = begun(0.4, 0.0)
     assert history.change == LEAST_CHANGE
     append(history, [HEADING_RATE_MAX, -0.5 * HEADING_RATE_MAX], 0.0)
-    history.pending_turn_rate(0.0)
+    history.take_in(0.0)
     # 1.5 of the 2 omega_max of a full reversal.
     assert history.change == pytest.approx(0.75, rel=1e-12)
     # With a command that changes by less the former change counts, with a larger one that.
     assert history.change_with(0.5 * HEADING_RATE_MAX) == history.change
     assert history.change_with(1.5 * HEADING_RATE_MAX) == pytest.approx(1.0, rel=1e-12)
     append(history, [-0.5 * HEADING_RATE_MAX] * 40, 0.0)
-    history.pending_turn_rate(0.0)
+    history.take_in(0.0)
     faded = 0.75 * math.exp(-40 * TIME_STEP / (CHANGED * 0.4))
     assert history.change == pytest.approx(faded, rel=1e-12)
     append(history, [-0.5 * HEADING_RATE_MAX] * 2000, 0.0)
-    history.pending_turn_rate(0.0)
+    history.take_in(0.0)
     assert history.change == LEAST_CHANGE

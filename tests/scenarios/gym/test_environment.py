@@ -320,10 +320,9 @@ def test_flights_without_a_solution_are_passed_over_at_random_and_refused_by_nam
 
 
 @pytest.mark.usefixtures("x8_design")
-def test_the_example_of_the_page_runs_as_it_stands_and_is_short(capsys):
+def test_the_example_of_the_page_runs_as_it_stands(capsys):
     page = (PROJECT / "docs" / "howto" / "gym.md").read_text(encoding="utf-8")
     (example,) = re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)
-    assert len(example.splitlines()) <= 15
     exec(compile(example, "gym.md", "exec"), {})
     printed = capsys.readouterr().out
     assert "crossings in" in printed
