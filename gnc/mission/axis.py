@@ -524,7 +524,11 @@ class SearchedAxis(ExpectedAxis):
     ) -> None:
         """Give the estimator the place at a time [s], and the reading there [ppm]."""
         fix = _fix_at(self._fixes, at)
-        along, across = _from_predicted_axis(inputs, fix.north, fix.east)
+        wind_north, wind_east = apparent_wind(inputs.own, inputs.vessel)
+        speed = math.hypot(wind_north, wind_east) or 1.0
+        # From the vessel along the predicted axis, and to its right.
+        along = (fix.north * wind_north + fix.east * wind_east) / speed
+        across = (fix.east * wind_north - fix.north * wind_east) / speed
         if at > self._last_note:
             estimator.predict(at - self._last_note)
             self._last_note = at
@@ -556,15 +560,6 @@ class SearchedAxis(ExpectedAxis):
             spread_across=found.sigma_y,
             innovation=found.innovation,
         )
-
-
-def _from_predicted_axis(inputs: AxisInputs, north: float, east: float) -> tuple[float, float]:
-    """Return a place relative to the vessel as distances along the predicted axis and right [m]."""
-    wind_north, wind_east = apparent_wind(inputs.own, inputs.vessel)
-    speed = math.hypot(wind_north, wind_east) or 1.0
-    along = (north * wind_north + east * wind_east) / speed
-    across = (east * wind_north - north * wind_east) / speed
-    return along, across
 
 
 def _fix_at(fixes: Sequence[_Fix], time: float) -> _Fix:
