@@ -321,7 +321,7 @@ class EstimatedNavigation(OwnMotion):
         self.wind_east = wind.east
         self._step_north = p.time_step * wind.north
         self._step_east = p.time_step * wind.east
-        # While few measurements are in it. The share of the first one falls with the variance.
+        # The share of the first measurement in the estimate falls with the variance, as in a mean.
         sigma = wind.sigma
         variance = sigma**2
         if not self._first_variance:

@@ -750,7 +750,7 @@ class PlumeEstimator:
 
     @property
     def measurable(self) -> float:
-        """Probability that a pass at the best altitude rather detects the plume than not [-]."""
+        """Probability that some altitude within the limits has a detection in most passes [-]."""
         best = np.clip(
             self.grid.coarse_heights(self._heights), self.prior.lowest, self.prior.highest
         )
