@@ -142,16 +142,16 @@ class ConstantBearingLaw(CheckedLaw):
 # ---------------------------------------------------------------- Pursuit of a carrot
 
 
-def carrot_on_line(position: Vector, origin: Vector, tangent: Vector, ahead: float) -> Vector:
+def carrot_on_line(position: Vector, tangent: Vector, ahead: float) -> Vector:
     """Return the point of a line that is ``ahead`` [m] of the nearest one [m].
 
     Parameters
     ----------
-    position : of the vehicle [m]
-    origin, tangent : a point of the line [m], and its unit tangent
+    position : of the vehicle, from a point of the line as the result is [m]
+    tangent : unit vector along the line
     ahead : distance along the line [m]
     """
-    return plus(origin, tangent, dot(minus(position, origin), tangent) + ahead)
+    return plus(_ORIGIN, tangent, dot(position, tangent) + ahead)
 
 
 def carrot_on_circle(
@@ -184,7 +184,6 @@ def chase(position: Vector, velocity: Vector, target: Vector, gain: float) -> fl
 def plos(
     position: Vector,
     velocity: Vector,
-    origin: Vector,
     tangent: Vector,
     target: Vector,
     *,
@@ -195,12 +194,12 @@ def plos(
 
     Parameters
     ----------
-    position, velocity : of the vehicle [m, m/s]
-    origin, tangent : a point of the line [m], and its unit tangent
-    target : the pursued end of the line [m]
+    position, velocity : of the vehicle, from a point of the line [m, m/s]
+    tangent : unit vector along the line
+    target : the pursued end of the line, from that point [m]
     pursuit_gain, sight_gain : k_1 [1/s], k_2 [1/(m s)]
     """
-    error = cross(tangent, minus(position, origin))
+    error = cross(tangent, position)
     return chase(position, velocity, target, pursuit_gain) - sight_gain * norm(velocity) * error
 
 
@@ -221,7 +220,7 @@ class CarrotLaw(PathLaw):
 
     def rate(self, motion: PathMotion) -> float:
         """Return the demanded heading rate [rad/s]."""
-        target = carrot_on_line(motion.position, _ORIGIN, motion.tangent, self.carrot_ahead_m)
+        target = carrot_on_line(motion.position, motion.tangent, self.carrot_ahead_m)
         acceleration = chase(motion.position, motion.velocity, target, self.carrot_gain_per_s)
         return turn_rate(acceleration, motion.airspeed)
 
@@ -271,7 +270,6 @@ class PlosLaw(PathLaw):
         acceleration = plos(
             motion.position,
             motion.velocity,
-            _ORIGIN,
             motion.tangent,
             plus(_ORIGIN, motion.tangent, self.plos_ahead_m),
             pursuit_gain=self.plos_pursuit_per_s,

@@ -26,27 +26,25 @@ _HALF_PI = 0.5 * math.pi
 def line_field(
     position: Vector,
     velocity: Vector,
-    origin: Vector,
     line_course: float,
     *,
     gain: float,
     approach: float,
     line_rate: float = 0.0,
 ) -> Field:
-    """Return the field of a line that may turn about ``origin``.
+    """Return the field of a line that may turn about one of its points.
 
     Parameters
     ----------
-    position, velocity : of the vehicle [m, m/s]
-    origin, line_course : a point of the line [m], and its course [rad]
+    position, velocity : of the vehicle, from that point [m, m/s]
+    line_course : course of the line [rad]
     gain : k [1/m]
     approach : chi_inf [rad]
     line_rate : rate of the line's course [rad/s]
     """
     tangent = along(line_course)
-    from_origin = minus(position, origin)
-    error = cross(tangent, from_origin)
-    error_rate = cross(tangent, velocity) - line_rate * dot(tangent, from_origin)
+    error = cross(tangent, position)
+    error_rate = cross(tangent, velocity) - line_rate * dot(tangent, position)
     slope = approach / _HALF_PI
     return Field(
         course=line_course - slope * math.atan(gain * error),
@@ -117,7 +115,6 @@ class VectorFieldLaw(CheckedLaw):
         field = line_field(
             scaled(to_reference, -1.0),
             scaled(along(own.course), own.speed),
-            (0.0, 0.0),
             reference.course,
             gain=self.field_gain_per_m,
             approach=self.field_approach_rad,
@@ -173,7 +170,6 @@ _G = 9.81
 def line_course(
     position: Vector,
     course: float,
-    origin: Vector,
     line_course: float,
     *,
     gain: float,
@@ -183,13 +179,13 @@ def line_course(
 
     Parameters
     ----------
-    position, course : of the vehicle [m, rad]
-    origin, line_course : a point of the line [m], and its course [rad]
+    position, course : of the vehicle, from a point of the line [m, rad]
+    line_course : course of the line [rad]
     gain : k_path [1/m]
     approach : chi_inf, course towards the line from far away [rad]
     """
     nearest = course + wrap(line_course - course)
-    error = cross(along(nearest), minus(position, origin))
+    error = cross(along(nearest), position)
     return nearest - approach * math.atan(gain * error) / _HALF_PI
 
 
@@ -246,7 +242,6 @@ class RosplaneFieldLaw(PathLaw):
         command = line_course(
             motion.position,
             course,
-            (0.0, 0.0),
             course_of(motion.tangent),
             gain=self.path_gain_per_m,
             approach=self.path_approach_rad,
