@@ -20,9 +20,9 @@ import pandas as pd
 
 from benchmarks.vehicle import x8_setup
 from common.run_layout import SUMMARY, time_history_path
-from gnc.estimation.navigation import Motion
+from gnc.estimation.navigation import MeasuredMotion
 from gnc.estimation.vessel import ReportedTarget
-from gnc.guidance import Guidance, compose
+from gnc.guidance import Guidance
 from gnc.mission.axis import SearchedAxis
 from scenarios.engine.task import Task
 from scenarios.experiment.requests import Experiment
@@ -149,7 +149,7 @@ def _flown(scenario: Scenario, setup: VehicleSetup) -> tuple[FlightPlan, Measure
     measured: list[tuple[float, Any]] = []
     read = OnboardSensing.read
 
-    def noted(sensing: OnboardSensing, step: int, at: float, motion: Motion) -> Any:
+    def noted(sensing: OnboardSensing, step: int, at: float, motion: MeasuredMotion) -> Any:
         measured.append((at, read(sensing, step, at, motion)))
         return measured[-1][1]
 
@@ -161,7 +161,7 @@ def _flown(scenario: Scenario, setup: VehicleSetup) -> tuple[FlightPlan, Measure
     if not measured:
         # It knows its motion exactly.
         measured = [
-            (at, Motion(*motion))
+            (at, MeasuredMotion(*motion))
             for at, *motion in history[_MOTION].itertuples(index=False, name=None)
         ]
     return work.plan(work.request(Task(number=0))), measured, _plume_readings(history)
@@ -190,7 +190,7 @@ def _reports(plan: FlightPlan) -> list[Any]:
 
 def _step_time(plan: FlightPlan, measured: Measured, passed_on: PlumeReadings = ()) -> float:
     """Return the CPU time of a step of a settled flight [us]."""
-    guidance, reports = compose(plan.guidance), _reports(plan)
+    guidance, reports = Guidance(plan.guidance), _reports(plan)
     first = next(i for i, (at, _) in enumerate(measured) if at >= SETTLED)
     _step_through(guidance, measured[:first], reports, passed_on[:first])
     began = time.process_time()

@@ -91,12 +91,6 @@ class SpeedHold(NamedTuple):
     airspeed_min: float
     airspeed_max: float
 
-    def within(self, airspeed: float) -> float:
-        """Return the nearest airspeed that can be commanded [m/s]."""
-        if airspeed > self.airspeed_max:
-            return self.airspeed_max
-        return self.airspeed_min if airspeed < self.airspeed_min else airspeed
-
 
 def design_speed_hold(
     *, bandwidth: float, speed: float, look_ahead: float, airspeed_min: float, airspeed_max: float
@@ -152,11 +146,13 @@ class PaceHold:
 
     def pace(self, along: float, /) -> float:
         """Return the speed over the mean air that brings the vehicle beside its reference [m/s]."""
-        return self.hold.within(self.speed + self.hold.gain * along)
+        hold = self.hold
+        return clip(self.speed + hold.gain * along, hold.airspeed_min, hold.airspeed_max)
 
     def airspeed(self, pace: float, own: OwnMotion, guarding: bool, /) -> float:
         """Return the airspeed to command for a pace [m/s]."""
-        command = self.hold.within(own.airspeed + pace - own.speed)
+        hold = self.hold
+        command = clip(own.airspeed + pace - own.speed, hold.airspeed_min, hold.airspeed_max)
         return self.turn_speed if guarding and command > self.turn_speed else command
 
 

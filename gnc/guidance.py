@@ -80,57 +80,63 @@ class GuidanceParameters:
 
 
 class Guidance:
-    """The outer loop of one flight, stepped at a fixed rate. ``compose`` chooses its parts.
+    """The outer loop of one flight, stepped at a fixed rate.
 
     Parameters
+    ----------
+    parameters : of its parts
+
+    Attributes
     ----------
     own, target : motion of the vehicle and of the vessel
     mission : what to do, and the tracker of its reference
     guard : of the keep-out area, or None
-    airspeed_law : keeps the vehicle beside its reference
     monitor : of the vehicle's health, or None
-    speed : V_r [m/s]
-    heading_rate_max : omega_max; no command exceeds it [rad/s]
-    altitude : to hold [m]
     plan_interval : steps between plans of the mission; with 0 there is one plan, in the first step
-
-    Attributes
-    ----------
-    own, target, mission, guard, monitor, plan_interval : same as the parameters
     mode : what is being done
     guarding : whether the keep-out guard changed the last command
     heading_rate_command, airspeed_command, altitude_command : last commands [rad/s, m/s, m]
     """
 
-    def __init__(
-        self,
-        *,
-        own: OwnMotion,
-        target: TargetMotion,
-        mission: Mission,
-        guard: KeepoutGuard | None,
-        airspeed_law: AirspeedLaw,
-        monitor: HealthMonitor | None,
-        speed: float,
-        heading_rate_max: float,
-        altitude: float,
-        plan_interval: int,
-    ) -> None:
-        self.own = own
-        self.target = target
-        self.mission = mission
-        self.monitor = monitor
+    def __init__(self, parameters: GuidanceParameters) -> None:
+        p = parameters
+        self.own: OwnMotion = (
+            EstimatedNavigation(p.navigation) if p.navigation else TrueNavigation()
+        )
+        self.target: TargetMotion
+        if isinstance(p.vessel, ReportedVessel):
+            reports = VesselFilter(p.vessel.filter)
+            discs = ReachableSet(p.vessel.limits)
+            self.target = ReportedTarget(reports, discs, p.tracking.time_step)
+        else:
+            self.target = SteadyTarget(*p.vessel)
+        self.mission: Mission
+        if isinstance(p.mission, FollowingParameters):
+            self.mission = PlumeFollowing(p.mission, p.tracking)
+        elif isinstance(p.mission, StandoffParameters):
+            self.mission = StandoffOrbit(p.mission, p.tracking)
+        else:
+            self.mission = DirectTracking(p.mission, p.tracking, altitude=p.altitude)
+        self.guard: KeepoutGuard | None = None
+        if p.guard:
+            speeds = SpeedRange(
+                speed=p.speed,
+                bandwidth=p.airspeed_bandwidth,
+                overshoot=p.airspeed_overshoot,
+                time_step=p.tracking.time_step,
+            )
+            self.guard = KeepoutGuard(p.guard, speeds)
+        self.monitor = HealthMonitor(p.health) if p.health else None
         self.mode = Mode.APPROACH
-        self.guard = guard
         self.guarding = False
         self._vessel_discs: Sequence[Tube] = ()
-        self._airspeed_law = airspeed_law
-        self._heading_rate_max = heading_rate_max
-        self.plan_interval = plan_interval
+        self._airspeed_law = p.airspeed_law
+        self._heading_rate_max = p.tracking.heading_rate_max
+        self.plan_interval = p.mission.plan_interval
         self._until_plan = 0
         self.heading_rate_command = 0.0
-        self.airspeed_command = speed
-        self.altitude_command = altitude
+        self.airspeed_command = p.speed
+        self.altitude_command = p.altitude
 
     def step(self, time: float, measurement: Any) -> None:
         """Compute the commands, then move the reference on by one time step.
@@ -213,44 +219,3 @@ class Guidance:
         self.mission.tracker.heading_rate_command = turning
         if self.guard is not None:
             self.guard.replace(turning, airspeed)
-
-
-def compose(parameters: GuidanceParameters) -> Guidance:
-    """Return the guidance at the beginning of a flight; only here its parts are chosen."""
-    p = parameters
-    own: OwnMotion = EstimatedNavigation(p.navigation) if p.navigation else TrueNavigation()
-    target: TargetMotion
-    if isinstance(p.vessel, ReportedVessel):
-        target = ReportedTarget(
-            VesselFilter(p.vessel.filter), ReachableSet(p.vessel.limits), p.tracking.time_step
-        )
-    else:
-        target = SteadyTarget(*p.vessel)
-    guard = None
-    if p.guard:
-        speeds = SpeedRange(
-            speed=p.speed,
-            bandwidth=p.airspeed_bandwidth,
-            overshoot=p.airspeed_overshoot,
-            time_step=p.tracking.time_step,
-        )
-        guard = KeepoutGuard(p.guard, speeds)
-    mission: Mission
-    if isinstance(p.mission, FollowingParameters):
-        mission = PlumeFollowing(p.mission, p.tracking)
-    elif isinstance(p.mission, StandoffParameters):
-        mission = StandoffOrbit(p.mission, p.tracking)
-    else:
-        mission = DirectTracking(p.mission, p.tracking, altitude=p.altitude)
-    return Guidance(
-        own=own,
-        target=target,
-        mission=mission,
-        guard=guard,
-        airspeed_law=p.airspeed_law,
-        monitor=HealthMonitor(p.health) if p.health else None,
-        speed=p.speed,
-        heading_rate_max=p.tracking.heading_rate_max,
-        altitude=p.altitude,
-        plan_interval=p.mission.plan_interval,
-    )

@@ -14,7 +14,7 @@ import numpy as np
 
 from common.registry import Registry
 from gnc.errors import LawError
-from gnc.numeric import limited, wrap
+from gnc.numeric import wrap
 from gnc.paper import (
     LookAhead,
     RelativeState,
@@ -132,22 +132,25 @@ steering_law = STEERING_LAWS.register
 """Decorator that registers a steering law by a name."""
 
 
-def check_parameters(law: Any) -> None:
-    """Refuse a law whose parameters are not all finite and above 0.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CheckedLaw:
+    """Base of a law whose parameters are all finite and above 0.
 
     Raises
     ------
     ValueError : one is not
     """
-    for parameter in fields(law):
-        if not parameter.init:
-            continue
-        value = getattr(law, parameter.name)
-        if not (math.isfinite(value) and value > 0.0):
-            raise ValueError(
-                f"{parameter.name} is {value:g}; it must be finite and above 0; the default is"
-                f" {parameter.default:g}"
-            )
+
+    def __post_init__(self) -> None:
+        for parameter in fields(self):
+            if not parameter.init:
+                continue
+            value = getattr(self, parameter.name)
+            if not (math.isfinite(value) and value > 0.0):
+                raise ValueError(
+                    f"{parameter.name} is {value:g}; it must be finite and above 0; the default is"
+                    f" {parameter.default:g}"
+                )
 
 
 # ---------------------------------------------------------------- A law in flight
@@ -194,8 +197,6 @@ class LimitedLaw:
     time_step : time between two calls [s]
     """
 
-    __slots__ = ("_limit", "_name", "_steer")
-
     def __init__(self, law: SteeringLaw, limit: float, time_step: float) -> None:
         self._name = type(law).__qualname__
         self._steer = started(law, time_step).heading_rate
@@ -218,7 +219,11 @@ class LimitedLaw:
             rate = self._number(rate)
         if math.isnan(rate) and _is_finite(reference, own):
             raise self._no_number(rate)
-        return rate, limited(rate, self._limit)
+        # Same as ``limited``, without a call.
+        limit = self._limit
+        if rate > limit:
+            return rate, limit
+        return rate, -limit if rate < -limit else rate
 
     def _number(self, rate: Any) -> float:
         """Return a real number as a float: one of NumPy would pass its precision on."""
@@ -250,7 +255,7 @@ def _call_error(name: str, error: TypeError, must: str) -> Exception:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DeltaLaw:
+class DeltaLaw(CheckedLaw):
     """Base of the laws on the relative state of the delta formulation, (14) to (19).
 
     Attributes
@@ -260,7 +265,7 @@ class DeltaLaw:
 
     Raises
     ------
-    ValueError : a parameter is not finite and above 0, or R is too short
+    ValueError : same as ``CheckedLaw``, or R is too short
     """
 
     inputs: ClassVar[str] = "the reference itself, and its turn rate"
@@ -269,7 +274,7 @@ class DeltaLaw:
     _look_ahead: LookAhead = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        check_parameters(self)
+        CheckedLaw.__post_init__(self)
         object.__setattr__(self, "_look_ahead", look_ahead(self.epsilon_per_m, self.look_ahead_m))
 
     def relative_motion(self, reference: Reference, own: Motion) -> tuple[RelativeState, float]:
@@ -348,7 +353,7 @@ def line_of_sight_law(
 
 @steering_law("line_of_sight")
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LineOfSightLaw:
+class LineOfSightLaw(CheckedLaw):
     """Heading rate proportional to the angle from the course to the line of sight.
 
     Its demand has no useful bound.
@@ -356,18 +361,11 @@ class LineOfSightLaw:
     Attributes
     ----------
     gain_per_s : [1/s]
-
-    Raises
-    ------
-    ValueError : the gain is not finite and above 0
     """
 
     inputs: ClassVar[str] = "the reference's place (M3); elsewhere called proportional pursuit"
     unsupported_tasks: ClassVar[dict[str, str]] = ONLY_MOVING_POINTS
     gain_per_s: float = 1.5
-
-    def __post_init__(self) -> None:
-        check_parameters(self)
 
     def heading_rate(self, reference: Reference, own: Motion, _air: Air, /) -> float:
         """Return the demanded heading rate [rad/s]; parameters are those of ``SteeringLaw``."""

@@ -2,8 +2,9 @@
 
 from collections import deque
 from dataclasses import dataclass
-from typing import Generic, NamedTuple, Protocol, TypeVar
+from typing import Generic, NamedTuple, TypeVar
 
+from gnc.estimation.navigation import AirMotion
 from gnc.laws import STILL_AIR, Air, LimitedLaw, Motion, SteeringLaw
 from gnc.reference.reference import Reference
 from gnc.unicycle import lag_ahead
@@ -29,18 +30,6 @@ class TrackingParameters:
     lag: float
 
 
-class Wind(Protocol):
-    """The velocity of the air mass over the ground, as it is known now.
-
-    Attributes
-    ----------
-    wind_north, wind_east : [m/s]
-    """
-
-    wind_north: float
-    wind_east: float
-
-
 class _Instant(NamedTuple):
     """The reference at an instant, waiting to become that of now."""
 
@@ -50,68 +39,36 @@ class _Instant(NamedTuple):
     heading_rate: float
 
 
+@dataclass(slots=True)
 class PlacedReference:
-    """A reference that is moved from outside; attributes are those of ``Reference``.
+    """A reference that is moved from outside; attributes are those of ``Reference``."""
 
-    Parameters
-    ----------
-    reference : where it starts
-    """
-
-    def __init__(self, reference: Reference) -> None:
-        self.speed = reference.speed
-        self.place(_instant(reference))
-
-    def place(self, instant: _Instant) -> None:
-        """Move there."""
-        self.north, self.east, self.course, self.heading_rate = instant
+    speed: float
+    north: float = 0.0
+    east: float = 0.0
+    course: float = 0.0
+    heading_rate: float = 0.0
 
 
-def _instant(reference: Reference) -> _Instant:
-    return _Instant(reference.north, reference.east, reference.course, reference.heading_rate)
-
-
-AnyReference = TypeVar("AnyReference", bound=Reference)
-
-
-class Tracker(Generic[AnyReference]):
+class ReferenceTracker:
     """Tracks one reference point, stepped at a fixed rate.
-
-    Preview: a vehicle that answers ``lag`` seconds late is steered by the law's demand at that
-    later time. The reference then is known in advance. The vehicle's motion until then follows from
-    its heading rate, which goes from the measured value to the last command.
 
     Parameters
     ----------
     parameters : of the tracking
-    reference : at time 0; from then on the tracker moves it
-    wind : for the law; none for still air
+    reference : the reference point at time 0
 
     Attributes
     ----------
     reference : the reference point now
-    ahead : the reference point at the end of the preview; it is the one that may be steered
     heading_rate_demand : last demand of the law, before omega_max limits it [rad/s]
     heading_rate_command : last command [rad/s]; to be set if another one is flown in its place
     saturated : whether omega_max limited the last demand
     """
 
-    def __init__(
-        self,
-        parameters: TrackingParameters,
-        reference: AnyReference,
-        wind: Wind | None = None,
-    ) -> None:
+    def __init__(self, parameters: TrackingParameters, reference: PlacedReference) -> None:
         self._law = LimitedLaw(parameters.law, parameters.heading_rate_max, parameters.time_step)
-        self._wind = wind
-        self.reference = PlacedReference(reference)
-        self.ahead = reference
-        # The reference moves once, ahead of time; here it waits until that time has come.
-        self._until_ahead: deque[_Instant] = deque()
-        steps_ahead = round(parameters.lag / parameters.time_step)
-        for _ in range(steps_ahead):
-            self._move_ahead()
-        self._lag = steps_ahead * parameters.time_step
+        self.reference = reference
         self.heading_rate_demand = 0.0
         self.heading_rate_command = 0.0
         self.saturated = False
@@ -132,6 +89,60 @@ class Tracker(Generic[AnyReference]):
         ------
         LawError : the law cannot be called, or returned no number
         """
+        raise NotImplementedError
+
+
+AnyReference = TypeVar("AnyReference", bound=Reference)
+
+
+class Tracker(ReferenceTracker, Generic[AnyReference]):
+    """Tracks a reference that moves by itself.
+
+    Preview: a vehicle that answers ``lag`` seconds late is steered by the law's demand at that
+    later time. The reference then is known in advance. The vehicle's motion until then follows from
+    its heading rate, which goes from the measured value to the last command.
+
+    Parameters
+    ----------
+    parameters : of the tracking
+    reference : at time 0; from then on the tracker moves it
+    wind : motion whose wind the law gets; none for still air
+
+    Attributes
+    ----------
+    ahead : the reference point at the end of the preview; it is the one that may be steered
+
+    Further attributes are those of ``ReferenceTracker``.
+    """
+
+    def __init__(
+        self,
+        parameters: TrackingParameters,
+        reference: AnyReference,
+        wind: AirMotion | None = None,
+    ) -> None:
+        now = PlacedReference(
+            reference.speed,
+            reference.north,
+            reference.east,
+            reference.course,
+            reference.heading_rate,
+        )
+        super().__init__(parameters, now)
+        self.ahead = reference
+        self._wind = wind
+        self._air = STILL_AIR
+        # The reference moves once, ahead of time; here it waits until that time has come.
+        self._until_ahead: deque[_Instant] = deque()
+        steps_ahead = round(parameters.lag / parameters.time_step)
+        for _ in range(steps_ahead):
+            self._move_ahead()
+        self._lag = steps_ahead * parameters.time_step
+
+    def step(
+        self, north: float, east: float, course: float, speed: float, heading_rate: float
+    ) -> float:
+        """Return the heading rate to command [rad/s]; see ``ReferenceTracker``."""
         if self._lag > 0.0:
             last = self.heading_rate_command
             north, east, course = lag_ahead(
@@ -139,16 +150,23 @@ class Tracker(Generic[AnyReference]):
             )
             heading_rate = last
         own = Motion(north, east, course, speed, heading_rate)
+        air = self._air
         wind = self._wind
-        air = STILL_AIR if wind is None else Air(wind.wind_north, wind.wind_east)
+        if wind is not None and (
+            wind.wind_north != air.wind_north or wind.wind_east != air.wind_east
+        ):
+            self._air = air = Air(wind.wind_north, wind.wind_east)
         demand, command = self._law.demand(self.ahead, own, air)
         self.heading_rate_demand = demand
         self.heading_rate_command = command
         self.saturated = command != demand
         self._move_ahead()
-        self.reference.place(self._until_ahead.popleft())
+        now = self.reference
+        now.north, now.east, now.course, now.heading_rate = self._until_ahead.popleft()
         return command
 
     def _move_ahead(self) -> None:
-        self.ahead.step()
-        self._until_ahead.append(_instant(self.ahead))
+        ahead = self.ahead
+        ahead.step()
+        instant = _Instant(ahead.north, ahead.east, ahead.course, ahead.heading_rate)
+        self._until_ahead.append(instant)

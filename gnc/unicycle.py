@@ -8,8 +8,7 @@ _GAUSS = ((0.5 - _HALF_SPAN, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.5 + _HALF_SPAN, 
 """Nodes and weights of the three-point rule on 0 to 1."""
 
 _PIECES_MAX = 200
-"""Pieces of a move at most. A lag for which these are too long is over before it moves the vehicle.
-"""
+"""Largest number of pieces of a move: a lag too short for them moves the vehicle by nothing."""
 
 
 class UnicycleState(NamedTuple):

@@ -1,3 +1,1 @@
-"""Stability and bounds of the steering laws: Lyapunov functions, bounds on commands, ensembles of
-trajectories.
-"""
+"""Bounds on the commands of the steering laws, and ensembles of trajectories."""

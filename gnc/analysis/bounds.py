@@ -8,7 +8,6 @@ import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -81,7 +80,11 @@ def heading_rate_bound(
         steering_max=(steering_max, "rad/s"),
         tolerance=(tolerance, "of the bound"),
     )
-    _check_heading_rate(reference_heading_rate_max)
+    if not 0.0 <= reference_heading_rate_max < math.inf:
+        raise InfeasibleError(
+            f"reference_heading_rate_max is {reference_heading_rate_max:g} rad/s; it must be finite"
+            " and at least 0"
+        )
     sigma = _sigma(parameters)
     turn_at_reference = speed / parameters.radius
 
@@ -171,10 +174,36 @@ def fastest_within(
             f" omega_max, {limit:g} rad/s but for tolerances, or no look-ahead bounds the command:"
             " lower it, to leave more of omega_max in reserve"
         )
-    task = _Task(speed, limit, reference_heading_rate_max, distance_from, distance_to, gain)
+    turning = reference_heading_rate_max
+    # With epsilon = 1/(4 sigma^2 R) the time has a minimum over R, which is this over sigma: a
+    # shorter R would only raise epsilon.
+    quickest = math.sqrt(
+        (distance_from**2 - distance_to**2) / (8.0 * math.log(distance_from / distance_to))
+    )
+
+    def time(parameters: LookAhead, steering_max: float) -> float:
+        return convergence_time(
+            parameters,
+            speed=speed,
+            distance_from=distance_from,
+            distance_to=distance_to,
+            gain=gain,
+            steering_max=steering_max,
+        )
+
+    def design(fractions: _Array, least_radius: _LeastRadius) -> tuple[LookAhead, float]:
+        """Return look-ahead and steering_max at fractions of the largest sigma and steering_max."""
+        sigma_fraction, steering_fraction = fractions.tolist()
+        steering_max = steering_fraction * min(limit - turning, gain * math.pi)
+        room = limit - steering_max
+        sigma = sigma_fraction * min(1.0 - turning / room, _SIGMA_MAX)
+        radius = max(
+            least_radius(sigma, speed, turning, room), quickest / sigma, speed / (2.0 * turning)
+        )
+        return look_ahead(1.0 / (4.0 * sigma**2 * radius), radius), steering_max
 
     def objective(fractions: _Array) -> float:
-        return math.log(task.time(*task.design(fractions, _least_radius_head_on)))
+        return math.log(time(*design(fractions, _least_radius_head_on)))
 
     start = min((np.array([a, b]) for a in _FRACTIONS for b in _FRACTIONS), key=objective)
     found = minimize(objective, start, method="Nelder-Mead", bounds=Bounds(0.01, 0.99), tol=1e-4)
@@ -183,7 +212,7 @@ def fastest_within(
             f"the search for the fastest look-ahead did not converge: {found.message}; report these"
             " parameters"
         )
-    parameters, steering_max = task.design(found.x, _least_radius)
+    parameters, steering_max = design(found.x, _least_radius)
     return BoundedSteering(
         look_ahead=parameters,
         gain=gain,
@@ -194,7 +223,7 @@ def fastest_within(
             reference_heading_rate_max=reference_heading_rate_max,
             steering_max=steering_max,
         ),
-        convergence_time=task.time(parameters, steering_max),
+        convergence_time=time(parameters, steering_max),
     )
 
 
@@ -203,54 +232,6 @@ _FRACTIONS = np.linspace(0.05, 0.95, 19)
 
 _LeastRadius = Callable[[float, float, float, float], float]
 """From sigma, V, omega_r and the limit of omega_rho to the least R."""
-
-
-class _Task(NamedTuple):
-    """The arguments of ``fastest_within``; ``limit`` is omega_max less tolerances [rad/s]."""
-
-    speed: float
-    limit: float
-    reference_heading_rate_max: float
-    distance_from: float
-    distance_to: float
-    gain: float
-
-    def time(self, parameters: LookAhead, steering_max: float) -> float:
-        """Return the time of convergence [s]."""
-        return convergence_time(
-            parameters,
-            speed=self.speed,
-            distance_from=self.distance_from,
-            distance_to=self.distance_to,
-            gain=self.gain,
-            steering_max=steering_max,
-        )
-
-    def design(self, fractions: _Array, least_radius: _LeastRadius) -> tuple[LookAhead, float]:
-        """Return look-ahead and steering_max [rad/s] for fractions of their largest values.
-
-        Parameters
-        ----------
-        fractions : of the largest sigma and of the largest steering_max, between 0 and 1
-        least_radius : R by which omega_rho respects the limit
-        """
-        sigma_fraction, steering_fraction = fractions.tolist()
-        turning = self.reference_heading_rate_max
-        steering_max = steering_fraction * min(self.limit - turning, self.gain * math.pi)
-        room = self.limit - steering_max
-        sigma = sigma_fraction * min(1.0 - turning / room, _SIGMA_MAX)
-        # With epsilon = 1/(4 sigma^2 R) the time has a minimum over R, which is this over sigma: a
-        # shorter R would only raise epsilon.
-        quickest = math.sqrt(
-            (self.distance_from**2 - self.distance_to**2)
-            / (8.0 * math.log(self.distance_from / self.distance_to))
-        )
-        radius = max(
-            least_radius(sigma, self.speed, turning, room),
-            quickest / sigma,
-            self.speed / (2.0 * turning),
-        )
-        return look_ahead(1.0 / (4.0 * sigma**2 * radius), radius), steering_max
 
 
 def _least_radius(
@@ -398,14 +379,6 @@ def _check_positive(**quantities: tuple[float, str]) -> None:
     for name, (value, unit) in quantities.items():
         if not (math.isfinite(value) and value > 0.0):
             raise InfeasibleError(f"{name} is {value:g} {unit}; it must be finite and above 0")
-
-
-def _check_heading_rate(reference_heading_rate_max: float) -> None:
-    if not (math.isfinite(reference_heading_rate_max) and reference_heading_rate_max >= 0.0):
-        raise InfeasibleError(
-            f"reference_heading_rate_max is {reference_heading_rate_max:g} rad/s; it must be finite"
-            " and at least 0"
-        )
 
 
 def _check_distances(distance_from: float, distance_to: float) -> None:

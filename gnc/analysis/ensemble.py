@@ -12,7 +12,6 @@ import numpy.typing as npt
 
 from gnc.analysis.ensemble_motion import MOTIONS, RelativeMotion, Steering, Vehicle
 from gnc.analysis.turning_reference import Array, TurningReferences
-from gnc.errors import InfeasibleError
 
 DISTANCE_CONVERGED = 0.02
 """Distance within which a vehicle is on its reference [m]."""
@@ -120,34 +119,10 @@ def fly_ensemble(
     places : number of trajectories integrated at once; they start in the given order, and it is
         fastest with the longest ones first
     observe : called at the start and after every step
-
-    Raises
-    ------
-    InfeasibleError : starts do not match the references or are not finite, or a limit is not above
-        0
     """
-    start = np.array(to_reference, dtype=float)
-    chi = np.array(course, dtype=float)
-    count = len(references)
-    if start.shape != (2, count) or chi.shape != (count,):
-        raise InfeasibleError(
-            f"to_reference and course have shapes {start.shape} and {chi.shape}; with {count}"
-            f" references: (2, {count}), ({count},)"
-        )
-    if not (np.isfinite(start).all() and np.isfinite(chi).all()):
-        raise InfeasibleError("a start's distance or course is not finite; give numbers")
-    limit = np.broadcast_to(np.asarray(time_max, dtype=float), (count,))
-    if places < 1:
-        raise InfeasibleError(
-            f"places is {places}; it must be at least 1: 500 keep the processor busy"
-        )
-    if not (settling_band > 0.0 and (limit > 0.0).all() and np.isfinite(limit).all()):
-        raise InfeasibleError(
-            f"settling_band is {settling_band:g} m, time_max {limit.min():g} to {limit.max():g} s;"
-            " both must be finite and above 0"
-        )
     motion = MOTIONS[law](vehicle, references)
-    state = motion.start(start, chi)
+    state = motion.start(np.array(to_reference, dtype=float), np.array(course, dtype=float))
+    limit = np.broadcast_to(np.asarray(time_max, dtype=float), (len(references),))
     flight = _Integration(motion, state, limit, settling_band, tolerances or Tolerances(), observe)
     flight.start(places)
     while len(flight.index):

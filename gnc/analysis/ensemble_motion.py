@@ -115,6 +115,16 @@ class RelativeMotion(ABC):
             cos_r, sin_r, delta, z_north, z_east, np.sqrt(z_north * z_north + z_east * z_east)
         )
 
+    def _first_phi(self, to_reference: Array, course: Array) -> Array:
+        """Return phi at time 0, the course relative to that of z, between -pi and pi [rad]."""
+        geometry = self._geometry(np.zeros_like(course), to_reference)
+        cos_v, sin_v = np.cos(course), np.sin(course)
+        phi: Array = np.arctan2(
+            geometry.z_north * sin_v - geometry.z_east * cos_v,
+            geometry.z_north * cos_v + geometry.z_east * sin_v,
+        )
+        return phi
+
     def _position_rates(
         self, geometry: _Geometry, cos_phi: Array, sin_phi: Array, out: Array
     ) -> None:
@@ -141,16 +151,6 @@ class RelativeMotion(ABC):
         return turn
 
 
-def phi_of_courses(geometry: _Geometry, course: Array) -> Array:
-    """Return phi, the course relative to that of z, between -pi and pi [rad]."""
-    cos_v, sin_v = np.cos(course), np.sin(course)
-    phi: Array = np.arctan2(
-        geometry.z_north * sin_v - geometry.z_east * cos_v,
-        geometry.z_north * cos_v + geometry.z_east * sin_v,
-    )
-    return phi
-
-
 class CascadeMotion(RelativeMotion):
     """Law (30) with h(phi) = gain phi within a bound; the states are d.
 
@@ -160,7 +160,7 @@ class CascadeMotion(RelativeMotion):
 
     def start(self, to_reference: Array, course: Array) -> Array:
         """Return the first state and remember phi."""
-        self._begin(phi_of_courses(self._geometry(np.zeros_like(course), to_reference), course))
+        self._begin(self._first_phi(to_reference, course))
         return to_reference.copy()
 
     def _begin(self, phi_0: Array) -> None:
@@ -216,7 +216,7 @@ class LyapunovMotion(RelativeMotion):
 
     def start(self, to_reference: Array, course: Array) -> Array:
         """Return the first state and remember phi."""
-        phi_0 = phi_of_courses(self._geometry(np.zeros_like(course), to_reference), course)
+        phi_0 = self._first_phi(to_reference, course)
         self._sine_0 = np.sin(0.5 * phi_0)
         self._cosine_0_squared = np.cos(0.5 * phi_0) ** 2
         return np.vstack([to_reference, np.zeros_like(course)])
@@ -277,8 +277,7 @@ class CascadeCutMotion(RelativeMotion):
 
     def start(self, to_reference: Array, course: Array) -> Array:
         """Return the first state."""
-        geometry = self._geometry(np.zeros_like(course), to_reference)
-        return np.vstack([to_reference, phi_of_courses(geometry, course)])
+        return np.vstack([to_reference, self._first_phi(to_reference, course)])
 
     def take(self, which: npt.NDArray[Any]) -> Self:
         """Return the motion of an index or mask ``which``."""

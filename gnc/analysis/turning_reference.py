@@ -6,7 +6,6 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import j0
 
-from gnc.errors import InfeasibleError
 from gnc.paper import LookAhead
 
 Array = npt.NDArray[np.float64]
@@ -26,10 +25,6 @@ class TurningReferences:
     rate : c, shape (n,) [rad/s]
     amplitude, frequency, phase : a_k [rad/s], w_k [rad/s] and p_k [rad], shape (terms, n);
         frequencies above 0
-
-    Raises
-    ------
-    InfeasibleError : shapes do not match, a value is not finite, or a frequency is not above 0
     """
 
     def __init__(
@@ -46,42 +41,11 @@ class TurningReferences:
         self.amplitude: Array = np.array(amplitude, dtype=float)
         self.frequency: Array = np.array(frequency, dtype=float)
         self.phase: Array = np.array(phase, dtype=float)
-        shape = (len(self.amplitude), *self.course.shape)
-        for name, values, expected in (
-            ("rate", self.rate, shape[1:]),
-            ("amplitude", self.amplitude, shape),
-            ("frequency", self.frequency, shape),
-            ("phase", self.phase, shape),
-        ):
-            if values.shape != expected:
-                raise InfeasibleError(
-                    f"{name} of the references has shape {values.shape}; for these courses it is"
-                    f" {expected}"
-                )
-        if not all(
-            np.isfinite(values).all()
-            for values in (self.course, self.rate, self.amplitude, self.frequency, self.phase)
-        ):
-            raise InfeasibleError(
-                "a reference's course, rate, amplitude, frequency or phase is not finite; give"
-                " numbers"
-            )
-        if not (self.frequency > 0.0).all():
-            raise InfeasibleError(
-                f"frequency of a reference is {self.frequency.min():g} rad/s; it must be above 0:"
-                " leave it out"
-            )
         self.swing: Array = self.amplitude / self.frequency
         self.mean_course: Array = self.course + (self.swing * np.cos(self.phase)).sum(axis=0)
 
     def __len__(self) -> int:
         return len(self.course)
-
-    @property
-    def heading_rate_bound(self) -> Array:
-        """|c| + sum |a_k|, a bound of |omega_r|, shape (n,) [rad/s]."""
-        bound: Array = np.abs(self.rate) + np.abs(self.amplitude).sum(axis=0)
-        return bound
 
     @property
     def anisotropy(self) -> Array:
@@ -143,15 +107,7 @@ def averaged_settling_time(
     references : of n vehicles
     to_reference : d at the start, north and east, shape (2, n) [m]
     distance : at the end, above 0 [m]
-
-    Raises
-    ------
-    InfeasibleError : ``distance`` is not above 0
     """
-    if not distance > 0.0:
-        raise InfeasibleError(
-            f"distance is {distance:g} m; it must be above 0: exponential decay takes forever to 0"
-        )
     north, east = np.asarray(to_reference, dtype=float)
     cos_m, sin_m = np.cos(references.mean_course), np.sin(references.mean_course)
     anisotropy = references.anisotropy

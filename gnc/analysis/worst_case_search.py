@@ -6,7 +6,6 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import minimize
 
-from gnc.errors import InfeasibleError
 from gnc.paper import LookAhead
 
 _Array = npt.NDArray[np.float64]
@@ -58,13 +57,7 @@ def largest_heading_rate(
     steering_max : largest |h(phi)| [rad/s]
     samples : number of random states, at least 1
     generator : of the states
-
-    Raises
-    ------
-    InfeasibleError : no samples
     """
-    if samples < 1:
-        raise InfeasibleError(f"samples is {samples}; at least 1 state is needed to search from")
     states = _random_states(parameters, samples, generator)
     turns = generator.choice([-reference_heading_rate_max, reference_heading_rate_max], samples)
 

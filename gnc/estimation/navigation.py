@@ -13,12 +13,10 @@ NOISE_DEVIATIONS = 3.0
 """Standard deviations of noise that are allowed for [-]."""
 
 _SPEED_MIN = 1.0
-"""Least speed in the ratio of airspeed to speed over the mean air [m/s]: no vehicle flies as
-slowly.
-"""
+"""Least speed in the ratio of airspeed to speed over the mean air [m/s]."""
 
 
-class Motion(NamedTuple):
+class MeasuredMotion(NamedTuple):
     """A vehicle's motion.
 
     Attributes
@@ -71,6 +69,7 @@ class SensorReadings(NamedTuple):
     servo_error: float
 
 
+@dataclass(kw_only=True, eq=False)
 class AirMotion:
     """The part of a vehicle's motion that a turn away is predicted from.
 
@@ -85,28 +84,15 @@ class AirMotion:
     speed : of the motion through the mean air [m/s]
     """
 
-    def __init__(
-        self,
-        *,
-        ground_north: float,
-        ground_east: float,
-        course: float,
-        heading_rate: float = 0.0,
-        wind_north: float = 0.0,
-        wind_east: float = 0.0,
-        wind_error: float = 0.0,
-        lost: float = 0.0,
-        speed: float = 0.0,
-    ) -> None:
-        self.ground_north = ground_north
-        self.ground_east = ground_east
-        self.course = course
-        self.heading_rate = heading_rate
-        self.wind_north = wind_north
-        self.wind_east = wind_east
-        self.wind_error = wind_error
-        self.lost = lost
-        self.speed = speed
+    ground_north: float
+    ground_east: float
+    course: float
+    heading_rate: float = 0.0
+    wind_north: float = 0.0
+    wind_east: float = 0.0
+    wind_error: float = 0.0
+    lost: float = 0.0
+    speed: float = 0.0
 
 
 class OwnMotion(AirMotion):
@@ -139,7 +125,7 @@ class OwnMotion(AirMotion):
 class TrueNavigation(OwnMotion):
     """The exact motion, in still air."""
 
-    def update(self, measurement: Motion) -> None:
+    def update(self, measurement: MeasuredMotion) -> None:
         """Take in the motion now."""
         north, east, v_north, v_east, self.heading_rate = measurement
         self.north = self.ground_north = north
@@ -272,7 +258,7 @@ class EstimatedNavigation(OwnMotion):
     """The motion estimated from sensors, by dead reckoning while satellite navigation is lost.
 
     An autopilot turns against the gusty air, the guidance over the mean air:
-    ``gnc.airspeed.pace_hold.air_turn``.
+    ``gnc.airspeed.air_turn``.
 
     Parameters
     ----------
@@ -322,7 +308,7 @@ class EstimatedNavigation(OwnMotion):
         self.course = math.atan2(v_east, v_north)
         self.speed = math.hypot(v_north, v_east)
         self.airspeed = airspeed
-        self.air_ratio = _at_least(airspeed, _SPEED_MIN) / _at_least(self.speed, _SPEED_MIN)
+        self.air_ratio = max(_SPEED_MIN, airspeed) / max(_SPEED_MIN, self.speed)
         self.heading_rate = heading_rate * self.air_ratio
 
     def _measure_wind(self, airspeed: float, air_course: float) -> None:
@@ -335,19 +321,15 @@ class EstimatedNavigation(OwnMotion):
         self.wind_east = wind.east
         self._step_north = p.time_step * wind.north
         self._step_east = p.time_step * wind.east
-        self.wind_error = self._error_of_few_measurements(wind.sigma)
-
-    def _error_of_few_measurements(self, sigma: float) -> float:
-        """Return the error of the wind beyond its final one, by its filter's deviation [m/s]."""
-        p = self._parameters
+        # The share of the first measurement in the estimate falls with the variance, as in a mean.
+        sigma = wind.sigma
         variance = sigma**2
         if not self._first_variance:
             self._first_variance = variance
-        # The share of the first measurement in the estimate falls with the variance, as in a mean.
-        error = p.first_wind_error * variance / self._first_variance
+        self.wind_error = p.first_wind_error * variance / self._first_variance
         if p.wind_noise > p.wind_error:
-            error += max(0.0, min(p.wind_noise, NOISE_DEVIATIONS * sigma) - p.wind_error)
-        return error
+            beyond = min(p.wind_noise, NOISE_DEVIATIONS * sigma) - p.wind_error
+            self.wind_error += max(0.0, beyond)
 
     def _reckon(self, airspeed: float, air_course: float) -> None:
         time_step = self._parameters.time_step
@@ -368,7 +350,3 @@ class EstimatedNavigation(OwnMotion):
         i = min(max(bisect.bisect(banks, roll), 1), len(banks) - 1)
         share = (roll - banks[i - 1]) / (banks[i] - banks[i - 1])
         return offsets[i - 1] + share * (offsets[i] - offsets[i - 1])
-
-
-def _at_least(value: float, least: float) -> float:
-    return value if value > least else least

@@ -26,9 +26,7 @@ REPORTED_SCATTER = 0.03
 """Scatter of the estimated acceleration of a steady vessel whose reports have errors [m/s^2]."""
 
 _EXACT = 1e-3
-"""Standard deviation of a position below which its error grows with that of the velocity at once
-[m].
-"""
+"""Deviation of a position below which its error grows with the velocity's at once [m]."""
 
 _SHORT = 0.005
 """Time over the filter's memory below which the leading terms of its process noise are used [-]."""
@@ -194,8 +192,20 @@ class VesselFilter:
             self.north = self._predicted(self.north, ahead)
             self.east = self._predicted(self.east, ahead)
             self.covariance = self._predicted_covariance(ahead)
-            self._correct_position(report.north, report.east)
-            self._correct_velocity(report.velocity_north, report.velocity_east)
+            p = self.covariance
+            self._correct(
+                AxisState(p.pp, p.pv, p.pa),
+                p.pp + self._position_variance,
+                report.north - self.north.position,
+                report.east - self.east.position,
+            )
+            p = self.covariance
+            self._correct(
+                AxisState(p.pv, p.vv, p.va),
+                p.vv + self._velocity_variance,
+                report.velocity_north - self.north.velocity,
+                report.velocity_east - self.east.velocity,
+            )
         self.time = report.time
 
     def at(self, time: float) -> VesselMotion:
@@ -254,20 +264,6 @@ class VesselFilter:
             va=d * va + q.va,
             aa=d * d * p.aa + q.aa,
         )
-
-    def _correct_position(self, north: float, east: float) -> None:
-        p = self.covariance
-        total = p.pp + self._position_variance
-        off_north = north - self.north.position
-        off_east = east - self.east.position
-        self._correct(AxisState(p.pp, p.pv, p.pa), total, off_north, off_east)
-
-    def _correct_velocity(self, north: float, east: float) -> None:
-        p = self.covariance
-        total = p.vv + self._velocity_variance
-        off_north = north - self.north.velocity
-        off_east = east - self.east.velocity
-        self._correct(AxisState(p.pv, p.vv, p.va), total, off_north, off_east)
 
     def _correct(self, column: AxisState, total: float, off_north: float, off_east: float) -> None:
         """Correct both axes by one measured coordinate.
@@ -545,34 +541,28 @@ class ReportedTarget(TargetMotion):
 
     def update(self, time: float, planning: bool) -> None:
         """Move on to ``time`` [s]; renew the estimate where the mission is ``planning``."""
-        if planning:
-            self._renew(time)
-        else:
+        if not planning:
             self.north += self._time_step * self.velocity_north
             self.east += self._time_step * self.velocity_east
             self.velocity_north += self._gain_north
             self.velocity_east += self._gain_east
-
-    def age(self, time: float) -> float:
-        """Return the age of the last report [s] at ``time`` [s]."""
-        return time - self.vessel.time
-
-    def _renew(self, time: float) -> None:
+            return
         self.tubes = self._reach.tubes(time)
         vessel = self.vessel.at(time)
         self.north = vessel.north
         self.east = vessel.east
         self.velocity_north = vessel.velocity_north
         self.velocity_east = vessel.velocity_east
-        share = self._manoeuvre_share(vessel)
+        # The share of the acceleration that is no scatter of reports.
+        share = 1.0
+        if not self.vessel.exact:
+            size = math.hypot(vessel.acceleration_north, vessel.acceleration_east)
+            share = 1.0 - REPORTED_SCATTER / size if size > REPORTED_SCATTER else 0.0
         self.acceleration_north = share * vessel.acceleration_north
         self.acceleration_east = share * vessel.acceleration_east
         self._gain_north = self._time_step * vessel.acceleration_north
         self._gain_east = self._time_step * vessel.acceleration_east
 
-    def _manoeuvre_share(self, vessel: VesselMotion) -> float:
-        """Return the share of the estimated acceleration that is no scatter of reports [-]."""
-        if self.vessel.exact:
-            return 1.0
-        size = math.hypot(vessel.acceleration_north, vessel.acceleration_east)
-        return 1.0 - REPORTED_SCATTER / size if size > REPORTED_SCATTER else 0.0
+    def age(self, time: float) -> float:
+        """Return the age of the last report [s] at ``time`` [s]."""
+        return time - self.vessel.time

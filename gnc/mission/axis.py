@@ -27,9 +27,7 @@ _HORIZON = 8
 """Number of passes that the search plans ahead [-]."""
 
 _KNOWN = 0.3
-"""Deviation of the height over the spread of a pass [-], below which nothing is gained by flying
-anywhere else.
-"""
+"""Deviation of the height over the spread of a pass [-], below which the search stays there."""
 
 _PROBE_REACH = 1.6
 """Farthest that a height beside the estimated one is flown, over its deviation [-]."""
@@ -38,9 +36,7 @@ _PROBES = np.linspace(0.0, 1.0, 9)
 """Heights that are weighed, from the lowest to the highest probe [-]."""
 
 _PASSES_INFORMED = 3.0
-"""Passes over which the information of this one counts [-]: after those the later ones have given
-as much.
-"""
+"""Passes over which the information of one counts [-]: later ones have given as much."""
 
 _RUNG = 15.0
 """Between the heights of a ladder [m]."""
@@ -52,9 +48,7 @@ _MODES = {
 }
 
 _BEARING_TIME = 15.0
-"""Time constant with which the centre of oscillation follows the estimated bearing [s]: it is swung
-round the vessel gently.
-"""
+"""Time constant with which the centre of oscillation follows the estimated bearing [s]."""
 
 _NOTED = 0.75
 """Time between readings beyond which the estimator gets a position in between [s]."""
@@ -63,9 +57,7 @@ _SILENT = 2.0
 """Time without readings beyond which the estimator is informed of it [s]."""
 
 _DECIDED = 10.0
-"""Least time for which a chosen height is held once the plume is found [s]: what is known of it
-changes more slowly.
-"""
+"""Least time for which a chosen height is held once the plume is found [s]."""
 
 _PASS_TIME = 8.0
 """Time between passes that is assumed before the first two [s]."""
@@ -173,8 +165,13 @@ class AxisInputs(NamedTuple):
         return self.centre.speed_ratio * self.speed
 
 
-class ExpectedAxis(Protocol):
+class ExpectedAxis:
     """Where the axis is expected during one flight.
+
+    Parameters
+    ----------
+    parameters : how it is known
+    mode : what is done while the reference is tracked, at first
 
     Attributes
     ----------
@@ -186,25 +183,37 @@ class ExpectedAxis(Protocol):
     mode : what is done while the reference is tracked
     """
 
-    climb: Climb
-    flown: float
-    demanded: float
-    bearing: float
-    mode: Mode
+    def __init__(self, parameters: "AxisParameters", mode: Mode) -> None:
+        self._height = parameters.height
+        self.climb = parameters.climb
+        self.flown = math.nan
+        self.demanded = parameters.altitude
+        self.bearing = 0.0
+        self.mode = mode
 
     def plan(self, time: float, inputs: AxisInputs, *, tracking: bool) -> None:
         """Update the expectation; ``tracking`` says whether the reference is tracked."""
+        raise NotImplementedError
 
 
-class AxisParameters(Protocol):
-    """How a plume's axis is known."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AxisParameters:
+    """How a plume's axis is known.
 
-    @property
-    def altitude(self) -> float:
-        """Altitude at the start [m]."""
+    Attributes
+    ----------
+    height : of the axis as it is predicted, and lowest and highest altitude that are flown
+    altitude : at the start [m]
+    climb : how the altitude follows
+    """
+
+    height: AxisHeight
+    altitude: float
+    climb: Climb
 
     def begin(self) -> ExpectedAxis:
         """Return the axis at the beginning of a flight."""
+        raise NotImplementedError
 
 
 def trail(own: OwnMotion, vessel: TargetMotion) -> float:
@@ -222,42 +231,26 @@ def apparent_wind(own: OwnMotion, vessel: TargetMotion) -> tuple[float, float]:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PredictedPlume:
-    """A plume whose axis is predicted from wind, vessel and the rise of exhaust, or given.
-
-    Attributes
-    ----------
-    height : of the axis, and lowest and highest altitude that are flown
-    altitude : at the start [m]
-    climb : how the altitude follows
-    """
-
-    height: AxisHeight
-    altitude: float
-    climb: Climb = Climb(time=20.0, gradient=0.05)
+class PredictedPlume(AxisParameters):
+    """A plume whose axis is predicted from wind, vessel and the rise of exhaust, or given."""
 
     def begin(self) -> "PredictedAxis":
         """Return the axis at the beginning of a flight."""
         return PredictedAxis(self)
 
 
-class PredictedAxis:
-    """The predicted axis, or the true one once it is given; see ``ExpectedAxis``."""
+class PredictedAxis(ExpectedAxis):
+    """The predicted axis, or the true one once it is given."""
 
     def __init__(self, parameters: PredictedPlume) -> None:
-        self._height = parameters.height
-        self.climb = parameters.climb
-        self.demanded = parameters.altitude
-        self.flown = math.nan
-        self.bearing = 0.0
-        self.mode = Mode.TRACKING
+        super().__init__(parameters, Mode.TRACKING)
         self._true_axis: tuple[float, float] | None = None
 
     def set_true_axis(self, height: float, course: float) -> None:
         """Set the axis at the centre of oscillation: height above the sea [m], course [rad]."""
         self._true_axis = height, course
 
-    def plan(self, time: float, inputs: AxisInputs, *, tracking: bool) -> None:  # noqa: ARG002 - of the Protocol
+    def plan(self, time: float, inputs: AxisInputs, *, tracking: bool) -> None:  # noqa: ARG002 - of the base
         """Demand the given height, or the one predicted at the centre, within the limits."""
         if self._true_axis is None:
             self.demanded = self._height.at(inputs.centre.distance, inputs.apparent_wind)
@@ -378,34 +371,21 @@ class LadderSearch:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SearchedPlume:
-    """A plume that is searched for.
+class SearchedPlume(AxisParameters):
+    """A plume that is searched for; on the way the predicted height is flown.
 
     Attributes
     ----------
-    height : of the axis as it is predicted, flown at on the way
-    altitude : at the start [m]
-    climb : how the altitude follows
+    height, altitude, climb : same as ``AxisParameters``
     expected : of ship and sensor
     climb_rate : at which the vehicle climbs and sinks [m/s]
     ladder : whether a ladder of heights is flown until it is found, instead of the most informative
         height
     """
 
-    height: AxisHeight
-    altitude: float
-    climb: Climb
     expected: Expectation
     climb_rate: float
     ladder: bool = False
-
-    def search(self) -> Search:
-        """Return what decides where to cross next, at the beginning of a flight."""
-        lowest = self.expected.lowest
-        highest = self.expected.highest
-        if self.ladder:
-            return LadderSearch(lowest=lowest, highest=highest)
-        return HeightSearch(lowest=lowest, highest=highest, climb_rate=self.climb_rate)
 
     def begin(self) -> "SearchedAxis":
         """Return the axis at the beginning of a flight."""
@@ -434,14 +414,7 @@ class PlumeEstimate:
 
 
 class _Fix(NamedTuple):
-    """Where the vehicle was.
-
-    Attributes
-    ----------
-    time : [s]
-    north, east : of the vessel [m]
-    altitude : above the sea [m]
-    """
+    """Where the vehicle was at a time [s], north and east of the vessel and above the sea [m]."""
 
     time: float
     north: float
@@ -449,8 +422,8 @@ class _Fix(NamedTuple):
     altitude: float
 
 
-class SearchedAxis:
-    """The axis as it is estimated from readings once the reference is tracked; ``ExpectedAxis``.
+class SearchedAxis(ExpectedAxis):
+    """The axis as it is estimated from readings once the reference is tracked.
 
     Attributes
     ----------
@@ -459,15 +432,19 @@ class SearchedAxis:
     """
 
     def __init__(self, parameters: SearchedPlume) -> None:
-        self._parameters = parameters
-        self.climb = parameters.climb
-        self.demanded = parameters.altitude
-        self.flown = math.nan
-        self.bearing = 0.0
-        self.mode = Mode.SEARCHING
+        super().__init__(parameters, Mode.SEARCHING)
+        self._expected = expected = parameters.expected
         self.estimate = PlumeEstimate()
         self.sensor = SensorState.WORKING
-        self._search = parameters.search()
+        self._search: Search
+        if parameters.ladder:
+            self._search = LadderSearch(lowest=expected.lowest, highest=expected.highest)
+        else:
+            self._search = HeightSearch(
+                lowest=expected.lowest,
+                highest=expected.highest,
+                climb_rate=parameters.climb_rate,
+            )
         self._estimator: PlumeEstimator | None = None
         self._inputs: AxisInputs | None = None
         self._fixes: list[_Fix] = []
@@ -515,8 +492,7 @@ class SearchedAxis:
         self._inputs = inputs
         if self._estimator is None:
             if not tracking:
-                height = self._parameters.height
-                self.demanded = height.at(inputs.centre.distance, inputs.apparent_wind)
+                self.demanded = self._height.at(inputs.centre.distance, inputs.apparent_wind)
                 return
             self._estimator = self._begin_search(time, inputs)
         self.bearing += (self._bearing_demand - self.bearing) * min(
@@ -531,7 +507,7 @@ class SearchedAxis:
     def _begin_search(self, time: float, inputs: AxisInputs) -> PlumeEstimator:
         # The wind at the vehicle's height: how it changes with height is not known on board.
         prior = expected_plume(
-            self._parameters.expected,
+            self._expected,
             distance=inputs.centre.distance,
             apparent_wind=inputs.apparent_wind,
             wind_speed=math.hypot(inputs.own.wind_north, inputs.own.wind_east),
@@ -548,7 +524,11 @@ class SearchedAxis:
     ) -> None:
         """Give the estimator the place at a time [s], and the reading there [ppm]."""
         fix = _fix_at(self._fixes, at)
-        along, across = _from_predicted_axis(inputs, fix.north, fix.east)
+        wind_north, wind_east = apparent_wind(inputs.own, inputs.vessel)
+        speed = math.hypot(wind_north, wind_east) or 1.0
+        # From the vessel along the predicted axis, and to its right.
+        along = (fix.north * wind_north + fix.east * wind_east) / speed
+        across = (fix.east * wind_north - fix.north * wind_east) / speed
         if at > self._last_note:
             estimator.predict(at - self._last_note)
             self._last_note = at
@@ -580,15 +560,6 @@ class SearchedAxis:
             spread_across=found.sigma_y,
             innovation=found.innovation,
         )
-
-
-def _from_predicted_axis(inputs: AxisInputs, north: float, east: float) -> tuple[float, float]:
-    """Return a place relative to the vessel as distances along the predicted axis and right [m]."""
-    wind_north, wind_east = apparent_wind(inputs.own, inputs.vessel)
-    speed = math.hypot(wind_north, wind_east) or 1.0
-    along = (north * wind_north + east * wind_east) / speed
-    across = (east * wind_north - north * wind_east) / speed
-    return along, across
 
 
 def _fix_at(fixes: Sequence[_Fix], time: float) -> _Fix:

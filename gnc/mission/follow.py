@@ -16,9 +16,7 @@ from gnc.reference.steered import SteeredReference
 from gnc.tracker import Tracker, TrackingParameters
 
 MANOEUVRE_RANGE = 200.0
-"""Distance that the orbit is moved off per acceleration of the vessel [s^2]: the centre follows a
-manoeuvre late.
-"""
+"""Distance that the orbit is moved off per acceleration of the vessel [s^2]: the centre lags."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,18 +77,8 @@ class PlumeFollowing:
         self._parameters = parameters
         self._tracking_parameters = tracking
         self._speed = parameters.centre.speed
-        self._approach = Approach(
-            parameters.approach,
-            speed=self._speed,
-            heading_rate_max=tracking.heading_rate_max,
-            lag=tracking.lag,
-            time_step=tracking.time_step,
-        )
-        self._egress = Egress(
-            heading_rate_max=tracking.heading_rate_max,
-            lag=tracking.lag,
-            glide_airspeed=parameters.glide_airspeed,
-        )
+        self._approach = Approach(parameters.approach, tracking, self._speed)
+        self._egress = Egress(tracking, parameters.glide_airspeed)
         self.tracker: Tracker[SteeredReference]
         self._reference: SteeredReference
         self.orbit: OrbitStatus | None = None

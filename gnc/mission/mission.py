@@ -6,6 +6,7 @@ from typing import NamedTuple, Protocol
 from gnc.estimation.health import Fault
 from gnc.estimation.navigation import OwnMotion
 from gnc.estimation.vessel import TargetMotion
+from gnc.tracker import ReferenceTracker
 
 
 class Mode(Enum):
@@ -37,9 +38,7 @@ for _i, _mode in enumerate(Mode):
     _mode.number = _i
 
 LOST = (Mode.GLIDING, Mode.TERMINATING)
-"""Modes from which an aircraft does not come back: it glides, or flies away from the vessel, until
-it is down.
-"""
+"""Modes from which an aircraft does not come back: it leaves until it is down."""
 
 LEAVING = (*LOST, Mode.DEPARTING)
 """Modes in which the vehicle leaves for good, and tracks no reference."""
@@ -98,38 +97,6 @@ class OrbitStatus(NamedTuple):
     in_place: bool
 
 
-class ReferencePoint(Protocol):
-    """Where a reference is; attributes same as ``gnc.reference.reference.Reference``."""
-
-    north: float
-    east: float
-    course: float
-    heading_rate: float
-
-
-class Tracking(Protocol):
-    """What tracks the reference.
-
-    Attributes
-    ----------
-    reference : the reference point now
-    heading_rate_demand, heading_rate_command, saturated : same as ``gnc.tracker.Tracker``
-    """
-
-    heading_rate_demand: float
-    heading_rate_command: float
-    saturated: bool
-
-    @property
-    def reference(self) -> ReferencePoint:
-        """Reference point."""
-
-    def step(
-        self, north: float, east: float, course: float, speed: float, heading_rate: float
-    ) -> float:
-        """Return the heading rate to command [rad/s]; see ``gnc.tracker.Tracker``."""
-
-
 class Mission(Protocol):
     """Plans where the reference goes, and takes over where tracking would lead the wrong way.
 
@@ -142,7 +109,7 @@ class Mission(Protocol):
     orbit: OrbitStatus | None
 
     @property
-    def tracker(self) -> Tracking:
+    def tracker(self) -> ReferenceTracker:
         """Tracker of the reference."""
 
     def plan(

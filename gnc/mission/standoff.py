@@ -12,18 +12,16 @@ from dataclasses import dataclass
 from gnc.estimation.health import Fault
 from gnc.estimation.navigation import OwnMotion
 from gnc.estimation.vessel import TargetMotion
-from gnc.laws import Air, LimitedLaw, Motion
+from gnc.laws import Air, Motion
 from gnc.mission.axis import AxisHeight, Climb
 from gnc.mission.mission import LOST, TRACK, Centre, Mode, OrbitStatus, Order
 from gnc.mission.track import CLOSING_RATE, STANDOFF
 from gnc.mission.way import COURSE_GAIN, Egress
 from gnc.numeric import limited, wrap
 from gnc.path_laws.lgvf import heading_for
-from gnc.tracker import TrackingParameters
+from gnc.tracker import PlacedReference, ReferenceTracker, TrackingParameters
 from gnc.unicycle import lag_ahead
 from gnc.vectors import Vector, along, course_of, minus, norm, plus, scaled
-
-_CLOCKWISE = 1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,18 +52,11 @@ class StandoffParameters:
     climb: Climb
 
 
-@dataclass(slots=True)
-class CirclePoint:
-    """A reference on the circle, placed from outside; see ``gnc.reference.reference.Reference``."""
-
-    speed: float
-    north: float = 0.0
-    east: float = 0.0
-    course: float = 0.0
-    heading_rate: float = 0.0
+class CirclePoint(PlacedReference):
+    """A reference on the circle."""
 
     def place(self, centre: Vector, drift: Vector, vehicle: Vector, radius: float) -> None:
-        """Move to the point of the circle nearest to the vehicle.
+        """Move to the point of the circle, flown clockwise, nearest to the vehicle.
 
         Parameters
         ----------
@@ -76,18 +67,18 @@ class CirclePoint:
         """
         bearing = course_of(minus(vehicle, centre))
         self.north, self.east = plus(centre, along(bearing), radius)
-        course = bearing + _CLOCKWISE * 0.5 * math.pi
+        course = bearing + 0.5 * math.pi
         # On the circle the velocity relative to the centre turns by that speed over the radius.
         self.course, turn = heading_for(course, 1.0, self.speed, drift)
         relative = norm(minus(scaled(along(self.course), self.speed), drift))
-        self.heading_rate = turn * _CLOCKWISE * relative / radius
+        self.heading_rate = turn * relative / radius
 
     def step(self) -> None:
         """Do nothing: the point is placed anew at every step."""
 
 
-class CircleTracker:
-    """Steers to the circle, ahead of time by the vehicle's lag; see ``gnc.tracker.Tracker``.
+class CircleTracker(ReferenceTracker):
+    """Steers to the circle, ahead of time by the vehicle's lag.
 
     Parameters
     ----------
@@ -107,29 +98,21 @@ class CircleTracker:
         own: OwnMotion,
         target: TargetMotion,
     ) -> None:
+        self._point = CirclePoint(parameters.speed)
+        super().__init__(tracking, self._point)
         self._own = own
         self._target = target
         self._time_step = tracking.time_step
         self.radius = parameters.radius + STANDOFF * parameters.tracked
-        self._law = LimitedLaw(tracking.law, tracking.heading_rate_max, tracking.time_step)
         self._limit = tracking.heading_rate_max
         self._lag = tracking.lag
-        self.reference = CirclePoint(parameters.speed)
         self.ahead = CirclePoint(parameters.speed)
-        self.heading_rate_demand = 0.0
-        self.heading_rate_command = 0.0
-        self.saturated = False
 
     def step(
         self, north: float, east: float, course: float, speed: float, heading_rate: float
     ) -> float:
-        """Return the heading rate to command [rad/s]; parameters same as ``Tracker.step``.
-
-        Raises
-        ------
-        LawError : the law returned no number
-        """
-        own, target, reference, ahead = self._own, self._target, self.reference, self.ahead
+        """Return the heading rate to command [rad/s]; see ``ReferenceTracker``."""
+        own, target, reference, ahead = self._own, self._target, self._point, self.ahead
         drift = target.velocity_north - own.wind_north, target.velocity_east - own.wind_east
         if norm(drift) >= reference.speed:
             demand = COURSE_GAIN * self._limit * wrap(course_of(drift) - course)
@@ -169,11 +152,7 @@ class StandoffOrbit:
         self._tracking_parameters = tracking
         self._plan_time = parameters.plan_interval * tracking.time_step
         self._closing = CLOSING_RATE * parameters.speed * self._plan_time
-        self._egress = Egress(
-            heading_rate_max=tracking.heading_rate_max,
-            lag=tracking.lag,
-            glide_airspeed=parameters.glide_airspeed,
-        )
+        self._egress = Egress(tracking, parameters.glide_airspeed)
         self.tracker: CircleTracker
         self.orbit: OrbitStatus | None = None
         self._altitude = parameters.altitude

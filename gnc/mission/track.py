@@ -14,9 +14,7 @@ from gnc.reference.reference import ClosingReference, JoinedOrbit, Reference
 from gnc.tracker import Tracker, TrackingParameters
 
 STANDOFF = 2.0
-"""How far outside its place the orbit is joined, over the distance from the reference that counts
-as tracked [-].
-"""
+"""How far outside its place the orbit is joined, over the distance that counts as tracked [-]."""
 
 CLOSING_RATE = 0.2
 """Rate at which it then closes in, over V_r [-]."""
@@ -98,13 +96,7 @@ class DirectTracking:
             self._on_the_way = True
             self._standoff = STANDOFF * approach.tracked
             self._airspeed = approach.airspeed
-            self._approach = Approach(
-                approach,
-                speed=parameters.reference.speed,
-                heading_rate_max=tracking.heading_rate_max,
-                lag=tracking.lag,
-                time_step=tracking.time_step,
-            )
+            self._approach = Approach(approach, tracking, parameters.reference.speed)
         self._centre_error = self._standoff
         self.orbit: OrbitStatus | None = OrbitStatus(
             self._centre, self._centre_error, not self._on_the_way

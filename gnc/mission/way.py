@@ -8,19 +8,16 @@ from gnc.estimation.navigation import OwnMotion
 from gnc.estimation.vessel import TargetMotion
 from gnc.mission.mission import Mode, Order
 from gnc.numeric import limited, wrap
+from gnc.tracker import TrackingParameters
 
 COURSE_GAIN = 2.0
 """Heading rate per course error off the reference, in units of omega_max [-]."""
 
 LOST_TRACK = 3.0
-"""Distance from the reference at which it no longer counts as tracked, over that at which it does
-[-].
-"""
+"""Distance from the reference at which it is lost, over that at which it is tracked [-]."""
 
 _GLIDE_ALTITUDE = -1000.0
-"""Altitude that a gliding vehicle is commanded [m]: so far below that the autopilot holds its
-airspeed by pitch, and sinks.
-"""
+"""Altitude commanded in a glide [m]: so low that the autopilot holds its airspeed by pitch."""
 
 _BLOCKED_WITHIN = 0.97
 """Largest radius of the blocked area, over the centre's distance from the vessel [-]."""
@@ -42,9 +39,7 @@ turn it away all the time.
 """
 
 _EITHER_WAY = 0.95 * math.pi
-"""Course left to turn beyond which both turns are about as long [rad]: the vehicle keeps to the one
-that it flies, which is quicker.
-"""
+"""Course left to turn beyond which the vehicle keeps to the side that it turns to [rad]."""
 
 
 def course_ahead(own: OwnMotion, last_command: float, lag: float) -> float:
@@ -174,26 +169,19 @@ class Approach:
     Parameters
     ----------
     parameters : of the way
-    speed, heading_rate_max : V_r and omega_max [m/s, rad/s]
-    lag : of the vehicle's heading rate behind its command [s]
-    time_step : of the guidance [s]
+    tracking : of the reference that it leads to
+    speed : V_r [m/s]
     """
 
     def __init__(
-        self,
-        parameters: ApproachParameters,
-        *,
-        speed: float,
-        heading_rate_max: float,
-        lag: float,
-        time_step: float,
+        self, parameters: ApproachParameters, tracking: TrackingParameters, speed: float
     ) -> None:
         self._parameters = parameters
-        self._heading_rate_max = heading_rate_max
-        self._lag = lag
-        self._time_step = time_step
-        self._transit = Transit(speed / heading_rate_max)
-        self._quarter_turn = 0.5 * math.pi / heading_rate_max
+        self._heading_rate_max = tracking.heading_rate_max
+        self._lag = tracking.lag
+        self._time_step = tracking.time_step
+        self._transit = Transit(speed / tracking.heading_rate_max)
+        self._quarter_turn = 0.5 * math.pi / tracking.heading_rate_max
         self._join_distance = parameters.join_distance
         # Time for which the guard has blocked the turn through the course to the vessel [s].
         self._blocked_for = 0.0
@@ -308,14 +296,13 @@ class Egress:
 
     Parameters
     ----------
-    heading_rate_max : omega_max [rad/s]
-    lag : of the vehicle's heading rate behind its command [s]
+    tracking : of the reference that is left
     glide_airspeed : of a vehicle with a fault [m/s]
     """
 
-    def __init__(self, *, heading_rate_max: float, lag: float, glide_airspeed: float) -> None:
-        self._heading_rate_max = heading_rate_max
-        self._lag = lag
+    def __init__(self, tracking: TrackingParameters, glide_airspeed: float) -> None:
+        self._heading_rate_max = tracking.heading_rate_max
+        self._lag = tracking.lag
         self._glide_airspeed = glide_airspeed
         self._side = 0.0
 

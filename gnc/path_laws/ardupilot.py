@@ -248,20 +248,6 @@ class ArduPilotL1PointLaw(ArduPilotL1Law):
 # ---------------------------------------------------------------- On a circle
 
 
-@dataclass(frozen=True, slots=True)
-class Loiter:
-    """What the loiter commands.
-
-    Attributes
-    ----------
-    lateral_acceleration : positive to the right [m/s2]
-    circling : whether it is on the circle, and not capturing it
-    """
-
-    lateral_acceleration: float
-    circling: bool
-
-
 def update_loiter(
     position: Vector,
     velocity: Vector,
@@ -272,8 +258,8 @@ def update_loiter(
     *,
     period: float = PERIOD,
     damping: float = DAMPING,
-) -> Loiter:
-    """Return the command of the loiter.
+) -> float:
+    """Return the lateral acceleration of the loiter, positive to the right [m/s2].
 
     ArduPilot's indecision about a centre exactly behind the vehicle is left out: it would be the
     only memory of the law.
@@ -307,8 +293,8 @@ def update_loiter(
         correction = max(correction, 0.0)
     circle = side * (correction + around * around / max(0.5 * radius, radius + outside))
     if outside > 0.0 and side * capture < side * circle:
-        return Loiter(capture, circling=False)
-    return Loiter(circle, circling=True)
+        return capture
+    return circle
 
 
 @steering_law("ardupilot_loiter")
@@ -333,7 +319,7 @@ class ArduPilotLoiterLaw(PathLaw):
 
     def rate(self, motion: PathMotion) -> float:
         """Return the demanded heading rate [rad/s]."""
-        loiter = update_loiter(
+        acceleration = update_loiter(
             motion.position,
             self.velocity(motion),
             motion.heading,
@@ -341,7 +327,7 @@ class ArduPilotLoiterLaw(PathLaw):
             period=self.loiter_period_s,
             damping=self.loiter_damping,
         )
-        return turn_rate(loiter.lateral_acceleration, motion.airspeed)
+        return turn_rate(acceleration, motion.airspeed)
 
 
 @steering_law("ardupilot_loiter_relative")

@@ -17,16 +17,16 @@ from gnc.path_laws.path import PathLaw, PathMotion
 from gnc.vectors import Vector, along, course_of, cross, dot, minus, norm, plus, scaled
 
 
-class HeadingField(NamedTuple):
-    """A field of headings, at the place of the vehicle.
+class Field(NamedTuple):
+    """A field of courses, or of headings, at the place of the vehicle.
 
     Attributes
     ----------
-    heading : psi_d, through the air [rad]
+    course : chi_d over the ground, or psi_d through the air [rad]
     rate : its rate as the vehicle moves [rad/s]
     """
 
-    heading: float
+    course: float
     rate: float
 
 
@@ -51,7 +51,7 @@ def lgvf(
     side: int,
     centre_velocity: Vector,
     wind: Vector,
-) -> HeadingField:
+) -> Field:
     """Return the heading of the field, and its rate.
 
     Parameters
@@ -77,7 +77,7 @@ def lgvf(
     return heading_for(course, course_rate, airspeed, drift)
 
 
-def heading_for(course: float, course_rate: float, airspeed: float, drift: Vector) -> HeadingField:
+def heading_for(course: float, course_rate: float, airspeed: float, drift: Vector) -> Field:
     """Return the heading that gives a course relative to a centre, and its rate.
 
     It follows from the triangle of velocities.
@@ -102,12 +102,12 @@ def heading_for(course: float, course_rate: float, airspeed: float, drift: Vecto
     back = dot(direction, drift)
     speed = -back + math.sqrt(back * back + airspeed * airspeed - dot(drift, drift))
     heading = course_of(plus(scaled(direction, speed), drift))
-    return HeadingField(heading, course_rate * speed / (airspeed * math.cos(heading - course)))
+    return Field(heading, course_rate * speed / (airspeed * math.cos(heading - course)))
 
 
-def heading_rate(field: HeadingField, heading: float, gain: float) -> float:
+def heading_rate(field: Field, heading: float, gain: float) -> float:
     """Return the heading rate that turns a vehicle into the field [rad/s]; gain [1/s]."""
-    return field.rate + gain * wrap(field.heading - heading)
+    return field.rate + gain * wrap(field.course - heading)
 
 
 @steering_law("lgvf")
@@ -130,7 +130,7 @@ class LgvfLaw(PathLaw):
         A centre that is as fast as the vehicle is followed, not circled.
         """
         if norm(motion.wind) >= motion.airspeed:
-            field = HeadingField(course_of(motion.wind) + math.pi, 0.0)
+            field = Field(course_of(motion.wind) + math.pi, 0.0)
         else:
             field = lgvf(
                 motion.position,

@@ -75,7 +75,6 @@ def npfg(
     position: Vector,
     velocity: Vector,
     wind: Vector,
-    path_point: Vector,
     tangent: Vector,
     curvature: float,
     parameters: NpfgParameters = PX4_DEFAULTS,
@@ -84,9 +83,10 @@ def npfg(
 
     Parameters
     ----------
-    position, velocity : of the vehicle over the ground, north and east [m, m/s]
+    position, velocity : of the vehicle, from the nearest point of the path [m], and over the ground
+        [m/s]
     wind : velocity of the air [m/s]
-    path_point, tangent : nearest point of the path [m], and the path's unit tangent there
+    tangent : unit vector along the path at that point
     curvature : of the path there, positive to the right [1/m]
     parameters : of the law
     """
@@ -95,7 +95,7 @@ def npfg(
     airspeed = norm(air_velocity)
     ground_speed = norm(velocity)
     wind_speed = norm(wind)
-    error = cross(tangent, minus(position, path_point))
+    error = cross(tangent, position)
     track_feasible = bearing_feasibility(tangent, wind, airspeed)
     period = _adapted_period(
         p, abs(error), ground_speed, airspeed, wind_speed, curvature, track_feasible
@@ -253,7 +253,6 @@ class NpfgLaw(PathLaw):
             motion.position,
             motion.velocity,
             motion.wind,
-            (0.0, 0.0),
             motion.tangent,
             motion.curvature,
             parameters,

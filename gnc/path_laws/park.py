@@ -35,20 +35,19 @@ def park_l1(position: Vector, velocity: Vector, target: Vector, *, range_min: fl
     return 2.0 * dot(velocity, velocity) * math.sin(eta) / range_
 
 
-def point_on_line(position: Vector, origin: Vector, course: float, distance: float) -> Vector:
+def point_on_line(position: Vector, course: float, distance: float) -> Vector:
     """Return the point of a line that is ``distance`` ahead [m], or the nearest if it is farther.
 
     Parameters
     ----------
-    position : of the vehicle [m]
-    origin, course : a point of the line [m], and its course [rad]
+    position : of the vehicle, from a point of the line as the result is [m]
+    course : of the line [rad]
     distance : L1 [m]
     """
     tangent = along(course)
-    from_origin = minus(position, origin)
-    error = cross(tangent, from_origin)
+    error = cross(tangent, position)
     ahead = math.sqrt(max(distance * distance - error * error, 0.0))
-    return plus(origin, tangent, dot(tangent, from_origin) + ahead)
+    return plus((0.0, 0.0), tangent, dot(tangent, position) + ahead)
 
 
 def point_on_circle(
@@ -109,9 +108,7 @@ class ParkL1TangentLaw(ParkL1Law):
 
     def target(self, motion: PathMotion) -> Vector:
         """Return the point of the tangent at L1 from the vehicle, from the path's point [m]."""
-        return point_on_line(
-            motion.position, (0.0, 0.0), course_of(motion.tangent), self.l1_distance_m
-        )
+        return point_on_line(motion.position, course_of(motion.tangent), self.l1_distance_m)
 
 
 @steering_law("park_l1_ahead")

@@ -15,7 +15,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
-from gnc.laws import Air, Motion, check_parameters
+from gnc.laws import Air, CheckedLaw, Motion
 from gnc.reference.reference import Reference
 from gnc.vectors import Vector, along, cross, norm, plus, right_of, scaled
 
@@ -86,13 +86,10 @@ def path_motion(reference: Reference, own: Motion, air: Air) -> PathMotion:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PathLaw(ABC):
-    """Base of a steering law for paths. Its parameters are finite and above 0."""
+class PathLaw(CheckedLaw, ABC):
+    """Base of a steering law for paths."""
 
     unsupported_tasks: ClassVar[dict[str, str]] = {}
-
-    def __post_init__(self) -> None:
-        check_parameters(self)
 
     @abstractmethod
     def rate(self, motion: PathMotion) -> float:

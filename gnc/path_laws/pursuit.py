@@ -14,8 +14,8 @@ from gnc.laws import (
     ONLY_CIRCLES,
     ONLY_MOVING_POINTS,
     Air,
+    CheckedLaw,
     Motion,
-    check_parameters,
     steering_law,
 )
 from gnc.numeric import limited, wrap
@@ -77,7 +77,7 @@ def collision_course(to_target: Vector, target_course: float, speed_ratio: float
 
 @steering_law("pure_pursuit")
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PurePursuitLaw:
+class PurePursuitLaw(CheckedLaw):
     """Pure pursuit of the reference itself (M3).
 
     Attributes
@@ -89,9 +89,6 @@ class PurePursuitLaw:
     unsupported_tasks: ClassVar[dict[str, str]] = ONLY_MOVING_POINTS
     range_min_m: float = 30.0
 
-    def __post_init__(self) -> None:
-        check_parameters(self)
-
     def heading_rate(self, reference: Reference, own: Motion, _air: Air, /) -> float:
         """Return the demanded heading rate [rad/s]; parameters are those of ``SteeringLaw``."""
         to_target = _to_reference(reference, own)
@@ -100,7 +97,7 @@ class PurePursuitLaw:
 
 @steering_law("proportional_navigation")
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ProportionalNavigationLaw:
+class ProportionalNavigationLaw(CheckedLaw):
     """Proportional navigation to the reference itself (M3). Its demand is unbounded close by.
 
     Attributes
@@ -111,9 +108,6 @@ class ProportionalNavigationLaw:
     inputs: ClassVar[str] = "the reference's place and velocity (M3)"
     unsupported_tasks: ClassVar[dict[str, str]] = ONLY_MOVING_POINTS
     navigation_constant: float = 3.0
-
-    def __post_init__(self) -> None:
-        check_parameters(self)
 
     def heading_rate(self, reference: Reference, own: Motion, _air: Air, /) -> float:
         """Return the demanded heading rate [rad/s]; parameters are those of ``SteeringLaw``."""
@@ -126,7 +120,7 @@ class ProportionalNavigationLaw:
 
 @steering_law("constant_bearing")
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ConstantBearingLaw:
+class ConstantBearingLaw(CheckedLaw):
     """Constant bearing to the reference itself (M3).
 
     Attributes
@@ -138,9 +132,6 @@ class ConstantBearingLaw:
     unsupported_tasks: ClassVar[dict[str, str]] = ONLY_MOVING_POINTS
     bearing_gain_per_s: float = 1.0
 
-    def __post_init__(self) -> None:
-        check_parameters(self)
-
     def heading_rate(self, reference: Reference, own: Motion, _air: Air, /) -> float:
         """Return the demanded heading rate [rad/s]; parameters are those of ``SteeringLaw``."""
         ratio = reference.speed / max(own.speed, _SPEED_MIN)
@@ -151,16 +142,16 @@ class ConstantBearingLaw:
 # ---------------------------------------------------------------- Pursuit of a carrot
 
 
-def carrot_on_line(position: Vector, origin: Vector, tangent: Vector, ahead: float) -> Vector:
+def carrot_on_line(position: Vector, tangent: Vector, ahead: float) -> Vector:
     """Return the point of a line that is ``ahead`` [m] of the nearest one [m].
 
     Parameters
     ----------
-    position : of the vehicle [m]
-    origin, tangent : a point of the line [m], and its unit tangent
+    position : of the vehicle, from a point of the line as the result is [m]
+    tangent : unit vector along the line
     ahead : distance along the line [m]
     """
-    return plus(origin, tangent, dot(minus(position, origin), tangent) + ahead)
+    return plus(_ORIGIN, tangent, dot(position, tangent) + ahead)
 
 
 def carrot_on_circle(
@@ -193,7 +184,6 @@ def chase(position: Vector, velocity: Vector, target: Vector, gain: float) -> fl
 def plos(
     position: Vector,
     velocity: Vector,
-    origin: Vector,
     tangent: Vector,
     target: Vector,
     *,
@@ -204,12 +194,12 @@ def plos(
 
     Parameters
     ----------
-    position, velocity : of the vehicle [m, m/s]
-    origin, tangent : a point of the line [m], and its unit tangent
-    target : the pursued end of the line [m]
+    position, velocity : of the vehicle, from a point of the line [m, m/s]
+    tangent : unit vector along the line
+    target : the pursued end of the line, from that point [m]
     pursuit_gain, sight_gain : k_1 [1/s], k_2 [1/(m s)]
     """
-    error = cross(tangent, minus(position, origin))
+    error = cross(tangent, position)
     return chase(position, velocity, target, pursuit_gain) - sight_gain * norm(velocity) * error
 
 
@@ -230,7 +220,7 @@ class CarrotLaw(PathLaw):
 
     def rate(self, motion: PathMotion) -> float:
         """Return the demanded heading rate [rad/s]."""
-        target = carrot_on_line(motion.position, _ORIGIN, motion.tangent, self.carrot_ahead_m)
+        target = carrot_on_line(motion.position, motion.tangent, self.carrot_ahead_m)
         acceleration = chase(motion.position, motion.velocity, target, self.carrot_gain_per_s)
         return turn_rate(acceleration, motion.airspeed)
 
@@ -280,7 +270,6 @@ class PlosLaw(PathLaw):
         acceleration = plos(
             motion.position,
             motion.velocity,
-            _ORIGIN,
             motion.tangent,
             plus(_ORIGIN, motion.tangent, self.plos_ahead_m),
             pursuit_gain=self.plos_pursuit_per_s,
@@ -323,7 +312,7 @@ def look_ahead_line_of_sight(
 
 @steering_law("look_ahead_line_of_sight")
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LookAheadLineOfSightLaw:
+class LookAheadLineOfSightLaw(CheckedLaw):
     """Line-of-sight guidance of marine craft on the reference's tangent (M1).
 
     Attributes
@@ -335,9 +324,6 @@ class LookAheadLineOfSightLaw:
     inputs: ClassVar[str] = "tangent of the path through the air (M1), and its turn rate"
     sight_distance_m: float = 30.0
     sight_gain_per_s: float = 1.0
-
-    def __post_init__(self) -> None:
-        check_parameters(self)
 
     def heading_rate(self, reference: Reference, own: Motion, _air: Air, /) -> float:
         """Return the demanded heading rate [rad/s]; parameters are those of ``SteeringLaw``."""

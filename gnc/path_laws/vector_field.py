@@ -8,11 +8,11 @@ parameters of ROSplane (BSD-3-Clause). Written from equations, not from code.
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
-from gnc.laws import ONLY_CIRCLES, Air, Motion, check_parameters, steering_law
+from gnc.laws import ONLY_CIRCLES, Air, CheckedLaw, Motion, steering_law
 from gnc.numeric import limited, wrap
-from gnc.path_laws.lgvf import heading_for
+from gnc.path_laws.lgvf import Field, heading_for
 from gnc.path_laws.path import PathLaw, PathMotion
 from gnc.reference.reference import Reference
 from gnc.vectors import Vector, along, course_of, cross, dot, minus, norm, scaled
@@ -23,43 +23,28 @@ _HALF_PI = 0.5 * math.pi
 # ---------------------------------------------------------------- Nelson, Barber, McLain, Beard
 
 
-class Field(NamedTuple):
-    """A field of courses, at the place of the vehicle.
-
-    Attributes
-    ----------
-    course : chi_d [rad]
-    rate : its rate as the vehicle moves [rad/s]
-    """
-
-    course: float
-    rate: float
-
-
 def line_field(
     position: Vector,
     velocity: Vector,
-    origin: Vector,
     line_course: float,
     *,
     gain: float,
     approach: float,
     line_rate: float = 0.0,
 ) -> Field:
-    """Return the field of a line that may turn about ``origin``.
+    """Return the field of a line that may turn about one of its points.
 
     Parameters
     ----------
-    position, velocity : of the vehicle [m, m/s]
-    origin, line_course : a point of the line [m], and its course [rad]
+    position, velocity : of the vehicle, from that point [m, m/s]
+    line_course : course of the line [rad]
     gain : k [1/m]
     approach : chi_inf [rad]
     line_rate : rate of the line's course [rad/s]
     """
     tangent = along(line_course)
-    from_origin = minus(position, origin)
-    error = cross(tangent, from_origin)
-    error_rate = cross(tangent, velocity) - line_rate * dot(tangent, from_origin)
+    error = cross(tangent, position)
+    error_rate = cross(tangent, velocity) - line_rate * dot(tangent, position)
     slope = approach / _HALF_PI
     return Field(
         course=line_course - slope * math.atan(gain * error),
@@ -107,7 +92,7 @@ def field_heading_rate(field: Field, course: float, *, kappa: float, width: floa
 
 @steering_law("vector_field")
 @dataclass(frozen=True, slots=True, kw_only=True)
-class VectorFieldLaw:
+class VectorFieldLaw(CheckedLaw):
     """The vector field of the reference's tangent, which turns with the reference (M1).
 
     Attributes
@@ -124,16 +109,12 @@ class VectorFieldLaw:
     field_rate_rad_s: float = _HALF_PI
     field_width_rad: float = 1.0
 
-    def __post_init__(self) -> None:
-        check_parameters(self)
-
     def heading_rate(self, reference: Reference, own: Motion, _air: Air, /) -> float:
         """Return the demanded heading rate [rad/s]; parameters are those of ``SteeringLaw``."""
         to_reference = reference.north - own.north, reference.east - own.east
         field = line_field(
             scaled(to_reference, -1.0),
             scaled(along(own.course), own.speed),
-            (0.0, 0.0),
             reference.course,
             gain=self.field_gain_per_m,
             approach=self.field_approach_rad,
@@ -172,7 +153,7 @@ class OrbitFieldLaw(PathLaw):
             relative = orbit_field(
                 motion.position, motion.velocity, *motion.circle, gain=self.field_gain_per_m
             )
-            field = Field(*heading_for(relative.course, relative.rate, motion.airspeed, drift))
+            field = heading_for(relative.course, relative.rate, motion.airspeed, drift)
         else:
             field = Field(course_of(drift), 0.0)
         return field_heading_rate(
@@ -189,7 +170,6 @@ _G = 9.81
 def line_course(
     position: Vector,
     course: float,
-    origin: Vector,
     line_course: float,
     *,
     gain: float,
@@ -199,13 +179,13 @@ def line_course(
 
     Parameters
     ----------
-    position, course : of the vehicle [m, rad]
-    origin, line_course : a point of the line [m], and its course [rad]
+    position, course : of the vehicle, from a point of the line [m, rad]
+    line_course : course of the line [rad]
     gain : k_path [1/m]
     approach : chi_inf, course towards the line from far away [rad]
     """
     nearest = course + wrap(line_course - course)
-    error = cross(along(nearest), minus(position, origin))
+    error = cross(along(nearest), position)
     return nearest - approach * math.atan(gain * error) / _HALF_PI
 
 
@@ -262,7 +242,6 @@ class RosplaneFieldLaw(PathLaw):
         command = line_course(
             motion.position,
             course,
-            (0.0, 0.0),
             course_of(motion.tangent),
             gain=self.path_gain_per_m,
             approach=self.path_approach_rad,

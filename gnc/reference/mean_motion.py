@@ -13,55 +13,32 @@ from gnc.numeric import limited
 from gnc.reference.moving_centre import MovingCentre
 
 _CENTRE_GAIN = 0.1
-"""Demanded drift of the orbit's centre per distance from where it should be, in units of omega_max
-[-].
-"""
+"""Demanded drift of the orbit's centre per distance from its place over omega_max [-]."""
 
 _ALONG_FRACTION = 0.3
-"""Largest fraction of V_r that such a drift takes along the centre's motion [-]; it changes the
-amplitude alone.
-"""
+"""Largest fraction of V_r that a drift takes along the centre's motion [-]."""
 
 _ACROSS_FRACTION = 0.4
-"""Largest fraction of the centre's speed that it takes across [-]: more would turn the orbit
-instead of moving it.
-"""
+"""Largest fraction of the centre's speed that it takes across [-]: more would turn the orbit."""
 
 _STILL = 0.05
-"""Speed ratio below which a centre's motion gives no direction to an orbit [-]: then it lies across
-the plume.
-"""
+"""Speed ratio of a centre below which its orbit lies across the plume [-]."""
 
 _SLOW = 0.25
-"""Speed ratio below which that gain falls in proportion [-]: turning the mean course by a little
-moves a slow orbit by much.
-"""
+"""Speed ratio below which the gain falls [-]: a small turn moves a slow orbit by much."""
 
 _SLOW_GAIN_MIN = 0.1
-"""Fraction of that gain which is kept at any speed ratio [-]: an orbit at rest across the plume has
-to be centred, too.
-"""
+"""Fraction of that gain at rest [-]: an orbit at rest has to be centred, too."""
 
 _SWING = 0.1
-"""Speed over V_r of an unsteady swing about the vessel that a slow orbit follows by half [-]: less
-is mostly scatter.
-"""
+"""Speed over V_r of an unsteady swing that a slow orbit follows by half [-]: less is scatter."""
 
 _SPEED_RATIO_MIN = 0.1
-"""Least speed ratio of a mean motion that is turned [-]: any drift would turn a smaller one to any
-course.
-"""
+"""Least speed ratio of a mean motion that is turned [-]."""
 
 
 class _Ahead(NamedTuple):
-    """The direction in which an orbit goes on.
-
-    Attributes
-    ----------
-    north, east : unit vector [-]
-    moving : speed of the centre or vessel that gives the direction [m/s]
-    along : speed of the centre in that direction [m/s]
-    """
+    """Direction in which an orbit goes on, speed that gives it, centre's speed along it [m/s]."""
 
     north: float
     east: float

@@ -23,34 +23,25 @@ _IN_PLACE = 0.04
 """Distance from its place within which the centre counts as being there, over r_CO [-]."""
 
 _AXIS_SPEED_FRACTION = 0.7
-"""Speed at which the centre may be swung round the vessel, over the vehicle's [-]: the vehicle must
-follow.
-"""
+"""Largest speed of the centre round the vessel, over the vehicle's, which must follow [-]."""
 
 _DISTANCE_GAIN = 0.12
-"""Rate of the centre's distance per difference from where it should be, in units of omega_max [-].
-"""
+"""Rate of the centre's distance per difference from where it should be over omega_max [-]."""
 
 _DISTANCE_SPEED_FRACTION = 0.3
 """Rate at which the centre's distance may change, over the vehicle's excess speed [-]."""
 
 _RECEDING_SPEED_FRACTION = 0.9
-"""Speed at which a centre that has to recede may move, over the vehicle's [-]: the vehicle must
-follow.
-"""
+"""Largest speed of a centre that has to recede, over the vehicle's, which must follow [-]."""
 
 _VESSEL_SPEED_MIN = 0.1
 """Least speed over ground from which a vessel's turn is computed [m/s]: at rest it has none."""
 
 _EXCESS_SPEED_MIN = 0.05
-"""Least excess speed of the vehicle over the vessel that is assumed, over V_r [-]: also outrun, the
-vehicle corrects the distance.
-"""
+"""Least excess speed of the vehicle over the vessel that is assumed, over V_r [-]."""
 
 _SWING_MEMORY = 40.0
-"""Time over which a swing is averaged [s]: scatter of reports averages out, a turning wind does
-not.
-"""
+"""Time over which a swing is averaged [s]: the scatter of reports averages out."""
 
 _CENTRE_SPEED_MIN = 0.01
 """Least speed from which the centre's direction is computed [m/s]: at rest it has none."""

@@ -134,9 +134,6 @@ class Swing(Protocol):
     def eta(self, speed_ratio: float) -> float:
         """Return the amplitude for a mean speed over speed between -0.2 and 1 [rad]."""
 
-    def speed_ratio(self, eta: float) -> float:
-        """Return the mean speed over speed of an amplitude [-]."""
-
     def frequency(self, eta: float, heading_rate: float) -> float:
         """Return the largest omega_0 within a heading rate [rad/s] and the roll rate [rad/s].
 
@@ -214,29 +211,14 @@ reference_shape = REFERENCE_SHAPES.register
 """Decorator that registers a reference shape by a name."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ReferenceStart:
-    """Where a reference starts.
-
-    Attributes
-    ----------
-    north, east : [m]
-    course : chi_r [rad]
-    """
-
-    north: float
-    east: float
-    course: float
-
-
 class CirclingReference:
     """A reference that turns steadily, that of the paper's Simulation 1: (13) at constant omega_r.
 
-    Its motion is in closed form; time comes from the step count.
+    It starts at the origin on course 0. Its motion is in closed form; time comes from the step
+    count.
 
     Parameters
     ----------
-    start : position and course at time 0
     speed : V_r [m/s]
     heading_rate : omega_r, positive to the right, not 0 [rad/s]
     time_step : [s]
@@ -246,66 +228,22 @@ class CirclingReference:
     north, east, course, heading_rate, speed : same as ``Reference``
     """
 
-    def __init__(
-        self, start: ReferenceStart, *, speed: float, heading_rate: float, time_step: float
-    ) -> None:
+    def __init__(self, *, speed: float, heading_rate: float, time_step: float) -> None:
         self.speed = speed
         self.heading_rate = heading_rate
-        self.north = start.north
-        self.east = start.east
-        self.course = start.course
-        self._first_course = start.course
+        self.north = 0.0
+        self.east = 0.0
+        self.course = 0.0
         self._turn = heading_rate * time_step
         self._radius = speed / heading_rate
-        self._centre_north = start.north - self._radius * math.sin(start.course)
-        self._centre_east = start.east + self._radius * math.cos(start.course)
         self._steps = 0
 
     def step(self) -> None:
         """Advance one time step."""
         self._steps += 1
-        self.course = self._first_course + self._steps * self._turn
-        self.north = self._centre_north + self._radius * math.sin(self.course)
-        self.east = self._centre_east - self._radius * math.cos(self.course)
-
-
-def start_reference(
-    orbit: Orbit,
-    *,
-    phase: float,
-    centre_north: float,
-    centre_east: float,
-    vessel_course: float,
-    turn_rate_fraction: float = 1.0,
-) -> ReferenceStart:
-    """Return the start of a reference whose orbit is centred on a centre of oscillation.
-
-    The course is that of the phase from the vessel's: of the paper's orbit eta cos(phi_0), equation
-    (7). Differs from equation (3), which says A/omega_0 and so holds for phi_0 = 0 only, and from
-    starting on the centre: at another phase that orbit would not be centred on it. With a smaller
-    turn rate the orbit is larger by as much, and meets the whole one at phase 0.
-
-    Parameters
-    ----------
-    orbit : of the reference
-    phase : phi_0 [rad]
-    centre_north, centre_east : of oscillation [m]
-    vessel_course : [rad]
-    turn_rate_fraction : fraction of its heading rate that the reference turns with [-]
-    """
-    there = orbit.offset(phase / orbit.omega_0)
-    passage = orbit.offset(0.0)
-    along, right = (
-        float(at) + (float(x) - float(at)) / turn_rate_fraction
-        for x, at in zip(there, passage, strict=True)
-    )
-    sin_v = math.sin(vessel_course)
-    cos_v = math.cos(vessel_course)
-    return ReferenceStart(
-        north=centre_north + along * cos_v - right * sin_v,
-        east=centre_east + along * sin_v + right * cos_v,
-        course=vessel_course + orbit.course(phase),
-    )
+        self.course = self._steps * self._turn
+        self.north = self._radius * math.sin(self.course)
+        self.east = self._radius - self._radius * math.cos(self.course)
 
 
 class OscillatingReference:
@@ -315,11 +253,18 @@ class OscillatingReference:
     step at 20 Hz, and to 1e-5 m where the roll rate of a shape jumps. Time comes from the step
     count.
 
+    It starts where its orbit is centred on the centre of oscillation, on the course of phi_0: that
+    of the paper's orbit is eta cos(phi_0) from the vessel's, equation (7). Differs from equation
+    (3), which says A/omega_0 and so holds for phi_0 = 0 only, and from starting on the centre: at
+    another phase that orbit would not be centred on it. With a smaller turn rate the orbit is
+    larger by as much, and meets the whole one at phase 0.
+
     Parameters
     ----------
     orbit : that it flies
-    start : position and course at time 0
     phase : phi_0 [rad]
+    centre_north, centre_east : of oscillation at time 0 [m]
+    vessel_course : at time 0 [rad]
     time_step : [s]
     turn_rate_fraction : fraction of its heading rate that it turns with at first [-]
 
@@ -332,9 +277,11 @@ class OscillatingReference:
     def __init__(
         self,
         orbit: Orbit,
-        start: ReferenceStart,
         *,
         phase: float,
+        centre_north: float,
+        centre_east: float,
+        vessel_course: float,
         time_step: float,
         turn_rate_fraction: float = 1.0,
     ) -> None:
@@ -345,11 +292,19 @@ class OscillatingReference:
         self._fraction_demand = turn_rate_fraction
         self._omega_0 = turn_rate_fraction * orbit.omega_0
         self.speed = orbit.speed
-        self._base = start.course - orbit.course(phase)
         self._steps = 0
-        self.north = start.north
-        self.east = start.east
-        self.course = start.course
+        there = orbit.offset(phase / orbit.omega_0)
+        passage = orbit.offset(0.0)
+        along, right = (
+            float(at) + (float(x) - float(at)) / turn_rate_fraction
+            for x, at in zip(there, passage, strict=True)
+        )
+        sin_v = math.sin(vessel_course)
+        cos_v = math.cos(vessel_course)
+        self.north = centre_north + along * cos_v - right * sin_v
+        self.east = centre_east + along * sin_v + right * cos_v
+        self.course = vessel_course + orbit.course(phase)
+        self._base = self.course - orbit.course(phase)
         self.heading_rate = turn_rate_fraction * orbit.heading_rate(phase)
 
     def __deepcopy__(self, _memo: object) -> "OscillatingReference":
@@ -471,18 +426,12 @@ class JoinedOrbit:
         turn_rate_fraction: float = 1.0,
     ) -> OscillatingReference:
         """Return the reference at a phase [rad] of the orbit about a centre [m]."""
-        start = start_reference(
+        return OscillatingReference(
             self.orbit,
             phase=phase,
             centre_north=centre_north,
             centre_east=centre_east,
             vessel_course=self.vessel_course,
-            turn_rate_fraction=turn_rate_fraction,
-        )
-        return OscillatingReference(
-            self.orbit,
-            start,
-            phase=phase,
             time_step=self.time_step,
             turn_rate_fraction=turn_rate_fraction,
         )

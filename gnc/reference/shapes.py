@@ -8,7 +8,7 @@ import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -19,18 +19,14 @@ from scipy.special import j0, jv
 from common.physics import STANDARD_GRAVITY, bank_for_heading_rate
 from gnc.errors import InfeasibleError
 from gnc.numeric import clip
-from gnc.paper import Oscillation, available_heading_rate, design_oscillation
+from gnc.paper import available_heading_rate, design_oscillation
 from gnc.reference.reference import Array, Swing, reference_shape
 
 ETA_FREQUENCY = 0.2
-"""Amplitude below which the frequency of a steered reference no longer rises [rad]: nearly straight
-flight needs none.
-"""
+"""Amplitude below which the frequency of a steered reference no longer rises [rad]."""
 
 SPEED_RATIO_MIN = -0.2
-"""Least mean speed over speed in the tables [-]: a reference may back away from its vessel at a
-fifth of its speed.
-"""
+"""Least mean speed over speed in the tables [-]: a reference may back away from its vessel."""
 
 ETA_STEP = 0.005
 """Step of the tables [rad].
@@ -40,9 +36,7 @@ Values are linear between rows: good to the square of the step over 8, 3e-6, tim
 """
 
 _SINUSOID_ORDERS = 4
-"""Pairs of Bessel functions in the series of the sinusoid's orbit [-]; what is left out is below
-1e-4 of its width at the largest eta.
-"""
+"""Pairs of Bessel functions in its orbit [-]; the rest is below 1e-4 of the largest width."""
 
 _SINUSOID_ETA_MAX = 2.9
 """Largest amplitude in the sinusoid's tables [rad]: J_0(2.9) = -0.224 is beyond the least ratio."""
@@ -54,9 +48,7 @@ _BANK_SWING_ETA_MIN = 1e-9
 """Least amplitude for which a bank swing is computed [rad]: a smaller one is as straight."""
 
 _FASTEST_ETA_MAX = 3.2
-"""Amplitude whose mean speed is below 0 at any roll rate [rad]: sin(3.2)/3.2 = -0.02 at an infinite
-one.
-"""
+"""Amplitude whose mean speed is below 0 at any roll rate [rad]: sin(3.2)/3.2 = -0.02."""
 
 _FRACTION_UNTIL_TRACKED = 0.8
 """Fraction of the heading rate of a fastest oscillation or loiter until it is tracked [-].
@@ -67,9 +59,7 @@ with 0.985 of omega_max, 5 with 0.95, and none with 0.9.
 """
 
 _PATH_PIECES = 1024
-"""Pieces of a period [-]: a cubic over each is good to 1e-7 of V_r/omega_0, also where the roll
-rate jumps.
-"""
+"""Pieces of a period [-]: a cubic over each is good to 1e-7 of V_r/omega_0."""
 
 _FOURIER_SAMPLES = 128
 """Samples of a period [-]: Fourier coefficients fall with the third power, so 1e-6 is left out."""
@@ -215,15 +205,6 @@ class SinusoidSwing:
         """Return eta for a mean speed over speed, equation (6), within 1e-5 [rad]."""
         return _sinusoid_tables().eta(speed_ratio)
 
-    def speed_ratio(self, eta: float) -> float:
-        """Return the mean speed over speed, J_0(eta), equation (5) [-]."""
-        # The power series of J_0 in (eta/2)^2, whose k-th term is -x/k^2 times the one before: good
-        # to 5e-7 up to eta = 2.4.
-        x = 0.25 * eta * eta
-        return 1.0 - x * (
-            1.0 - x / 4.0 * (1.0 - x / 9.0 * (1.0 - x / 16.0 * (1.0 - x / 25.0 * (1.0 - x / 36.0))))
-        )
-
     def frequency(self, eta: float, heading_rate: float) -> float:
         """Return omega_0 by the heading rate or the roll rate, the lower one [rad/s]."""
         eta = max(ETA_FREQUENCY, eta)
@@ -249,30 +230,8 @@ class SinusoidSwing:
 class Sinusoid:
     """The paper's reference: its course oscillates about the vessel's as a sinusoid."""
 
-    @property
-    def turn_rate_fraction_until_tracked(self) -> float:
-        """Return all of the heading rate, which is needed at the peaks alone [-]."""
-        return 1.0
-
-    def design(
-        self,
-        *,
-        nu: float,
-        speed: float,
-        heading_rate_max: float,
-        reserve: float,
-        vessel_heading_rate: float,
-        roll_rate_max: float,
-    ) -> Oscillation:
-        """Return the fastest oscillation that the vehicle can follow; see ``ReferenceShape``."""
-        return design_oscillation(
-            nu=nu,
-            speed=speed,
-            heading_rate_max=heading_rate_max,
-            reserve=reserve,
-            vessel_heading_rate=vessel_heading_rate,
-            roll_rate_max=roll_rate_max,
-        )
+    turn_rate_fraction_until_tracked: ClassVar[float] = 1.0
+    design = staticmethod(design_oscillation)
 
     def swing(self, *, speed: float, heading_rate: float, roll_rate_max: float) -> Swing:
         """Return the sinusoids of every amplitude; see ``ReferenceShape``."""
@@ -293,14 +252,7 @@ def _sinusoid_tables() -> OrbitTables:
 
 
 class _Quarter(NamedTuple):
-    """A quarter of a bank swing's period.
-
-    Attributes
-    ----------
-    time : length [s]
-    ramp : time until bank is largest [s]
-    heading_rate : then [rad/s]
-    """
+    """A quarter period: its length, the time until bank is largest, and the heading rate then."""
 
     time: float
     ramp: float
@@ -471,11 +423,7 @@ class FastestOscillation:
     crossing_interval: float
     omega_0: float
     courses: BankSwing
-
-    @property
-    def symmetric(self) -> bool:
-        """Return that the second half of the orbit mirrors the first."""
-        return True
+    symmetric: ClassVar[bool] = True
 
     @property
     def period(self) -> float:
@@ -528,10 +476,7 @@ class Fastest:
     moments alone.
     """
 
-    @property
-    def turn_rate_fraction_until_tracked(self) -> float:
-        """Fraction of its heading rate that a reference turns with until it is tracked [-]."""
-        return _FRACTION_UNTIL_TRACKED
+    turn_rate_fraction_until_tracked: ClassVar[float] = _FRACTION_UNTIL_TRACKED
 
     def design(
         self,
@@ -581,21 +526,6 @@ def _oscillation_path(courses: BankSwing, eta: float) -> CoursePath:
 # The loiter: a circle that moves with the vessel and meets its plume twice a turn.
 
 
-class _LoiterPath(NamedTuple):
-    """The path of a loiter.
-
-    Attributes
-    ----------
-    path : from the middle of its straight leg
-    side : how far to the right of that the plume lies [V_r/omega_0]
-    unit : V_r/omega_0 [m]
-    """
-
-    path: CoursePath
-    side: float
-    unit: float
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoiterOrbit:
     """One turn of a loiter; same as ``Orbit``, with phase 0 in the middle of its straight leg.
@@ -620,16 +550,9 @@ class LoiterOrbit:
     roll_rate: float
     least_bank: float
     straight: float
-
-    @property
-    def eta(self) -> float:
-        """Largest course offset from that of the vessel [rad]."""
-        return math.pi
-
-    @property
-    def symmetric(self) -> bool:
-        """Return that the second half of the orbit does not mirror the first."""
-        return False
+    eta: ClassVar[float] = math.pi
+    limit: ClassVar[str] = "heading rate"
+    symmetric: ClassVar[bool] = False
 
     @property
     def crossing_interval(self) -> float:
@@ -647,24 +570,21 @@ class LoiterOrbit:
         return math.pi / self.crossing_interval
 
     @property
-    def limit(self) -> str:
-        """Return what sets the period."""
-        return "heading rate"
-
-    @property
     def turned(self) -> float:
         """Course that is turned through while bank rises to its largest value [rad]."""
         return self._rolling * math.log(math.cos(self.least_bank) / math.cos(self._bank))
 
     def offset(self, time: npt.ArrayLike) -> tuple[Array, Array]:
         """Return the offset from the point of the plume that it crosses every half turn [m]."""
-        path, side, unit = _loiter_path(self)
+        path, side = _loiter_path(self)
+        unit = self.speed / self.omega_0
         along, right = path.offset(self.omega_0 * np.asarray(time, dtype=np.float64))
         return unit * along, unit * (right - side)
 
     def half_widths(self) -> tuple[float, float]:
         """Return how far the orbit reaches from that point, along its course and across [m]."""
-        path, side, unit = _loiter_path(self)
+        path, side = _loiter_path(self)
+        unit = self.speed / self.omega_0
         along, _ = path.half_widths()
         _, far = path.offset(math.pi)
         return unit * along, unit * max(side, float(far) - side)
@@ -730,10 +650,7 @@ class LoiterShape:
     plume is crossed more often so: below a speed ratio of 0.33, than by any oscillation.
     """
 
-    @property
-    def turn_rate_fraction_until_tracked(self) -> float:
-        """Fraction of its heading rate that a reference turns with until it is tracked [-]."""
-        return _FRACTION_UNTIL_TRACKED
+    turn_rate_fraction_until_tracked: ClassVar[float] = _FRACTION_UNTIL_TRACKED
 
     def design(
         self,
@@ -812,7 +729,8 @@ def _checked(loiter: LoiterOrbit) -> LoiterOrbit:
 
 
 @functools.lru_cache(maxsize=128)
-def _loiter_path(loiter: LoiterOrbit) -> _LoiterPath:
+def _loiter_path(loiter: LoiterOrbit) -> tuple[CoursePath, float]:
+    """Return the path from its straight leg's middle, and the plume to its right [V_r/omega_0]."""
     path = CoursePath(loiter.course)
     _, side = path.offset(0.5 * math.pi)
-    return _LoiterPath(path, float(side), loiter.speed / loiter.omega_0)
+    return path, float(side)

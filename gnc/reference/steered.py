@@ -18,22 +18,16 @@ from gnc.numeric import limited, wrap
 from gnc.reference.reference import Swing
 
 _GATE = 0.2
-"""Fraction of their rates that mean course and amplitude keep where the reference is farthest from
-the centre [-].
-"""
+"""Fraction of their rates that mean course and amplitude keep farthest from the centre [-]."""
 
 _RATE_GAIN = 0.8
-"""Rate of mean course and amplitude per difference from what is demanded, in units of the heading
-rate [-].
-"""
+"""Rate of mean course and amplitude per difference from the demand, over the heading rate [-]."""
 
 _RATE_FRACTION = 0.3
 """Fraction of the heading rate that either of them may take [-]."""
 
 _SMOOTHING = 0.25
-"""Time constant of their rates, over one through the heading rate [-]: that of a rolling aircraft
-does not jump.
-"""
+"""Time constant of their rates, over one through the heading rate [-]: an aircraft has to roll."""
 
 _STATE = (
     "north",
@@ -116,7 +110,7 @@ class SteeredReference:
             north=self.north,
             east=self.east,
             mean_course=self.mean_course,
-            speed_ratio=self.speed_ratio,
+            speed_ratio=1.0,  # replaced by the state
             phase=self.phase,
             swing=self._swing,
             speed=self.speed,
@@ -183,11 +177,6 @@ class SteeredReference:
         self.omega_0 = omega_0
         self.phase = phase
         self.course = last
-
-    @property
-    def speed_ratio(self) -> float:
-        """Return the mean speed over the speed; of the sinusoid J_0(eta), equation (5) [-]."""
-        return self._swing.speed_ratio(self.eta)
 
     def centre(self) -> tuple[float, float]:
         """Return north and east of the orbit's centre, if its parameters stayed as they are [m]."""

@@ -7,7 +7,7 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 import numpy.typing as npt
 
-from gnc.estimation.navigation import Motion
+from gnc.estimation.navigation import MeasuredMotion
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
 from scenarios.schema.extension_points import PAYLOADS
@@ -31,7 +31,9 @@ class Instrument(Protocol):
 
     COLUMNS: tuple[str, ...]
 
-    def read(self, time: float, motion: Motion, sample: tuple[float, ...], /) -> tuple[float, ...]:
+    def read(
+        self, time: float, motion: MeasuredMotion, sample: tuple[float, ...], /
+    ) -> tuple[float, ...]:
         """Return a value for each column.
 
         Parameters
@@ -105,7 +107,7 @@ class GasReader(Protocol):
         """Limit of the verdict [% m/m]."""
 
     def follow(
-        self, time: float, motion: Motion, sample: tuple[float, ...], /
+        self, time: float, motion: MeasuredMotion, sample: tuple[float, ...], /
     ) -> Sequence[tuple[float, float]]:
         """Return times [s] and CO2 [ppm] of the readings that have come; called for each row of the
         flight's record.

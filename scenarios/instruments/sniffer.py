@@ -13,7 +13,7 @@ from pydantic import BeforeValidator
 from common.run_layout import SULPHUR_TABLE
 from common.text import did_you_mean
 from gnc.errors import InfeasibleError
-from gnc.estimation.navigation import Motion
+from gnc.estimation.navigation import MeasuredMotion
 from measurement.emission import expected_fsc
 from measurement.errors import MeasurementError
 from measurement.gases import GASES, UNITS
@@ -175,7 +175,7 @@ class SnifferOnBoard:
         return Readings(read.time[late], read.values[late])
 
     def follow(
-        self, time: float, motion: Motion, sample: tuple[float, ...]
+        self, time: float, motion: MeasuredMotion, sample: tuple[float, ...]
     ) -> Sequence[tuple[float, float]]:
         """Return the times [s] and the CO2 [ppm] of the readings that have come; called for each
         row of the flight's record.

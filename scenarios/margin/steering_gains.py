@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gnc.airspeed import air_turn
-from gnc.reference.reference import CirclingReference, ReferenceStart
+from gnc.reference.reference import CirclingReference
 from gnc.tracker import Tracker, TrackingParameters
 
 STEERED_BY = ("along", "right", "course", "speed", "airspeed", "heading_rate", "last")
@@ -36,14 +36,11 @@ def steering_gains(guidance: TrackingParameters, turn: float, speed: float) -> A
     """
     turn = turn if abs(turn) > _STRAIGHT else _STRAIGHT
     parameters = replace(guidance, heading_rate_max=np.inf)
-    start = ReferenceStart(north=0.0, east=0.0, course=0.0)
 
     def command(
         along: float, right: float, course: float, over: float, air: float, rate: float, last: float
     ) -> float:
-        reference = CirclingReference(
-            start, speed=speed, heading_rate=turn, time_step=guidance.time_step
-        )
+        reference = CirclingReference(speed=speed, heading_rate=turn, time_step=guidance.time_step)
         steered = Tracker(parameters, reference)
         steered.heading_rate_command = turn + last
         faster, airspeed = speed + over, speed + air

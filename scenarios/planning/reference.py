@@ -15,7 +15,6 @@ from gnc.reference.reference import (
     JoinedOrbit,
     Orbit,
     ReferenceShape,
-    ReferenceStart,
     Swing,
 )
 from scenarios.planning.limits import omega_max
@@ -176,7 +175,6 @@ def circle(scenario: Scenario) -> CirclingReference:
             f"reference.radius_m is {radius:g} m; at {speed:g} m/s and omega_max = {speed / least:.3f} rad/s it must be at least"
             f" {least:.1f} m: widen the circle or raise omega_max"
         )
-    start = ReferenceStart(north=0.0, east=0.0, course=0.0)
     return CirclingReference(
-        start, speed=speed, heading_rate=speed / radius, time_step=1.0 / scenario.guidance.rate_hz
+        speed=speed, heading_rate=speed / radius, time_step=1.0 / scenario.guidance.rate_hz
     )

@@ -6,7 +6,7 @@ import math
 from collections.abc import Generator, Sequence
 
 from gnc.guard.guard import GuardStatus
-from gnc.guidance import Guidance, compose
+from gnc.guidance import Guidance
 from gnc.mission.axis import SearchedAxis
 from gnc.mission.follow import PlumeFollowing
 from scenarios.instruments.instrument import GasReader, Instrument
@@ -53,7 +53,7 @@ class ClosedLoop:
         every_step: bool = False,
     ) -> None:
         self.plan, self.vehicle, self._every_step = plan, vehicle, every_step
-        self.guidance = guidance = compose(plan.guidance)
+        self.guidance = guidance = Guidance(plan.guidance)
         self.settling = Settling(
             band=plan.settling_band,
             period=plan.settling_period,

@@ -3,7 +3,7 @@
 import math
 
 from gnc.estimation.health import Fault
-from gnc.estimation.navigation import Motion
+from gnc.estimation.navigation import MeasuredMotion
 from gnc.guidance import Guidance
 from gnc.mission.mission import LOST, Mode
 from scenarios.planning.flight_plan import FlightPlan
@@ -69,7 +69,7 @@ class Ending:
         )
 
     def reached(
-        self, time: float, motion: Motion, sample: tuple[float, ...], *, complete: bool
+        self, time: float, motion: MeasuredMotion, sample: tuple[float, ...], *, complete: bool
     ) -> bool:
         """Return whether the flight is over at a sample; ``complete`` says whether it has all
         crossings that are asked for.

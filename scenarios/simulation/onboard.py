@@ -3,7 +3,7 @@ commands.
 """
 
 from gnc.estimation.health import Fault
-from gnc.estimation.navigation import Motion, SensorReadings
+from gnc.estimation.navigation import MeasuredMotion, SensorReadings
 from gnc.estimation.vessel import ReportedTarget, VesselReport
 from gnc.guidance import Guidance
 from scenarios.planning.flight_plan import Sensing
@@ -66,7 +66,7 @@ class OnboardSensing:
         self._satellites_fail = world.fault.kind == SATELLITES
         self.airspeed_error = 0.0
 
-    def read(self, step: int, time: float, motion: Motion) -> SensorReadings:
+    def read(self, step: int, time: float, motion: MeasuredMotion) -> SensorReadings:
         """Return what the sensors say at a step; hand on what reports have come, and let fail what
         fails now.
         """
@@ -93,7 +93,7 @@ class OnboardSensing:
             fix, measured, measured_heading, roll, motion.heading_rate, self._servo_error()
         )
 
-    def act(self, step: int, time: float, motion: Motion) -> None:
+    def act(self, step: int, time: float, motion: MeasuredMotion) -> None:
         """Pass on what the guidance has decided beside heading rate and airspeed, and to it what
         has been read.
         """

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from gnc.estimation.navigation import Motion
+from gnc.estimation.navigation import MeasuredMotion
 from gnc.guidance import Guidance
 from gnc.mission.axis import ExpectedAxis, PredictedAxis, SearchedAxis
 from gnc.mission.follow import PlumeFollowing
@@ -46,7 +46,7 @@ class PlumeReadings:
         self._reader, self._world, self._vehicle, self._axis = reader, world, vehicle, axis
         self._interval, self._knows_axis = interval, knows_axis
 
-    def pass_on(self, step: int, time: float, motion: Motion, guidance: Guidance) -> None:
+    def pass_on(self, step: int, time: float, motion: MeasuredMotion, guidance: Guidance) -> None:
         """Pass on what has come until a step; the guidance has taken note of its own motion at it."""
         if step % self._interval == 0:
             sample, axis = self._vehicle.sample(), self._axis
@@ -90,7 +90,12 @@ class PlumeBelief:
         self._axis = axis
         self._measurable, self._next = math.nan, 0.0
 
-    def read(self, time: float, motion: Motion, sample: tuple[float, ...]) -> tuple[float, ...]:  # noqa: ARG002 - of an instrument
+    def read(
+        self,
+        time: float,
+        motion: MeasuredMotion,  # noqa: ARG002 - of an instrument
+        sample: tuple[float, ...],  # noqa: ARG002 - of an instrument
+    ) -> tuple[float, ...]:
         """Return a value for each column."""
         found = self._axis.estimate
         if time >= self._next:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gnc.estimation.navigation import Motion
+from gnc.estimation.navigation import MeasuredMotion
 from gnc.guidance import Guidance
 from gnc.mission.mission import NO_CENTRE, OrbitStatus
 from scenarios.instruments.instrument import Instrument
@@ -75,7 +75,7 @@ class Recorder:
         return reference.north, reference.east, reference.course, reference.heading_rate
 
     def record(
-        self, time: float, motion: Motion, reference: Place, *, judged: bool
+        self, time: float, motion: MeasuredMotion, reference: Place, *, judged: bool
     ) -> tuple[tuple[float, ...], bool]:
         """Keep a row; return the vehicle's sample, and whether the flight has all its crossings, by
         ``judged`` samples.
@@ -127,14 +127,14 @@ class Recorder:
 
 
 def _read_all(
-    payload: Sequence[Any], time: float, motion: Motion, sample: tuple[float, ...]
+    payload: Sequence[Any], time: float, motion: MeasuredMotion, sample: tuple[float, ...]
 ) -> list[Any]:
     """Return what instruments read, one after the other."""
     return [value for instrument in payload for value in instrument.read(time, motion, sample)]
 
 
 def _read_first(
-    payload: Sequence[Any], time: float, motion: Motion, sample: tuple[float, ...]
+    payload: Sequence[Any], time: float, motion: MeasuredMotion, sample: tuple[float, ...]
 ) -> list[Any]:
     """Return what instruments read first; an error says which of them reads what is of no use."""
     values: list[Any] = []

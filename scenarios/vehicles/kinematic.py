@@ -4,7 +4,7 @@ import math
 
 from aircraft.wind import CALM, WindField
 from common.physics import bank_for_heading_rate
-from gnc.estimation.navigation import Motion
+from gnc.estimation.navigation import MeasuredMotion
 from gnc.unicycle import lagged_move, unicycle_move
 from scenarios.errors import InputError
 from scenarios.vehicles.vehicle import SAMPLE_COLUMNS
@@ -53,11 +53,13 @@ class KinematicVehicle:
         self._wind, self._time = None if wind.constant else wind, 0.0
         self._wind_north, self._wind_east = wind.now(0.0, altitude)
 
-    def motion(self) -> Motion:
+    def motion(self) -> MeasuredMotion:
         """Return the motion now."""
         velocity_north = self._speed * math.cos(self._course) + self._wind_north
         velocity_east = self._speed * math.sin(self._course) + self._wind_east
-        return Motion(self._north, self._east, velocity_north, velocity_east, self._heading_rate)
+        return MeasuredMotion(
+            self._north, self._east, velocity_north, velocity_east, self._heading_rate
+        )
 
     def air_data(self) -> tuple[float, float, float]:
         """Return airspeed [m/s], heading, not wrapped, and the bank of a coordinated turn [rad]."""

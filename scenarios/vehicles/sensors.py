@@ -7,7 +7,7 @@ from itertools import accumulate
 
 import numpy as np
 
-from gnc.estimation.navigation import Motion, SatelliteFix
+from gnc.estimation.navigation import MeasuredMotion, SatelliteFix
 from scenarios.schema.sections.equipment import SensorsConfig
 
 NAVIGATION_TIME = 60.0
@@ -63,7 +63,7 @@ class SensorErrors:
     def read(
         self,
         step: int,
-        motion: Motion,
+        motion: MeasuredMotion,
         airspeed: float,
         heading: float,
         *,

@@ -5,7 +5,7 @@ import math
 from aircraft.fdm import Fdm
 from aircraft.state import EquatorFrame
 from common.physics import METRES_PER_FOOT
-from gnc.estimation.navigation import Motion
+from gnc.estimation.navigation import MeasuredMotion
 from innerloop.jsbsim.system import CONTROL_COMMAND, HEADING_RATE
 
 _CONTROLS = ("elevator", "aileron", "throttle", "rudder")
@@ -51,12 +51,12 @@ class Telemetry:
             for name in _CONTROLS
         )
 
-    def motion(self) -> Motion:
+    def motion(self) -> MeasuredMotion:
         """Return the motion now."""
         # To unpack two names takes a third of the time of a star in a tuple, in each step of every
         # flight.
         north, east = self._to_local(self._latitude(), self._longitude())
-        return Motion(
+        return MeasuredMotion(
             north,
             east,
             self._north() * METRES_PER_FOOT,

@@ -4,7 +4,7 @@ paper's kinematics.
 
 from typing import Protocol
 
-from gnc.estimation.navigation import Motion
+from gnc.estimation.navigation import MeasuredMotion
 
 SAMPLE_COLUMNS = (
     "altitude_m",
@@ -29,7 +29,7 @@ are commands [-], or the effect by which a surface is commanded whose travel is 
 class Vehicle(Protocol):
     """A vehicle under way, stepped at the rate of the guidance."""
 
-    def motion(self) -> Motion:
+    def motion(self) -> MeasuredMotion:
         """Return the motion now."""
 
     def air_data(self) -> tuple[float, float, float]:

@@ -33,9 +33,9 @@ from gnc.estimation.vessel import (
     VesselReport,
 )
 from gnc.guard.guard import Guarded, GuardParameters, GuardStatus
-from gnc.guidance import GuidanceParameters, ReportedVessel, compose
+from gnc.guidance import Guidance, GuidanceParameters, ReportedVessel
 from gnc.laws import CascadeLaw, LineOfSightLaw, LyapunovLaw
-from gnc.mission.axis import AxisHeight, PredictedPlume
+from gnc.mission.axis import AxisHeight, Climb, PredictedPlume
 from gnc.mission.follow import FollowingParameters, PlumeFollowing
 from gnc.mission.mission import Mode, Order
 from gnc.mission.track import DirectTracking
@@ -185,10 +185,8 @@ def test_the_airspeed_is_trimmed_by_the_along_track_error_within_its_limit(
     reference = make_reference(paper_oscillation(0.5), centre=(100.0, 50.0), vessel_course=0.8)
     guidance = make_guidance(reference, airspeed_gain=0.15, lag=lag)
     cos, sin = math.cos(reference.course), math.sin(reference.course)
-    north, east = (
-        reference.north + along * cos - right * sin,
-        reference.east + along * sin + right * cos,
-    )
+    north = reference.north + along * cos - right * sin
+    east = reference.east + along * sin + right * cos
     guidance.step(0.0, motion(north, east, reference.course))
     # Rounding of 100 m.
     assert guidance.airspeed_command == pytest.approx(expected, abs=1e-12)
@@ -321,10 +319,8 @@ def test_from_astern_a_guarded_vehicle_settles_and_keeps_out(nu, seed):
     # Starts as in scenarios/schema/sections/flight.py: 400 to 800 m away, within 30 degrees of
     # astern, on any course.
     generator = np.random.default_rng(seed)
-    distance, bearing = (
-        generator.uniform(400.0, 800.0),
-        math.pi + generator.uniform(-math.pi / 6.0, math.pi / 6.0),
-    )
+    distance = generator.uniform(400.0, 800.0)
+    bearing = math.pi + generator.uniform(-math.pi / 6.0, math.pi / 6.0)
     start = (
         distance * math.cos(bearing),
         distance * math.sin(bearing),
@@ -414,7 +410,11 @@ def following(*, guard=GUARD, climb=0.0):
         reach_time=9.0,
         drift_rate=1.0,
         plan_interval=PLAN_INTERVAL,
-        axis=PredictedPlume(height=AxisHeight(source=60.0, climb=climb), altitude=60.0),
+        axis=PredictedPlume(
+            height=AxisHeight(source=60.0, climb=climb),
+            altitude=60.0,
+            climb=Climb(time=20.0, gradient=0.05),
+        ),
     )
     return GuidanceParameters(
         speed=SPEED,
@@ -449,7 +449,7 @@ def following(*, guard=GUARD, climb=0.0):
 
 def reported(parameters, *, speed=8.0):
     """Return a guidance that has received a report of a vessel that goes north from the origin."""
-    guidance = compose(parameters)
+    guidance = Guidance(parameters)
     guidance.target.report(VesselReport(0.0, 0.0, 0.0, speed, 0.0))
     return guidance
 
@@ -467,7 +467,7 @@ def readings(north, east, *, course=0.0, airspeed=SPEED, servo_error=0.0):
 
 
 def test_the_papers_guidance_has_no_parts_that_have_nothing_to_do():
-    guidance = compose(paper())
+    guidance = Guidance(paper())
     assert guidance.monitor is None
     assert guidance.guard is None
     assert (type(guidance.own), type(guidance.target), type(guidance.mission)) == (
@@ -478,7 +478,7 @@ def test_the_papers_guidance_has_no_parts_that_have_nothing_to_do():
 
 
 def test_a_guidance_that_follows_a_plume_has_every_part():
-    guidance = compose(following())
+    guidance = Guidance(following())
     assert (type(guidance.own), type(guidance.target), type(guidance.mission)) == (
         EstimatedNavigation,
         ReportedTarget,
@@ -517,11 +517,11 @@ def test_no_command_exceeds_its_bound_in_gusts_from_behind():
 
 def test_flights_share_nothing():
     parameters = paper(guard=GUARD)
-    one = fly(compose(parameters), (-300.0, 40.0, 0.5), duration=20.0)
-    other = fly(compose(parameters), (-300.0, 40.0, 0.5), duration=20.0)
+    one = fly(Guidance(parameters), (-300.0, 40.0, 0.5), duration=20.0)
+    other = fly(Guidance(parameters), (-300.0, 40.0, 0.5), duration=20.0)
     # Neither the reference's place nor the guard's memory: the same to the last bit.
     np.testing.assert_array_equal(one.command, other.command)
-    first, second = compose(parameters), compose(parameters)
+    first, second = Guidance(parameters), Guidance(parameters)
     first.step(0.0, motion(-202.0, 0.0, 0.0))
     assert (first.guarding, second.guarding) == (True, False)
 
@@ -537,7 +537,7 @@ def test_the_mission_plans_every_few_steps_and_the_papers_once(monkeypatch):
             return plan(self, time, *args, renew=renew, **how)
 
         monkeypatch.setattr(mission, "plan", noted)
-    for guidance, plans in ((reported(following()), 3), (compose(paper()), 1)):
+    for guidance, plans in ((reported(following()), 3), (Guidance(paper()), 1)):
         planned.clear()
         measurement = readings(-300.0, 0.0) if plans > 1 else motion(-300.0, 0.0, 0.0)
         for step in range(3 * PLAN_INTERVAL):

@@ -34,22 +34,16 @@ from gnc.numeric import clip
 Array = npt.NDArray[np.float64]
 
 SIGNAL_TO_NOISE = 5.0
-"""Peak of the readings over their noise from which a pass detects the plume [-] (Kattner 2015, of
-CO2).
-"""
+"""Least peak of the readings over their noise of a detection [-] (Kattner 2015, of CO2)."""
 
 HIT = 0.6
 """Concentration in a pass over that in the plume's centre from which it hits [-]."""
 
 STRENGTH_STEP = 0.5
-"""Step of the logarithm of strengths [-]: half of it is 25 %, about as well as the shape of a plume
-determines it.
-"""
+"""Step of the logarithm of strengths [-]: a plume's shape determines it to about half of it."""
 
 _FADE = 13
-"""Steps of strength from the centre of a plume out to where it counts as nothing [-]: e^-6.3 of the
-centre.
-"""
+"""Steps of strength from a plume's centre to where it counts as nothing [-]: e^-6.3 of it."""
 
 _HEIGHTS, _BEARINGS = 35, 25
 """Cells over height and bearing [-]."""
@@ -64,9 +58,7 @@ _LOWEST = 5.0
 """Least height of an axis [m]."""
 
 _SPREADS, _SPREAD_STEP = 5, 0.8
-"""Cells of spread, an odd number, and their step in deviations of its logarithm [-]: together they
-have 0.94 of the deviation.
-"""
+"""Cells of spread, an odd number, and their step in deviations of its logarithm [-]."""
 
 _MIDDLE = _SPREADS // 2
 """Index of the expected spread [-]."""
@@ -91,9 +83,7 @@ plume, 0.2 at 0.6 to 1, 0.32 at 1 to 2 and 0.69 at 2 to 4.
 """
 
 _RANGE_MIN = 1e-3
-"""Least deviation of the stack's height over that of the rise [-]: for a range without a width, its
-likelihood would be 0 over 0.
-"""
+"""Least deviation of the stack's height over that of the rise [-], to divide by."""
 
 _TINY = 1e-300
 """Least probability that is divided by [-]."""
@@ -102,9 +92,7 @@ _SPREAD_MIN = 0.4
 """Least spread over that at the expected height [-]."""
 
 _FORGET = 6000.0
-"""Time in which a posterior falls back to the prior, if nothing is read [s]: a ship may change its
-load.
-"""
+"""Time in which a posterior falls back to the prior [s]: a ship may change its load."""
 
 _DIFFUSED = 10.0
 """Least time between random walks of the axis [s]: in less it wanders by less than a cell."""
@@ -116,34 +104,25 @@ _MEMORY = 10.0
 """Passes that the mean of the innovations is over [-]."""
 
 _CHANCE = 0.02
-"""Least probability of a hit or a miss that innovations are judged with [-]: models are no better.
-"""
+"""Least probability of a hit or a miss that innovations are judged with [-]."""
 
 _BELIEVED = 0.75
-"""Exponent of the likelihood of a pass [-]: passes have errors in common. The heights of 80 flights
-were likeliest with it.
-"""
+"""Exponent of a pass's likelihood [-], likeliest over 80 flights: passes share errors."""
 
 _UNLIKELY = 1e-5
 """Probability of a height below which it does not count where passes to come are weighed [-]."""
 
 _LOOK = 2.0
-"""Way along the plume to an independent centre, over the correlation length of the meander [-]: its
-integral scale.
-"""
+"""Way along the plume to an independent centre, over the meander's correlation length [-]."""
 
 _NEAREST = 0.3
-"""Least distance behind the stack at which a pass is believed, over the prior's [-]: nearer it is
-another plume.
-"""
+"""Least distance of a believed pass over the prior's [-]: nearer it is another plume."""
 
 _NOMINAL_RESPONSE = 0.5
 """Largest reading over strength, before a pass has shown it [-]."""
 
 _RESPONSE_MIN = 1e-6
-"""Least reading over strength that counts [-]: a pass far from every place that the axis may have
-detects nothing.
-"""
+"""Least reading over strength [-]: a pass far from the axis detects nothing."""
 
 
 class PlumeGrid:
@@ -282,7 +261,7 @@ class PlumeGrid:
         array, shape (w, h, f)
         """
         reach = self._edges * self.sigma_z[..., np.newaxis]
-        return _differences(self._within(reach, off[:, np.newaxis], looks))
+        return _differences(self.within(reach, off[:, np.newaxis], looks))
 
     def chances(self, off: Array, looks: float, least: float, sigma_z: Array) -> Array:
         """Return the probability that a pass reads at least some strength, shape (..., h', c).
@@ -295,17 +274,7 @@ class PlumeGrid:
         sigma_z : spread in height of each axis, shape (h',) [m]
         """
         reach = np.sqrt(2.0 * np.log(np.maximum(self.strength / least, 1.0)))
-        return self._within(reach * sigma_z[:, np.newaxis], off[..., np.newaxis], looks)
-
-    def hits(self, off: Array, looks: float, sigma_z: Array, fraction: float) -> Array:
-        """Return the probability that a pass reads a fraction of the strength, shape (..., h').
-
-        Parameters
-        ----------
-        off, looks, sigma_z : same as ``chances``
-        fraction : of the plume's own strength that is read at least [-]
-        """
-        return self._within(math.sqrt(-2.0 * math.log(fraction)) * sigma_z, off, looks)
+        return self.within(reach * sigma_z[:, np.newaxis], off[..., np.newaxis], looks)
 
     def place_likelihood(self, distance: float, widened: float, duration: float) -> Array:
         """Return the probability of each place of the centre, given each bearing, shape (b, j).
@@ -361,7 +330,7 @@ class PlumeGrid:
         looks, sigma_z : same as ``chances``
         """
         reach = self._edges * sigma_z[:, np.newaxis]
-        fading = _differences(self._within(reach, off[..., np.newaxis], looks))
+        fading = _differences(self.within(reach, off[..., np.newaxis], looks))
         of_heights = weights.sum(axis=1)
         # By height and reading, summed over the strengths that lead to it; the last is nothing.
         joint = np.empty((len(heights), len(off), len(self.faint) + 1))
@@ -406,10 +375,13 @@ class PlumeGrid:
         result: Array = read.reshape(len(read), -1) @ self._fainter
         return result
 
-    def _within(self, reach: Array, off: Array, looks: float) -> Array:
+    def within(self, reach: Array, off: Array, looks: float) -> Array:
         """Return the probability that the centre of the best look is nearer than ``reach`` [m].
 
-        The axis is ``off`` above the pass [m].
+        Parameters
+        ----------
+        reach, off : of the centre, and height of the axis above the pass, of one shape [m]
+        looks : same as ``fading``
         """
         meander = self._expected.meander_z
         far = reach / meander
@@ -675,7 +647,8 @@ class PlumeEstimator:
     def hits(self, altitudes: Array) -> Array:
         """Return the probability that a pass at each altitude [m] hits the plume in height."""
         off = self.grid.coarse_heights(self._heights) - altitudes[:, np.newaxis]
-        hits = self.grid.hits(off / self._widened, self._looks, self._spread, HIT)
+        reach = math.sqrt(-2.0 * math.log(HIT)) * self._spread
+        hits = self.grid.within(reach, off / self._widened, self._looks)
         result: Array = hits @ self._weights.sum(axis=1)
         return result
 
@@ -768,9 +741,7 @@ class PlumeEstimator:
 
     @property
     def height_interval(self) -> tuple[float, float]:
-        """2.5 % and 97.5 % quantiles of the height [m], which benchmarks/plume compares with the
-        truth.
-        """
+        """2.5 % and 97.5 % quantiles of the height [m]."""
         step = self._heights[1] - self._heights[0]
         below = np.concatenate([[0.0], np.cumsum(self._of_heights)])
         edges = np.concatenate([[self._heights[0] - 0.5 * step], self._heights + 0.5 * step])
@@ -779,9 +750,7 @@ class PlumeEstimator:
 
     @property
     def measurable(self) -> float:
-        """Probability that a pass at the best altitude within the limits detects the plume more
-        often than not [-].
-        """
+        """Probability that some altitude within the limits has a detection in most passes [-]."""
         best = np.clip(
             self.grid.coarse_heights(self._heights), self.prior.lowest, self.prior.highest
         )

@@ -18,9 +18,7 @@ from gnc.estimation.plume.prior import BACKGROUND_DRIFT, GasSensor
 Array = npt.NDArray[np.float64]
 
 _EQUAL, _EQUAL_BY_NOISE = 10, 1e-12
-"""Equal readings in a row from which a sensor counts as stuck, and the largest probability that
-noise makes so many equal, at any reading [-, -]. Noise of 10 steps makes 9 equal with 3e-13.
-"""
+"""Equal readings of a stuck sensor, and the largest probability that noise makes so many [-, -]."""
 
 _SILENT_INTERVALS, _SILENT_TIME = 5.0, 2.0
 """Intervals between readings, and least time, after which a sensor counts as silent [-, s]."""
@@ -35,35 +33,25 @@ _FINE = 0.25
 """Time step of the path in the model of the sensor's lag [s]: 5 m at 20 m/s, about a spread."""
 
 _ACROSS_MIN = 0.25
-"""Least way across over that along, where the vehicle turns within the plume [-]: the turn is
-short.
-"""
+"""Least way across over that along, where the vehicle turns within the plume [-]."""
 
 _READINGS_MIN = 4
 """Least readings of a pass [-]: with fewer, background and pulse cannot be told apart."""
 
 _SHAPE_ERROR = 0.15
-"""Error of a reading because the plume's shape differs, over the largest reading of the pass [-]:
-an assumption.
-"""
+"""Error of a reading by the plume's shape, over the largest reading [-]: an assumption."""
 
 _TAIL_ERROR = 0.3
-"""Error of the rest of the last pass in the sensor, over that rest [-]: the error of a pass's
-strength.
-"""
+"""Error of the rest of the last pass in the sensor, over that rest [-]."""
 
 _UNSEEN_DRIFT = 1.0
-"""Time of drift by which the level at the end of a pass is less certain than its fit [s]: drift is
-no straight line.
-"""
+"""Time of drift by which the level at a pass's end is less certain than its fit [s]."""
 
 _FIRST_BACKGROUND = 1e3
 """Standard deviation of the background before anything is read [ppm]: clean air has some 400."""
 
 BEND_MIN = 1e-12
-"""Least curvature of a likelihood [1/ppm^2]: there is no evidence for a place that was not flown
-to.
-"""
+"""Least curvature of a likelihood [1/ppm^2]: that of a place that was not flown to."""
 
 _STILL = 0.1
 """Least range of the readings of a pass that is believed, over the sensor's noise [-]."""
@@ -158,9 +146,7 @@ class Path:
 
     @property
     def duration(self) -> float:
-        """Time from turn to turn, and for which the sensor still shows the way before the second
-        one [s].
-        """
+        """Time from turn to turn, and for which the sensor still shows the way before [s]."""
         return float(self.time[-1] - self.time[0])
 
     def at(self, across: float) -> tuple[float, float]:

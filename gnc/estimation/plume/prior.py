@@ -14,22 +14,16 @@ _ENTRAINMENT = 0.6
 """Briggs' entrainment coefficient of a plume that bends over in the wind [-]."""
 
 SPEED_MIN = 1.0
-"""Least apparent wind that rise, spreads and strength are computed for [m/s]: below it a plume has
-no direction.
-"""
+"""Least apparent wind of the formulas [m/s]: below it a plume has no direction."""
 
 BUOYANT_SPREAD = 0.4 / math.sqrt(2.0)
 """Spread by the rise, over the rise [-]: AERMOD's buoyancy-induced dispersion."""
 
 _SIGMA_V, _SIGMA_W = 1.9, 1.3
-"""Standard deviations of the wind across and up, over the friction velocity [-]: neutral air,
-AERMOD.
-"""
+"""Deviations of the wind across and up, over the friction velocity [-] (AERMOD, neutral)."""
 
 _DRAG, _DRAG_SLOPE = 0.029, 0.0008
-"""Friction velocity over the wind at 10 m, in calm, and its growth with the wind [-, s/m]:
-Charnock's law to 3 %, 3 to 15 m/s.
-"""
+"""Friction velocity over the wind at 10 m in calm, and its growth [-, s/m] (Charnock, to 3 %)."""
 
 _WIND_MIN = 0.5
 """Least wind that makes turbulence [m/s]."""
@@ -57,22 +51,16 @@ _SOURCE_SPREAD = 4.0
 """Spread at the stack, in the wake of the superstructure [m]: 0 to 8 m; no measurement is known."""
 
 _MEANDER_LENGTH, _MEANDER_HEIGHT = 2.5, 0.25
-"""Integral scale of the meander across, and its correlation length in height, over the height of
-the source [-, -]: neutral air over the sea, to a factor of 2.
-"""
+"""Integral scale of the meander across, and its length in height, over the source height [-, -]."""
 
 _AIR_DENSITY = 42.3
 """Moles of air per volume [mol/m^3], at 15 degC."""
 
 _MODEL_ERROR, _SPREAD_ERROR, _BEARING_ERROR = 0.1, 0.25, 0.02
-"""Errors of the computed rise and spreads, over themselves, and of the bearing [-, -, rad]:
-assumptions.
-"""
+"""Errors of rise and spreads, over themselves, and of the bearing [-, -, rad]: assumptions."""
 
 _GROWTH, _NEAR = 0.85, 0.2
-"""Power of the distance with which spreads and meander grow, and least distance over the prior's
-for which they are computed [-, -].
-"""
+"""Power of the distance with which spreads grow, and its least value over the prior's [-, -]."""
 
 HEIGHT_DRIFT, BEARING_DRIFT = 0.1, 0.002
 """How far the axis wanders in a second [m, rad]; it grows with the root of time."""

@@ -126,13 +126,11 @@ def test_equation_21_is_as_printed(
 ):
     state = relative([north, east, reference_course, 0.0, 0.0, course])
     delta, rho, phi_r, phi = state
-    c, c_r, s, s_r, c_both = (
-        math.cos(phi),
-        math.cos(phi_r),
-        math.sin(phi),
-        math.sin(phi_r),
-        math.cos(phi - phi_r),
-    )
+    c = math.cos(phi)
+    c_r = math.cos(phi_r)
+    s = math.sin(phi)
+    s_r = math.sin(phi_r)
+    c_both = math.cos(phi - phi_r)
     epsilon = LOOK_AHEAD.epsilon
     both = rho * (c - c_r) + delta * (1.0 - c_both)
     turn = -(

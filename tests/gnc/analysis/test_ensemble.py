@@ -33,8 +33,6 @@ from scipy.integrate import solve_ivp
 
 from gnc.analysis.ensemble import DISTANCE_CONVERGED, Outcome, Tolerances
 from gnc.analysis.ensemble_motion import MOTIONS, Steering
-from gnc.analysis.turning_reference import TurningReferences
-from gnc.errors import InfeasibleError
 from gnc.numeric import wrap
 from gnc.paper import cascade_law, lyapunov_law, relative_velocity, state_rates, v_2
 
@@ -64,7 +62,6 @@ def test_the_heading_rate_of_a_reference_is_the_rate_of_its_course(time, rate):
     # Central difference: step^2/6 of omega_r's second derivative, below 1e-9; 500 rad of course
     # rounded, 1e-13, over the step.
     assert refs.heading_rate_at(np.array([time])) == pytest.approx(numerical, rel=0.0, abs=1e-8)
-    assert abs(refs.heading_rate_at(np.array([time]))[0]) <= refs.heading_rate_bound[0]
     assert refs.course_at(np.zeros(1)) == pytest.approx([0.4], abs=1e-15)
 
 
@@ -237,45 +234,3 @@ def test_the_number_of_places_and_the_company_do_not_change_a_trajectory():
     assert in_turn.settling_time == pytest.approx(together.settling_time, rel=1e-9)
     assert in_turn.duration == pytest.approx(together.duration, rel=1e-9)
     assert in_turn.outcome == together.outcome == (Outcome.CONVERGED,) * count
-
-
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ({"to_reference": [[1.0, 2.0], [3.0, 4.0]]}, r"have shapes \(2, 2\)"),
-        ({"course": [math.nan]}, "not finite; give numbers"),
-        ({"time_max": 0.0}, "time_max 0 to 0 s; both must be finite and above 0"),
-        ({"settling_band": -1.0}, "settling_band is -1 m"),
-        ({"places": 0}, "places is 0; it must be at least 1"),
-    ],
-)
-def test_an_ensemble_that_cannot_be_flown_is_refused(changes, words):
-    start = {"to_reference": [[1.0], [2.0]], "course": [0.0]} | changes
-    with pytest.raises(InfeasibleError, match=words):
-        fly(
-            Steering.CASCADE,
-            references(rate=[0.2]),
-            start.pop("to_reference"),
-            start.pop("course"),
-            **start,
-        )
-
-
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ({"rate": [0.1, 0.2]}, r"rate of the references has shape \(2,\)"),
-        ({"course": [math.inf]}, "not finite; give numbers"),
-        ({"frequency": [[0.0]]}, "frequency of a reference is 0 rad/s; it must be above 0"),
-    ],
-)
-def test_references_that_make_no_sense_are_refused(changes, words):
-    good = {
-        "course": [0.0],
-        "rate": [0.1],
-        "amplitude": [[0.1]],
-        "frequency": [[0.5]],
-        "phase": [[0.0]],
-    }
-    with pytest.raises(InfeasibleError, match=words):
-        TurningReferences(**(good | changes))

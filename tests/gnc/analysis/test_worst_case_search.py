@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 
 from gnc.analysis.bounds import heading_rate_bound
 from gnc.analysis.worst_case_search import heading_rates, largest_heading_rate
-from gnc.errors import InfeasibleError
 from gnc.paper import cascade_law, look_ahead, relative_velocity
 
 DESIGNS = {
@@ -110,16 +109,3 @@ def test_the_search_is_the_generators_alone():
         for _ in range(2)
     )
     assert first == second
-
-
-def test_a_search_without_samples_is_refused():
-    with pytest.raises(InfeasibleError, match="samples is 0; at least 1"):
-        largest_heading_rate(
-            LOOK_AHEAD,
-            speed=SPEED,
-            reference_heading_rate_max=0.5,
-            gain=1.5,
-            steering_max=0.4,
-            samples=0,
-            generator=np.random.default_rng(0),
-        )

@@ -13,8 +13,8 @@ from hypothesis import settings
 from hypothesis import strategies as st
 
 from gnc.airspeed import AlongTrackTrim
-from gnc.estimation.navigation import Motion
-from gnc.guidance import GuidanceParameters, compose
+from gnc.estimation.navigation import MeasuredMotion
+from gnc.guidance import Guidance, GuidanceParameters
 from gnc.laws import CascadeLaw
 from gnc.mission.track import DirectParameters
 from gnc.paper import (
@@ -24,7 +24,7 @@ from gnc.paper import (
     relative_velocity,
     unicycle_rates,
 )
-from gnc.reference.reference import OscillatingReference, start_reference
+from gnc.reference.reference import OscillatingReference
 from gnc.tracker import TrackingParameters
 from gnc.unicycle import unicycle_move
 
@@ -120,11 +120,9 @@ def tracking_starts(draw, *, phi_max=math.pi, reach=300.0):
     """The reference at the origin, the vehicle up to ``reach`` [m] about it, phi no more than
     ``phi_max`` [rad] to either side.
     """
-    north, east, reference_course = (
-        draw(st.floats(-reach, reach)),
-        draw(st.floats(-reach, reach)),
-        draw(courses),
-    )
+    north = draw(st.floats(-reach, reach))
+    east = draw(st.floats(-reach, reach))
+    reference_course = draw(courses)
     z_course = -relative([0.0, 0.0, reference_course, north, east, 0.0]).phi
     return [0.0, 0.0, reference_course, north, east, z_course + draw(st.floats(-phi_max, phi_max))]
 
@@ -153,15 +151,17 @@ def tracking_parameters(**changes):
     return TrackingParameters(**(defaults | changes))
 
 
-def make_reference(oscillation, *, phase=0.0, centre=(0.0, 0.0), vessel_course=0.0):
-    start = start_reference(
+def make_reference(
+    oscillation, *, phase=0.0, centre=(0.0, 0.0), vessel_course=0.0, time_step=TIME_STEP
+):
+    return OscillatingReference(
         oscillation,
         phase=phase,
         centre_north=centre[0],
         centre_east=centre[1],
         vessel_course=vessel_course,
+        time_step=time_step,
     )
-    return OscillatingReference(oscillation, start, phase=phase, time_step=TIME_STEP)
 
 
 def paper_parameters(reference, *, vessel=(0.0, 0.0), guard=None, airspeed_gain=0.0, **tracking):
@@ -189,12 +189,14 @@ def paper_parameters(reference, *, vessel=(0.0, 0.0), guard=None, airspeed_gain=
 
 def make_guidance(reference, **how):
     """Return the paper's guidance; ``how`` same as in ``paper_parameters``."""
-    return compose(paper_parameters(reference, **how))
+    return Guidance(paper_parameters(reference, **how))
 
 
 def motion(north, east, course, speed=SPEED, heading_rate=0.0):
     """Return a motion as the guidance takes it: velocities instead of course and speed."""
-    return Motion(north, east, speed * math.cos(course), speed * math.sin(course), heading_rate)
+    return MeasuredMotion(
+        north, east, speed * math.cos(course), speed * math.sin(course), heading_rate
+    )
 
 
 @dataclass(frozen=True, slots=True)

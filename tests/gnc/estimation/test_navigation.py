@@ -8,7 +8,7 @@ from scipy.stats import chi2
 
 from gnc.estimation.navigation import (
     EstimatedNavigation,
-    Motion,
+    MeasuredMotion,
     NavigationParameters,
     SatelliteFix,
     SensorReadings,
@@ -214,7 +214,7 @@ def test_a_noisy_compass_makes_the_wind_wrong_by_no_more_than_that(measured):
 
 def test_the_true_motion_has_course_and_speed_of_its_velocity_and_no_wind():
     own = TrueNavigation()
-    own.update(Motion(100.0, -50.0, 12.0, -5.0, 0.2))
+    own.update(MeasuredMotion(100.0, -50.0, 12.0, -5.0, 0.2))
     assert (own.north, own.east, own.ground_north, own.ground_east) == (100.0, -50.0, 100.0, -50.0)
     # 5, 12, 13.
     assert (own.speed, own.course, own.heading_rate) == pytest.approx(

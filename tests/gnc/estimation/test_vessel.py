@@ -366,10 +366,8 @@ def test_normal_errors_are_outside_of_a_disc_as_rarely_as_its_deviations_say():
     generator = np.random.default_rng(11)
     limits = replace(LIMITS, deviations=3.0, acceleration=0.0, speed_max=math.inf)
     count, vessel = 20_000, Vessel(limits=limits)
-    place, drift = (
-        5.0 * generator.standard_normal((count, 2)),
-        0.15 * generator.standard_normal((count, 2)),
-    )
+    place = 5.0 * generator.standard_normal((count, 2))
+    drift = 0.15 * generator.standard_normal((count, 2))
     outside = sum(
         beyond(tube(VesselReport(0.0, *p, *v), limits, 12.0), vessel, 12.0) > 0.0
         for p, v in zip(place, drift, strict=True)

@@ -28,6 +28,7 @@ from gnc.mission.mission import Mode
 from gnc.reference.moving_centre import CentreParameters, MovingCentre
 
 SPEED, PLAN_TIME = 19.42, 0.5
+CLIMB = Climb(time=4.0, gradient=0.08)
 RISING = AxisHeight(
     source=35.0, momentum_flux=124.0, buoyancy_flux=49.6, lowest=23.0, highest=117.0
 )
@@ -123,7 +124,8 @@ def test_a_vehicle_that_has_fallen_behind_is_led_back_up():
 
 
 def test_a_plume_is_where_it_is_predicted_until_the_true_axis_is_set():
-    axis, around = PredictedPlume(height=RISING, altitude=60.0).begin(), situation(wind=(0.0, 3.0))
+    axis = PredictedPlume(height=RISING, altitude=60.0, climb=CLIMB).begin()
+    around = situation(wind=(0.0, 3.0))
     axis.plan(0.0, around, tracking=False)
     assert axis.demanded == RISING.at(around.centre.distance, math.hypot(8.0, 3.0))
     assert (axis.bearing, axis.mode) == (0.0, Mode.TRACKING)
@@ -135,7 +137,7 @@ def test_a_plume_is_where_it_is_predicted_until_the_true_axis_is_set():
 
 @pytest.mark.parametrize(("given", "flown"), [(300.0, 117.0), (3.0, 23.0)])
 def test_the_true_height_is_flown_within_the_limits_alone(given, flown):
-    axis = PredictedPlume(height=RISING, altitude=60.0).begin()
+    axis = PredictedPlume(height=RISING, altitude=60.0, climb=CLIMB).begin()
     axis.set_true_axis(given, math.pi)
     axis.plan(0.0, situation(), tracking=True)
     assert axis.demanded == flown
@@ -259,11 +261,9 @@ def test_hits_are_those_of_centres_drawn_at_random() -> None:
 
 
 def test_a_ladder_goes_up_and_down_between_its_ends() -> None:
-    search, estimator, altitude = (
-        LadderSearch(lowest=20.0, highest=120.0),
-        PlumeEstimator(PRIOR),
-        65.0,
-    )
+    search = LadderSearch(lowest=20.0, highest=120.0)
+    estimator = PlumeEstimator(PRIOR)
+    altitude = 65.0
     steps = []
     for _ in range(10):
         altitude = search.next_altitude(estimator, altitude, PASS_TIME)
@@ -289,7 +289,7 @@ EXPECTED = Expectation(
 SEARCHED = SearchedPlume(
     height=RISING,
     altitude=60.0,
-    climb=Climb(time=4.0, gradient=0.08),
+    climb=CLIMB,
     expected=EXPECTED,
     climb_rate=0.08 * SPEED,
 )

@@ -17,7 +17,7 @@ from gnc.estimation.health import Fault
 from gnc.estimation.navigation import TrueNavigation
 from gnc.estimation.vessel import SteadyTarget
 from gnc.guard.guard import GuardParameters
-from gnc.guidance import compose
+from gnc.guidance import Guidance
 from gnc.mission.mission import TRACK, Centre, Mode
 from gnc.mission.track import DirectParameters, DirectTracking, Joining
 from gnc.mission.way import ApproachParameters
@@ -64,7 +64,7 @@ def guidance(*, joining=True, nu=NU):
         if joining
         else None,
     )
-    return compose(paper_parameters(mission, vessel=(nu * SPEED, 0.0), guard=GUARD))
+    return Guidance(paper_parameters(mission, vessel=(nu * SPEED, 0.0), guard=GUARD))
 
 
 def settles(flight):

@@ -3,7 +3,15 @@
 import math
 
 import pytest
-from gnc_cases import HEADING_RATE_MAX, SPEED, TIME_STEP, courses, examples, motion
+from gnc_cases import (
+    HEADING_RATE_MAX,
+    SPEED,
+    TIME_STEP,
+    courses,
+    examples,
+    motion,
+    tracking_parameters,
+)
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
@@ -63,11 +71,9 @@ geometry = {
 def test_the_straight_relative_way_never_enters_the_blocked_circle_from_outside(
     distance, bearing, target, course, speed, heading
 ):
-    place, goal, velocity = (
-        polar(distance, bearing),
-        polar(TARGET_DISTANCE, target),
-        polar(speed, heading),
-    )
+    place = polar(distance, bearing)
+    goal = polar(TARGET_DISTANCE, target)
+    velocity = polar(speed, heading)
     transit = Transit(TURN_RADIUS)
     way = relative(course_of(transit, place, goal, velocity=velocity, course=course), velocity)
     # As far as the target where the way there is clear, or else past the tangent point, far enough
@@ -82,11 +88,9 @@ def test_the_straight_relative_way_never_enters_the_blocked_circle_from_outside(
 def test_the_relative_velocity_lies_along_the_way_to_the_target_where_that_is_clear(
     distance, bearing, target, course, speed, heading
 ):
-    place, goal, velocity = (
-        polar(distance, bearing),
-        polar(TARGET_DISTANCE, target),
-        polar(speed, heading),
-    )
+    place = polar(distance, bearing)
+    goal = polar(TARGET_DISTANCE, target)
+    velocity = polar(speed, heading)
     transit = Transit(TURN_RADIUS)
     way = relative(course_of(transit, place, goal, velocity=velocity, course=course), velocity)
     to = (goal[0] - place[0], goal[1] - place[1])
@@ -227,13 +231,7 @@ class Way:
 
     def __init__(self, place, course=0.0, *, lag=0.0, heading_rate=0.0):
         self.own = vehicle(place, course, heading_rate=heading_rate)
-        self.approach = Approach(
-            PARAMETERS,
-            speed=SPEED,
-            heading_rate_max=HEADING_RATE_MAX,
-            lag=lag,
-            time_step=TIME_STEP,
-        )
+        self.approach = Approach(PARAMETERS, tracking_parameters(lag=lag), SPEED)
 
     def command(self, last=0.0, *, additional_range=0.0, guarding=False):
         return self.approach.command(
@@ -363,11 +361,9 @@ def fly_out(x, y, course, heading_rate=0.0, duration=30.0):
     """Return distances from the vessel, and heading rates, of a vehicle that answers at once and
     leaves a vessel at rest.
     """
-    egress, distances, turns = (
-        Egress(heading_rate_max=HEADING_RATE_MAX, lag=0.0, glide_airspeed=15.0),
-        [],
-        [],
-    )
+    egress = Egress(tracking_parameters(), 15.0)
+    distances = []
+    turns = []
     for _ in range(round(duration / TIME_STEP)):
         own = AirMotion(ground_north=x, ground_east=y, course=course, heading_rate=heading_rate)
         heading_rate = egress.command(own, VESSEL, heading_rate)
@@ -407,5 +403,5 @@ def test_where_one_turn_is_shorter_it_is_taken_from_any_turn(side):
         course=-side * math.radians(120.0),
         heading_rate=-side * 0.4,
     )
-    egress = Egress(heading_rate_max=HEADING_RATE_MAX, lag=0.0, glide_airspeed=15.0)
+    egress = Egress(tracking_parameters(), 15.0)
     assert egress.command(own, VESSEL, 0.0) == side * HEADING_RATE_MAX

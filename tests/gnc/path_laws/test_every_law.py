@@ -44,11 +44,9 @@ def states(count=20):
     for _ in range(count):
         to = tuple(float(x) for x in generator.normal(0.0, 60.0, 2))
         wind, frame = (tuple(float(x) for x in generator.normal(0.0, 3.0, 2)) for _ in range(2))
-        course, own, rate = (
-            float(generator.uniform(-3.0, 3.0)),
-            float(generator.uniform(-3.0, 3.0)),
-            float(generator.uniform(0.02, 0.4)),
-        )
+        course = float(generator.uniform(-3.0, 3.0))
+        own = float(generator.uniform(-3.0, 3.0))
+        rate = float(generator.uniform(0.02, 0.4))
         yield reference(course, rate), to, own, wind, frame
 
 

@@ -1,14 +1,13 @@
 import math
 
 import pytest
-from gnc_cases import SPEED, examples, paper_oscillation
+from gnc_cases import SPEED, examples, make_reference, paper_oscillation
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from gnc.errors import InfeasibleError
 from gnc.paper import eta_for_speed_ratio, mean_speed_ratio
-from gnc.reference.reference import OscillatingReference, start_reference
 
 ratios = st.floats(0.0, 1.0)
 # First zero of J_0, eta of a vessel at rest by (6): Abramowitz and Stegun, table 9.5.
@@ -32,17 +31,13 @@ def test_the_reference_makes_no_way_across_the_vessels_course(nu):
     # Equation (5), second line: of the reference that is flown, over a period, in steps that divide
     # it; and along it nu V_r T.
     oscillation = paper_oscillation(nu)
-    start = start_reference(
-        oscillation, phase=0.4, centre_north=0.0, centre_east=0.0, vessel_course=0.0
-    )
-    reference = OscillatingReference(
-        oscillation, start, phase=0.4, time_step=oscillation.period / 400
-    )
+    reference = make_reference(oscillation, phase=0.4, time_step=oscillation.period / 400)
+    north, east = reference.north, reference.east
     for _ in range(400):
         reference.step()
     # Simpson's rule, 1e-9 m a step.
-    assert reference.east == pytest.approx(start.east, abs=1e-6)
-    assert reference.north == pytest.approx(start.north + nu * SPEED * oscillation.period, abs=1e-6)
+    assert reference.east == pytest.approx(east, abs=1e-6)
+    assert reference.north == pytest.approx(north + nu * SPEED * oscillation.period, abs=1e-6)
 
 
 @examples(300)

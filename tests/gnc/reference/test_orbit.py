@@ -109,10 +109,8 @@ def test_the_orbit_shrinks_as_the_vessel_speeds_up():
 
 
 def test_the_orbit_scales_with_speed_over_frequency():
-    slow, fast = (
-        paper_oscillation(0.4),
-        paper_oscillation(0.4, speed=2.0 * SPEED, heading_rate_max=1.5),
-    )
+    slow = paper_oscillation(0.4)
+    fast = paper_oscillation(0.4, speed=2.0 * SPEED, heading_rate_max=1.5)
     scale = 2.0 * slow.omega_0 / fast.omega_0
     # (4) has no other length than V_r/omega_0. Rounding.
     assert half_widths(fast) == pytest.approx(

@@ -25,9 +25,6 @@ from gnc.reference.reference import (
     CirclingReference,
     ClosingReference,
     JoinedOrbit,
-    OscillatingReference,
-    ReferenceStart,
-    start_reference,
 )
 from gnc.reference.shapes import Sinusoid
 from gnc.unicycle import unicycle_move
@@ -38,14 +35,9 @@ COURSE = 0.7
 
 def make(nu, *, phase=0.0, time_step=TIME_STEP):
     oscillation = paper_oscillation(nu, roll_rate_max=math.radians(40.0))
-    start = start_reference(
-        oscillation,
-        phase=phase,
-        centre_north=CENTRE[0],
-        centre_east=CENTRE[1],
-        vessel_course=COURSE,
+    return oscillation, make_reference(
+        oscillation, phase=phase, centre=CENTRE, vessel_course=COURSE, time_step=time_step
     )
-    return oscillation, OscillatingReference(oscillation, start, phase=phase, time_step=time_step)
 
 
 def closed_form(oscillation, time, phase):
@@ -140,15 +132,9 @@ def test_the_reference_is_a_unicycle_of_constant_speed():
 def test_the_reference_starts_on_the_centre_with_phase_zero_only():
     # Section III.B has it start on the CO, which centres the orbit there for phi_0 = 0 only.
     oscillation = paper_oscillation(0.5)
-    on = start_reference(
-        oscillation, phase=0.0, centre_north=CENTRE[0], centre_east=CENTRE[1], vessel_course=COURSE
-    )
-    off = start_reference(
-        oscillation,
-        phase=0.5 * math.pi,
-        centre_north=CENTRE[0],
-        centre_east=CENTRE[1],
-        vessel_course=COURSE,
+    on, off = (
+        make_reference(oscillation, phase=phase, centre=CENTRE, vessel_course=COURSE)
+        for phase in (0.0, 0.5 * math.pi)
     )
     assert (on.north, on.east) == pytest.approx(CENTRE, abs=1e-12)
     # A quarter period on it is d_y = 68.395 m to the vessel's right by (12), rounded to
@@ -161,11 +147,8 @@ def test_the_reference_starts_on_the_centre_with_phase_zero_only():
 
 @pytest.mark.parametrize("heading_rate", [0.15, -0.4])
 def test_a_circling_reference_is_a_unicycle_that_turns_steadily(heading_rate):
-    start = ReferenceStart(north=12.0, east=-7.0, course=COURSE)
-    reference = CirclingReference(
-        start, speed=SPEED, heading_rate=heading_rate, time_step=TIME_STEP
-    )
-    state = (start.north, start.east, start.course)
+    reference = CirclingReference(speed=SPEED, heading_rate=heading_rate, time_step=TIME_STEP)
+    state = (0.0, 0.0, 0.0)
     assert (reference.north, reference.east, reference.course) == state
     for _ in range(8000):
         reference.step()

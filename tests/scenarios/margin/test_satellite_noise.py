@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gnc.reference.reference import CirclingReference, ReferenceStart
+from gnc.reference.reference import CirclingReference
 from gnc.tracker import Tracker
 from scenarios.api.flying import fly
 from scenarios.margin.report_scatter import GUARDED_PER_HOUR
@@ -36,7 +36,6 @@ def seen_errors(tracking, hold, turn, speed, lag):
     tracker = Tracker(
         tracking,
         CirclingReference(
-            ReferenceStart(north=0.0, east=0.0, course=0.0),
             speed=speed,
             heading_rate=turn,
             time_step=step,

@@ -7,7 +7,7 @@ import pytest
 from flight_cases import plan, scenario
 
 from gnc.errors import InfeasibleError
-from gnc.estimation.navigation import Motion
+from gnc.estimation.navigation import MeasuredMotion
 from gnc.estimation.vessel import Tube
 from gnc.guard.guard import GuardParameters
 from scenarios.experiment.requests import Experiment
@@ -79,7 +79,7 @@ def test_nothing_else_of_a_flight_changes_with_a_start_that_is_given(key, value,
     for step in (0, 1, 100):
         one, other = (
             flight.sensing.errors.read(
-                step, Motion(0.0, 0.0, 0.0, 0.0, 0.0), 0.0, 0.0, satellites=True
+                step, MeasuredMotion(0.0, 0.0, 0.0, 0.0, 0.0), 0.0, 0.0, satellites=True
             )
             for flight in (sampled, given)
         )

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from gnc.estimation.health import Fault
-from gnc.estimation.navigation import Motion
+from gnc.estimation.navigation import MeasuredMotion
 from gnc.mission.mission import Mode
 from scenarios.simulation.ending import Ending
 from scenarios.simulation.judge import Enough
@@ -58,7 +58,9 @@ def ended(
     )
     ending = Ending(plan, vehicle, guidance, settling, judge)
     ending.guarded, ending.saturated = guarded, saturated
-    ending.reached(300.0, Motion(0.0, 0.0, 0.0, 0.0, 0.0), sample, complete=0 < asked <= flown)
+    ending.reached(
+        300.0, MeasuredMotion(0.0, 0.0, 0.0, 0.0, 0.0), sample, complete=0 < asked <= flown
+    )
     return ending
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from aircraft.wind import WindField, constant_wind
-from gnc.guidance import compose
+from gnc.guidance import Guidance
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
 from scenarios.planning.planner import plan_flight
@@ -179,7 +179,7 @@ def test_the_guidance_is_the_same_for_both_vehicles():
     assert replace(plans[0].guidance, mission=None) == replace(plans[1].guidance, mission=None)
     commands = []
     for plan in plans:
-        guidance = compose(plan.guidance)
+        guidance = Guidance(plan.guidance)
         for step in range(100):
             guidance.step(step * plan.time_step, (-400.0, 30.0, 18.5, 5.7, 0.1))
         commands.append((guidance.heading_rate_command, guidance.airspeed_command))

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from gnc.estimation.navigation import Motion
+from gnc.estimation.navigation import MeasuredMotion
 from scenarios.schema.sections.equipment import SensorsConfig
 from scenarios.vehicles.sensors import SensorErrors
 
@@ -16,7 +16,7 @@ SENSORS = SensorsConfig(
     heading_sigma_deg=1.0,
     heading_bias_deg=2.0,
 )
-MOTION = Motion(100.0, -50.0, 12.0, 3.0, 0.1)
+MOTION = MeasuredMotion(100.0, -50.0, 12.0, 3.0, 0.1)
 
 
 def errors(sensors=SENSORS, *, steps, seed=2, time_step=TIME_STEP):

@@ -206,11 +206,9 @@ def test_the_interval_leaves_a_fortieth_on_either_side() -> None:
 
 @pytest.mark.parametrize("altitude", [45.0, 65.0, 90.0])
 def test_the_chance_of_a_detection_is_that_of_centres_drawn_at_random(altitude: float) -> None:
-    estimator, generator, count = (
-        estimated(MadePlume(height=68.0, peak=20.0), [65.0]),
-        np.random.default_rng(3),
-        200_000,
-    )
+    estimator = estimated(MadePlume(height=68.0, peak=20.0), [65.0])
+    generator = np.random.default_rng(3)
+    count = 200_000
     grid, shape = estimator.grid, estimator.cells.shape
     spread, height, strength = np.unravel_index(
         generator.choice(estimator.cells.size, count, p=estimator.cells.ravel()), shape
