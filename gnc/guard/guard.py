@@ -50,8 +50,8 @@ from typing import NamedTuple
 from gnc.estimation.navigation import AirMotion
 from gnc.estimation.vessel import Tube
 from gnc.guard.turn import (
-    CHANGED,
-    FORGOTTEN,
+    CHANGE_DECAY,
+    PENDING_DECAY,
     LEAST_CHANGE,
     RelativeMotion,
     TurnAway,
@@ -71,7 +71,7 @@ _SAME_SPEED = 0.05
 """Airspeeds that differ by no more count as one, the faster [m/s]. A turn away then keeps off by
 the same to some centimetres, at most 0.2 m at a turn radius of 40 m."""
 
-_UNSTEADY = 0.05
+_SPEED_SWITCH_ERROR = 0.05
 """Share of the difference between the turn radii when fast and slow by which a vehicle may come
 nearer than predicted [-]."""
 
@@ -81,12 +81,12 @@ _BISECTIONS = 5
 _PACE_TOLERANCE = 0.05
 """Rise of the pace that the guard is not consulted about [m/s]; see ``_SAME_SPEED``."""
 
-_SKIPPED_LESS = 0.5
+_SHORTFALL_MAX = 0.5
 """By how much skipped commands may be less of the turn away than the one that was looked at, over
 omega_max [-]. A larger share keeps more slack for rolling; a smaller one brings the next look
 sooner."""
 
-_REMEMBERED = 2.0
+_PACE_DECAY = 2.0
 """Time constant with which former paces fade, over that of the airspeed [-]: an overshoot lasts
 longer than a rise."""
 
@@ -640,7 +640,7 @@ class HeadingRateFilter:
 
     def _explained_slack(self, motion: RelativeMotion) -> float:
         """Return the slack that declared errors may have taken from a safe turn since [m]."""
-        return self._explained + _UNSTEADY * (motion.fastest - motion.slowest) / self._rate
+        return self._explained + _SPEED_SWITCH_ERROR * (motion.fastest - motion.slowest) / self._rate
 
     def _turn_command(self, side: float, motion: RelativeMotion) -> float:
         """Return the command of a turn away [rad/s]: straight away from the disc and no farther."""
@@ -704,8 +704,8 @@ class CommandHistory:
         # exactly 0 for a vehicle with just that dead time and lag.
         self._kept = self._fading = self._course_at_end = self._course_of_change = 0.0
         if lag > 0.0:
-            self._kept = math.exp(-time_step / (FORGOTTEN * lag))
-            self._fading = math.exp(-time_step / (CHANGED * lag))
+            self._kept = math.exp(-time_step / (PENDING_DECAY * lag))
+            self._fading = math.exp(-time_step / (CHANGE_DECAY * lag))
             turned = time_step / -math.expm1(-time_step / lag)
             self._course_at_end = turned - lag
             self._course_of_change = (
@@ -873,7 +873,7 @@ class SkipBudget:
 
     def least_of_turn(self, side: float, command: float) -> float:
         """Return how little of a turn to a side commands may be after this one [rad/s]."""
-        return max(min(side * command, self._rate) - _SKIPPED_LESS * self._rate, -self._rate)
+        return max(min(side * command, self._rate) - _SHORTFALL_MAX * self._rate, -self._rate)
 
     def refund(self, command: float) -> None:
         """Let the command [rad/s] that was looked at pass once more."""
@@ -911,7 +911,7 @@ class SpeedRange:
     ) -> None:
         self.speed = speed
         self._overshoot = overshoot
-        self._kept = math.exp(-time_step * bandwidth / _REMEMBERED)
+        self._kept = math.exp(-time_step * bandwidth / _PACE_DECAY)
         self.highest = speed
         self.lowest = speed
         # What recent paces may still make of the speed.

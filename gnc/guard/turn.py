@@ -30,12 +30,12 @@ LEAST_CHANGE = 0.2
 """Change of heading rate, over that of a full reversal, for which a turn is taken to deviate at
 least [-]."""
 
-FORGOTTEN = 64.0
+PENDING_DECAY = 64.0
 """Time constant with which course that is still to come is forgotten, over the lag [-]: some of a
 turn at the largest bank never comes. Heading rates oscillate after a reversal as well, for as long
-as ``CHANGED`` says."""
+as ``CHANGE_DECAY`` says."""
 
-CHANGED = 24.0
+CHANGE_DECAY = 24.0
 """Time constant with which the largest change of command counts less for how far turns deviate,
 over the lag [-]."""
 

@@ -35,8 +35,8 @@ from aircraft.trim import Trim
 from common.interrupt import follow_parent
 from common.physics import METRES_PER_FOOT, heading_rate_for_bank
 from gnc.guard.turn import (
-    CHANGED,
-    FORGOTTEN,
+    CHANGE_DECAY,
+    PENDING_DECAY,
     LEAST_CHANGE,
     entry_rate,
     pending_turn_rate,
@@ -476,8 +476,8 @@ class _Flight:
         self._height = fdm.node("position/h-sl-ft").get_double_value
         self._held_height_ft = self._height()
         self._delay_steps = max(1, round(response.delay / TIME_STEP))
-        self._kept = math.exp(-TIME_STEP / (FORGOTTEN * response.lag))
-        self._fading = math.exp(-TIME_STEP / (CHANGED * response.lag))
+        self._kept = math.exp(-TIME_STEP / (PENDING_DECAY * response.lag))
+        self._fading = math.exp(-TIME_STEP / (CHANGE_DECAY * response.lag))
         self._largest_change = 0.0
         # Those that have not acted yet, and before them those of the last piece.
         self._commands: list[float] = [0.0] * self._delay_steps

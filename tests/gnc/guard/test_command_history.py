@@ -8,7 +8,7 @@ from gnc_cases import HEADING_RATE_MAX
 from guard_cases import TIME_STEP, moved
 
 from gnc.guard.guard import CommandHistory
-from gnc.guard.turn import CHANGED, FORGOTTEN, LEAST_CHANGE, SLOW_LAG_ERROR, commands_under_way
+from gnc.guard.turn import CHANGE_DECAY, PENDING_DECAY, LEAST_CHANGE, SLOW_LAG_ERROR, commands_under_way
 
 
 def begun(lag, delay, *, rate=0.0, sooner=0.0):
@@ -84,7 +84,7 @@ def test_a_constant_lack_is_forgotten():
     pending = history.take_in(0.0)
     append(history, [0.0] * 100, 0.0)
     assert history.take_in(0.0) == pytest.approx(
-        pending * math.exp(-100 * TIME_STEP / (FORGOTTEN * 0.4)), rel=1e-9
+        pending * math.exp(-100 * TIME_STEP / (PENDING_DECAY * 0.4)), rel=1e-9
     )
 
 
@@ -133,7 +133,7 @@ def test_the_largest_recent_change_counts_less_with_time():
     assert history.change_with(1.5 * HEADING_RATE_MAX) == pytest.approx(1.0, rel=1e-12)
     append(history, [-0.5 * HEADING_RATE_MAX] * 40, 0.0)
     history.take_in(0.0)
-    faded = 0.75 * math.exp(-40 * TIME_STEP / (CHANGED * 0.4))
+    faded = 0.75 * math.exp(-40 * TIME_STEP / (CHANGE_DECAY * 0.4))
     assert history.change == pytest.approx(faded, rel=1e-12)
     append(history, [-0.5 * HEADING_RATE_MAX] * 2000, 0.0)
     history.take_in(0.0)
