@@ -51,8 +51,8 @@ from gnc.estimation.navigation import AirMotion
 from gnc.estimation.vessel import Tube
 from gnc.guard.turn import (
     CHANGE_DECAY,
-    PENDING_DECAY,
     LEAST_CHANGE,
+    PENDING_DECAY,
     RelativeMotion,
     TurnAway,
     TurnPrediction,
@@ -640,7 +640,9 @@ class HeadingRateFilter:
 
     def _explained_slack(self, motion: RelativeMotion) -> float:
         """Return the slack that declared errors may have taken from a safe turn since [m]."""
-        return self._explained + _SPEED_SWITCH_ERROR * (motion.fastest - motion.slowest) / self._rate
+        return (
+            self._explained + _SPEED_SWITCH_ERROR * (motion.fastest - motion.slowest) / self._rate
+        )
 
     def _turn_command(self, side: float, motion: RelativeMotion) -> float:
         """Return the command of a turn away [rad/s]: straight away from the disc and no farther."""

@@ -36,8 +36,8 @@ from common.interrupt import follow_parent
 from common.physics import METRES_PER_FOOT, heading_rate_for_bank
 from gnc.guard.turn import (
     CHANGE_DECAY,
-    PENDING_DECAY,
     LEAST_CHANGE,
+    PENDING_DECAY,
     entry_rate,
     pending_turn_rate,
     rolled_change,

@@ -8,7 +8,13 @@ from gnc_cases import HEADING_RATE_MAX
 from guard_cases import TIME_STEP, moved
 
 from gnc.guard.guard import CommandHistory
-from gnc.guard.turn import CHANGE_DECAY, PENDING_DECAY, LEAST_CHANGE, SLOW_LAG_ERROR, commands_under_way
+from gnc.guard.turn import (
+    CHANGE_DECAY,
+    LEAST_CHANGE,
+    PENDING_DECAY,
+    SLOW_LAG_ERROR,
+    commands_under_way,
+)
 
 
 def begun(lag, delay, *, rate=0.0, sooner=0.0):
