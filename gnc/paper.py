@@ -2,17 +2,15 @@
 
 D. Escudeiro, "UAV-based Measurement of Marine Vessels Smoke Plumes - Guidance and Control System".
 ``# (24)`` stands at the line that computes equation (24). The plane is north-east, in metres;
-courses are clockwise from north, in radians. The paper's symbols are
+courses are clockwise from north, in radians. The paper's symbols are::
 
-==============  ==================================================================
-V_r, V_V        speeds of vehicle and reference, and of the vessel
-chi, omega      course and heading rate; with the index r those of the reference
-nu              speed ratio, V_V/V_r
-eta, omega_0    course amplitude A/omega_0 and frequency of the reference's oscillation
-CO, r_CO        centre of oscillation, and its distance from the vessel
-d, delta, z     from vehicle to reference, look-ahead along the reference's course, d + delta
-rho, phi, phi_r length of z, and courses of vehicle and reference against that of z
-==============  ==================================================================
+    V_r, V_V         speeds of vehicle and reference, and of the vessel
+    chi, omega       course and heading rate; with the index r those of the reference
+    nu               speed ratio, V_V/V_r
+    eta, omega_0     course amplitude A/omega_0 and frequency of the reference's oscillation
+    CO, r_CO         centre of oscillation, and its distance from the vessel
+    d, delta, z      from vehicle to reference, look-ahead along the reference's course, d + delta
+    rho, phi, phi_r  length of z, and courses of vehicle and reference against that of z
 
 ``EQUATIONS.md`` lists where the code differs from the paper, and the errors in its print.
 """

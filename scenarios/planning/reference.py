@@ -32,7 +32,7 @@ RATIO_STEPS = 48
 _OF_ORBIT = ("nu", "speed", "eta", "omega_0", "amplitude", "period", "crossing_interval")
 """Numbers that an orbit has."""
 
-_OF_SWING = ("eta", "speed_ratio", "frequency", "course", "slopes", "offset")
+_OF_SWING = ("eta", "frequency", "course", "slopes", "offset")
 """Methods that a shape's courses have."""
 
 

@@ -259,7 +259,9 @@ def test_starts_fill_the_disc_and_references_stay_within_their_bounds():
         ("oscillation", (0.1, HEADING_RATE_MAX)),
         ("random", (0.1, 0.5)),
     ):
-        rates = references_of([case for case in cases if case.kind == kind]).heading_rate_bound
+        references = references_of([case for case in cases if case.kind == kind])
+        # |omega_r| <= |c| + sum |a_k|.
+        rates = np.abs(references.rate) + np.abs(references.amplitude).sum(axis=0)
         assert rates.min() >= bounds[0] * (1.0 - 1e-12)
         assert rates.max() <= bounds[1] * (1.0 + 1e-12)
     assert {np.sign(case.rate) for case in cases if case.kind == "circle"} == {-1.0, 1.0}
