@@ -21,12 +21,12 @@ from gnc.compiled import FOLDER, INDEX, ROOT, sources_hash
 
 MODULES = {
     "gnc": (
-        "guidance", "numeric", "unicycle",
+        "guidance", "numeric", "tracker", "unicycle",
         "airspeed",
         "estimation/health", "estimation/navigation", "estimation/vessel",
         "paper",
-        "mission/follow", "mission/mission", "mission/track", "mission/way",
-        "reference/moving_centre", "reference/steered",
+        "mission/follow", "mission/mission", "mission/standoff", "mission/track", "mission/way",
+        "reference/moving_centre", "reference/oscillating", "reference/steered",
         "guard/guard", "guard/turn",
     ),
     "scenarios": (

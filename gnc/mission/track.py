@@ -10,7 +10,8 @@ from gnc.estimation.navigation import OwnMotion
 from gnc.estimation.vessel import TargetMotion
 from gnc.mission.mission import NO_CENTRE, TRACK, Centre, Mode, OrbitStatus, Order
 from gnc.mission.way import LOST_TRACK, Approach, ApproachParameters
-from gnc.reference.reference import ClosingReference, JoinedOrbit, Reference
+from gnc.reference.oscillating import ClosingReference, JoinedOrbit
+from gnc.reference.reference import Reference
 from gnc.tracker import Tracker, TrackingParameters
 
 STANDOFF = 2.0

@@ -9,10 +9,10 @@ from common.registry import PluginError
 from gnc.errors import InfeasibleError
 from gnc.paper import PlumeAxis, distance_by_paper, distance_exact
 from gnc.reference.builtin_floats import BuiltinFloats, with_builtin_floats
+from gnc.reference.oscillating import JoinedOrbit
 from gnc.reference.reference import (
     REFERENCE_SHAPES,
     CirclingReference,
-    JoinedOrbit,
     Orbit,
     ReferenceShape,
     Swing,

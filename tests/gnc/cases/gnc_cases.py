@@ -24,7 +24,7 @@ from gnc.paper import (
     relative_velocity,
     unicycle_rates,
 )
-from gnc.reference.reference import OscillatingReference
+from gnc.reference.oscillating import OscillatingReference
 from gnc.tracker import TrackingParameters
 from gnc.unicycle import unicycle_move
 

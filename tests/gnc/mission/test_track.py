@@ -22,7 +22,7 @@ from gnc.mission.mission import TRACK, Centre, Mode
 from gnc.mission.track import DirectParameters, DirectTracking, Joining
 from gnc.mission.way import ApproachParameters
 from gnc.paper import PlumeAxis, distance_by_paper
-from gnc.reference.reference import JoinedOrbit
+from gnc.reference.oscillating import JoinedOrbit
 from gnc.reference.shapes import Sinusoid
 
 NU = 0.1

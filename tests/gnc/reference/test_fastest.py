@@ -11,7 +11,8 @@ from scipy.optimize import brentq
 from common.physics import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
 from gnc.paper import PlumeAxis, distance_exact
-from gnc.reference.reference import REFERENCE_SHAPES, JoinedOrbit
+from gnc.reference.oscillating import JoinedOrbit
+from gnc.reference.reference import REFERENCE_SHAPES
 from gnc.reference.shapes import Fastest, Sinusoid
 
 LIMITS = {

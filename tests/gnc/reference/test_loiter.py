@@ -10,7 +10,7 @@ from orbit_cases import assert_a_point_that_turns_so_flies
 from common.physics import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
 from gnc.paper import PlumeAxis, distance_exact
-from gnc.reference.reference import JoinedOrbit
+from gnc.reference.oscillating import JoinedOrbit
 from gnc.reference.shapes import LoiterShape
 
 HEADING_RATE = STANDARD_GRAVITY / SPEED

@@ -20,12 +20,8 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from gnc.paper import design_oscillation, half_widths, offset
-from gnc.reference.reference import (
-    REFERENCE_SHAPES,
-    CirclingReference,
-    ClosingReference,
-    JoinedOrbit,
-)
+from gnc.reference.oscillating import ClosingReference, JoinedOrbit
+from gnc.reference.reference import REFERENCE_SHAPES, CirclingReference
 from gnc.reference.shapes import Sinusoid
 from gnc.unicycle import unicycle_move
 

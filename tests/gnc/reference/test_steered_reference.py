@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from scipy.special import j0
 
 from gnc.paper import design_oscillation, eta_for_speed_ratio, offset
-from gnc.reference.reference import REFERENCE_SHAPES, JoinedOrbit
+from gnc.reference.oscillating import JoinedOrbit
+from gnc.reference.reference import REFERENCE_SHAPES
 from gnc.reference.shapes import SinusoidSwing
 from gnc.reference.steered import SteeredReference
 
