@@ -167,8 +167,9 @@ class Guidance:
         guard = self.guard
         if guard is not None:
             demand = Demand(time, command, pace, leaving)
-            command, pace, held, status = guard.filter(demand, own, self._vessel_discs)
-            self.guarding = status is not GuardStatus.FREE
+            guarded = guard.filter(demand, own, self._vessel_discs)
+            command, pace, held = guarded.heading_rate, guarded.pace, guarded.pace_held
+            self.guarding = guarded.status is not GuardStatus.FREE
         tracker.heading_rate_command = command
         # A turn away is flown in full in gusts, too: it was predicted without them.
         limit = self._heading_rate_max

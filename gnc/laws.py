@@ -21,8 +21,7 @@ from gnc.paper import (
     cascade_law,
     look_ahead,
     lyapunov_law,
-    relative_state,
-    relative_velocity,
+    relative_motion,
 )
 from gnc.reference.reference import Reference
 
@@ -279,17 +278,16 @@ class DeltaLaw(CheckedLaw):
 
     def relative_motion(self, reference: Reference, own: Motion) -> tuple[RelativeState, float]:
         """Return the relative state, and omega_rho, the rate of the course of z [rad/s]."""
-        state = relative_state(
+        return relative_motion(
             self._look_ahead,
             reference.north - own.north,
             reference.east - own.east,
             reference.course,
             own.course,
+            reference.speed,
+            own.speed,
+            reference.heading_rate,
         )
-        _, omega_rho = relative_velocity(
-            self._look_ahead, state, reference.speed, own.speed, reference.heading_rate
-        )
-        return state, omega_rho
 
 
 @steering_law("cascade")

@@ -2,7 +2,7 @@
 
 from collections import deque
 from dataclasses import dataclass
-from typing import Generic, NamedTuple, TypeVar
+from typing import Generic, TypeVar
 
 from gnc.estimation.navigation import AirMotion
 from gnc.laws import STILL_AIR, Air, LimitedLaw, Motion, SteeringLaw
@@ -30,13 +30,14 @@ class TrackingParameters:
     lag: float
 
 
-class _Instant(NamedTuple):
+class _Instant:
     """The reference at an instant, waiting to become that of now."""
 
-    north: float
-    east: float
-    course: float
-    heading_rate: float
+    def __init__(self, north: float, east: float, course: float, heading_rate: float) -> None:
+        self.north = north
+        self.east = east
+        self.course = course
+        self.heading_rate = heading_rate
 
 
 @dataclass(slots=True)
@@ -162,7 +163,9 @@ class Tracker(ReferenceTracker, Generic[AnyReference]):
         self.saturated = command != demand
         self._move_ahead()
         now = self.reference
-        now.north, now.east, now.course, now.heading_rate = self._until_ahead.popleft()
+        arrived = self._until_ahead.popleft()
+        now.north, now.east = arrived.north, arrived.east
+        now.course, now.heading_rate = arrived.course, arrived.heading_rate
         return command
 
     def _move_ahead(self) -> None:

@@ -142,8 +142,10 @@ class GuardStatus(IntEnum):
     LOST = 2
 
 
-class Demand(NamedTuple):
+class Demand:
     """What the guidance wants to fly next.
+
+    This class and ``Guarded`` are made at each step: see ``RelativeMotion``.
 
     Attributes
     ----------
@@ -153,13 +155,16 @@ class Demand(NamedTuple):
     leaving : whether the vehicle leaves for good; its pace is not held then
     """
 
-    time: float
-    heading_rate: float
-    pace: float
-    leaving: bool = False
+    def __init__(
+        self, time: float, heading_rate: float, pace: float, leaving: bool = False
+    ) -> None:
+        self.time = time
+        self.heading_rate = heading_rate
+        self.pace = pace
+        self.leaving = leaving
 
 
-class Guarded(NamedTuple):
+class Guarded:
     """What may be flown.
 
     Attributes
@@ -170,10 +175,13 @@ class Guarded(NamedTuple):
     status : what the guard did
     """
 
-    heading_rate: float
-    pace: float
-    pace_held: bool
-    status: GuardStatus
+    def __init__(
+        self, heading_rate: float, pace: float, pace_held: bool, status: GuardStatus
+    ) -> None:
+        self.heading_rate = heading_rate
+        self.pace = pace
+        self.pace_held = pace_held
+        self.status = status
 
 
 class KeepoutGuard:
@@ -211,7 +219,8 @@ class KeepoutGuard:
         own : the vehicle's motion
         vessels : discs, at least one, in each of which the vessel is
         """
-        time, command, pace, leaving = demand
+        time, command, pace = demand.time, demand.heading_rate, demand.pace
+        leaving = demand.leaving
         heading_rates, speeds = self._heading_rates, self._speeds
         pace_held = False
         if time < self._hold_until and not leaving:
