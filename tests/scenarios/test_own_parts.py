@@ -131,7 +131,7 @@ KEYS = {"Track": ("vessel", "track"), "Plume": ("plume", "model"), "Shape": ("re
         ),
         (
             "ShapeThatIsNotSteered",
-            ": swing() returned None; it has to return courses, with the methods eta, speed_ratio, frequency",
+            ": swing() returned None; it has to return courses, with the methods eta, frequency",
         ),
     ],
 )
