@@ -221,6 +221,43 @@ def test_the_turn_stays_on_the_side_that_was_safe(off):
     assert set(turned) == {math.copysign(1.0, off)}
 
 
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_turn_to_the_other_side_is_flown_where_only_that_one_keeps_off(side):
+    # Off the middle of the disc, and so near that a command towards the middle takes the way out.
+    wanted = -side * HEADING_RATE_MAX
+
+    def state(distance):
+        return (-distance, 40.0 * side, 0.0, 0.0)
+
+    near = state(bisected(lambda distance: DiscGuard().allows(wanted, state(distance))) - 1.0)
+    # The vehicle comes from the other side, where the other turn was the safe one. At another
+    # airspeed the guard looks again.
+    guard, unbiased = DiscGuard(), DiscGuard()
+    assert guard.limit(0.0, (-300.0, -40.0 * side, 0.0, 0.0)) == 0.0
+    command = guard.limit(wanted, near, speed=SPEED + 0.1)
+    assert command * side > 0.0
+    assert command == unbiased.limit(wanted, near, speed=SPEED + 0.1)
+    assert guard.status is INTERVENING
+
+
+@LAGS
+def test_as_much_of_a_turn_away_is_mixed_in_as_is_needed_and_no_more(lag, delay):
+    guard, state, mixed = DiscGuard(lag=lag, delay=delay), (-330.0, 40.0, 0.0, 0.0), 0
+    under_way = deque([0.0] * round(delay / TIME_STEP))
+    for step in range(400):
+        wanted, before = aim_at_the_centre(step, *state[:3]), copy.deepcopy(guard)
+        command = guard.limit(wanted, state)
+        if command != wanted and abs(command) < HEADING_RATE_MAX:
+            mixed += 1
+            assert copy.deepcopy(before).allows(command, state)
+            turn = math.copysign(HEADING_RATE_MAX, command - wanted)
+            # The fraction is found to a sixteenth or better.
+            assert not before.allows(command - (turn - wanted) / 16.0, state)
+        under_way.append(command)
+        state = moved(state, under_way.popleft(), lag, TIME_STEP)
+    assert mixed > 20
+
+
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.6, 0.9])
 def test_it_leaves_the_settled_orbit_alone_and_would_not_with_a_larger_radius(nu):
     # The paper's rule places the orbit 1.3 to 9.7 m off where 1 m is required; the guard keeps

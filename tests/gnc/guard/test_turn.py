@@ -134,6 +134,59 @@ def test_a_command_leads_no_farther_than_the_vehicle_can_turn_at_its_speed():
         assert found[2:] == pytest.approx(flown[2:], abs=1e-12)
 
 
+@pytest.mark.parametrize("lag", [0.0, 0.25])
+def test_a_command_leads_where_the_vehicle_flies_in_small_steps(lag):
+    # At any heading rate, beside a disc that moves; at the slowest while it flies away from it.
+    generator = np.random.default_rng(12)
+    prediction, duration, pieces = predictor(lag=lag, time_step=0.2), 0.2, 40
+    for _ in range(50):
+        state, velocity = random_start(generator), random_velocity(generator, 0.6 * SPEED)
+        command = generator.uniform(-1.0, 1.0) * HEADING_RATE_MAX
+        motion = relative_motion(state, velocity, fastest=1.2 * SPEED, slowest=0.9 * SPEED)
+        found = prediction.after(command, motion)
+        away = math.cos(math.atan2(state.y, state.x) - state.course) > 0.0
+        flown = state
+        for _ in range(pieces):
+            flown = moved(flown, command, lag, duration / pieces, (0.9 if away else 1.2) * SPEED)
+        # The prediction takes the arc for the chord: x^2/24 of 4.7 m longer for x = 0.1 rad.
+        expected = (flown[0] - velocity[0] * duration, flown[1] - velocity[1] * duration)
+        assert found[:2] == pytest.approx(expected, abs=2e-3)
+        assert found[2:] == pytest.approx(flown[2:], abs=1e-12)
+
+
+@pytest.mark.parametrize("lag", [0.05, 0.25])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_the_turn_to_either_side_is_that_flown_in_small_steps(side, lag):
+    # The worse side as well; also from beyond straight away, where it leads once round.
+    generator, prediction = np.random.default_rng(14), predictor(lag=lag)
+    for _ in range(30):
+        bearing, distance = generator.uniform(-math.pi, math.pi), generator.uniform(205.0, 320.0)
+        # So far left to turn until it heads straight away, or so far beyond that.
+        left = generator.choice([generator.uniform(0.1, math.pi), -generator.uniform(0.5, 2.5)])
+        turn = generator.uniform(-1.0, 1.0) * HEADING_RATE_MAX
+        state = polar(distance, bearing, bearing - side * left, turn)
+        velocity = random_velocity(generator, generator.uniform(0.0, 0.7) * SPEED)
+        flown = turn_by_hand(side, state, velocity, lag, 0.0)
+        found = slack(prediction, side, relative_motion(state, velocity))
+        assert found == pytest.approx(flown, abs=1e-3 * TURN_RADIUS)
+
+
+@pytest.mark.parametrize("beyond", [0.1, 0.5, 1.0, 1.5])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_turn_from_beyond_straight_away_leads_once_round_a_circle_in_any_direction(side, beyond):
+    # Without lag it is a circle, beside a disc at rest.
+    prediction = predictor(lag=0.0)
+    for bearing in np.linspace(-math.pi, math.pi, 24):
+        x, y, course, _ = state = polar(300.0, bearing, bearing + side * beyond)
+        middle = (
+            x - side * TURN_RADIUS * math.sin(course),
+            y + side * TURN_RADIUS * math.cos(course),
+        )
+        found = slack(prediction, side, relative_motion(state))
+        nearest = math.hypot(*middle) - TURN_RADIUS - RADIUS
+        assert found == pytest.approx(nearest, abs=1e-3 * TURN_RADIUS)
+
+
 def test_no_speed_between_the_fastest_and_the_slowest_comes_nearer_than_predicted():
     generator = np.random.default_rng(1)
     slow, fast = 0.95 * SPEED, 1.2 * SPEED
@@ -340,3 +393,27 @@ def test_no_turn_passes_straight_away_sooner_than_predicted():
             left = side * math.remainder(math.atan2(y, x) - course, 2.0 * math.pi)
             least = min(least, left + prediction.overshoot)
     assert -0.002 < least < 0.1
+
+
+def test_a_turn_from_straight_away_off_a_disc_at_rest_is_once_round_by_its_overshoot():
+    # Nothing crosses the line to the disc, so the course alone leads beyond straight away.
+    prediction = predictor()
+    for bearing, side in ((0.3, 1.0), (2.0, -1.0)):
+        start = polar(300.0, bearing, bearing)
+        found = prediction.time_until_once_round(side, start, relative_motion(start))
+        assert found == pytest.approx(prediction.overshoot / HEADING_RATE_MAX, rel=1e-12)
+
+
+def test_the_farther_a_vehicle_has_to_turn_the_more_of_its_speed_may_cross_the_line_to_the_disc():
+    # Beyond a right angle it passes abeam on the way, where all of its speed crosses. Close to the
+    # disc its radius is the shortest line.
+    prediction, crossing = predictor(), []
+    for left in np.linspace(0.0, math.pi - 0.01, 40):
+        start = polar(RADIUS + 1.0, 1.0, 1.0 - left)
+        time = prediction.time_until_once_round(1.0, start, relative_motion(start, (3.0, 0.0)))
+        crossing.append((left + prediction.overshoot) / time - HEADING_RATE_MAX)
+    # Rounding of rates of 0.6 rad/s.
+    assert np.all(np.diff(crossing) >= -1e-12)
+    # At straight away the disc alone crosses, beyond a right angle both at full speed.
+    assert crossing[0] * RADIUS == pytest.approx(3.0, rel=1e-9)
+    assert crossing[-1] * RADIUS == pytest.approx(SPEED + 3.0, rel=1e-9)
