@@ -434,6 +434,33 @@ def test_a_turn_away_passes_exactly_where_one_that_begins_now_keeps_off(side, de
     assert bisected(passes) == pytest.approx(bisected(keeps_off), abs=2.0 * floor + 0.05)
 
 
+@pytest.mark.parametrize("first", [0, 1])
+def test_of_two_discs_the_one_that_reaches_less_far_counts_however_old_its_report_is(first):
+    # The vessel may speed up by 0.2 m/s2 since it was reported at rest, 40 s ago: a disc of 160 m
+    # that grows by 8 m/s. Another one of just that growth is 10 m larger.
+    now, acceleration = 40.0, 0.2
+    old = AT_REST._replace(acceleration=acceleration)
+    larger = Tube(
+        now,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.5 * acceleration * now**2 + 10.0,
+        acceleration * now,
+        acceleration,
+    )
+    discs = (old, larger) if first == 0 else (larger, old)
+
+    def passes(distance, discs):
+        own = known_motion((-distance, 0.0, math.radians(100.0), 0.0))
+        return HeadingRateFilter(parameters_of()).allows(0.0, now, own, discs, SPEED)
+
+    distance = 160.0 + bisected(lambda distance: passes(160.0 + distance, (old,)))
+    assert passes(distance, discs)
+    assert not passes(distance, (larger,))
+
+
 def test_wind_acts_like_a_vessel_that_moves_against_it_in_still_air():
     generator = np.random.default_rng(6)
     changed = 0

@@ -39,16 +39,28 @@ def slack(prediction, side, motion, *, change=0.0):
     return turn.slack
 
 
-def turn_by_hand(side, state, velocity, lag, delay, speed=SPEED, rate=HEADING_RATE_MAX):
+def turn_by_hand(
+    side,
+    state,
+    velocity,
+    lag,
+    delay,
+    speed=SPEED,
+    rate=HEADING_RATE_MAX,
+    growth=0.0,
+    acceleration=0.0,
+):
     """Return by how much a full turn keeps the radius [m], flown in small steps until it heads
-    straight away, or for two turns.
+    straight away, or for two turns. The radius grows at a rate [m/s] that rises [m/s2].
     """
     x, y, course, turn = state
     closest, piece = math.inf, 0.005
     for i in range(round(30.0 * HEADING_RATE_MAX / rate / piece)):
-        begun = i * piece >= delay - 1e-9
+        time = i * piece
+        begun = time >= delay - 1e-9
         if begun:
-            closest = min(closest, math.hypot(x, y))
+            grown = (growth + 0.5 * acceleration * time) * time
+            closest = min(closest, math.hypot(x, y) - grown)
         x, y, course, turn = moved(
             (x, y, course, turn), side * rate if begun else turn, lag, piece, speed
         )
@@ -165,9 +177,11 @@ def test_the_turn_to_either_side_is_that_flown_in_small_steps(side, lag):
         left = generator.choice([generator.uniform(0.1, math.pi), -generator.uniform(0.5, 2.5)])
         turn = generator.uniform(-1.0, 1.0) * HEADING_RATE_MAX
         state = polar(distance, bearing, bearing - side * left, turn)
-        velocity = random_velocity(generator, generator.uniform(0.0, 0.7) * SPEED)
-        flown = turn_by_hand(side, state, velocity, lag, 0.0)
-        found = slack(prediction, side, relative_motion(state, velocity))
+        # In sum slower than the vehicle, which straight away outruns both for good.
+        velocity = random_velocity(generator, generator.uniform(0.0, 0.6) * SPEED)
+        grows = {"growth": generator.uniform(0.0, 3.0), "acceleration": generator.uniform(0.0, 0.1)}
+        flown = turn_by_hand(side, state, velocity, lag, 0.0, **grows)
+        found = slack(prediction, side, relative_motion(state, velocity, **grows))
         assert found == pytest.approx(flown, abs=1e-3 * TURN_RADIUS)
 
 
@@ -395,12 +409,18 @@ def test_no_turn_passes_straight_away_sooner_than_predicted():
     assert -0.002 < least < 0.1
 
 
-def test_a_turn_from_straight_away_off_a_disc_at_rest_is_once_round_by_its_overshoot():
-    # Nothing crosses the line to the disc, so the course alone leads beyond straight away.
+@pytest.mark.parametrize(("distance", "radius"), [(300.0, 200.0), (1.0, 0.3)])
+def test_a_turn_from_straight_away_off_a_disc_at_rest_is_once_round_by_its_overshoot(
+    distance, radius
+):
+    # Nothing crosses the line to the disc, so the course alone leads beyond straight away: whole
+    # turns more or less of it make no difference.
     prediction = predictor()
-    for bearing, side in ((0.3, 1.0), (2.0, -1.0)):
-        start = polar(300.0, bearing, bearing)
-        found = prediction.time_until_once_round(side, start, relative_motion(start))
+    for bearing, side, whole_turns in ((0.3, 1.0, 0), (2.0, -1.0, 1), (-1.5, 1.0, -3)):
+        start = polar(distance, bearing, bearing + 2.0 * math.pi * whole_turns)
+        motion = relative_motion(start, radius=radius)
+        found = prediction.time_until_once_round(side, start, motion)
+        # Rounding of courses of up to 20 rad.
         assert found == pytest.approx(prediction.overshoot / HEADING_RATE_MAX, rel=1e-12)
 
 
