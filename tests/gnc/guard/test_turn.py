@@ -437,3 +437,36 @@ def test_the_farther_a_vehicle_has_to_turn_the_more_of_its_speed_may_cross_the_l
     # At straight away the disc alone crosses, beyond a right angle both at full speed.
     assert crossing[0] * RADIUS == pytest.approx(3.0, rel=1e-9)
     assert crossing[-1] * RADIUS == pytest.approx(SPEED + 3.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize(
+    ("distance", "off"), [(243.0, 0.0), (250.0, 0.0), (280.0, 0.4), (280.0, 0.9), (330.0, 0.0)]
+)
+def test_a_turn_may_lose_as_much_course_as_its_slack_allows_while_it_lasts_and_after(
+    side, distance, off
+):
+    # Without lag it is a circle beside a disc at rest. A course c that is lost before it displaces
+    # the vehicle by c V_r t after a time t: by no more than the slack then, and by less than the
+    # slack grows once the vehicle flies straight on. It does so at the time that allows most.
+    x, y, course, _ = start = polar(distance, 0.3, 0.3 + math.pi - side * off)
+    times = np.linspace(0.01, 6.5, 5000)
+    courses = course + side * HEADING_RATE_MAX * times
+    north = x + side * TURN_RADIUS * (np.sin(courses) - math.sin(course))
+    east = y - side * TURN_RADIUS * (np.cos(courses) - math.cos(course))
+    kept = np.hypot(north, east) - RADIUS
+    while_turning, after = np.minimum.accumulate(kept / times), np.gradient(kept, times)
+    most = np.max(np.minimum(while_turning, after)) / SPEED
+    prediction, motion = predictor(lag=0.0), relative_motion(start)
+    soonest = prediction.time_until_once_round(side, start, motion)
+    for against in (1.0, 0.4):
+        turn = prediction.turn_away(
+            side, start, motion, change=0.0, time=0.0, floor=-math.inf, against=against
+        )
+        assert turn.slack == pytest.approx(kept.min(), abs=1e-3 * TURN_RADIUS)
+        # It may end at points an eighth of a radian apart: 2 % less where the best end is between.
+        assert 0.97 * most < turn.free_course < 1.001 * most
+        # Commands that far against the turn take course at 2 omega_max or less of it, and may go on
+        # for three times as long as that takes: docs/keepout_guard.md, "Evaluating less often".
+        lost = 2.0 * HEADING_RATE_MAX * against
+        assert turn.free_time == pytest.approx(min(3.0 * turn.free_course / lost, soonest))
