@@ -19,10 +19,18 @@ from guard_cases import (
     random_velocity,
     relative_motion,
 )
+from scipy.interpolate import CubicHermiteSpline
+from scipy.optimize import minimize_scalar
 
 from gnc.estimation.vessel import Tube
 from gnc.guard.guard import HeadingRateFilter
-from gnc.guard.turn import TurnPrediction, TurnStart, nearer_side
+from gnc.guard.turn import (
+    TurnPoint,
+    TurnPrediction,
+    TurnStart,
+    closest_between_samples,
+    nearer_side,
+)
 from gnc.numeric import wrap
 
 
@@ -121,6 +129,42 @@ def test_a_small_disc_between_two_points_of_a_turn_is_not_missed():
         )
         apart = np.hypot(x + arc[0] - velocity[0] * times, y + arc[1] - velocity[1] * times)
         assert found == pytest.approx(apart.min(), abs=1e-4 * TURN_RADIUS)
+
+
+def test_the_closest_approach_between_two_points_is_that_of_the_cubic_through_them():
+    # Four times as far apart as the points of a turn, and past a disc that moves and grows.
+    generator, duration = np.random.default_rng(16), 1.0
+    for _ in range(40):
+        turned = generator.choice([-0.5, 0.5])
+        courses = generator.uniform(-math.pi, math.pi) + np.array([0.0, turned])
+        drift = np.array(random_velocity(generator, 0.3 * SPEED))
+        rates = SPEED * np.array([np.cos(courses), np.sin(courses)]).T - drift
+        middle, chord = courses.mean(), SPEED * math.sin(0.25) / 0.25
+        end = chord * np.array([math.cos(middle), math.sin(middle)]) - drift
+        ends = np.array([[0.0, 0.0], end])
+        cubic = CubicHermiteSpline([0.0, 1.0], ends, rates)
+        ends += generator.uniform(-0.3, 0.3, 2) * SPEED - cubic(generator.uniform(0.3, 0.7))
+        allowed = 50.0 + np.array([0.0, generator.uniform(0.0, 3.0)])
+        late, now = (TurnPoint(*ends[i], courses[i], allowed[i], SPEED) for i in (0, 1))
+        found = closest_between_samples(
+            late,
+            late,
+            now,
+            disc_north=drift[0],
+            disc_east=drift[1],
+            duration=duration,
+            first=True,
+        )
+        path = CubicHermiteSpline([0.0, 1.0], ends, rates)
+
+        def slack_at(share, path=path, allowed=allowed):
+            return float(np.hypot(*path(share)) - np.interp(share, [0.0, 1.0], allowed))
+
+        best = minimize_scalar(
+            slack_at, bounds=(0.0, 1.0), method="bounded", options={"xatol": 1e-9}
+        )
+        # Three steps of Newton's method; the search's own error is smaller.
+        assert found == pytest.approx(best.fun, abs=1e-6)
 
 
 def test_a_vehicle_too_fast_for_omega_max_is_predicted_to_turn_more_slowly():
