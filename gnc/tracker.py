@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from gnc.estimation.navigation import AirMotion
-from gnc.laws import STILL_AIR, Air, LimitedLaw, Motion, SteeringLaw
 from gnc.reference.reference import Reference
+from gnc.steering import STILL_AIR, Air, LimitedLaw, Motion, SteeringLaw
 from gnc.unicycle import lag_ahead
 
 
