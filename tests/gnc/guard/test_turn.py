@@ -186,8 +186,8 @@ def test_a_command_leads_no_farther_than_the_vehicle_can_turn_at_its_speed():
     for speed, rate in ((SPEED, HEADING_RATE_MAX), (1.5 * SPEED, HEADING_RATE_MAX / 1.5)):
         found = prediction.after(HEADING_RATE_MAX, relative_motion(state, fastest=speed))
         flown = moved(state, rate, 0.25, 0.2, speed)
-        assert found[:2] == pytest.approx(flown[:2], abs=1e-3)
-        assert found[2:] == pytest.approx(flown[2:], abs=1e-12)
+        assert (found.x, found.y) == pytest.approx(flown[:2], abs=1e-3)
+        assert (found.course, found.heading_rate) == pytest.approx(flown[2:], abs=1e-12)
 
 
 @pytest.mark.parametrize("lag", [0.0, 0.25])
@@ -257,7 +257,7 @@ def test_no_speed_between_the_fastest_and_the_slowest_comes_nearer_than_predicte
         course = generator.uniform(-math.pi, math.pi)
         turn = generator.uniform(-1.0, 1.0) * HEADING_RATE_MAX
         start = polar(distance, bearing, course, turn)
-        side = nearer_side(*start[:3])
+        side = nearer_side(start.x, start.y, start.course)
         changing, all_fast, all_slow = (
             slack(
                 predictor(),
