@@ -206,8 +206,8 @@ def test_a_command_leads_where_the_vehicle_flies_in_small_steps(lag):
             flown = moved(flown, command, lag, duration / pieces, (0.9 if away else 1.2) * SPEED)
         # The prediction takes the arc for the chord: x^2/24 of 4.7 m longer for x = 0.1 rad.
         expected = (flown[0] - velocity[0] * duration, flown[1] - velocity[1] * duration)
-        assert found[:2] == pytest.approx(expected, abs=2e-3)
-        assert found[2:] == pytest.approx(flown[2:], abs=1e-12)
+        assert (found.x, found.y) == pytest.approx(expected, abs=2e-3)
+        assert (found.course, found.heading_rate) == pytest.approx(flown[2:], abs=1e-12)
 
 
 @pytest.mark.parametrize("lag", [0.05, 0.25])
