@@ -174,7 +174,8 @@ class ThrustExpectation:
         density = errors.density + CHECK_INTERVAL * (slope * airspeed_sigma) ** 2
         level = self.model.drag(airspeed, 1.0)
         drift = EXPECTED_SHARE * level - errors.lack - slope * airspeed_bias
-        if drift <= 0.0:
+        # Nor is there a drift if an aircraft that is flown so hard has left its envelope.
+        if not drift > 0.0:
             return None
         drift, density = airspeed * drift, airspeed**2 * density
         height = height_for(drift, density, SECONDS_PER_HOUR * FALSE_ALARM_HOURS)
