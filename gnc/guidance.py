@@ -25,7 +25,7 @@ from gnc.estimation.vessel import (
 )
 from gnc.guard.guard import Demand, GuardParameters, GuardStatus, KeepoutGuard, SpeedRange
 from gnc.mission.follow import FollowingParameters, PlumeFollowing
-from gnc.mission.mission import LOST, TRACK, Mission, Mode, Order
+from gnc.mission.mission import FAULTY, TRACK, Mission, Mode, Order
 from gnc.mission.standoff import StandoffOrbit, StandoffParameters
 from gnc.mission.track import DirectParameters, DirectTracking
 from gnc.numeric import limited
@@ -162,7 +162,7 @@ class Guidance:
         else:
             command = order.heading_rate
             pace = order.airspeed
-        leaving = order.mode in LOST
+        leaving = order.mode in FAULTY
         held = False
         guard = self.guard
         if guard is not None:
@@ -197,10 +197,8 @@ class Guidance:
         if renew:
             self._vessel_discs = target.tubes
         monitor = self.monitor
-        if monitor is not None and monitor.check(
-            measurement, self.airspeed_command, self.heading_rate_command
-        ):
-            self.mission.leave(monitor.fault)
+        if monitor is not None and monitor.check(measurement, self.heading_rate_command):
+            self.mission.react(monitor.fault)
         order = self.mission.plan(time, self.own, target, renew=renew, guarding=self.guarding)
         self.mode = order.mode
         self.altitude_command = order.altitude

@@ -1,13 +1,14 @@
-"""Faults of the vehicle, detected from its airspeed, its heading rate and its servos' reports."""
+"""Faults of the vehicle, detected from its thrust, its heading rate and its servos' reports."""
 
 import math
 from dataclasses import dataclass
 from enum import Enum
 
 from gnc.estimation.navigation import SensorReadings
+from gnc.estimation.thrust import ThrustMonitor, ThrustParameters
 
 PATIENCE = 2.0
-"""Time constant of the means of airspeed and heading rate [s]."""
+"""Time constant of the mean error of the heading rate [s]."""
 
 SERVO_PATIENCE = 0.1
 """Time constant of the mean error of a control surface [s]: several lags of a servo."""
@@ -47,28 +48,27 @@ class HealthParameters:
 
     Attributes
     ----------
-    airspeed_error : mean lack of airspeed above which thrust counts as lost [m/s]
-    speed : V_r; a vehicle that is still speeding up beyond it lacks nothing [m/s]
+    thrust : what thrust to expect; None for a vehicle without an engine
     heading_rate_max : omega_max, or what a vehicle in turbulence may turn at without a command, if
         that is more [rad/s]
     lag : of the heading rate behind its command [s]
     time_step : of the guidance [s]
     """
 
-    airspeed_error: float
-    speed: float
+    thrust: ThrustParameters | None
     heading_rate_max: float
     lag: float
     time_step: float
 
 
 class HealthMonitor:
-    """Checks airspeed, heading rate and servos at a fixed interval. A fault, once detected, stays.
+    """Checks thrust, heading rate and servos at a fixed interval.
 
-    Thrust is lost when the airspeed stays below its command and does not rise. Control is lost when
-    the heading rate stays away from that of a vehicle with its lag under the same commands. An
-    actuator is stuck when its control surface stays away from its command; that is detected seconds
-    before the heading rate shows it, and turbulence does not cause it.
+    Thrust is lost when height of energy is missing (``gnc.estimation.thrust``); that fault ends
+    when thrust is there again. The others stay. Control is lost when the heading rate stays away
+    from that of a vehicle with its lag under the same commands. An actuator is stuck when its
+    control surface stays away from its command; that is detected seconds before the heading rate
+    shows it, and turbulence does not cause it.
 
     Parameters
     ----------
@@ -77,7 +77,8 @@ class HealthMonitor:
 
     Attributes
     ----------
-    fault : detected, if any
+    fault : that there is now, if any
+    thrust : monitor of the thrust, or None
     """
 
     def __init__(
@@ -89,28 +90,22 @@ class HealthMonitor:
         self._decay = math.exp(-between / PATIENCE)
         self._servo_decay = math.exp(-between / SERVO_PATIENCE)
         self._lag_decay = math.exp(-between / p.lag) if p.lag > 0.0 else 0.0
-        self._speed = p.speed
-        self._lack_limit = p.airspeed_error
         self._rate_limit = UNCONTROLLED * p.heading_rate_max
         self._steps = self._interval - 1
         self._commanded = 0.0
         self._expected_rate = 0.0
-        self._last_airspeed = 0.0
-        self._mean_lack = 0.0
-        self._mean_gain = 0.0
         self._mean_rate_error = 0.0
         self._mean_servo_error = 0.0
+        self.thrust = ThrustMonitor(p.thrust, between) if p.thrust else None
         self.fault = Fault.NONE
 
-    def check(
-        self, readings: SensorReadings, airspeed_command: float, heading_rate_command: float
-    ) -> bool:
-        """Return whether a check was due and finds a fault; call it once per guidance step.
+    def check(self, readings: SensorReadings, heading_rate_command: float) -> bool:
+        """Return whether a fault begins or ends; call it once per guidance step.
 
         Parameters
         ----------
         readings : of the sensors on board
-        airspeed_command, heading_rate_command : last commands [m/s, rad/s]
+        heading_rate_command : last command [rad/s]
         """
         # The mean of the commands since the last check: if the command changes its sign at every
         # step, single ones would all have the same sign, and the vehicle would seem not to follow.
@@ -121,29 +116,25 @@ class HealthMonitor:
         command = self._commanded / self._interval
         self._steps = 0
         self._commanded = 0.0
-        self._update_means(readings, min(airspeed_command, self._speed), command)
-        if self.fault is Fault.NONE:
+        self._update(readings, command)
+        before = self.fault
+        if before is Fault.NONE or before is Fault.THRUST_LOST:
             self.fault = self._detected()
-        return self.fault is not Fault.NONE
+        return self.fault is not before
 
-    def _update_means(
-        self, readings: SensorReadings, airspeed_command: float, heading_rate_command: float
-    ) -> None:
-        _, airspeed, _, _, heading_rate, servo_error = readings
-        decay = self._decay
-        gained = airspeed - self._last_airspeed if self._last_airspeed else 0.0
-        self._last_airspeed = airspeed
+    def _update(self, readings: SensorReadings, heading_rate_command: float) -> None:
+        _, airspeed, _, _, heading_rate, servo_error, engine = readings
+        if self.thrust is not None and engine is not None:
+            self.thrust.update(airspeed, engine)
         self._expected_rate = _mean(self._expected_rate, heading_rate_command, self._lag_decay)
         rate_error = abs(heading_rate - self._expected_rate)
-        self._mean_lack = _mean(self._mean_lack, airspeed_command - airspeed, decay)
-        self._mean_gain = _mean(self._mean_gain, gained, decay)
-        self._mean_rate_error = _mean(self._mean_rate_error, rate_error, decay)
+        self._mean_rate_error = _mean(self._mean_rate_error, rate_error, self._decay)
         self._mean_servo_error = _mean(self._mean_servo_error, servo_error, self._servo_decay)
 
     def _detected(self) -> Fault:
         if self._mean_servo_error > STUCK:
             return Fault.ACTUATOR_STUCK
-        if self._mean_lack > self._lack_limit and self._mean_gain < 0.0:
+        if self.thrust is not None and self.thrust.lost:
             return Fault.THRUST_LOST
         if self._mean_rate_error > self._rate_limit:
             return Fault.CONTROL_LOST

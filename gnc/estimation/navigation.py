@@ -48,6 +48,20 @@ class SatelliteFix(NamedTuple):
     velocity_east: float
 
 
+class EngineReadings(NamedTuple):
+    """What shows whether an aircraft has the thrust that its throttle lets expect.
+
+    Attributes
+    ----------
+    throttle : commanded [-]
+    forward, upward : measured by accelerometers along the body's axes, over g [-]; 0 and 1 at rest
+    """
+
+    throttle: float
+    forward: float
+    upward: float
+
+
 class SensorReadings(NamedTuple):
     """What the sensors on board measure.
 
@@ -59,6 +73,7 @@ class SensorReadings(NamedTuple):
     heading_rate : rate of the course through the air [rad/s]
     servo_error : error of the control surface that is farthest from its command, over its travel
         [-]
+    engine : None for a vehicle without an engine, such as the paper's
     """
 
     fix: SatelliteFix | None
@@ -67,6 +82,7 @@ class SensorReadings(NamedTuple):
     roll: float
     heading_rate: float
     servo_error: float
+    engine: EngineReadings | None = None
 
 
 @dataclass(kw_only=True, eq=False)
@@ -290,7 +306,7 @@ class EstimatedNavigation(OwnMotion):
 
     def update(self, measurement: SensorReadings) -> None:
         """Take in the sensors' readings now."""
-        fix, airspeed, heading, roll, heading_rate, _ = measurement
+        fix, airspeed, heading, roll, heading_rate, _, _ = measurement
         if fix is None:
             self._reckon(airspeed, heading + self._crab(roll))
         else:

@@ -7,7 +7,7 @@ from gnc.estimation.health import Fault
 from gnc.estimation.navigation import OwnMotion
 from gnc.estimation.vessel import TargetMotion
 from gnc.mission.axis import AxisInputs, AxisParameters
-from gnc.mission.mission import LOST, TRACK, Centre, Mode, OrbitStatus, Order
+from gnc.mission.mission import FAULTY, TRACK, Centre, Mode, OrbitStatus, Order
 from gnc.mission.way import LOST_TRACK, Approach, ApproachParameters, Egress
 from gnc.reference.mean_motion import mean_motion, motion_course
 from gnc.reference.moving_centre import CentreParameters, MovingCentre
@@ -78,7 +78,7 @@ class PlumeFollowing:
         self._tracking_parameters = tracking
         self._speed = parameters.centre.speed
         self._approach = Approach(parameters.approach, tracking, self._speed)
-        self._egress = Egress(tracking, parameters.glide_airspeed)
+        self._egress = Egress(tracking, self._speed, parameters.glide_airspeed)
         self.tracker: Tracker[SteeredReference]
         self._reference: SteeredReference
         self.orbit: OrbitStatus | None = None
@@ -102,12 +102,12 @@ class PlumeFollowing:
         if renew:
             self._move_orbit(own, vessel)
             self._decide(own, vessel, guarding)
-            if self._mode not in LOST:
+            if self._mode not in FAULTY:
                 self._follow_axis(time, own, vessel)
         p = self._parameters
         last = self.tracker.heading_rate_command
         if self._fault is not Fault.NONE:
-            order = self._egress.order(self._fault, own, vessel, last)
+            order = self._egress.order(self._fault, own, vessel, last, self._altitude)
             self._mode = order.mode
             return order
         command: float | None = TRACK
@@ -125,9 +125,12 @@ class PlumeFollowing:
             )
         return Order(command, p.approach.airspeed, self._altitude, self._mode)
 
-    def leave(self, fault: Fault) -> None:
-        """Leave the vessel for good from the next order on, because of a fault of the vehicle."""
+    def react(self, fault: Fault) -> None:
+        """Leave the vessel from the next order on because of a fault of the vehicle, or go on."""
         self._fault = fault
+        if fault is Fault.NONE:
+            self._egress.reset()
+            self._mode = Mode.APPROACH
 
     def depart(self) -> None:
         """Leave the vessel for good at this altitude: there is no more to be done here."""

@@ -32,16 +32,22 @@ class Mode(Enum):
     LOST_AGAIN = "lost again"
     SENSOR_FAILED = "sensor failed"
     DEPARTING = "departing"
+    RETREATING = "retreating"
 
 
 for _i, _mode in enumerate(Mode):
     _mode.number = _i
 
 LOST = (Mode.GLIDING, Mode.TERMINATING)
-"""Modes from which an aircraft does not come back: it leaves until it is down."""
+"""Modes in which an aircraft sinks to the sea, away from the vessel. It comes back from there only
+if thrust that was lost is there again."""
 
-LEAVING = (*LOST, Mode.DEPARTING)
-"""Modes in which the vehicle leaves for good, and tracks no reference."""
+FAULTY = (*LOST, Mode.RETREATING)
+"""Modes of a vehicle with a fault. It retreats without thrust for as long as it can hold its
+height, and goes on if thrust is there again."""
+
+LEAVING = (*FAULTY, Mode.DEPARTING)
+"""Modes in which the vehicle leaves the vessel, and tracks no reference."""
 
 TRACK = None
 """In place of an ordered heading rate: the tracker commands it."""
@@ -130,5 +136,7 @@ class Mission(Protocol):
         guarding : whether the keep-out guard turned the vehicle away in the last step
         """
 
-    def leave(self, fault: Fault) -> None:
-        """Leave the vessel for good from the next order on, because of a fault of the vehicle."""
+    def react(self, fault: Fault) -> None:
+        """Leave the vessel from the next order on because of a fault of the vehicle; with
+        ``Fault.NONE``, go on: the fault is over.
+        """

@@ -13,7 +13,7 @@ from gnc.estimation.health import Fault
 from gnc.estimation.navigation import OwnMotion
 from gnc.estimation.vessel import TargetMotion
 from gnc.mission.axis import AxisHeight, Climb
-from gnc.mission.mission import LOST, TRACK, Centre, Mode, OrbitStatus, Order
+from gnc.mission.mission import FAULTY, TRACK, Centre, Mode, OrbitStatus, Order
 from gnc.mission.track import CLOSING_RATE, STANDOFF
 from gnc.mission.way import COURSE_GAIN, Egress
 from gnc.numeric import limited, wrap
@@ -152,7 +152,7 @@ class StandoffOrbit:
         self._tracking_parameters = tracking
         self._plan_time = parameters.plan_interval * tracking.time_step
         self._closing = CLOSING_RATE * parameters.speed * self._plan_time
-        self._egress = Egress(tracking, parameters.glide_airspeed)
+        self._egress = Egress(tracking, parameters.speed, parameters.glide_airspeed)
         self.tracker: CircleTracker
         self.orbit: OrbitStatus | None = None
         self._altitude = parameters.altitude
@@ -174,14 +174,17 @@ class StandoffOrbit:
             self._plan_circle(own, vessel)
         if self._fault is not Fault.NONE:
             last = self.tracker.heading_rate_command
-            order = self._egress.order(self._fault, own, vessel, last)
+            order = self._egress.order(self._fault, own, vessel, last, self._altitude)
             self._mode = order.mode
             return order
         return Order(TRACK, p.speed, self._altitude, self._mode)
 
-    def leave(self, fault: Fault) -> None:
-        """Leave the vessel for good from the next order on, because of a fault of the vehicle."""
+    def react(self, fault: Fault) -> None:
+        """Leave the vessel from the next order on because of a fault of the vehicle, or go on."""
         self._fault = fault
+        if fault is Fault.NONE:
+            self._egress.reset()
+            self._mode = Mode.APPROACH
 
     def _plan_circle(self, own: OwnMotion, vessel: TargetMotion) -> None:
         """Decide whether the vessel can be circled, and whether the circle may close in."""
@@ -200,7 +203,7 @@ class StandoffOrbit:
         drift_east = vessel.velocity_east - own.wind_east
         ratio = math.hypot(drift_north, drift_east) / p.speed
         self.orbit = OrbitStatus(Centre(0.0, 0.0, ratio), error, in_place=error == 0.0)
-        if self._mode not in LOST:
+        if self._mode not in FAULTY:
             self._mode = Mode.OUTRUN if ratio >= p.speed_ratio_max else Mode.TRACKING
             height = p.height.at(p.radius, ratio * p.speed)
             self._altitude = p.climb.step(self._altitude, height, p.speed, self._plan_time)

@@ -132,7 +132,7 @@ class DirectTracking:
         )
         return Order(command, self._airspeed, self._altitude, Mode.APPROACH)
 
-    def leave(self, fault: Fault) -> None:
+    def react(self, fault: Fault) -> None:
         """Raise a ValueError: this mission has no departure, and its flights no health monitor."""
         raise ValueError(
             f"the vehicle has a fault, {fault.value}, and its mission has no departure; follow the"

@@ -297,22 +297,57 @@ class Egress:
     Parameters
     ----------
     tracking : of the reference that is left
-    glide_airspeed : of a vehicle with a fault [m/s]
+    speed : V_r, at which a vehicle retreats that holds its height [m/s]
+    glide_airspeed : of a vehicle that sinks, midway between V_r and the slowest commanded [m/s]
     """
 
-    def __init__(self, tracking: TrackingParameters, glide_airspeed: float) -> None:
+    def __init__(self, tracking: TrackingParameters, speed: float, glide_airspeed: float) -> None:
         self._heading_rate_max = tracking.heading_rate_max
         self._lag = tracking.lag
+        self._speed = speed
         self._glide_airspeed = glide_airspeed
+        self._gliding = False
         self._side = 0.0
 
     def order(
-        self, fault: Fault, own: OwnMotion, vessel: TargetMotion, last_command: float
+        self,
+        fault: Fault,
+        own: OwnMotion,
+        vessel: TargetMotion,
+        last_command: float,
+        altitude: float,
     ) -> Order:
-        """Return the order to leave and sink, for a vehicle with a fault; see ``command``."""
-        mode = Mode.GLIDING if fault is Fault.THRUST_LOST else Mode.TERMINATING
+        """Return the order to leave, for a vehicle with a fault.
+
+        Without thrust it holds its height for as long as its speed lasts, and asks the engine for
+        all that takes: if thrust is there, that shows it. To glide to the sea is the last resort,
+        when the speed over the mean air has fallen to that of the glide, or the airspeed to the
+        slowest commanded.
+
+        Parameters
+        ----------
+        fault : of the vehicle
+        own, vessel : motion of the vehicle and of the vessel
+        last_command : of the heading rate [rad/s]
+        altitude : of the mission [m]
+        """
         command = self.command(own, vessel, last_command)
-        return Order(command, self._glide_airspeed, _GLIDE_ALTITUDE, mode)
+        if fault is not Fault.THRUST_LOST:
+            return Order(command, self._glide_airspeed, _GLIDE_ALTITUDE, Mode.TERMINATING)
+        # A gust is no reason to glide while it leaves an airspeed that is commanded at times, which
+        # goes as far below that of the glide as V_r is above it.
+        slow = own.speed < self._glide_airspeed or (
+            own.airspeed < 2.0 * self._glide_airspeed - self._speed
+        )
+        self._gliding = self._gliding or slow
+        if self._gliding:
+            return Order(command, self._glide_airspeed, _GLIDE_ALTITUDE, Mode.GLIDING)
+        return Order(command, self._speed, altitude, Mode.RETREATING)
+
+    def reset(self) -> None:
+        """Forget the turn and the glide that were begun: the fault is over."""
+        self._side = 0.0
+        self._gliding = False
 
     def command(self, own: OwnMotion, vessel: TargetMotion, last_command: float) -> float:
         """Return the heading rate to fly [rad/s].

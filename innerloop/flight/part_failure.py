@@ -4,6 +4,7 @@ import itertools
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -50,16 +51,20 @@ class PartFailure:
         failed [m/s2]
     glide_deviation : distance from the turn while the aircraft pushes over to its glide, after any
         failure [m]
+    glide_undershoot : by how much the airspeed falls below that of the glide within half a turn,
+        when the glide begins at its airspeed without thrust [m/s]
     """
 
     airspeed_fall: float
     glide_deviation: float
+    glide_undershoot: float
 
     def or_worse(self, other: "PartFailure") -> "PartFailure":
         """Return the larger of each figure."""
         return PartFailure(
             airspeed_fall=max(self.airspeed_fall, other.airspeed_fall),
             glide_deviation=max(self.glide_deviation, other.glide_deviation),
+            glide_undershoot=max(self.glide_undershoot, other.glide_undershoot),
         )
 
 
@@ -86,17 +91,30 @@ def measure_part_failure(
     """
     glide = glide_airspeed(start.airspeed, airspeed_min)
     fall = max(_airspeed_fall(_Turn(aircraft, start, side, bank, gradient)) for side in _SIDES)
-    deviations = [
-        _glide_deviation(_Turn(aircraft, start, side, bank, gradient, room=_ROOM), glide, begins)
+    glides = {
+        (side, begins): _glide(
+            _Turn(aircraft, start, side, bank, gradient, room=_ROOM), glide, begins
+        )
         for side in _SIDES
         for begins in (math.inf, glide, airspeed_min, airspeed_min - _KNOWN_AFTER * fall)
-    ]
-    return PartFailure(airspeed_fall=fall, glide_deviation=max(deviations))
+    }
+    return PartFailure(
+        airspeed_fall=fall,
+        glide_deviation=max(flown.deviation for flown in glides.values()),
+        glide_undershoot=max(glide - glides[side, glide].slowest for side in _SIDES),
+    )
 
 
 def glide_airspeed(airspeed: float, airspeed_min: float) -> float:
     """Return the airspeed to command in a glide, by V_r and the slowest commanded [m/s]."""
     return 0.5 * (airspeed + airspeed_min)
+
+
+class _Glide(NamedTuple):
+    """Distance from the commanded turn at its airspeed [m], and lowest airspeed [m/s]."""
+
+    deviation: float
+    slowest: float
 
 
 class _Turn:
@@ -159,27 +177,32 @@ def _airspeed_fall(turn: _Turn) -> float:
     return float(np.max(flown[:-over] - flown[over:])) / (over * TIME_STEP)
 
 
-def _glide_deviation(turn: _Turn, glide: float, begins: float) -> float:
-    """Return how far from the commanded turn at its airspeed the aircraft comes in half a turn [m].
+def _glide(turn: _Turn, glide: float, begins: float) -> _Glide:
+    """Return half a turn after the aircraft is commanded to glide.
 
     The engine fails, and the aircraft is commanded to ``glide`` [m/s] when its airspeed is down to
     ``begins`` [m/s]. If that is infinite, it is at once, with the engine's power.
     """
     airspeeds = turn.airspeeds(engine_fails=math.isfinite(begins))
-    for airspeed in itertools.islice(airspeeds, round(_FALL_MAX / TIME_STEP)):
-        if airspeed <= begins:
+    for fallen_to in itertools.islice(airspeeds, round(_FALL_MAX / TIME_STEP)):
+        if fallen_to <= begins:
             break
     aircraft = turn.aircraft
     north = aircraft.fdm.node("velocities/v-north-fps").get_double_value
     east = aircraft.fdm.node("velocities/v-east-fps").get_double_value
     aircraft.command_airspeed(glide)
     aircraft.command_altitude(turn.altitude - _ROOM)
-    velocities = []
+    airspeed = aircraft.fdm.node(_AIRSPEED).get_double_value
+    velocities, airspeeds_flown = [], []
     for _ in range(turn.half):
         velocities.append(complex(north(), east()))
+        airspeeds_flown.append(airspeed())
         aircraft.run()
     flown = METRES_PER_FOOT * np.array(velocities)
     commanded = np.abs(flown) * np.exp(
         1j * (np.angle(flown[0]) + turn.rate * TIME_STEP * np.arange(len(flown)))
     )
-    return float(np.max(np.abs(np.cumsum(flown - commanded)))) * TIME_STEP
+    return _Glide(
+        deviation=float(np.max(np.abs(np.cumsum(flown - commanded)))) * TIME_STEP,
+        slowest=METRES_PER_FOOT * min(airspeeds_flown),
+    )

@@ -38,9 +38,9 @@ from scenarios.planning.guidance import (
     following_parameters,
     guard_parameters,
     guidance_lag,
-    lost_thrust,
     satellite_noise,
     speed_hold,
+    thrust_test,
     tracking_parameters,
     turn_time,
 )
@@ -256,6 +256,7 @@ def _guidance(
 ) -> GuidanceParameters:
     g = scenario.guidance
     tracking, hold = tracking_parameters(scenario, setup), speed_hold(scenario, setup)
+    thrust = thrust_test(scenario, setup)
     return GuidanceParameters(
         speed=g.airspeed_mps,
         altitude=scenario.altitude,
@@ -270,8 +271,7 @@ def _guidance(
         guard=guard,
         mission=mission,
         health=HealthParameters(
-            airspeed_error=lost_thrust(g.airspeed_mps, hold.airspeed_min),
-            speed=g.airspeed_mps,
+            thrust=thrust.parameters if thrust else None,
             heading_rate_max=controlled_heading_rate(g),
             lag=guidance_lag(scenario, setup),
             time_step=tracking.time_step,

@@ -4,9 +4,11 @@ import math
 from collections.abc import Sequence
 
 from aircraft.faults import OF_THRUST
+from aircraft.weather import TURBULENCE, low_altitude_turbulence
 from common.physics import heading_rate_for_bank
 from gnc.airspeed import SpeedHold, design_speed_hold
-from gnc.estimation.health import CHECK_INTERVAL, PATIENCE
+from gnc.errors import InfeasibleError
+from gnc.estimation.health import CHECK_INTERVAL
 from gnc.estimation.navigation import NOISE_DEVIATIONS
 from gnc.guard.guard import GuardParameters
 from gnc.mission.axis import AxisParameters
@@ -27,6 +29,7 @@ from scenarios.planning.reference import shape_of
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.guidance import GuidanceConfig
 from scenarios.vehicles.sensors import NAVIGATION_TIME
+from scenarios.vehicles.thrust_expectation import ThrustTest
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 
 STALE_MIN = 2.0
@@ -34,19 +37,6 @@ STALE_MIN = 2.0
 
 TRANSIT_FRACTION = 0.5
 """Fraction of the airspeed beyond V_r that is used on the way to the reference [-]."""
-
-THRUST_LOST_FRACTION = 0.55
-"""Mean lack of airspeed at which thrust counts as lost, over what V_r lies above the slowest
-airspeed [-].
-"""
-
-LEAST_LACK = 0.06
-"""The same over V_r, at least [-]: near the slowest airspeed a gust would pass for an engine that
-has failed.
-
-Moderate turbulence, and gusts of 8 m/s, make it up to 0.035 in flights at 15.5 to 19.4 m/s of an
-aircraft that stayed sound.
-"""
 
 CONTROLLED_BANK = math.radians(17.0)
 """The heading rate at this bank counts for omega_max, if that is less, where control counts as lost
@@ -62,26 +52,58 @@ blocked [-].
 """
 
 
-def lost_thrust(airspeed: float, slowest: float) -> float:
-    """Return the mean lack of airspeed at which thrust counts as lost, by V_r and the slowest
-    airspeed [m/s].
+def thrust_test(scenario: Scenario, setup: VehicleSetup) -> ThrustTest | None:
+    """Return the test that a flight's thrust is lost; None for a vehicle without an engine, or one
+    whose accelerometers do not tell in the declared gusts.
     """
-    return max(THRUST_LOST_FRACTION * (airspeed - slowest), LEAST_LACK * airspeed)
+    if setup.thrust is None:
+        return None
+    sensors, airspeed = scenario.sensors, scenario.guidance.airspeed_mps
+    return setup.thrust.test(
+        airspeed,
+        glide_airspeed(airspeed, setup.airspeed_min),
+        gusts=_gusts(scenario),
+        airspeed_sigma=sensors.airspeed_sigma_mps,
+        airspeed_bias=sensors.airspeed_bias_mps,
+    )
+
+
+def _gusts(scenario: Scenario) -> float:
+    """Return the standard deviation of gusts along the path [m/s]; a discrete one has several."""
+    air = scenario.turbulence
+    sigma = air.gust_speed_mps / NOISE_DEVIATIONS
+    if air.level == "none":
+        return sigma
+    turbulence = low_altitude_turbulence(scenario.source_height, TURBULENCE[air.level].wind_at_20ft)
+    return math.hypot(sigma, turbulence.horizontal)
 
 
 def slowest_without_thrust(scenario: Scenario, setup: VehicleSetup) -> float:
-    """Return the airspeed to which the vehicle may fall in a turn at V_r before it is known that
-    its engine has failed [m/s].
+    """Return the airspeed to which the vehicle may fall in a turn at V_r after its engine has
+    failed [m/s].
 
-    A throttle that is stuck takes less of the thrust, and counts as much. Infinite where neither is
-    declared. While the airspeed falls at a rate, its mean lack, of a time constant, is behind its
-    lack by no more than the product of the two; and it is looked at in intervals.
+    It falls until the failure is known, for which the engine may have to run down, on to the
+    airspeed of the glide, and below that while it pushes over. A throttle that is stuck takes less of the thrust, and counts as much.
+    Infinite where neither is declared.
+
+    Raises
+    ------
+    InfeasibleError : one is declared, and would not be noticed in the gusts that are
     """
     failure, airspeed = part_failure(scenario, setup), scenario.guidance.airspeed_mps
     if failure is None or not scenario.declared_faults & OF_THRUST:
         return math.inf
-    detected = lost_thrust(airspeed, speed_hold(scenario, setup).airspeed_min)
-    return airspeed - detected - failure.airspeed_fall * (PATIENCE + CHECK_INTERVAL)
+    test = thrust_test(scenario, setup)
+    if test is None:
+        raise InfeasibleError(
+            f"in gusts of {_gusts(scenario):.1f} m/s accelerometers do not show whether the engine"
+            " has failed (turbulence.level, turbulence.gust_speed_mps, sensors.airspeed_bias_mps):"
+            " declare less of them, or no failure of the engine (fault.declared)"
+        )
+    known = test.detection_time + 0.5 * test.parameters.model.spool_time
+    fallen = airspeed - failure.airspeed_fall * known
+    glide = glide_airspeed(airspeed, setup.airspeed_min)
+    return min(fallen, glide) - failure.airspeed_fall * CHECK_INTERVAL - failure.glide_undershoot
 
 
 def part_failure(scenario: Scenario, setup: VehicleSetup) -> PartFailure | None:

@@ -23,7 +23,7 @@ is at fault [-].
 Of 63,688 flights with the paper's law, whether they settled or not, it was 0.38 at most.
 """
 
-_GIVEN_UP = (Mode.OUTRUN, Mode.NO_PLUME)
+_GIVEN_UP = (Mode.OUTRUN, Mode.NO_PLUME, Mode.RETREATING)
 """Modes in which the plume is no longer crossed; a flight that holds off resumes with the next
 report.
 """
@@ -60,13 +60,9 @@ class Ending:
             settling,
             judge,
         )
-        self._ditched, self._fault, self._end, self.guarded, self.saturated = (
-            False,
-            "",
-            0.0,
-            False,
-            0.0,
-        )
+        self._ditched, self._fault, self._end = False, "", 0.0
+        self.guarded, self.saturated = False, 0.0
+        self._noticed = math.inf
 
     def reached(
         self, time: float, motion: MeasuredMotion, sample: tuple[float, ...], *, complete: bool
@@ -78,6 +74,10 @@ class Ending:
         self._ditched = (
             monitor is not None and monitor.fault is not Fault.NONE and sample[0] < _ON_THE_WATER
         )
+        if monitor is None or monitor.fault is Fault.NONE:
+            self._noticed = math.inf
+        else:
+            self._noticed = min(self._noticed, time)
         self._fault = "" if self._ditched else self._vehicle.fault(sample)
         over = complete
         if self._judge is not None:
@@ -141,7 +141,10 @@ class Ending:
                     if self._ditched
                     else f"was still {self.mode} towards the sea"
                 )
-                return f"it {what} at {self._end:.1f} s, {self._crossings()}{self._after_fault()}"
+                return (
+                    f"it {what} at {self._end:.1f} s, {self._crossings()}{self._after_fault()}"
+                    f"{self._what_was_noticed()}"
+                )
             case Outcome.NOT_SETTLED | Outcome.INCOMPLETE:
                 return self._shortfall()
         return ""
@@ -160,6 +163,13 @@ class Ending:
             if fault and fault.begins <= self._end
             else ""
         )
+
+    def _what_was_noticed(self) -> str:
+        """Return the fault that was noticed in flight and not taken back, or nothing."""
+        monitor = self._guidance.monitor
+        if monitor is None or self._noticed == math.inf:
+            return ""
+        return f", noticed as '{monitor.fault.value}' at {self._noticed:.1f} s"
 
     def _shortfall(self) -> str:
         settling, plan, mode = self._settling, self._plan, self._guidance.mode

@@ -32,7 +32,7 @@ class OnboardSensing:
     """
 
     __slots__ = (
-        "_air_data", "_altitude", "_exact", "_fault", "_guidance", "_held", "_read_with_errors", "_readings", "_received",
+        "_air_data", "_altitude", "_engine", "_exact", "_fault", "_guidance", "_held", "_read_with_errors", "_readings", "_received",
         "_report", "_satellites_fail", "_servo_error", "_vehicle", "_vessel", "airspeed_error", "failing",
     )  # fmt: skip
 
@@ -51,11 +51,8 @@ class OnboardSensing:
                 "the guidance knows its target exactly, and has no use for reports; give it a filter"
             )
         self._fault, self._vessel = world.fault, world.vessel
-        self._read_with_errors, self._air_data, self._servo_error = (
-            sensing.errors.read,
-            vehicle.air_data,
-            vehicle.servo_error,
-        )
+        self._read_with_errors, self._air_data = sensing.errors.read, vehicle.air_data
+        self._servo_error, self._engine = vehicle.servo_error, vehicle.engine
         self._exact, self._received = (
             sensing.received is None,
             list(reversed(sensing.received or [])),
@@ -90,7 +87,13 @@ class OnboardSensing:
         )
         self.airspeed_error = measured - airspeed
         return SensorReadings(
-            fix, measured, measured_heading, roll, motion.heading_rate, self._servo_error()
+            fix,
+            measured,
+            measured_heading,
+            roll,
+            motion.heading_rate,
+            self._servo_error(),
+            self._engine(),
         )
 
     def act(self, step: int, time: float, motion: MeasuredMotion) -> None:

@@ -47,7 +47,7 @@ class JsbsimVehicle:
 
     __slots__ = (
         "_airspeed_limits", "_command_airspeed", "_command_heading_rate", "_run", "_runs", "_runs_watched", "_watch", "air_data",
-        "command_altitude", "fail", "hold_elevator", "motion", "sample", "servo_error",
+        "command_altitude", "engine", "fail", "hold_elevator", "motion", "sample", "servo_error",
     )  # fmt: skip
 
     def __init__(
@@ -72,6 +72,7 @@ class JsbsimVehicle:
         telemetry = Telemetry(aircraft.fdm, frame)
         self.motion = telemetry.motion
         self.air_data = telemetry.air_data
+        self.engine = telemetry.engine
         self.sample = telemetry.sample
         self.command_altitude = aircraft.command_altitude
         self.fail = aircraft.fail

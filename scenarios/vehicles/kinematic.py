@@ -65,6 +65,9 @@ class KinematicVehicle:
         """Return airspeed [m/s], heading, not wrapped, and the bank of a coordinated turn [rad]."""
         return self._speed, self._course, bank_for_heading_rate(self._heading_rate, self._speed)
 
+    def engine(self) -> None:
+        """Return nothing: equation (1) has no engine."""
+
     def sample(self) -> tuple[float, ...]:
         """Return ``SAMPLE_COLUMNS``."""
         airspeed, heading, bank = self.air_data()

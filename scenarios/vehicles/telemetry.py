@@ -5,7 +5,8 @@ import math
 from aircraft.fdm import Fdm
 from aircraft.state import EquatorFrame
 from common.physics import METRES_PER_FOOT
-from gnc.estimation.navigation import MeasuredMotion
+from gnc.estimation.navigation import EngineReadings, MeasuredMotion
+from innerloop.flight.thrust_map import DOWNWARD_FORCE, FORWARD_FORCE, WEIGHT
 from innerloop.jsbsim.system import CONTROL_COMMAND, HEADING_RATE
 
 _CONTROLS = ("elevator", "aileron", "throttle", "rudder")
@@ -26,8 +27,8 @@ class Telemetry:
     """
 
     __slots__ = (
-        "_airspeed", "_altitude", "_climb", "_controls", "_east", "_heading", "_heading_rate", "_incidence", "_latitude",
-        "_longitude", "_north", "_pitch", "_roll", "_sideslip", "_to_local",
+        "_airspeed", "_altitude", "_climb", "_controls", "_downward", "_east", "_forward", "_heading", "_heading_rate", "_incidence", "_latitude",
+        "_longitude", "_north", "_pitch", "_roll", "_sideslip", "_throttle", "_to_local", "_weight",
     )  # fmt: skip
 
     def __init__(self, fdm: Fdm, frame: EquatorFrame) -> None:
@@ -45,6 +46,10 @@ class Telemetry:
         self._pitch = fdm.node("attitude/theta-rad").get_double_value
         self._incidence = fdm.node("aero/alpha-rad").get_double_value
         self._sideslip = fdm.node("aero/beta-rad").get_double_value
+        self._throttle = fdm.node(CONTROL_COMMAND.format("throttle")).get_double_value
+        self._forward = fdm.node(FORWARD_FORCE).get_double_value
+        self._downward = fdm.node(DOWNWARD_FORCE).get_double_value
+        self._weight = fdm.node(WEIGHT).get_double_value
         moved = {control.name for control in fdm.spec.inputs}
         self._controls = tuple(
             fdm.node(CONTROL_COMMAND.format(name)).get_double_value if name in moved else _nothing
@@ -69,6 +74,13 @@ class Telemetry:
         [rad].
         """
         return self._airspeed() * METRES_PER_FOOT, self._heading(), self._roll()
+
+    def engine(self) -> EngineReadings:
+        """Return throttle and accelerations: forces of air and engines over the weight."""
+        weight = self._weight()
+        return EngineReadings(
+            self._throttle(), self._forward() / weight, -self._downward() / weight
+        )
 
     def sample(self) -> tuple[float, ...]:
         """Return ``SAMPLE_COLUMNS``."""

@@ -4,7 +4,7 @@ paper's kinematics.
 
 from typing import Protocol
 
-from gnc.estimation.navigation import MeasuredMotion
+from gnc.estimation.navigation import EngineReadings, MeasuredMotion
 
 SAMPLE_COLUMNS = (
     "altitude_m",
@@ -36,6 +36,9 @@ class Vehicle(Protocol):
         """Return what sensors on board measure: airspeed, gusts and all [m/s], heading, not
         wrapped, and roll [rad].
         """
+
+    def engine(self) -> EngineReadings | None:
+        """Return what shows whether there is thrust; None for a vehicle without an engine."""
 
     def sample(self) -> tuple[float, ...]:
         """Return ``SAMPLE_COLUMNS``."""

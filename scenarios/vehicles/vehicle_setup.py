@@ -27,6 +27,7 @@ from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.scenario_keys import DEFAULT_AIRCRAFT
+from scenarios.vehicles.thrust_expectation import ThrustExpectation, thrust_expectation
 
 KINEMATIC_BANDWIDTH = 1.0
 """Bandwidth of a kinematic vehicle's airspeed that its guidance reckons with; it follows at once
@@ -79,6 +80,7 @@ class VehicleSetup:
     airspeed_overshoot : of the airspeed over a step of its command [-]
     failing_level, failing_climbing : what the failure of a part does in a turn, level, and also in
         a climb; none if not measured
+    thrust : that is expected of the engine; None where no flight monitors it
     altitude_reach : difference of the altitude from its command within which the autopilot removes
         it for certain [m]
     turn_airspeeds, turn_rates : the slower turn at the autopilot's largest bank over airspeed;
@@ -98,6 +100,7 @@ class VehicleSetup:
     airspeed_overshoot: float = 0.0
     failing_level: PartFailure | None = None
     failing_climbing: PartFailure | None = None
+    thrust: ThrustExpectation | None = None
     altitude_reach: float = math.inf
     turn_airspeeds: tuple[float, ...] = ()
     turn_rates: tuple[float, ...] = ()
@@ -208,6 +211,10 @@ def aircraft_setup(
             for each in (0.0, gradient)
         )
         climbing = climbing.or_worse(level)
+    thrust = None
+    if any(setting.follows for setting in settings):
+        sound = AutopilotedAircraft(schedule.spec, run.model)
+        thrust = thrust_expectation(sound, schedule, start)
     return VehicleSetup(
         lag=slow_lag,
         reversal=TurnReversalResponse(delay=reversal["delay_s"], lag=reversal["lag_s"]),
@@ -223,6 +230,7 @@ def aircraft_setup(
         ),
         failing_level=level,
         failing_climbing=climbing,
+        thrust=thrust,
         altitude_reach=schedule.weights.altitude_error_max,
         turn_airspeeds=tuple(schedule.airspeeds),
         turn_rates=_slower_turns(schedule),

@@ -20,10 +20,17 @@ from gnc_cases import (
 )
 from hypothesis import given
 from hypothesis import strategies as st
+from thrust_cases import LEVEL, MODEL, accelerations
 
 from gnc.airspeed import PaceHold, SpeedHold
-from gnc.estimation.health import HealthParameters
-from gnc.estimation.navigation import EstimatedNavigation, NavigationParameters, TrueNavigation
+from gnc.estimation.health import Fault, HealthParameters
+from gnc.estimation.navigation import (
+    EngineReadings,
+    EstimatedNavigation,
+    NavigationParameters,
+    TrueNavigation,
+)
+from gnc.estimation.thrust import ThrustParameters
 from gnc.estimation.vessel import (
     FilterParameters,
     ReportedTarget,
@@ -37,12 +44,13 @@ from gnc.guidance import Guidance, GuidanceParameters, ReportedVessel
 from gnc.laws import CascadeLaw, LineOfSightLaw, LyapunovLaw
 from gnc.mission.axis import AxisHeight, Climb, PredictedPlume
 from gnc.mission.follow import FollowingParameters, PlumeFollowing
-from gnc.mission.mission import Mode, Order
+from gnc.mission.mission import LOST, Mode, Order
 from gnc.mission.track import DirectTracking
 from gnc.mission.way import ApproachParameters
 from gnc.paper import PlumeAxis, distance_by_paper, half_widths
 from gnc.reference.moving_centre import CentreParameters
 from gnc.reference.shapes import Sinusoid
+from gnc.unicycle import unicycle_move
 
 # 0.75 of the tracking allowance of 1 m about its 200 m (scenarios/planning/tracking_flight.py).
 # These vehicles answer at once.
@@ -377,7 +385,7 @@ def paper(**how):
     )
 
 
-def following(*, guard=GUARD, climb=0.0):
+def following(*, guard=GUARD, climb=0.0, thrust=None):
     """Return the guidance of a flight that follows a plume by sensors and reports."""
     widths = [
         half_widths(paper_oscillation(nu, roll_rate_max=math.radians(40.0)))
@@ -438,8 +446,7 @@ def following(*, guard=GUARD, climb=0.0):
         guard=guard,
         mission=mission,
         health=HealthParameters(
-            airspeed_error=2.0,
-            speed=SPEED,
+            thrust=thrust,
             heading_rate_max=HEADING_RATE_MAX,
             lag=0.4,
             time_step=TIME_STEP,
@@ -463,6 +470,7 @@ def readings(north, east, *, course=0.0, airspeed=SPEED, servo_error=0.0):
         0.0,
         0.0,
         servo_error,
+        None,
     )
 
 
@@ -568,6 +576,77 @@ def test_a_vehicle_with_a_fault_leaves_and_sinks():
     assert guidance.mode is Mode.TERMINATING
     assert guidance.airspeed_command == 17.0
     assert guidance.altitude_command < -500.0
+
+
+# Half of the thrust of level flight, missing for a second.
+THRUST = ThrustParameters(
+    model=MODEL, level=LEVEL, slow_airspeed=17.0, energy_height=SPEED * 0.5 * LEVEL
+)
+
+
+class Powered:
+    """A vehicle that follows its guidance, with an engine at the throttle of level flight.
+
+    Attributes
+    ----------
+    guidance : with a monitor of the thrust
+    modes, altitudes, speeds : at each step
+    """
+
+    def __init__(self):
+        self.guidance = reported(following(thrust=THRUST))
+        self.modes, self.altitudes, self.speeds = [], [], []
+        self._place = (-400.0, 0.0, math.pi)
+        self._speed = SPEED
+
+    def fly(self, duration, *, thrust, drag=LEVEL):
+        throttle = LEVEL / MODEL.settled_thrust(SPEED, 1.0)
+        guidance = self.guidance
+        for _ in range(round(duration / TIME_STEP)):
+            north, east, course = self._place
+            speed = self._speed
+            fix = (north, east, speed * math.cos(course), speed * math.sin(course))
+            engine = EngineReadings(throttle, *accelerations(thrust, speed))
+            turning = guidance.heading_rate_command
+            time = len(self.modes) * TIME_STEP
+            guidance.step(time, (fix, speed, course, 0.0, turning, 0.0, engine))
+            self.modes.append(guidance.mode)
+            self.altitudes.append(guidance.altitude_command)
+            self.speeds.append(speed)
+            command = guidance.heading_rate_command
+            self._place = unicycle_move(north, east, course, speed, command, TIME_STEP)
+            self._speed += 9.81 * (thrust - drag) * TIME_STEP
+
+
+def test_a_vehicle_without_thrust_holds_its_height_and_goes_on_when_thrust_is_there_again():
+    vehicle = Powered()
+    vehicle.fly(5.0, thrust=LEVEL)
+    # It is at its speed all the while: only the accelerometers say that there is no thrust.
+    vehicle.fly(5.0, thrust=0.0, drag=0.0)
+    vehicle.fly(10.0, thrust=LEVEL)
+    retreating = [i for i, mode in enumerate(vehicle.modes) if mode is Mode.RETREATING]
+    # A second without thrust, and a second with it: 20 steps, of which every fourth is looked at.
+    assert 100 + 16 <= retreating[0] <= 100 + 24
+    assert 200 + 16 <= retreating[-1] + 1 <= 200 + 24
+    assert len(retreating) == retreating[-1] - retreating[0] + 1
+    assert not set(vehicle.modes) & set(LOST)
+    assert set(vehicle.altitudes) == {60.0}
+    assert vehicle.guidance.monitor.fault is Fault.NONE
+
+
+def test_a_vehicle_without_thrust_glides_to_the_sea_when_its_speed_has_fallen_to_that_of_a_glide():
+    vehicle = Powered()
+    vehicle.fly(5.0, thrust=LEVEL)
+    vehicle.fly(5.0, thrust=0.0)
+    modes, speeds = vehicle.modes, vehicle.speeds
+    retreat, glide = modes.index(Mode.RETREATING), modes.index(Mode.GLIDING)
+    assert retreat < glide
+    assert speeds[glide] < 17.0 <= speeds[glide - 1]
+    assert set(modes[retreat:glide]) == {Mode.RETREATING}
+    assert set(modes[glide:]) == {Mode.GLIDING}
+    assert set(vehicle.altitudes[:glide]) == {60.0}
+    assert vehicle.altitudes[-1] < -500.0
+    assert vehicle.guidance.airspeed_command == 17.0
 
 
 def test_a_turn_away_is_flown_in_full_in_gusts_from_ahead():

@@ -18,7 +18,7 @@ from reports.run.trials import Trial
 _INTERVALS = 5.0
 """Time without a crossing, over the predicted crossing interval, from which on it is told [-]."""
 
-_LEFT = ("departing", "gliding", "terminating")
+_LEFT = ("departing", "retreating", "gliding", "terminating")
 """Modes at the end of a flight that had left the plume for good."""
 
 

@@ -21,7 +21,15 @@ _SEVERAL = {False: ", ", True: "; "}
 """Between the names of flights, whether or not these have commas of their own."""
 
 
-_USUAL_MODES = ("approach", "tracking", "found", "departing", "gliding", "terminating")
+_USUAL_MODES = (
+    "approach",
+    "tracking",
+    "found",
+    "departing",
+    "retreating",
+    "gliding",
+    "terminating",
+)
 """Modes in which a flight tracks its reference, or in which the tracking error is not measured."""
 
 

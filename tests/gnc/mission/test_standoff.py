@@ -125,16 +125,34 @@ def test_a_circle_rises_to_the_height_of_the_plume_at_its_radius():
 
 
 @pytest.mark.parametrize(
-    ("fault", "mode"),
-    [(Fault.THRUST_LOST, Mode.GLIDING), (Fault.ACTUATOR_STUCK, Mode.TERMINATING)],
+    ("fault", "mode", "speed"),
+    [
+        (Fault.THRUST_LOST, Mode.GLIDING, 14.9),
+        (Fault.ACTUATOR_STUCK, Mode.TERMINATING, SPEED),
+    ],
 )
-def test_a_vehicle_with_a_fault_flies_straight_out_and_sinks(fault, mode):
+def test_a_vehicle_with_a_fault_flies_straight_out_and_sinks(fault, mode, speed):
     own, target, circling = TrueNavigation(), SteadyTarget(0.0, 0.0), mission(CascadeLaw())
-    circling.leave(fault)
+    circling.react(fault)
     # South of the vessel and on a southerly course: straight on leads out.
-    own.update((-RADIUS, 0.0, -SPEED, 0.0, 0.0))
+    own.update((-RADIUS, 0.0, -speed, 0.0, 0.0))
     order = circling.plan(0.0, own, target, renew=True, guarding=False)
     assert order.heading_rate == pytest.approx(0.0, abs=1e-9)
     assert (order.airspeed, order.mode) == (15.0, mode)
     # So far below the sea that the autopilot holds its airspeed by pitch.
     assert order.altitude < -500.0
+
+
+def test_a_vehicle_without_thrust_holds_its_height_and_circles_on_when_thrust_is_there_again():
+    own, target, circling = TrueNavigation(), SteadyTarget(0.0, 0.0), mission(CascadeLaw())
+    own.update((-RADIUS, 0.0, -SPEED, 0.0, 0.0))
+
+    def ordered():
+        order = circling.plan(0.0, own, target, renew=True, guarding=False)
+        return order.mode, order.airspeed, order.altitude
+
+    tracking = ordered()
+    circling.react(Fault.THRUST_LOST)
+    assert ordered() == (Mode.RETREATING, SPEED, tracking[2])
+    circling.react(Fault.NONE)
+    assert ordered() == tracking

@@ -88,7 +88,7 @@ def test_it_knows_no_way_out(mission):
     with pytest.raises(
         ValueError, match="the vehicle has a fault, thrust lost, and its mission has no departure"
     ):
-        mission.leave(Fault.THRUST_LOST)
+        mission.react(Fault.THRUST_LOST)
 
 
 @pytest.mark.parametrize(("nu", "bearing"), [(0.1, 0.0), (0.1, -2.0), (0.5, 0.3), (0.5, -2.0)])

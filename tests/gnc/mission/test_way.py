@@ -361,7 +361,7 @@ def fly_out(x, y, course, heading_rate=0.0, duration=30.0):
     """Return distances from the vessel, and heading rates, of a vehicle that answers at once and
     leaves a vessel at rest.
     """
-    egress = Egress(tracking_parameters(), 15.0)
+    egress = Egress(tracking_parameters(), SPEED, 15.0)
     distances = []
     turns = []
     for _ in range(round(duration / TIME_STEP)):
@@ -403,5 +403,5 @@ def test_where_one_turn_is_shorter_it_is_taken_from_any_turn(side):
         course=-side * math.radians(120.0),
         heading_rate=-side * 0.4,
     )
-    egress = Egress(tracking_parameters(), 15.0)
+    egress = Egress(tracking_parameters(), SPEED, 15.0)
     assert egress.command(own, VESSEL, 0.0) == side * HEADING_RATE_MAX

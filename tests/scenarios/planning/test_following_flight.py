@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 from flight_cases import SPEED, plan, scenario
+from thrust_cases import MODEL
 
 from gnc.errors import InfeasibleError
 from gnc.estimation.navigation import WindFilter
@@ -12,7 +13,7 @@ from gnc.mission.follow import FollowingParameters
 from innerloop.flight.part_failure import PartFailure
 from scenarios.planning.air.estimated_wind import navigation_parameters, wind_followed
 from scenarios.planning.declared_vessel import check_declared
-from scenarios.planning.guidance import lost_thrust
+from scenarios.vehicles.thrust_expectation import ThrustErrors, ThrustExpectation
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 
 
@@ -29,23 +30,45 @@ def test_such_a_flight_has_sensing_margin_and_health():
     assert flight.guidance.mission.centre.distance_min == pytest.approx(203.0)
 
 
-@pytest.mark.parametrize(
-    ("airspeed", "lack"), [(15.5, 0.06 * 15.5), (16.5, 0.06 * 16.5), (19.42, 0.55 * 4.42)]
-)
-def test_near_the_slowest_airspeed_a_gust_does_not_pass_for_lost_thrust(airspeed, lack):
-    # The X8's is 15 m/s. Light turbulence takes up to 0.4 m/s from a sound aircraft, moderate up to
-    # 0.6.
-    assert lost_thrust(airspeed, 15.0) == pytest.approx(lack)
+# Errors of a thousandth of the weight.
+ERRORS = ThrustErrors(lack=1e-3, density=1e-6)
+EXPECTATION = ThrustExpectation(model=MODEL, calm=ERRORS, gusty=ERRORS, gusts=2.0)
 
 
-def test_the_guard_allows_for_the_airspeed_at_which_lost_thrust_is_detected():
-    failing = PartFailure(airspeed_fall=1.25, glide_deviation=4.3)
-    setup = replace(kinematic_setup(scenario()), airspeed_min=15.0, failing_level=failing)
+def test_a_flight_is_watched_by_the_thrust_of_its_aircraft():
+    setup = replace(kinematic_setup(scenario()), thrust=EXPECTATION)
+    given = scenario(guidance={"airspeed_mps": 19.42})
+    thrust = plan(given, setup=setup).guidance.health.thrust
+    assert thrust.level == MODEL.drag(19.42, 1.0)
+    # Half of it, missing for a second.
+    assert thrust.energy_height == pytest.approx(19.42 * 0.5 * thrust.level)
+    # A vehicle without an engine has none to lose.
+    assert plan(given).guidance.health.thrust is None
+
+
+def test_an_engine_whose_failure_would_not_be_noticed_cannot_be_declared_to_fail():
+    failing = PartFailure(airspeed_fall=1.25, glide_deviation=4.3, glide_undershoot=0.5)
+    blind = replace(EXPECTATION, calm=replace(ERRORS, lack=0.1))
+    setup = replace(kinematic_setup(scenario()), failing_level=failing, thrust=blind)
+    with pytest.raises(InfeasibleError, match=r"gusts of 0\.0 m/s .* engine has failed"):
+        plan(scenario(fault={"declared": ["engine"]}), setup=setup)
+    assert plan(scenario(), setup=setup).guidance.health.thrust is None
+
+
+def test_the_guard_allows_for_the_airspeed_to_which_a_vehicle_without_thrust_falls():
+    failing = PartFailure(airspeed_fall=1.25, glide_deviation=4.3, glide_undershoot=0.5)
+    setup = replace(
+        kinematic_setup(scenario()), airspeed_min=15.0, failing_level=failing, thrust=EXPECTATION
+    )
     given = scenario(guidance={"airspeed_mps": 19.42}, fault={"declared": ["engine"]})
     guarded = plan(given, setup=setup).guidance.guard
-    # In a steady fall the mean lack lags by a time constant of 2 s, and it is checked every 0.2 s.
-    # Measured in 96 flights of the X8 at a ship: 14.3 m/s or more.
-    assert guarded.slowest == pytest.approx(19.42 - 0.55 * 4.42 - 1.25 * (2.0 + 0.2))
+    # Noticed after a second, 0.2 s of an interval, and half of the 2 s in which the engine may run
+    # down; another interval until it is told to glide, and 0.5 m/s as it pushes over.
+    assert guarded.slowest == pytest.approx(19.42 - 1.25 * (1.0 + 0.2 + 0.5 * 2.0 + 0.2) - 0.5)
+    # Noticed earlier than that, it holds its height until it has fallen to the glide's airspeed.
+    quick = replace(EXPECTATION, model=replace(MODEL, spool_time=0.1))
+    at_once = plan(given, setup=replace(setup, thrust=quick)).guidance.guard
+    assert at_once.slowest == pytest.approx(0.5 * (19.42 + 15.0) - 1.25 * 0.2 - 0.5)
     # Then it pushes over to a glide, which takes it off its turn: the guard keeps as much more.
     assert (guarded.radius, guarded.allowance) == (204.3, 4.3)
     # A throttle that sticks takes thrust, too; a surface that is stuck does not, and the aircraft
