@@ -7,7 +7,7 @@ import numpy as np
 
 from common.registry import PluginError
 from gnc.errors import InfeasibleError
-from gnc.paper import PlumeAxis, distance_by_paper, distance_exact
+from gnc.paper import PlumeAxis, distance_by_paper, distance_exact, reach
 from gnc.reference.builtin_floats import BuiltinFloats, with_builtin_floats
 from gnc.reference.oscillating import JoinedOrbit
 from gnc.reference.reference import (
@@ -28,6 +28,13 @@ STEPS_MIN = 6
 
 RATIO_STEPS = 48
 """Steps of nu at which orbits are tabled."""
+
+_REACH_POINTS = 257
+"""Points of an orbit at which its reach is looked at [-]: what they miss is below 1e-4 of its width.
+"""
+
+_REACH_ROUNDING = 1e-6
+"""Excess over (11) that is rounding, where it is exact: a plume abeam or astern [m]."""
 
 _OF_ORBIT = ("nu", "speed", "eta", "omega_0", "amplitude", "period", "crossing_interval")
 """Numbers that an orbit has."""
@@ -144,13 +151,31 @@ def orbits(
 def distance_kept(
     guidance: GuidanceConfig, keepout: KeepoutConfig, orbit: Orbit, axis: PlumeAxis
 ) -> float:
-    """Return r_CO [m], at which an orbit keeps the tracking allowance from the keep-out area."""
-    rule = distance_by_paper if guidance.placement == "paper" else distance_exact
+    """Return r_CO [m], at which an orbit keeps the tracking allowance from the keep-out area.
+
+    The paper's rule is for orbits for which its reach holds; others are placed exactly.
+    """
+    by_paper = guidance.placement == "paper" and _reach_holds(orbit, axis)
+    rule = distance_by_paper if by_paper else distance_exact
     distance_min = keepout.radius_m + guidance.tracking_allowance_m
     if keepout.shape == "sphere":
         return rule(orbit, axis, distance_min)
     # As far off horizontally as over a level plume.
     return rule(orbit, PlumeAxis(heading=axis.heading), distance_min) / math.cos(axis.elevation)
+
+
+def _reach_holds(orbit: Orbit, axis: PlumeAxis) -> bool:
+    """Return whether the reach by (11) holds for an orbit, so that (10) keeps it out.
+
+    Its half-widths say nothing of an orbit that reaches farther on one side than on the other. Of
+    those with equal halves it is an upper bound for a figure of eight, which is wider than long,
+    and may be short for a user's own.
+    """
+    if not orbit.symmetric:
+        return False
+    along, across = orbit.offset(np.linspace(0.0, orbit.period, _REACH_POINTS))
+    towards = -along * math.cos(axis.heading) - across * math.sin(axis.heading)
+    return float(np.max(towards)) <= reach(orbit, axis) + _REACH_ROUNDING
 
 
 def joined_orbit(scenario: Scenario, orbit: Orbit, course: float) -> JoinedOrbit:
