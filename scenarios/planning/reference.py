@@ -2,6 +2,7 @@
 
 import functools
 import math
+from typing import Any
 
 import numpy as np
 
@@ -87,18 +88,7 @@ def oscillation_at(guidance: GuidanceConfig, reference: ReferenceConfig, nu: flo
         roll_rate_max=math.radians(guidance.roll_rate_max_deg_s),
     )
     if isinstance(shape, BuiltinFloats):
-        for name in _OF_ORBIT:
-            if not hasattr(orbit, name):
-                refuse_answer(
-                    part,
-                    f"design() at nu = {nu:.4g}",
-                    orbit,
-                    f"an orbit, with finite {', '.join(_OF_ORBIT)}",
-                )
-            if not is_number(found := getattr(orbit, name)):
-                refuse_answer(
-                    part, f"{name} of design() at nu = {nu:.4g}", found, "a finite number"
-                )
+        _check_own(orbit, part, f"design() at nu = {nu:.4g}")
     steps = orbit.crossing_interval * guidance.rate_hz
     if steps < STEPS_MIN:
         raise InfeasibleError(
@@ -107,6 +97,27 @@ def oscillation_at(guidance: GuidanceConfig, reference: ReferenceConfig, nu: flo
             " oscillation: fly faster, lower guidance.roll_rate_max_deg_s, or raise guidance.rate_hz"
         )
     return orbit
+
+
+def _check_own(orbit: Any, part: str, method: str) -> None:
+    """Refuse what is no orbit; ``part`` and ``method`` are the shape's whose answer it is.
+
+    Raises
+    ------
+    PluginError : it lacks a number, says not whether its halves are alike, or cannot say where it
+        is
+    """
+    missing = [name for name in (*_OF_ORBIT, "symmetric") if not hasattr(orbit, name)]
+    if missing:
+        must = f"an orbit, with finite {', '.join(_OF_ORBIT)}, and symmetric, true or false"
+        refuse_answer(part, method, orbit, f"{must}: it has no {', '.join(missing)}")
+    for name in _OF_ORBIT:
+        if not is_number(found := getattr(orbit, name)):
+            refuse_answer(part, f"{name} of {method}", found, "a finite number")
+    if not isinstance(orbit.symmetric, bool | np.bool_):
+        refuse_answer(part, f"symmetric of {method}", orbit.symmetric, "true or false")
+    asked(part, f"failed in offset() of {method}", "times [s]", orbit.offset, np.zeros(1))
+    asked(part, f"failed in half_widths() of {method}", "no arguments", orbit.half_widths)
 
 
 def swing_of(guidance: GuidanceConfig, reference: ReferenceConfig) -> Swing:
