@@ -8,6 +8,7 @@ import numpy.typing as npt
 from aircraft.wind import CALM
 from common.text import utc_text
 from gnc.mission.mission import LEAVING, Mode
+from gnc.reference.reference import PeriodicPath
 from scenarios.engine.task import Row
 from scenarios.metrics.crossings import Crossing, find_crossings
 from scenarios.metrics.keepout import closest_approach, keepout_figures
@@ -291,21 +292,30 @@ def crossings_of(
 
 
 def _crossing_figures(plan: FlightPlan, record: FlightRecord, crossings: list[Crossing]) -> Row:
+    """Measure the crossings of a settled flight; means are over whole periods of the orbit.
+
+    From one crossing of a period to the next, interval and distance may differ. A flight with less
+    than a period has no mean interval.
+    """
     row: Row = {"crossing_count": len(crossings)}
+    alike = _crossings_until_alike(plan.oscillation)
     if crossings:
-        distances = [crossing.distance for crossing in crossings]
-        level = plan.keepout_shape == "cylinder"
-        to_centre = [crossing.horizontal_distance for crossing in crossings] if level else distances
+        whole = crossings[: len(crossings) // alike * alike] or crossings
+        to_centre = [
+            crossing.horizontal_distance if plan.keepout_shape == "cylinder" else crossing.distance
+            for crossing in crossings
+        ]
         row |= {
-            "crossing_distance_mean_m": float(np.mean(distances)),
-            "crossing_distance_min_m": min(distances),
+            "crossing_distance_mean_m": float(np.mean([crossing.distance for crossing in whole])),
+            "crossing_distance_min_m": min(crossing.distance for crossing in crossings),
             "crossing_clearance_min_m": min(to_centre) - plan.keepout_radius,
             "crossing_angle_mean_deg": math.degrees(
-                float(np.mean([crossing.angle for crossing in crossings]))
+                float(np.mean([crossing.angle for crossing in whole]))
             ),
         }
-    if len(crossings) > 1:
-        intervals = np.diff([crossing.time for crossing in crossings])
+    last = (len(crossings) - 1) // alike * alike
+    if last > 0:
+        intervals = np.diff([crossing.time for crossing in crossings[: last + 1]])
         row |= {
             "crossing_interval_mean_s": float(np.mean(intervals)),
             "crossing_interval_std_s": float(np.std(intervals)),
@@ -313,7 +323,7 @@ def _crossing_figures(plan: FlightPlan, record: FlightRecord, crossings: list[Cr
         wind = plan.apparent_wind
         if wind is not None and wind.greatest > wind.least:
             row["crossing_interval_predicted_s"] = _predicted_interval(
-                plan, record, crossings[0].time, crossings[-1].time
+                plan, record, crossings[0].time, crossings[last].time
             )
     manoeuvres_end = plan.world.vessel.manoeuvres_end if plan.world else math.nan
     after = [crossing.time for crossing in crossings if crossing.time >= manoeuvres_end]
@@ -325,9 +335,21 @@ def _crossing_figures(plan: FlightPlan, record: FlightRecord, crossings: list[Cr
     return row
 
 
+def _crossings_until_alike(orbit: PeriodicPath | None) -> int:
+    """Return after how many crossings one is like the first, in its interval and distance [-].
+
+    That is after a period of the orbit; or after half of it, where one half mirrors the other and
+    each has a crossing, which is then its passage through the centre.
+    """
+    if orbit is None:
+        return 1
+    a_period = max(1, round(orbit.period / orbit.crossing_interval))
+    return 1 if orbit.symmetric and a_period == 2 else a_period
+
+
 def _predicted_interval(plan: FlightPlan, record: FlightRecord, first: float, last: float) -> float:
-    """Return the mean crossing interval over a vessel's changes of course and speed, from its first
-    crossing to its last [s].
+    """Return the mean crossing interval over a vessel's changes of course and speed, between two
+    crossings [s].
 
     Where the period changes with time, crossings come at a rate that is their number per period
     over it, omega_0/pi of an oscillation: their number between two times is its integral.
