@@ -8,7 +8,7 @@ import numpy.typing as npt
 from aircraft.wind import CALM
 from common.text import utc_text
 from gnc.mission.mission import LEAVING, Mode
-from gnc.reference.reference import PeriodicPath
+from gnc.mission.track import DirectParameters
 from scenarios.engine.task import Row
 from scenarios.metrics.crossings import Crossing, find_crossings
 from scenarios.metrics.keepout import closest_approach, keepout_figures
@@ -20,6 +20,9 @@ from scenarios.world.place import Place
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
+
+_BESIDE = 1e-6
+"""Distance of a centre of oscillation from the plume's axis that is rounding [m]."""
 
 
 def plan_row(plan: FlightPlan) -> Row:
@@ -298,7 +301,7 @@ def _crossing_figures(plan: FlightPlan, record: FlightRecord, crossings: list[Cr
     than a period has no mean interval.
     """
     row: Row = {"crossing_count": len(crossings)}
-    alike = _crossings_until_alike(plan.oscillation)
+    alike = _crossings_until_alike(plan, record)
     if crossings:
         whole = crossings[: len(crossings) // alike * alike] or crossings
         to_centre = [
@@ -335,16 +338,22 @@ def _crossing_figures(plan: FlightPlan, record: FlightRecord, crossings: list[Cr
     return row
 
 
-def _crossings_until_alike(orbit: PeriodicPath | None) -> int:
+def _crossings_until_alike(plan: FlightPlan, record: FlightRecord) -> int:
     """Return after how many crossings one is like the first, in its interval and distance [-].
 
     That is after a period of the orbit; or after half of it, where one half mirrors the other and
-    each has a crossing, which is then its passage through the centre.
+    each has a crossing, its passage through a centre on the plume's axis. A centre that follows
+    estimates is beside the axis most of the time, and then the two intervals of a period differ.
     """
+    orbit, mission = plan.oscillation, plan.guidance.mission
     if orbit is None:
         return 1
     a_period = max(1, round(orbit.period / orbit.crossing_interval))
-    return 1 if orbit.symmetric and a_period == 2 else a_period
+    if a_period != 2 or not orbit.symmetric or not isinstance(mission, DirectParameters):
+        return a_period
+    axis = record.column("plume_axis_rad")
+    beside = mission.centre.x * np.sin(axis) - mission.centre.y * np.cos(axis)
+    return 1 if np.max(np.abs(beside)) < _BESIDE else a_period
 
 
 def _predicted_interval(plan: FlightPlan, record: FlightRecord, first: float, last: float) -> float:
