@@ -52,7 +52,7 @@ def plan_row(plan: FlightPlan) -> Row:
         "start_aspect_deg": math.degrees(
             math.remainder(math.atan2(start.east, start.north) - axis, 2.0 * math.pi)
         ),
-        "fault_time_s": world.fault.begins if world.fault.kind != "none" else math.nan,
+        "fault_time_s": world.fault.begins if math.isfinite(world.fault.begins) else math.nan,
         "eta": plan.oscillation.eta,
         "omega_0_rad_s": plan.oscillation.omega_0,
         "oscillation_limit": plan.oscillation.limit,
