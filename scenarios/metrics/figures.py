@@ -298,7 +298,8 @@ def _crossing_figures(plan: FlightPlan, record: FlightRecord, crossings: list[Cr
     """Measure the crossings of a settled flight; means are over whole periods of the orbit.
 
     From one crossing of a period to the next, interval and distance may differ. A flight with less
-    than a period has no mean interval.
+    than a period has no mean interval where the orbit's halves differ; else its one interval is off
+    by as much as the centre is beside the axis.
     """
     row: Row = {"crossing_count": len(crossings)}
     alike = _crossings_until_alike(plan, record)
@@ -317,6 +318,8 @@ def _crossing_figures(plan: FlightPlan, record: FlightRecord, crossings: list[Cr
             ),
         }
     last = (len(crossings) - 1) // alike * alike
+    if not last and plan.oscillation is not None and plan.oscillation.symmetric:
+        last = len(crossings) - 1
     if last > 0:
         intervals = np.diff([crossing.time for crossing in crossings[: last + 1]])
         row |= {
