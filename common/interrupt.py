@@ -13,8 +13,8 @@ from types import FrameType
 def terminated_like_interrupted() -> Iterator[None]:
     """Raise a KeyboardInterrupt at SIGTERM, as at Ctrl-C, within the context.
 
-    Schedulers and containers end a program by SIGTERM. One that ignores it goes on ignoring it; so
-    does a thread other than the main one, which has no signals.
+    Schedulers and containers end a program by SIGTERM. A program that ignores it goes on doing so.
+    Only the main thread may handle signals: in any other one nothing changes.
     """
     before = signal.getsignal(signal.SIGTERM)
     alone = threading.current_thread() is threading.main_thread()

@@ -67,7 +67,7 @@ _LIMITED = " of the trials that limit it"
 _POINTS = {
     "own": "Each point of the sweep has starts, noise and sampled instruments of its own.",
     "common": "All points of the sweep have the same starts, noise and sampled instruments: what differs between them follows"
-    " from what is swept, and what they have in common may be that of one sample.",
+    " from what is swept, but an error that they have in common may come from the one sample.",
 }
 """What is said of the points of a sweep, by whose random numbers they have."""
 

@@ -30,7 +30,7 @@ STEPS_MIN = 6
 RATIO_STEPS = 48
 """Steps of nu at which orbits are tabled."""
 
-_REACH_POINTS = 257
+_REACH_POINTS = 513
 """Points of an orbit at which its reach is looked at [-]: what they miss is below 1e-4 of its width.
 """
 
