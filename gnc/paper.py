@@ -339,7 +339,11 @@ def distance_by_paper(orbit: Orbit, axis: PlumeAxis, distance_min: float) -> flo
 
 
 def reach(orbit: Orbit, axis: PlumeAxis) -> float:
-    """Return d_max, the paper's estimate of the orbit's reach towards the vessel, (11) [m]."""
+    """Return d_max, the paper's estimate of the orbit's reach towards the vessel, (11) [m].
+
+    It is at least the true reach of a figure of eight, which has equal halves and is wider than
+    long. Other orbits may reach farther.
+    """
     along, across = orbit.half_widths()
     return along + (across - along) * abs(math.sin(axis.heading))  # (11)
 

@@ -13,10 +13,12 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from common.command_line import INTERRUPTED, refuse, run_command
+from common.interrupt import terminated_like_interrupted
 from common.run_layout import REPORT_HTML, REPORT_PDF, flight_of
 
 if TYPE_CHECKING:
     from scenarios.engine.executors import ExecutorFactory
+    from scenarios.engine.runner import Launch
 
 MET, NOT_MET = 0, 1
 
@@ -96,7 +98,8 @@ def command(
 
     Exit status: 0 every flight kept out, completed and met its criteria (or kept out, where the
     scenario requires no more; or every trajectory converged), 1 some did not, 2 bad input, 130
-    interrupted. Of a flight that is replayed: 0 its row is identical, 1 it is not.
+    interrupted, by Ctrl-C or SIGTERM. Of a flight that is replayed: 0 its row is identical, 1 it is
+    not.
     """
     from scenarios.engine.executors import ExecutorFactory
     from scenarios.engine.task import Limits
@@ -145,6 +148,7 @@ def _list() -> int:
     return MET
 
 
+@terminated_like_interrupted()
 def _run(
     name: str | None,
     out: Path | None,
@@ -201,6 +205,7 @@ def _run(
                 resume=resume,
                 progress=progress,
                 command=given,
+                launched=_print_launch,
             )
         else:
             from scenarios.studies.registry import run_study
@@ -214,27 +219,39 @@ def _run(
                 progress=progress,
                 overrides=overrides,
                 command=given,
+                launched=_print_launch,
             )
     for line in result.summary.lines:
         print(line)
     print(f"results: {result.directory}")
     if result.interrupted:
-        kept, left = (
-            f"{result.summary.done} of {result.planned} {result.what} are done and kept",
-            result.summary.beside_left,
-        )
-        beside = (
-            f"; of the comparisons {left} {'is' if left == 1 else 'are'} left to fly"
-            if left
-            else ""
-        )
+        done = result.summary.done
+        kept = f"{done} of {result.planned} {result.what} are done and kept"
+        left = f"{_are_left(result.planned - done)} to fly"
+        if beside := result.summary.beside_left:
+            left += f"; of the comparisons {_are_left(beside)} to fly"
         print(
-            f"interrupted; {kept}{beside}. Continue with: {_again(directory, out=out, resume=resume)}",
+            f"interrupted; {kept}, {left}. Continue with: {_again(directory, out=out, resume=resume)}",
             file=sys.stderr,
         )
         return INTERRUPTED
     status = _report(directory, changed=result.changed, wanted=not no_report)
     return status or (MET if result.all_met else NOT_MET)
+
+
+def _print_launch(launch: "Launch") -> None:
+    """Say how many flights there are to fly, and how many are done."""
+    beside = f", and {launch.beside_left} of comparisons" if launch.beside_left else ""
+    if launch.resumed:
+        left = launch.planned - launch.done
+        kept = f"; {launch.done} {'is' if launch.done == 1 else 'are'} done and kept"
+        print(f"{launch.what} left to fly: {left} of {launch.planned}{beside}{kept}", flush=True)
+    else:
+        print(f"{launch.what} to fly: {launch.planned}{beside}", flush=True)
+
+
+def _are_left(number: int) -> str:
+    return f"{number} {'is' if number == 1 else 'are'} left"
 
 
 def _again(directory: Path, *, out: Path | None, resume: bool) -> str:

@@ -92,16 +92,16 @@ class PeriodicPath(Protocol):
         offset to the right. Both have its shape.
         """
 
+    @property
+    def symmetric(self) -> bool:
+        """Whether the second half of the orbit mirrors the first across the centre's course."""
+
     def half_widths(self) -> tuple[float, float]:
         """Return how far the orbit reaches from the centre, along its course and across [m]."""
 
 
 class Orbit(PeriodicPath, Protocol):
     """A reference's periodic motion about the centre of oscillation."""
-
-    @property
-    def symmetric(self) -> bool:
-        """Whether the second half of the orbit mirrors the first across the centre's course."""
 
     def course(self, phase: float) -> float:
         """Return the course offset from that of the centre at a phase, omega_0 times time [rad]."""

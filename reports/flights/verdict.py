@@ -64,6 +64,13 @@ which there is one at least.
 _LIMITED = " of the trials that limit it"
 """How the worst figure is named that is not that of all flights."""
 
+_POINTS = {
+    "own": "Each point of the sweep has starts, noise and sampled instruments of its own.",
+    "common": "All points of the sweep have the same starts, noise and sampled instruments: what differs between them follows"
+    " from what is swept, but an error that they have in common may come from the one sample.",
+}
+"""What is said of the points of a sweep, by whose random numbers they have."""
+
 
 def flight_verdict(run: RunData, trials: list[Trial]) -> Verdict:
     """Judge a run by its summary.
@@ -169,6 +176,11 @@ def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int
         f"{several or 'Flights: '}{planned:,} planned, {len(flown):,} flown,"
         f" {count(completed(rows)):,} completed, {count(met(rows)):,} met every criterion.",
         *([_closest(trials, beside)] if len(beside) else []),
+    ]
+    sentences += [
+        words
+        for kind, words in _POINTS.items()
+        if kind in run.manifest.get("random_numbers_of_points", {}).values()
     ]
     led, bound = _subset(run), violation_bound(run, trials)
     if bound and led is not None:

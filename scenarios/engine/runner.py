@@ -50,6 +50,25 @@ class StudySummary:
     beside_left: int = 0
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Launch:
+    """What there is to do as a study is launched or resumed.
+
+    Attributes
+    ----------
+    what : name of the items that the study counts, in the plural
+    planned, done : largest possible number of items, and the number of those that are done
+    beside_left : number of items of comparisons that are not done
+    resumed : whether the run had begun before
+    """
+
+    what: str
+    planned: int
+    done: int
+    beside_left: int
+    resumed: bool
+
+
 class Study(Protocol):
     """A set of tasks, the work to be done on each, and the evaluation of their results.
 
@@ -130,6 +149,7 @@ def fly_study(
     resume: bool,
     progress: Progress,
     command: str = "",
+    launched: Callable[[Launch], None] = lambda _: None,
 ) -> RunResult:
     """Fly a study, or the unfinished part of it, into a run directory.
 
@@ -141,6 +161,7 @@ def fly_study(
     resume : continue the unfinished run in ``directory``
     progress : called as the study advances
     command : the command line, for the manifest; none if a program flies the study
+    launched : called once, before anything is flown
 
     Raises
     ------
@@ -157,7 +178,8 @@ def fly_study(
                     f"'{run.path}' has results without a {run.manifest.name}; choose another --out"
                 )
             run.sweep()
-            return _Execution(study, run, journal, before, progress, command).fly(executor_factory)
+            execution = _Execution(study, run, journal, before, progress, command)
+            return execution.fly(executor_factory, launched)
         finally:
             journal.close()
     except (OSError, sqlite3.DatabaseError) as error:
@@ -206,7 +228,9 @@ class _Execution:
         self._manifest = study.initial_manifest() | first
         self._begun = False
 
-    def fly(self, executor_factory: Callable[[Work], Executor]) -> RunResult:
+    def fly(
+        self, executor_factory: Callable[[Work], Executor], launched: Callable[[Launch], None]
+    ) -> RunResult:
         study, run, journal = self._study, self._run, self._journal
         began = time.perf_counter()
         interrupted = False
@@ -215,6 +239,7 @@ class _Execution:
         try:
             work = study.work(run)
             with executor_factory(work) as executor:
+                launched(self._launch())
                 study.run(self._executing(executor), run, journal)
             if not self._is_as_before():
                 study.postprocess(run, journal, self._progress)
@@ -254,6 +279,17 @@ class _Execution:
             summary=summary,
             interrupted=interrupted,
             changed=changed,
+        )
+
+    def _launch(self) -> Launch:
+        study = self._study
+        before = study.summary(self._journal) if self._before else None
+        return Launch(
+            what=study.what,
+            planned=study.planned,
+            done=before.done if before else 0,
+            beside_left=before.beside_left if before else study.beside,
+            resumed=before is not None,
         )
 
     def _begin(self) -> None:

@@ -54,6 +54,7 @@ def sampled_flight(
     *,
     given: Collection[str] = (),
     beside: Callable[[Values], Scenario] | None = None,
+    stream: int = 0,
 ) -> SampledFlight:
     """Return one flight of a trial.
 
@@ -68,6 +69,7 @@ def sampled_flight(
         (``Noise.at``); otherwise it has a seed of its own.
     given : keys that the scenario sets for each of its flights: the samples that give way to them
         keep their places, so that all others are what they are without them
+    stream : number of the random numbers of the flight's point, 0 for those of all points
     beside : makes the flight whose speed ratio says whether to sample again, of the samples; the
         flight itself if not given
 
@@ -76,7 +78,7 @@ def sampled_flight(
     InputError : a sampled key does not exist or is out of range, or no sample has a speed ratio
         within ``scenario.speed_ratio``
     """
-    sequence = np.random.SeedSequence([scenario.seed, zlib.crc32(trial.encode()), number])
+    sequence = np.random.SeedSequence(entropy_of(scenario.seed, trial, number, stream))
     inputs, of_noise = point[: len(scenario.draws)], point[len(scenario.draws) :]
     for values in _tried(scenario.draws, np.random.default_rng(sequence), number, inputs):
         kept = not_displaced(values, given)
@@ -95,6 +97,19 @@ def sampled_flight(
         f"trial '{trial}': {_TRIES} samples had no speed ratio within {low:g} to {high:g}; the last one went from {least:.3f} to"
         f" {most:.3f}: widen speed_ratio, or sample other winds and vessel speeds"
     )
+
+
+def entropy_of(seed: int, trial: str, number: int, stream: int) -> list[int]:
+    """Return what the random numbers of a flight follow from.
+
+    Parameters
+    ----------
+    seed, trial : of the study, and name of the trial
+    number : of the flight in its point, from 0
+    stream : number of the point's random numbers, 0 for those of all points
+    """
+    entropy = [seed, zlib.crc32(trial.encode()), number]
+    return [*entropy, stream] if stream else entropy
 
 
 def not_displaced(values: Mapping[str, object], given: Collection[str]) -> Values:

@@ -3,6 +3,7 @@ variables.
 """
 
 import itertools
+import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -31,6 +32,8 @@ class Point:
     beside : number of the study's point whose flights a comparison has with some keys set
         otherwise; None of others
     given : keys that its case and its comparison set: what is random of these keeps what they set
+    stream : number that tells its random numbers from those of other points; 0 where points share
+        them
     """
 
     label: str
@@ -41,6 +44,7 @@ class Point:
     flights: int
     beside: int | None = None
     given: tuple[str, ...] = ()
+    stream: int = 0
 
 
 def points_of(scenario: Scenario) -> list[Point]:
@@ -86,7 +90,25 @@ def _grid(scenario: Scenario) -> Iterator[Point]:
                 nu=nu,
                 inputs=inputs,
                 flights=scenario.flights,
+                stream=_stream(scenario, nu, inputs),
             )
+
+
+def _stream(scenario: Scenario, nu: float | None, inputs: Values) -> int:
+    """Return the number of a point's random numbers, which follows from its values alone: another
+    value that is swept leaves it, and both vehicles have the same.
+
+    Where speed ratios of one flight each are all that varies, their seeds follow from them.
+    """
+    ratio_alone = nu is not None and len(inputs) == scenario.flights == 1 and not scenario.draws
+    if not (scenario.own_random_numbers and inputs) or ratio_alone:
+        return 0
+    return zlib.crc32(repr(sorted((key, _same(value)) for key, value in inputs.items())).encode())
+
+
+def _same(value: object) -> object:
+    """Return a value as one that equals it, as 5 equals 5.0, has it."""
+    return float(value) if isinstance(value, int) and not isinstance(value, bool) else value
 
 
 def without_repetitions(values: Sequence[object]) -> list[object]:
@@ -160,6 +182,7 @@ def _varied(point: Point, name: str, values: Values, flights: int | None, *, bes
         flights=min(flights or point.flights, point.flights),
         beside=beside,
         given=(*point.given, *values),
+        stream=point.stream,
     )
 
 

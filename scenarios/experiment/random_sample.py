@@ -25,8 +25,9 @@ def is_random_sample(scenario: Scenario) -> bool:
     """
     if scenario.study == "falsify" or scenario.method == "subset" or scenario.cases:
         return False
-    if not scenario.finds and any(key.startswith(_READ) for key in scenario.sweep.root):
-        # Points have the same seeds.
+    read = not scenario.finds and any(key.startswith(_READ) for key in scenario.sweep.root)
+    if read and flights_per_sample(scenario) > 1:
+        # Some are the same flight, read otherwise.
         return False
     # What is drawn of these tells no two flights apart either.
     draws = [draw for draw in scenario.draws if scenario.finds or not draw.key.startswith(_READ)]
@@ -51,24 +52,34 @@ def flights_per_sample(scenario: Scenario) -> int:
     """Return how many flights have the same seed and random variables: a bound on a probability
     counts them as one.
 
-    Those of all points of a sweep have, and those of two vehicles; but for speed ratios of one
-    flight each, and swept seeds, where there are no random variables, of which all points have the
-    same sample.
+    Those of two vehicles have, and those of all points of a sweep, unless each has random numbers
+    of its own. Without random variables seeds that are swept tell flights apart, and so do speed
+    ratios of one flight each, if the scenario does not ask for common numbers.
     """
-    sweep = scenario.sweep.root
-    apart = (
-        "flight_seed"
-        if "flight_seed" in sweep
-        else "nu"
-        if "nu" in sweep and scenario.flights == 1
-        else None
-    )
-    if scenario.draws:
-        apart = None
+    sweep, drawn = scenario.sweep.root, bool(scenario.draws)
+    seeded = "flight_seed" in sweep or scenario.flight_seed is not None
+    apart: set[str] = set()
+    if scenario.own_random_numbers and (drawn or not seeded):
+        apart = {*sweep}
+    elif "flight_seed" in sweep and not drawn:
+        apart = {"flight_seed"}
+    elif scenario.common_random_numbers is None and scenario.flights == 1 and not (drawn or seeded):
+        apart = {"nu"}
     points = math.prod(
-        len(without_repetitions(values)) for key, values in sweep.items() if key != apart
+        len(without_repetitions(values)) for key, values in sweep.items() if key not in apart
     )
     return points * (2 if scenario.fidelity == "both" else 1)
+
+
+def random_numbers_of_points(scenario: Scenario) -> str:
+    """Return whether the points of a sweep have ``own`` or ``common`` random numbers; no word of a
+    scenario that sweeps nothing.
+    """
+    if not any(len(without_repetitions(values)) > 1 for values in scenario.sweep.root.values()):
+        return ""
+    vehicles = 2 if scenario.fidelity == "both" else 1
+    common = scenario.flight_seed is not None or flights_per_sample(scenario) > vehicles
+    return "common" if common else "own"
 
 
 def _varies(draw: DrawConfig) -> bool:

@@ -4,7 +4,6 @@ and the number alone.
 
 import bisect
 import itertools
-import zlib
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -14,7 +13,13 @@ import numpy as np
 
 from common.run_layout import COMPARISON, SUMMARY
 from scenarios.errors import InputError
-from scenarios.experiment.draws import SampledFlight, Values, not_displaced, sampled_flight
+from scenarios.experiment.draws import (
+    SampledFlight,
+    Values,
+    entropy_of,
+    not_displaced,
+    sampled_flight,
+)
 from scenarios.experiment.points import Point, points_of
 from scenarios.schema.experiment_checks import swept_key
 from scenarios.schema.keys import displaced
@@ -131,6 +136,12 @@ class Experiment:
         """
         return [self.named(end - 1)[0] for end in self._ends]
 
+    def stream(self, number: int) -> int:
+        """Return the number that tells random numbers of a flight's point from those of others; 0
+        where points share them.
+        """
+        return self._point(number)[0].stream
+
     def index(self, number: int) -> int:
         """Return the number of a flight among those of its point."""
         return self._point(number)[1]
@@ -218,22 +229,33 @@ class Experiment:
         that it is beside.
         """
         if point.beside is None:
-            return sampled_flight(self.name, point.scenario, index, at, given=point.given)
+            return sampled_flight(
+                self.name, point.scenario, index, at, given=point.given, stream=point.stream
+            )
         study = self.points[point.beside]
 
         def beside(values: Values) -> Scenario:
             return with_values(study.scenario, not_displaced(values, study.given))
 
         return sampled_flight(
-            self.name, point.scenario, index, at, given=point.given, beside=beside
+            self.name,
+            point.scenario,
+            index,
+            at,
+            given=point.given,
+            beside=beside,
+            stream=point.stream,
         )
 
     def _seed(self, point: Point, index: int) -> int:
-        """Return the seed of a flight, which depends on nu alone where it is swept: variants start
-        alike.
+        """Return the seed of a flight; variants of a point start alike.
+
+        It depends on nu alone where that is swept, with one flight at each, and no other random
+        numbers are asked for.
         """
-        if point.nu is not None and point.flights == 1:
+        common = self.scenario.common_random_numbers is True and bool(point.inputs)
+        if point.nu is not None and point.flights == 1 and not (point.stream or common):
             entropy = [self.scenario.seed, round(point.nu * 1e6)]
         else:
-            entropy = [self.scenario.seed, zlib.crc32(self.name.encode()), index]
+            entropy = entropy_of(self.scenario.seed, self.name, index, point.stream)
         return int(np.random.SeedSequence(entropy).generate_state(1)[0])

@@ -34,6 +34,7 @@ def scenario_file(request: FlightRequest, *, title: str) -> bytes:
         "search",
         "comparison",
         "sweep",
+        "common_random_numbers",
         "cases",
         "draws",
         "laws",

@@ -119,11 +119,12 @@ def _crossing_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
             row["crossing_interval_predicted_s"],
         )
         error = interval / predicted - 1.0
-        found = (
+        message = (
             f"mean crossing interval {interval:.3f} s, {100.0 * abs(error):.1f} % {'longer' if error > 0.0 else 'shorter'} than the"
             f" predicted {predicted:.3f} s, more than the {100.0 * criteria.crossing_interval_error:g} % that are allowed"
         )
-        message = "too few crossings for an interval" if math.isnan(error) else found
+        if math.isnan(error):
+            message = "too few crossings for a mean interval, which is one over whole periods of the orbit"
         checks.append((abs(error) <= criteria.crossing_interval_error, message))
     for name, key, unit, limits in (
         ("interval", "crossing_interval_mean_s", "s", criteria.crossing_interval_s),

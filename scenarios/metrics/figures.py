@@ -8,6 +8,7 @@ import numpy.typing as npt
 from aircraft.wind import CALM
 from common.text import utc_text
 from gnc.mission.mission import LEAVING, Mode
+from gnc.mission.track import DirectParameters
 from scenarios.engine.task import Row
 from scenarios.metrics.crossings import Crossing, find_crossings
 from scenarios.metrics.keepout import closest_approach, keepout_figures
@@ -19,6 +20,9 @@ from scenarios.world.place import Place
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
+
+_BESIDE = 1e-6
+"""Distance of a centre of oscillation from the plume's axis that is rounding [m]."""
 
 
 def plan_row(plan: FlightPlan) -> Row:
@@ -48,7 +52,7 @@ def plan_row(plan: FlightPlan) -> Row:
         "start_aspect_deg": math.degrees(
             math.remainder(math.atan2(start.east, start.north) - axis, 2.0 * math.pi)
         ),
-        "fault_time_s": world.fault.begins if world.fault.kind != "none" else math.nan,
+        "fault_time_s": world.fault.begins if math.isfinite(world.fault.begins) else math.nan,
         "eta": plan.oscillation.eta,
         "omega_0_rad_s": plan.oscillation.omega_0,
         "oscillation_limit": plan.oscillation.limit,
@@ -291,21 +295,33 @@ def crossings_of(
 
 
 def _crossing_figures(plan: FlightPlan, record: FlightRecord, crossings: list[Crossing]) -> Row:
+    """Measure the crossings of a settled flight; means are over whole periods of the orbit.
+
+    From one crossing of a period to the next, interval and distance may differ. A flight with less
+    than a period has no mean interval where the orbit's halves differ; else its one interval is off
+    by as much as the centre is beside the axis.
+    """
     row: Row = {"crossing_count": len(crossings)}
+    alike = _crossings_until_alike(plan, record)
     if crossings:
-        distances = [crossing.distance for crossing in crossings]
-        level = plan.keepout_shape == "cylinder"
-        to_centre = [crossing.horizontal_distance for crossing in crossings] if level else distances
+        whole = crossings[: len(crossings) // alike * alike] or crossings
+        to_centre = [
+            crossing.horizontal_distance if plan.keepout_shape == "cylinder" else crossing.distance
+            for crossing in crossings
+        ]
         row |= {
-            "crossing_distance_mean_m": float(np.mean(distances)),
-            "crossing_distance_min_m": min(distances),
+            "crossing_distance_mean_m": float(np.mean([crossing.distance for crossing in whole])),
+            "crossing_distance_min_m": min(crossing.distance for crossing in crossings),
             "crossing_clearance_min_m": min(to_centre) - plan.keepout_radius,
             "crossing_angle_mean_deg": math.degrees(
-                float(np.mean([crossing.angle for crossing in crossings]))
+                float(np.mean([crossing.angle for crossing in whole]))
             ),
         }
-    if len(crossings) > 1:
-        intervals = np.diff([crossing.time for crossing in crossings])
+    last = (len(crossings) - 1) // alike * alike
+    if not last and plan.oscillation is not None and plan.oscillation.symmetric:
+        last = len(crossings) - 1
+    if last > 0:
+        intervals = np.diff([crossing.time for crossing in crossings[: last + 1]])
         row |= {
             "crossing_interval_mean_s": float(np.mean(intervals)),
             "crossing_interval_std_s": float(np.std(intervals)),
@@ -313,7 +329,7 @@ def _crossing_figures(plan: FlightPlan, record: FlightRecord, crossings: list[Cr
         wind = plan.apparent_wind
         if wind is not None and wind.greatest > wind.least:
             row["crossing_interval_predicted_s"] = _predicted_interval(
-                plan, record, crossings[0].time, crossings[-1].time
+                plan, record, crossings[0].time, crossings[last].time
             )
     manoeuvres_end = plan.world.vessel.manoeuvres_end if plan.world else math.nan
     after = [crossing.time for crossing in crossings if crossing.time >= manoeuvres_end]
@@ -325,9 +341,27 @@ def _crossing_figures(plan: FlightPlan, record: FlightRecord, crossings: list[Cr
     return row
 
 
+def _crossings_until_alike(plan: FlightPlan, record: FlightRecord) -> int:
+    """Return after how many crossings one is like the first, in its interval and distance [-].
+
+    That is after a period of the orbit; or after half of it, where one half mirrors the other and
+    each has a crossing, its passage through a centre on the plume's axis. A centre that follows
+    estimates is beside the axis most of the time, and then the two intervals of a period differ.
+    """
+    orbit, mission = plan.oscillation, plan.guidance.mission
+    if orbit is None:
+        return 1
+    a_period = max(1, round(orbit.period / orbit.crossing_interval))
+    if a_period != 2 or not orbit.symmetric or not isinstance(mission, DirectParameters):
+        return a_period
+    axis = record.column("plume_axis_rad")
+    beside = mission.centre.x * np.sin(axis) - mission.centre.y * np.cos(axis)
+    return 1 if np.max(np.abs(beside)) < _BESIDE else a_period
+
+
 def _predicted_interval(plan: FlightPlan, record: FlightRecord, first: float, last: float) -> float:
-    """Return the mean crossing interval over a vessel's changes of course and speed, from its first
-    crossing to its last [s].
+    """Return the mean crossing interval over a vessel's changes of course and speed, between two
+    crossings [s].
 
     Where the period changes with time, crossings come at a rate that is their number per period
     over it, omega_0/pi of an oscillation: their number between two times is its integral.

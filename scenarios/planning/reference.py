@@ -2,12 +2,13 @@
 
 import functools
 import math
+from typing import Any
 
 import numpy as np
 
 from common.registry import PluginError
 from gnc.errors import InfeasibleError
-from gnc.paper import PlumeAxis, distance_by_paper, distance_exact
+from gnc.paper import PlumeAxis, distance_by_paper, distance_exact, reach
 from gnc.reference.builtin_floats import BuiltinFloats, with_builtin_floats
 from gnc.reference.oscillating import JoinedOrbit
 from gnc.reference.reference import (
@@ -28,6 +29,13 @@ STEPS_MIN = 6
 
 RATIO_STEPS = 48
 """Steps of nu at which orbits are tabled."""
+
+_REACH_POINTS = 513
+"""Points of an orbit at which its reach is looked at [-]: what they miss is below 1e-4 of its width.
+"""
+
+_REACH_ROUNDING = 1e-6
+"""Excess over (11) that is rounding, where it is exact: a plume abeam or astern [m]."""
 
 _OF_ORBIT = ("nu", "speed", "eta", "omega_0", "amplitude", "period", "crossing_interval")
 """Numbers that an orbit has."""
@@ -80,18 +88,7 @@ def oscillation_at(guidance: GuidanceConfig, reference: ReferenceConfig, nu: flo
         roll_rate_max=math.radians(guidance.roll_rate_max_deg_s),
     )
     if isinstance(shape, BuiltinFloats):
-        for name in _OF_ORBIT:
-            if not hasattr(orbit, name):
-                refuse_answer(
-                    part,
-                    f"design() at nu = {nu:.4g}",
-                    orbit,
-                    f"an orbit, with finite {', '.join(_OF_ORBIT)}",
-                )
-            if not is_number(found := getattr(orbit, name)):
-                refuse_answer(
-                    part, f"{name} of design() at nu = {nu:.4g}", found, "a finite number"
-                )
+        _check_own(orbit, part, f"design() at nu = {nu:.4g}")
     steps = orbit.crossing_interval * guidance.rate_hz
     if steps < STEPS_MIN:
         raise InfeasibleError(
@@ -100,6 +97,27 @@ def oscillation_at(guidance: GuidanceConfig, reference: ReferenceConfig, nu: flo
             " oscillation: fly faster, lower guidance.roll_rate_max_deg_s, or raise guidance.rate_hz"
         )
     return orbit
+
+
+def _check_own(orbit: Any, part: str, method: str) -> None:
+    """Refuse what is no orbit; ``part`` and ``method`` are the shape's whose answer it is.
+
+    Raises
+    ------
+    PluginError : it lacks a number, says not whether its halves are alike, or cannot say where it
+        is
+    """
+    missing = [name for name in (*_OF_ORBIT, "symmetric") if not hasattr(orbit, name)]
+    if missing:
+        must = f"an orbit, with finite {', '.join(_OF_ORBIT)}, and symmetric, true or false"
+        refuse_answer(part, method, orbit, f"{must}: it has no {', '.join(missing)}")
+    for name in _OF_ORBIT:
+        if not is_number(found := getattr(orbit, name)):
+            refuse_answer(part, f"{name} of {method}", found, "a finite number")
+    if not isinstance(orbit.symmetric, bool | np.bool_):
+        refuse_answer(part, f"symmetric of {method}", orbit.symmetric, "true or false")
+    asked(part, f"failed in offset() of {method}", "times [s]", orbit.offset, np.zeros(1))
+    asked(part, f"failed in half_widths() of {method}", "no arguments", orbit.half_widths)
 
 
 def swing_of(guidance: GuidanceConfig, reference: ReferenceConfig) -> Swing:
@@ -144,13 +162,31 @@ def orbits(
 def distance_kept(
     guidance: GuidanceConfig, keepout: KeepoutConfig, orbit: Orbit, axis: PlumeAxis
 ) -> float:
-    """Return r_CO [m], at which an orbit keeps the tracking allowance from the keep-out area."""
-    rule = distance_by_paper if guidance.placement == "paper" else distance_exact
+    """Return r_CO [m], at which an orbit keeps the tracking allowance from the keep-out area.
+
+    The paper's rule is for orbits for which its reach holds; others are placed exactly.
+    """
+    by_paper = guidance.placement == "paper" and _reach_holds(orbit, axis)
+    rule = distance_by_paper if by_paper else distance_exact
     distance_min = keepout.radius_m + guidance.tracking_allowance_m
     if keepout.shape == "sphere":
         return rule(orbit, axis, distance_min)
     # As far off horizontally as over a level plume.
     return rule(orbit, PlumeAxis(heading=axis.heading), distance_min) / math.cos(axis.elevation)
+
+
+def _reach_holds(orbit: Orbit, axis: PlumeAxis) -> bool:
+    """Return whether the reach by (11) holds for an orbit, so that (10) keeps it out.
+
+    Its half-widths say nothing of an orbit that reaches farther on one side than on the other. Of
+    those with equal halves it is an upper bound for a figure of eight, which is wider than long,
+    and may be short for a user's own.
+    """
+    if not orbit.symmetric:
+        return False
+    along, across = orbit.offset(np.linspace(0.0, orbit.period, _REACH_POINTS))
+    towards = -along * math.cos(axis.heading) - across * math.sin(axis.heading)
+    return float(np.max(towards)) <= reach(orbit, axis) + _REACH_ROUNDING
 
 
 def joined_orbit(scenario: Scenario, orbit: Orbit, course: float) -> JoinedOrbit:

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -39,6 +40,7 @@ class VesselCircle:
     radius: float
     eta: float = math.nan
     limit: str = "standoff circle"
+    symmetric: ClassVar[bool] = False
 
     @property
     def period(self) -> float:

@@ -277,6 +277,7 @@ RULES = (
     Rule(keys=("sampling",), acts=lambda s: s.study == "monte_carlo" and s.method == "plain" and bool(s.draws),
          user="a Monte Carlo study with random variables and plain sampling: set study to 'monte_carlo' and method to 'plain', and"
          " give draws"),
+    Rule(keys=("common_random_numbers",), acts=lambda s: bool(s.sweep.root), user="a sweep: give sweep several values of a key"),
     Rule(keys=("statistics.distance_quantile",), acts=lambda s: s.method == "plain",
          user="plain sampling, which may stop by it: set method to 'plain'"),
     Rule(keys=("subset.",), acts=_subset, user="subset simulation: set study to 'monte_carlo' and method to 'subset'"),

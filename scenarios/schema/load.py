@@ -21,8 +21,8 @@ from scenarios.schema.overrides import (
     Document,
     apply_override,
     as_toml,
+    extended,
     given_keys,
-    merged,
     parse_override,
     set_value,
     tabled,
@@ -212,9 +212,9 @@ def _given(scenario: str | Document) -> tuple[Document, Document]:
     """Return what a scenario itself says, and the same with what it extends."""
     if not isinstance(scenario, str):
         own, base = _resolved(copy.deepcopy(scenario), Path(), "scenario")
-        return own, own if base is None else merged(_base(base, Path(), "scenario", ()), own)
+        return own, own if base is None else extended(_base(base, Path(), "scenario", ()), own)
     own, base = _own(path := scenario_path(scenario))
-    return own, own if base is None else merged(_base(base, path.parent, path, (path,)), own)
+    return own, own if base is None else extended(_base(base, path.parent, path, (path,)), own)
 
 
 def _read(path: Path, extended_by: tuple[Path, ...] = ()) -> Document:
@@ -228,7 +228,7 @@ def _read(path: Path, extended_by: tuple[Path, ...] = ()) -> Document:
     return (
         document
         if base is None
-        else merged(_base(base, path.parent, path, (*extended_by, path)), document)
+        else extended(_base(base, path.parent, path, (*extended_by, path)), document)
     )
 
 

@@ -101,28 +101,32 @@ def apply_override(document: Document, key: str, value: object, kind: type[BaseM
             del values[name]
     if isinstance(swept := document.get("sweep"), dict):
         document["sweep"] = _without(swept, lambda name: _ends_sweep(key, swept_key(name)))
-    draws = document.get("draws", [])
-    if key != "draws" and isinstance(draws, list):
+    if key != "draws":
+        _take_out_of_draws(document, _set_or_swept(key, value))
+
+
+def _take_out_of_draws(document: Document, keys: list[str]) -> None:
+    """Remove the draws of keys, and of those below them, from a document, in place."""
+    draws = document.get("draws")
+    if isinstance(draws, list):
         document["draws"] = [
             draw
             for draw in draws
-            if not (isinstance(draw, dict) and _gives_way(str(draw.get("key")), key))
+            if not (isinstance(draw, dict) and displaced(str(draw.get("key")), keys))
         ]
-        if not draws and "draws" in document:
-            del document["draws"]
 
 
 def _ends_sweep(key: str, swept: str) -> bool:
     return displaced(swept, [key]) and (key, swept) != (_SPEED, _RATIO)
 
 
-def _gives_way(drawn: str, key: str) -> bool:
-    """Return whether the draw of a key gives way to a key that is set, or, of the vessel's speed,
-    to a sweep of the other key.
-    """
-    if key.startswith("sweep."):
-        return {drawn, swept_key(key.removeprefix("sweep."))} == {_SPEED, _RATIO}
-    return displaced(drawn, [key])
+def _set_or_swept(key: str, value: object) -> list[str]:
+    """Return the keys of flights that an override sets, those among them that it sweeps."""
+    section, _, rest = key.partition(".")
+    if section != "sweep":
+        return [key]
+    tables = {rest.strip('"'): value} if rest else value
+    return [swept_key(name) for name in given_keys(tables)] if isinstance(tables, dict) else []
 
 
 def _without(values: Document, left_out: Callable[[str], bool], before: str = "") -> Document:
@@ -242,6 +246,17 @@ def as_toml(value: object) -> str:
 def _toml_key(key: str) -> str:
     """Return a key as it stands in a table; one with a dot in quotation marks."""
     return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else json.dumps(key, ensure_ascii=False)
+
+
+def extended(base: Document, own: Document) -> Document:
+    """Return a document that extends another one, as ``merged``.
+
+    A key that ``own`` sweeps is no longer one that ``base`` samples.
+    """
+    result = merged(base, own)
+    if "draws" not in own and "sweep" in own:
+        _take_out_of_draws(result, _set_or_swept("sweep", own["sweep"]))
+    return result
 
 
 def merged(base: Mapping[str, Any], own: Mapping[str, Any]) -> Document:

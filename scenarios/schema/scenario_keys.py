@@ -87,6 +87,11 @@ class ScenarioKeys(Section):
     """How samples are spread: evenly over all random variables together (sobol), over each of them
     (latin_hypercube), or not at all (random)."""
     sweep: SweepConfig = SweepConfig()
+    common_random_numbers: bool | None = None
+    """Whether the points of a sweep have the same starts, noise, sampled instruments and random
+    variables, so that they differ in what is swept alone; if false, each point has its own. If not
+    given: false with instruments on board, else true, but for speed ratios of one flight each.
+    """
     cases: tuple[CaseConfig, ...] = ()
     draws: tuple[DrawConfig, ...] = ()
     comparison: ComparisonConfig = ComparisonConfig()
@@ -116,6 +121,15 @@ class ScenarioKeys(Section):
     flight: FlightConfig = FlightConfig()
     criteria: CriteriaConfig = CriteriaConfig()
     report: ReportConfig = ReportConfig()
+
+    @property
+    def own_random_numbers(self) -> bool:
+        """Return whether each point of a sweep has random numbers of its own: what one sample of an
+        instrument reads wrong would be wrong at all of them.
+        """
+        if self.common_random_numbers is not None:
+            return not self.common_random_numbers
+        return bool(self.payload.instruments) or "payload.instruments" in self.sweep.root
 
     @property
     def circles(self) -> bool:

@@ -27,7 +27,11 @@ from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary, write_tables
 from scenarios.engine.task import Task
 from scenarios.errors import InputError
-from scenarios.experiment.random_sample import flights_per_sample, is_random_sample
+from scenarios.experiment.random_sample import (
+    flights_per_sample,
+    is_random_sample,
+    random_numbers_of_points,
+)
 from scenarios.experiment.requests import Experiment
 from scenarios.flight import FlightWork
 from scenarios.instruments.instrument import evaluated_instruments, figures_of, tables_of
@@ -61,7 +65,7 @@ from scenarios.studies.manifest import (
 )
 from scenarios.studies.rows import frame
 from scenarios.studies.study import study
-from scenarios.studies.summary import FlightCounts, comparison_lines
+from scenarios.studies.summary import POINTS_OF_SWEEP, FlightCounts, comparison_lines
 from scenarios.vehicles.vehicle_setup import aircraft_setup, design_of, kinematic_setup, spec_of
 
 
@@ -173,6 +177,9 @@ class FlightStudy:
             "sampled_at_random": self._sampled_at_random(),
             "flights_per_sample": {
                 trial: flights_per_sample(of) for trial, of in self.trials.items()
+            },
+            "random_numbers_of_points": {
+                trial: random_numbers_of_points(of) for trial, of in self.trials.items()
             },
             "theory": {trial: theory_over_speed_ratio(of) for trial, of in self.trials.items()},
             "plugins": self.plugins,
@@ -353,6 +360,8 @@ class FlightStudy:
         ]
         if len(trial_counts) > 1:
             lines += [f"  {trial}: {counts.line()}" for trial, counts in trial_counts.items()]
+        points = {*map(random_numbers_of_points, self.trials.values())}
+        lines += [POINTS_OF_SWEEP[kind] for kind in sorted(points) if kind]
         lines += [*self._comparison_lines(journal), *whole.sulphur_lines()]
         if whole.flown > whole.without_area and all(self._sampled_at_random().values()):
             samples = sum(

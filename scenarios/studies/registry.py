@@ -8,7 +8,7 @@ from common.registry import PluginError, is_file_part
 from scenarios.engine.executor import Executor
 from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.run_directory import RunDirectory
-from scenarios.engine.runner import Progress, RunResult, Study, fly_study
+from scenarios.engine.runner import Launch, Progress, RunResult, Study, fly_study
 from scenarios.engine.task import Work
 from scenarios.errors import InputError
 from scenarios.schema.load import AnyStudy
@@ -57,6 +57,7 @@ def run_study(
     progress: Progress = lambda *_: None,
     overrides: Sequence[str] = (),
     command: str = "",
+    launched: Callable[[Launch], None] = lambda _: None,
 ) -> RunResult:
     """Fly a study into ``directory``.
 
@@ -69,6 +70,7 @@ def run_study(
     progress : called as the study advances
     overrides : overrides that were applied to the scenario, recorded in the manifest
     command : the command line, for the manifest; none if a program runs the study
+    launched : called once, before anything is flown
 
     Raises
     ------
@@ -94,4 +96,5 @@ def run_study(
             resume=resume,
             progress=progress,
             command=command,
+            launched=launched,
         )

@@ -26,6 +26,13 @@ _MEASURED_FROM = {
 """What distances are measured from, by the shape of the keep-out area."""
 
 
+POINTS_OF_SWEEP = {
+    "own": "points of the sweep: each has starts, noise and sampled instruments of its own",
+    "common": "points of the sweep: all have the same starts, noise and sampled instruments",
+}
+"""What the verdict says of the points of a sweep, by whose random numbers they have."""
+
+
 @dataclass(slots=True, kw_only=True)
 class FlightCounts:
     """Counts of flights.

@@ -27,7 +27,7 @@ class TimedFault:
     Attributes
     ----------
     kind : as the scenario names it; ``none`` for none
-    begins, ends : when; for good what ends at infinity [s]
+    begins, ends : when; for good what ends at infinity, and never what begins there [s]
     """
 
     kind: str
@@ -47,8 +47,10 @@ NO_FAULT = TimedFault(kind="none", begins=math.inf, ends=math.inf)
 
 
 def sampled_fault(fault: FaultConfig, generator: np.random.Generator) -> TimedFault:
-    """Return the flight's fault, at its time."""
+    """Return the flight's fault, at its time; without one, the same draws are made."""
     begins = float(generator.uniform(*fault.at_s))
+    if fault.kind == NO_FAULT.kind:
+        return NO_FAULT
     lasts = {VESSEL_DATA: fault.vessel_data_s, SATELLITES: fault.satellite_navigation_s}.get(
         fault.kind, math.inf
     )

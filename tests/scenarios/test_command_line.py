@@ -290,7 +290,14 @@ def test_flights_that_miss_a_criterion_or_cannot_be_flown_are_exit_status_1(tmp_
     assert manifest["outcomes"]["infeasible"] == 1
 
 
-def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(tmp_path, run_here):
+@pytest.mark.parametrize(
+    ("number", "end"),
+    # What a terminal does at Ctrl-C, and what a scheduler does of jobs.
+    [(signal.SIGINT, os.killpg), (signal.SIGTERM, os.kill)],
+)
+def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(
+    tmp_path, run_here, number, end
+):
     # Two crossings are too few for means over them.
     settings = ["sweep_nu", *SHORT, "--jobs", "1", "--set", "criteria.crossing_interval_error=0.1"]
     settings += ["--set", "criteria.tracking_error_rms_m=5.0"]
@@ -305,7 +312,9 @@ def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(tm
         f"sweep.nu={nus}",
     ]
     whole, broken = tmp_path / "whole", tmp_path / "broken"
-    assert run_here(*settings, "--out", whole).returncode == 0
+    ended = run_here(*settings, "--out", whole)
+    assert ended.returncode == 0
+    assert ended.stdout.startswith(f"flights to fly: {len(nus)}\n")
     arguments = [*settings, "--out", broken]
     process = multiprocessing.get_context("fork").Process(
         target=run_apart, args=(arguments, tmp_path / "errors")
@@ -316,7 +325,7 @@ def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(tm
     while len(list((broken / "flights").glob("*.parquet"))) < 2:
         assert process.exitcode is None
         time.sleep(0.01)
-    os.killpg(process.pid, signal.SIGINT)  # what a terminal does at Ctrl-C
+    end(process.pid, number)
     process.join(60)
     process.kill()  # where it has not ended
     assert process.exitcode == 130
@@ -325,9 +334,11 @@ def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(tm
     assert "--resume" in errors
     assert manifest_of(broken)["state"] == "interrupted"
     kept = pd.read_csv(broken / "summary.csv")
-    assert 1 <= len(kept) < len(nus)
+    assert 1 <= (done := len(kept)) < len(nus)
+    assert f"{done} of {len(nus)} flights are done and kept, {len(nus) - done} " in errors
     resumed = run_here(*settings, "--out", broken, "--resume")
     assert resumed.returncode == 0, resumed.stderr
+    assert f"flights left to fly: {len(nus) - done} of {len(nus)}; {done} " in resumed.stdout
     columns = [name for name in kept.columns if name != "wall_time_s"]
     pd.testing.assert_frame_equal(
         pd.read_csv(broken / "summary.csv")[columns],
@@ -403,7 +414,7 @@ def test_an_interrupted_run_is_resumed_by_what_was_typed_with_its_directory(run_
     ]
     told, _, again = run_here(*typed).stderr.rpartition("Continue with: ")
     assert told.endswith(
-        "interrupted; 2 of 9 flights are done and kept; of the comparisons 3 are left to fly. "
+        "interrupted; 2 of 9 flights are done and kept, 7 are left to fly; of the comparisons 3 are left to fly. "
     )
     *words, out, directory, resume = shlex.split(again)
     assert words == ["plume-flight", "run", *typed]

@@ -64,6 +64,20 @@ class ShapeOfOtherWords(Sinusoid):
 @dataclass(frozen=True)
 class ShapeThatIsNotSteered(Sinusoid):
     def swing(self, **limits): return None
+class OrbitWithoutHalves:
+    def __init__(self, orbit): self.orbit = orbit
+    def __getattr__(self, name):
+        if name in ("symmetric", "orbit"): raise AttributeError(name)
+        return getattr(self.orbit, name)
+@dataclass(frozen=True)
+class ShapeWithoutHalves(Sinusoid):
+    def design(self, **limits): return OrbitWithoutHalves(super().design(**limits))
+class OrbitFromNowhere(OrbitWithoutHalves):
+    symmetric = True
+    def offset(self, time): raise KeyError("no place")
+@dataclass(frozen=True)
+class ShapeFromNowhere(Sinusoid):
+    def design(self, **limits): return OrbitFromNowhere(super().design(**limits))
 @dataclass(frozen=True)
 class ShapeForSlowShips(Sinusoid):
     def design(self, *, nu, **limits):
@@ -121,6 +135,11 @@ KEYS = {"Track": ("vessel", "track"), "Plume": ("plume", "model"), "Shape": ("re
             "ShapeOfNone",
             "returned None; it has to return an orbit, with finite nu, speed, eta, omega_0, amplitude, period, crossing_interval",
         ),
+        (
+            "ShapeWithoutHalves",
+            "amplitude, period, crossing_interval, and symmetric, true or false: it has no symmetric",
+        ),
+        ("ShapeFromNowhere", "failed in offset() of design() at nu = 0.4119: KeyError: 'no place'"),
         (
             "ShapeWithoutShare",
             " has no turn_rate_fraction_until_tracked, the part of its heading rate that the reference takes until it is tracked",

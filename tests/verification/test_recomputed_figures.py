@@ -31,6 +31,11 @@ RUNS = {
 }  # fmt: skip
 """Flights of the X8: with a steady axis, and with one that turns while they cross it."""
 
+KNOWN = ("steady", "rising")
+"""Runs whose centre of oscillation is on the axis, so that every crossing is like the next; means
+of the others are over whole periods of the orbit, of two crossings each.
+"""
+
 
 class Recorded:
     """A flight as its time history has it."""
@@ -95,11 +100,11 @@ def run(request, tmp_path_factory):
     out = tmp_path_factory.mktemp(request.param) / "run"
     scenario = load_study(name, overrides)
     run_study(scenario, name, out, executor_factory=InProcessExecutor, overrides=overrides)
-    return out, float(scenario.source_height)
+    return out, float(scenario.source_height), 1 if request.param in KNOWN else 2
 
 
 def test_tables_agree_with_what_the_time_histories_say(run):
-    out, source_height = run
+    out, source_height, alike = run
     summary, every = pd.read_csv(out / "summary.csv"), pd.read_csv(out / "crossings.csv")
     assert summary["settling_time_s"].notna().all()
     for _, row in summary.iterrows():
@@ -115,7 +120,10 @@ def test_tables_agree_with_what_the_time_histories_say(run):
         assert row["crossing_clearance_min_m"] == pytest.approx(
             min(distances) - row["keepout_radius_m"], abs=METRES
         )
-        assert row["crossing_distance_mean_m"] == pytest.approx(np.mean(distances), abs=METRES)
+        assert row["crossing_distance_mean_m"] == pytest.approx(
+            np.mean(distances[: len(times) // alike * alike]), abs=METRES
+        )
+        intervals = np.diff(times)
         assert row["crossing_interval_mean_s"] == pytest.approx(
-            np.mean(np.diff(times)), abs=SECONDS
+            np.mean(intervals[: len(intervals) // alike * alike]), abs=SECONDS
         )

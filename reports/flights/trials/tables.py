@@ -56,7 +56,7 @@ OSCILLATION_COLUMNS = (
     ("η = J₀⁻¹(ν) (6) [rad]", "eta", "{:.4f}"),
     ("ω₀ (8) [rad/s]", "omega_0_rad_s", "{:.4f}"),
     ("π/ω₀ [s]", "crossing_interval_predicted_s", "{:.3f}"),
-    ("r_CO (10) [m]", "r_co_m", "{:.2f}"),
+    ("r_CO [m]", "r_co_m", "{:.2f}"),
 )
 
 

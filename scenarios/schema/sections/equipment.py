@@ -2,7 +2,7 @@
 is absent is ideal.
 """
 
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, field_validator, model_validator
 
@@ -100,6 +100,8 @@ class FaultConfig(Section):
 
 class PayloadConfig(PartSection):
     """The instruments on board; each may add keys of its own."""
+
+    NAMED_IN: ClassVar[str] = "payload.instruments"
 
     instruments: tuple[str, ...] = ()
     """Instruments, each by its name, such as sniffer, or FILE.py:NAME; their readings are columns

@@ -83,8 +83,9 @@ class GuidanceConfig(Section):
     phase_deg: Angle = 0.0
     """Oscillation phase phi_0 [deg]."""
     placement: Literal["paper", "exact"] = "paper"
-    """Rule for r_CO: eq. (10), or the smallest for which the whole orbit stays outside; farther
-    where the guard would act on it.
+    """Rule for r_CO: paper, eq. (10), where eq. (11) holds for the orbit, which it does not for a
+    loiter; or exact, the smallest for which the whole orbit stays outside. Farther where the guard
+    would act on it.
     """
     tracking_allowance_m: Annotated[float, Field(ge=0.0, le=10_000.0)] = 1.0
     """Allowance for tracking errors, added to r_min in the placement [m]."""

@@ -3,7 +3,7 @@
 import functools
 from collections.abc import Mapping
 from dataclasses import Field, fields
-from typing import Any
+from typing import Any, ClassVar
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError, model_validator
 
@@ -21,6 +21,9 @@ class PartSection(Section):
     """
 
     model_config = ConfigDict(extra="allow")
+
+    NAMED_IN: ClassVar[str]
+    """Dotted key that names the parts, with its section."""
 
     def parts(self) -> dict[str, Any]:
         """Return the parts that the section names, by their names.
@@ -77,7 +80,7 @@ class PartSection(Section):
         for name in given:
             if name not in keys:
                 of_parts = f"; keys of {', '.join(map(repr, parts))} are {', '.join(keys)}"
-                known = of_parts if keys else "; no part that takes it is named"
+                known = of_parts if keys else f"; set {self.NAMED_IN} to a part that takes it"
                 raise ValueError(
                     f"key '{name}' is not known{did_you_mean(name, [*type(self).model_fields, *keys]) or known}"
                 )

@@ -4,7 +4,7 @@ is absent is ideal.
 
 from datetime import datetime
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
@@ -130,6 +130,8 @@ class PlaceConfig(Section):
 
 class PlumeConfig(PartSection):
     """The smoke plume: its axis, a half-line from the funnel, and what its model adds."""
+
+    NAMED_IN: ClassVar[str] = "plume.model"
 
     model: str = "straight"
     """straight: an axis without smoke; fluctuating: smoke that disperses, meanders and bends; or

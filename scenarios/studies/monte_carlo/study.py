@@ -3,6 +3,8 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from common.run_layout import DRAWS, SUMMARY
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
@@ -63,17 +65,26 @@ class MonteCarloStudy(FlightStudy):
                 f"flights is {scenario.flights}, and nothing random differs between them: seeds, start and choices are given, so"
                 " some are copies, from which no probability follows; leave out flight_seed, or set study to 'flights'"
             )
-        self._points = Points(
-            scenario.sampling,
-            dimension=len(scenario.draws),
-            flights=scenario.flights,
-            seed=scenario.seed,
-        )
+        self._points: dict[int, Points] = {}
         self._looks, self._stopped = 0, False
 
     def task(self, number: int) -> Task:
         """Return the task of a flight, at its point."""
-        return Task(number=number, point=self._points.at(self._experiment.index(number)))
+        points = self._points_of(self._experiment.stream(number))
+        return Task(number=number, point=points.at(self._experiment.index(number)))
+
+    def _points_of(self, stream: int) -> Points:
+        """Return the samples at the points of a sweep that have a number of random numbers."""
+        if stream not in self._points:
+            scenario = self._scenario
+            own = np.random.SeedSequence([scenario.seed, stream]).generate_state(1)[0]
+            self._points[stream] = Points(
+                scenario.sampling,
+                dimension=len(scenario.draws),
+                flights=scenario.flights,
+                seed=int(own) if stream else scenario.seed,
+            )
+        return self._points[stream]
 
     def run(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
         """Fly up to one look after the other, until one shows what was asked for; then the

@@ -117,6 +117,93 @@ def test_a_crossing_keeps_out_of_a_sphere_by_its_distance_and_of_a_cylinder_by_t
         )
 
 
+@pytest.fixture(scope="module")
+def loiter_plan():
+    """A flight on a loiter, whose halves differ."""
+    vessel = {"speed_mps": 8.0}
+    return planned(
+        Scenario.model_validate(
+            {
+                "title": "test",
+                "fidelity": "kinematic",
+                "vessel": vessel,
+                "reference": {"shape": "loiter"},
+            }
+        )
+    )
+
+
+OFF = 30.0
+"""How far the middle of a weave lies to one side of the axis [m]: it crosses where 60 m cos(phase)
+is that, so that 2/3 and 4/3 of ``INTERVAL`` go by in turn.
+"""
+
+
+def weave_to_one_side(plan, crossings):
+    """Return the history of a weave with so many crossings, at 10/3 s, 50/3 s, 70/3 s, ..."""
+    duration = 10.0 * crossings - 2.0
+    time = np.arange(0.0, duration + 0.5 * STEP, STEP)
+    east = -60.0 * np.cos(math.pi / INTERVAL * time) + OFF
+    return weave(plan, duration=duration, east_m=east)
+
+
+@pytest.mark.parametrize("crossings", [3, 4, 5, 8, 9])
+@pytest.mark.parametrize("which", ["loiter_plan", "plan"])
+def test_where_crossings_alternate_their_means_are_over_whole_periods(which, crossings, request):
+    # By the orbit; and where the centre follows estimates, which put it beside the axis.
+    flown = request.getfixturevalue(which)
+    row, found = figures(flown, weave_to_one_side(flown, crossings))
+    assert row["crossing_count"] == len(found) == crossings
+    intervals = np.diff([crossing.time for crossing in found])
+    assert {round(value, 3) for value in intervals.tolist()} == {
+        round(part * INTERVAL / 3.0, 3) for part in (2.0, 4.0)
+    }
+    # Two intervals are a period, 20 s; of an odd number, the last one is left out.
+    assert row["crossing_interval_mean_s"] == pytest.approx(INTERVAL, abs=1e-4)
+    assert row["crossing_interval_std_s"] == pytest.approx(INTERVAL / 3.0, abs=1e-4)
+
+
+def test_mean_distance_and_angle_of_crossings_that_alternate_are_over_whole_periods(loiter_plan):
+    # Near and far in turn: the distance from the vessel is a cosine of twice the period.
+    time = np.arange(0.0, 60.05, STEP)
+    far = 250.0 + 40.0 * np.sin(math.pi / INTERVAL * time)
+    for duration, count in ((20.0, 2), (30.0, 3), (60.0, 6)):
+        kept = time <= duration + 0.5 * STEP
+        row, _ = figures(loiter_plan, weave(loiter_plan, duration=duration, distance=far[kept]))
+        assert row["crossing_count"] == count
+        # At 5, 15, 25 s: 290, 210, 290 m.
+        assert row["crossing_distance_mean_m"] == pytest.approx(250.0, abs=0.01)
+        assert row["crossing_distance_min_m"] == pytest.approx(210.0, abs=0.01)
+
+
+def test_less_than_a_period_of_crossings_that_alternate_has_no_mean_interval(loiter_plan):
+    row, _ = figures(loiter_plan, weave_to_one_side(loiter_plan, 2))
+    assert row["crossing_count"] == 2
+    assert "crossing_interval_mean_s" not in row
+    # There are distances, though less than those of a period at the first crossing.
+    assert row["crossing_distance_mean_m"] == pytest.approx(230.0, abs=5.0)
+
+
+def test_crossings_of_a_figure_of_eight_in_its_place_all_count(tracking_plan):
+    # Halves are alike; so is a flight's mean if its last half is left out.
+    row, crossings = figures(tracking_plan, weave(tracking_plan, duration=38.0))
+    assert len(crossings) == 4
+    times = [crossing.time for crossing in crossings]
+    assert row["crossing_interval_mean_s"] == np.mean(np.diff(times))
+
+
+def test_beside_a_plume_that_trails_elsewhere_means_are_over_whole_periods(tracking_plan):
+    # A plume of a user's own, 5 degrees to one side of where its centre was put.
+    history = weave(tracking_plan, duration=38.0, plume_axis_rad=math.pi + math.radians(5.0))
+    row, crossings = figures(tracking_plan, history)
+    assert len(crossings) == 4
+    times = [crossing.time for crossing in crossings]
+    first, second, third = np.diff(times)
+    assert first == pytest.approx(third, abs=1e-3)
+    assert abs(first - second) > 1.0
+    assert row["crossing_interval_mean_s"] == np.mean([first, second])
+
+
 def test_crossings_count_from_settling_on(plan):
     row, crossings = figures(plan, weave(plan), settled_at=52.0)
     assert row["crossing_count"] == 5

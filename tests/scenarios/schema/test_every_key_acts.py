@@ -87,7 +87,7 @@ start.distance_m = [300.0, 400.0]
 """Flights of the kinematic vehicle with each mission, and without a vessel."""
 
 VALUES = {
-    "seed": 4, "flight_seed": 9, "speed_ratio": [0.0, 0.5], "method": "subset", "sampling": "random",
+    "seed": 4, "flight_seed": 9, "speed_ratio": [0.0, 0.5], "method": "subset", "sampling": "random", "common_random_numbers": True,
     "subset.flights_per_level": 100, "subset.conditional_probability": 0.2, "subset.levels_max": 3, "subset.repeats": 4,
     "comparison.nu": [0.5], "comparison.flights": 2,
     "statistics.confidence": 0.9, "statistics.violation_upper": 0.1, "statistics.distance_quantile_width_m": 1.0,

@@ -96,6 +96,8 @@ def test_what_is_wrong_in_a_file_names_the_file_and_what_is_wrong_in_an_override
             ["duration_max_s is 0.05 s; at log_rate_hz, 10 Hz", "fly 0.1 s or longer"],
         ),
         ("flight.altitude_m=1", ["flight.altitude_m is 1; it must be at least 5 m"]),
+        ("payload.sensor=fast", ["payload: key 'sensor' is not known; set payload.instruments"]),
+        ("plume.haze_m=1", ["plume: key 'haze_m' is not known; set plume.model"]),
         ("guidance.command_limit=false", ["command_limit is false", "set fidelity to 'kinematic'"]),
         (
             "start.place_m=[-100, 0]",

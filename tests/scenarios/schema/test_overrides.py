@@ -254,6 +254,36 @@ def test_an_override_ends_what_is_sampled_of_its_key_and_below_it(
     assert {value_of(experiment.request(number).scenario) for number in range(3)} == {expected}
 
 
+@pytest.mark.parametrize(
+    "override",
+    [
+        "sweep.wind.from_deg=[0,90]",
+        'sweep={"wind.from_deg"=[0,90]}',
+        "sweep={wind={from_deg=[0,90]}}",
+        "sweep.wind={from_deg=[0,90]}",
+    ],
+)
+def test_a_key_that_a_base_samples_is_swept_in_place_of_that(override, tmp_path):
+    # It was refused, as being in sweep and in draws.
+    given = write(tmp_path, "own.toml", 'extends = "sea_wind"\nsweep.wind.from_deg = [0, 90]\n')
+    for study in (load_study("sea_wind", [override]), load_study(given)):
+        assert [draw.key for draw in study.draws] == ["wind.speed_mps", "vessel.speed_mps"]
+        experiment = Experiment("t", study)
+        flown = [experiment.request(number).scenario.wind for number in range(experiment.flights)]
+        assert {wind.from_deg for wind in flown} == {0.0, 90.0}
+        # Samples with a speed ratio out of range are sampled again at the point that needs it.
+        assert len({wind.speed_mps for wind in flown}) >= study.flights
+
+
+def test_a_file_that_sweeps_and_samples_a_key_is_refused(tmp_path):
+    path = write(
+        tmp_path,
+        "both.toml",
+        'extends = "sea_wind"\nsweep.wind.from_deg = [0, 90]\n[[draws]]\nkey = "wind.from_deg"\nuniform = [0.0, 9.0]\n',
+    )
+    assert "'wind.from_deg' is in sweep and in draws; give it in one of them" in refusal(path)
+
+
 def test_an_override_of_a_speed_ends_a_sampled_speed_ratio_and_one_of_the_ratio_a_swept_speed(
     tmp_path,
 ):

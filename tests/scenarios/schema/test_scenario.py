@@ -14,6 +14,10 @@ WIND = {"key": "wind.speed_mps", "uniform": [0.0, 5.0]}
 FROM = {"key": "wind.from_deg", "choice": [0.0, 90.0, 180.0, 270.0]}
 LOAD = {"key": "emission.load", "uniform": [0.2, 0.9]}
 SEEDS = {"key": "flight_seed", "choice": [1, 2]}
+SNIFFERS = {"payload.sensor": ["fast", "electrochemical"]}
+COMMON = {"common_random_numbers": True}
+OWN = {"common_random_numbers": False}
+ABOARD = {"payload": ["sniffer"], "emission": {"ship": "container"}}
 START = {"place_m": [-400.0, 0.0], "course_deg": 0.0}
 
 
@@ -69,8 +73,11 @@ START = {"place_m": [-400.0, 0.0], "course_deg": 0.0}
             },
             False,
         ),
-        # Sniffers that read the same flight.
-        ({"flights": 8, "sweep": {"payload.sensor": ["fast", "electrochemical"]}}, False),
+        # Sniffers that read the same flight, and those on flights of their own.
+        ({"flights": 8, "sweep": SNIFFERS}, False),
+        (ABOARD | {"flights": 8, "sweep": SNIFFERS} | COMMON, False),
+        (ABOARD | {"flights": 8, "sweep": SNIFFERS, "flight_seed": 3}, False),
+        (ABOARD | {"flights": 8, "sweep": SNIFFERS}, True),
         # And sniffers that are drawn, without and with a path that depends on what is read.
         ({"flight_seed": 3, "flights": 8, "draws": [LOAD]}, False),
         ({"flight_seed": 3, "flights": 8, "draws": [LOAD, WIND]}, True),
@@ -107,6 +114,21 @@ def test_flights_are_a_random_sample_where_they_differ_by_chance_alone(keys, at_
         # Speed ratios of one flight each have seeds of their own, but all points of a sweep the
         # same sample of random variables.
         ({"sweep": {"nu": [0.3, 0.5]}, "draws": [FROM | {"weights": [1.0] * 4}]}, 2),
+        # Numbers of their own, asked for or because of an instrument; the vehicles share them.
+        (OWN | {"sweep": {"nu": [0.3, 0.5]}, "flights": 8}, 1),
+        (OWN | {"sweep": {"vessel.speed_ratio": [0.3, 0.5]}}, 1),
+        (ABOARD | {"sweep": {"nu": [0.3, 0.5], "keepout.radius_m": [200.0, 250.0, 300.0]}}, 1),
+        (ABOARD | {"sweep": {"nu": [0.3, 0.5]}, "draws": [FROM | {"weights": [1.0] * 4}]}, 1),
+        (
+            OWN | {"fidelity": "both", "sweep": {"keepout.radius_m": [200.0, 250.0]}, "flights": 8},
+            2,
+        ),
+        # Seeds that are given come again.
+        (OWN | {"sweep": {"flight_seed": [1, 2, 3], "keepout.radius_m": [200.0, 250.0]}}, 2),
+        (OWN | {"sweep": {"keepout.radius_m": [200.0, 250.0]}, "flight_seed": 3}, 2),
+        # Common numbers.
+        (COMMON | {"sweep": {"nu": [0.3, 0.5]}}, 2),
+        (ABOARD | COMMON | {"sweep": {"wind.from_deg": [0.0, 90.0]}, "flights": 8}, 2),
     ],
 )
 def test_flights_of_several_points_share_what_is_random(keys, shared):
@@ -119,11 +141,42 @@ def test_flights_of_several_points_share_what_is_random(keys, shared):
     )
 
 
-def test_flights_with_swept_seeds_share_their_random_variables():
-    scenario = Scenario(title="own", sweep={"flight_seed": [1, 2, 3]}, draws=[WIND])
+@pytest.mark.parametrize(("common", "samples"), [(None, 1), (True, 1), (False, 3)])
+def test_flights_with_swept_seeds_share_their_random_variables_where_these_are_common(
+    common, samples
+):
+    swept = {"flight_seed": [1, 2, 3]}
+    scenario = Scenario(title="own", sweep=swept, draws=[WIND], common_random_numbers=common)
     experiment = Experiment("own", scenario)
-    assert len({experiment.request(i).scenario.wind.speed_mps for i in range(3)}) == 1
-    assert flights_per_sample(scenario) == 3
+    winds = {experiment.request(i).scenario.wind.speed_mps for i in range(3)}
+    assert len(winds) == samples == 3 // flights_per_sample(scenario)
+
+
+def test_what_is_random_at_a_point_of_a_sweep_follows_from_its_values_alone():
+    def seeds(**sweep):
+        scenario = Scenario(title="own", flights=2, sweep=sweep, **OWN)
+        experiment = Experiment("own", scenario)
+        return {
+            (*experiment.request(i).inputs.values(), i % 2): experiment.request(i).seed
+            for i in range(experiment.flights)
+        }
+
+    alone = seeds(**{"keepout.radius_m": [200]})
+    among = seeds(**{"keepout.radius_m": [150.0, 200.0, 250.0]})
+    assert alone.items() <= among.items()
+    assert len({*among.values()}) == 6
+
+
+def test_a_comparison_has_the_starts_of_the_point_that_it_is_beside():
+    variants = [{"name": "other", "set": {"guidance.preview": False}}]
+    sweep = {"keepout.radius_m": [200.0, 250.0]}
+    compared = {"comparison": {"variants": variants}, "draws": [WIND]}
+    scenario = Scenario(title="own", flights=3, sweep=sweep, **compared, **OWN)
+    experiment = Experiment("own", scenario)
+    study, beside = ([experiment.request(i + first) for i in range(6)] for first in (0, 6))
+    assert [of.seed for of in study] == [of.seed for of in beside]
+    assert [of.scenario.wind for of in study] == [of.scenario.wind for of in beside]
+    assert len({of.seed for of in study}) == 6
 
 
 @pytest.mark.parametrize(

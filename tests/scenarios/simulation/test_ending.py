@@ -3,15 +3,17 @@
 import math
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from gnc.estimation.health import Fault
 from gnc.estimation.navigation import MeasuredMotion
 from gnc.mission.mission import Mode
+from scenarios.schema.sections.equipment import FaultConfig
 from scenarios.simulation.ending import Ending
 from scenarios.simulation.judge import Enough
 from scenarios.simulation.outcome import Outcome
-from scenarios.world.faults import TimedFault
+from scenarios.world.faults import sampled_fault
 
 AT_THE_MAST, ON_THE_WATER = (60.0,), (1.0,)
 
@@ -32,16 +34,17 @@ def ended(
     centre_error=math.inf,
     guarded=False,
     saturated=0.3,
-    fault_at=math.inf,
+    fault_at=None,
 ):
     """Return how a flight ended at 300 s."""
-    world = (
-        SimpleNamespace(fault=TimedFault(kind="engine", begins=fault_at, ends=math.inf))
-        if vessel
-        else None
-    )
+    of_world = FaultConfig(kind="engine", at_s=fault_at) if fault_at else FaultConfig()
+    world = SimpleNamespace(fault=sampled_fault(of_world, np.random.default_rng(1)))
     plan = SimpleNamespace(
-        crossings=asked, after_settling=after, duration_max=300.0, world=world, settling_period=19.0
+        crossings=asked,
+        after_settling=after,
+        duration_max=300.0,
+        world=world if vessel else None,
+        settling_period=19.0,
     )
     vehicle = SimpleNamespace(fault=lambda _: trouble)
     guidance = SimpleNamespace(monitor=SimpleNamespace(fault=fault), mode=mode)
@@ -140,7 +143,7 @@ def ended(
             "before it had settled",
         ),
         (
-            {"mode": Mode.GLIDING, "settled": math.nan, "fault_at": 281.5},
+            {"mode": Mode.GLIDING, "settled": math.nan, "fault_at": (281.5, 281.5)},
             Outcome.AIRCRAFT_LOST,
             "it was still gliding towards the sea at 300.0 s, before it had settled, after the fault 'engine' at 281.5 s",
         ),
@@ -173,6 +176,7 @@ def test_a_flight_completes_only_with_its_aircraft_and_its_mission(flight, outco
     assert ("neither may be enough" in ending.message) == (outcome is Outcome.NOT_SETTLED)
     # A cause that does not apply is not named.
     assert ("guard" in ending.message) <= bool(flight.get("guarded"))
+    assert ("after the fault" in ending.message) <= bool(flight.get("fault_at"))
 
 
 def test_a_law_that_asks_for_too_much_all_the_time_is_named_as_the_cause():

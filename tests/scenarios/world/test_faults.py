@@ -47,6 +47,14 @@ def test_a_part_fails_for_good():
     assert not NO_FAULT.of_aircraft()
 
 
+def test_a_flight_without_a_fault_has_none_at_any_time_and_draws_what_others_do():
+    # A time that was drawn for it stood in messages: "after the fault 'none' at 183.2 s".
+    drawn, others = generator(), generator()
+    assert sampled_fault(FaultConfig(), drawn) == NO_FAULT
+    sampled_fault(FaultConfig(kind="engine"), others)
+    assert drawn.random() == others.random()
+
+
 @pytest.mark.parametrize("name", sorted({*NOT_OF_AIRCRAFT, ENGINE}))
 def test_no_actuator_may_have_the_name_of_another_fault(name):
     with pytest.raises(AircraftError, match=f"'{name}' is not a valid name of an actuator"):
