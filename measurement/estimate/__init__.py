@@ -2,12 +2,16 @@
 
 from measurement.estimate.estimator import estimate, over_time, time_to_verdict
 from measurement.estimate.result import Figures, FscEstimate
-from measurement.estimate.verdict import Verdict, judged
+from measurement.estimate.verdict import RULES, Decision, DecisionRule, Verdict, decide, judged
 
 __all__ = [
+    "RULES",
+    "Decision",
+    "DecisionRule",
     "Figures",
     "FscEstimate",
     "Verdict",
+    "decide",
     "estimate",
     "judged",
     "over_time",
