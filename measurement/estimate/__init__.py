@@ -1,6 +1,7 @@
 """Fuel sulphur content of a ship from a sniffer's readings: uncertainty, quality and verdicts."""
 
 from measurement.estimate.estimator import estimate, over_time, time_to_verdict
+from measurement.estimate.repeated import RepeatedVerdict
 from measurement.estimate.result import Figures, FscEstimate
 from measurement.estimate.verdict import RULES, Decision, DecisionRule, Verdict, decide, judged
 
@@ -10,6 +11,7 @@ __all__ = [
     "DecisionRule",
     "Figures",
     "FscEstimate",
+    "RepeatedVerdict",
     "Verdict",
     "decide",
     "estimate",

@@ -1,7 +1,7 @@
 """Verdicts on limits, and rules by which ships are reported: guard bands, error rates, and words.
 
 Guard bands are those of JCGM 106 (2012), "The role of measurement uncertainty in conformity
-assessment".
+assessment". A verdict that is looked at repeatedly needs wider ones: ``repeated``.
 
 Probabilities and the interval are of one distribution: the normal one of content and standard
 uncertainty, cut at 0, as no fuel has less. It describes a content of which nothing is known before
@@ -316,6 +316,16 @@ def verdict_words(
         return f"no verdict on the limit of {limit}: quality {_REJECTED} gives none"
     side = "not shown to be above or below" if verdict == OPEN else verdict
     return f"{side} the limit of {limit}; probability above it: {probability(probability_above)}"
+
+
+def repeated_words(looks: float, guard: float) -> str:
+    """Return how often a verdict was looked at and what that cost; empty where it was not."""
+    if not looks > 0 or math.isnan(guard):
+        return ""
+    return (
+        f"; by {looks:.0f} look{'s' * (looks > 1)}, the last of which needed {guard:.2f} standard"
+        " uncertainties from the limit"
+    )
 
 
 def rate_words(verdict: Verdict) -> str:

@@ -8,7 +8,12 @@ import numpy as np
 import pandas as pd
 
 from common.intervals import percent
-from measurement.estimate.verdict import content_words, counted_verdicts, verdict_words
+from measurement.estimate.verdict import (
+    content_words,
+    counted_verdicts,
+    repeated_words,
+    verdict_words,
+)
 from measurement.gases import MASS_PERCENT
 from reports.document.blocks import Block, Card, Heading, Section, Text
 from reports.document.chart import Chart
@@ -235,7 +240,9 @@ def _track(run: RunData, row: "pd.Series[Any]", history: pd.DataFrame) -> Chart 
 
 def _verdict_words(row: "pd.Series[Any]") -> str:
     limit, chance = float(row["sulphur_limit_percent"]), float(row["probability_above"])
-    return verdict_words(str(row["sulphur_verdict"]), limit, chance, str(row["sulphur_quality"]))
+    words = verdict_words(str(row["sulphur_verdict"]), limit, chance, str(row["sulphur_quality"]))
+    looks, guard = (float(row.get(name, np.nan)) for name in ("verdict_looks", "verdict_guard"))
+    return f"{words}{repeated_words(looks, guard)}"
 
 
 def _told(row: "pd.Series[Any]") -> str:

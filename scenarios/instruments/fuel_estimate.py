@@ -17,6 +17,7 @@ from measurement.sniffer.spec import SnifferSpec
 if TYPE_CHECKING:
     import pandas as pd
 
+    from measurement.estimate.repeated import RepeatedVerdict
     from measurement.estimate.result import FscEstimate
     from measurement.estimate.verdict import DecisionRule
 
@@ -117,6 +118,42 @@ def fuel_estimate(
         ],
         document=found.record(expected) | {"signals": signals},
     )
+
+
+def repeated_figures(verdict: "RepeatedVerdict", row: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the figures of a flight that looked at its verdict repeatedly; its end is the last look.
+
+    Parameters
+    ----------
+    verdict : by the looks in flight
+    row : figures of the flight, those of ``fuel_estimate`` among them
+    """
+    from measurement.estimate.verdict import OPEN
+
+    admitted = row.get("sulphur_quality", "C") != "C"
+    if admitted:
+        verdict.look(
+            row["fsc_percent"],
+            noise=row["fsc_noise_percent"],
+            total=row["fsc_uncertainty_percent"],
+            admitted=True,
+            last=True,
+        )
+    return {
+        # What the whole record refuses has no verdict, whatever was found on the way.
+        "sulphur_verdict": verdict.verdict if admitted else OPEN,
+        "verdict_looks": verdict.looks,
+        "verdict_guard": verdict.guard if admitted else math.nan,
+    }
+
+
+def with_verdict(document: Mapping[str, Any] | None, verdict: str) -> Mapping[str, Any] | None:
+    """Return the record of an analysis with the verdict of a flight that looked repeatedly."""
+    if document is None:
+        return None
+    found = document["estimate"]
+    verdicts = [one | {"verdict": verdict} for one in found["verdicts"]]
+    return {**document, "estimate": {**found, "verdicts": verdicts}}
 
 
 def _points(readings: Readings) -> int:

@@ -175,6 +175,8 @@ _OF_SEARCH = {
     "axis_measurable_end": "estimated probability at the end that the plume can be crossed within the limits of the altitude",
     "altitude_outside_s": "time outside the limits of the altitude",
     "enough": "why the flight ended early, or empty",
+    "verdict_looks": "looks of a flight that ends with a verdict, its end among them, at which there could be one",
+    "verdict_guard": "standard uncertainties from the limit that the last of them needed for a verdict; 1.645 is that of one look",
 }
 """Of flights that search for the plume, are given its true axis, or end with a verdict."""
 
