@@ -340,6 +340,22 @@ def rate_words(verdict: Verdict) -> str:
     )
 
 
+def suspect_words(suspect: float | None, false_alarm: float, miss: float) -> str:
+    """Return whether a flight's rule reports the ship, with its rates; empty where it does not say.
+
+    Parameters
+    ----------
+    suspect : true or false; None or NaN without a rule, or for a record of quality C
+    """
+    if suspect is None or math.isnan(suspect) or math.isnan(false_alarm):
+        return ""
+    return (
+        f"{'suspect' if suspect else 'not suspect'} by the rule of the flight, which reports"
+        f" {probability(false_alarm)} of fuels at its limit and misses {probability(miss)} of fuels"
+        f" of {MISSED_OVER_LIMIT:g} times that"
+    )
+
+
 def decision_words(decision: Decision) -> str:
     """Return what a rule makes of an estimate, and how often it is wrong."""
     called = {True: "suspect", False: "not suspect", None: "no decision"}[decision.suspect]

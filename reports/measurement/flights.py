@@ -12,6 +12,7 @@ from measurement.estimate.verdict import (
     content_words,
     counted_verdicts,
     repeated_words,
+    suspect_words,
     verdict_words,
 )
 from measurement.gases import MASS_PERCENT
@@ -255,9 +256,18 @@ def _told(row: "pd.Series[Any]") -> str:
             if row["sulphur_reason"] and pd.notna(row["sulphur_reason"])
             else "."
         )
+        + _suspect(row)
         + f" The fuel's own content is {row['fsc_fuel_percent']:.3f} %, of which a perfect instrument reads"
         f" {row['fsc_expected_percent']:.3f} %."
     )
+
+
+def _suspect(row: "pd.Series[Any]") -> str:
+    """Return what the rule of the flight makes of the ship, in a sentence; empty without one."""
+    names = ("sulphur_suspect", "suspect_false_alarm", "suspect_miss")
+    values = [row.get(name) for name in names]
+    words = suspect_words(*(float(value) if pd.notna(value) else np.nan for value in values))
+    return f" {words[0].upper()}{words[1:]}." if words else ""
 
 
 def _samples(record: Record, history: pd.DataFrame) -> pd.DataFrame:

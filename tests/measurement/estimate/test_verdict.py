@@ -19,6 +19,7 @@ from measurement.estimate.verdict import (
     needed,
     next_step,
     probability_above,
+    suspect_words,
     verdict_words,
 )
 from measurement.gases import limit_words
@@ -349,3 +350,13 @@ def test_a_record_without_a_verdict_has_no_decision():
     nothing = decide(RULES["eca_0.15"], math.nan, math.nan, admitted=True)
     assert nothing.suspect is None
     assert math.isnan(nothing.false_alarm)
+
+
+def test_a_flights_rule_is_told_with_its_rates_and_nothing_without_one():
+    assert suspect_words(True, 0.05, 0.02).startswith("suspect by the rule")
+    told = suspect_words(False, 0.05, 0.02)
+    assert told.startswith("not suspect")
+    assert "5.0 %" in told
+    assert "2.0 %" in told
+    assert suspect_words(None, 0.05, 0.02) == ""
+    assert suspect_words(math.nan, math.nan, math.nan) == ""
