@@ -19,6 +19,7 @@ import pandas as pd
 from common.run_layout import CROSSINGS, DRAWS, INTERVENTIONS
 from scenarios.engine.task import Result, Row, Task
 from scenarios.experiment.requests import Experiment, FlightRequest, table_of
+from scenarios.instruments.fuel_estimate import repeated_figures, with_verdict
 from scenarios.instruments.instrument import EvaluatedInstrument, GasReader, Instrument
 from scenarios.metrics.criteria import failed_criteria, kept_out
 from scenarios.metrics.crossings import crossing_rows
@@ -160,6 +161,9 @@ class FlightWork:
                 row |= finding_figures(
                     sampled, request.scenario.flight, noise=noise, enough=record.enough
                 )
+            if record.verdict is not None and "sulphur_verdict" in row:
+                row |= repeated_figures(record.verdict, row)
+                document = with_verdict(document, str(row["sulphur_verdict"]))
             tables |= self.more_tables(request, plan, record, row)
             failed = failed_criteria(row, request.scenario.criteria)
             row |= {"criteria_met": not failed, "message": "; ".join(failed)}

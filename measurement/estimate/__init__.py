@@ -1,13 +1,19 @@
 """Fuel sulphur content of a ship from a sniffer's readings: uncertainty, quality and verdicts."""
 
 from measurement.estimate.estimator import estimate, over_time, time_to_verdict
+from measurement.estimate.repeated import RepeatedVerdict
 from measurement.estimate.result import Figures, FscEstimate
-from measurement.estimate.verdict import Verdict, judged
+from measurement.estimate.verdict import RULES, Decision, DecisionRule, Verdict, decide, judged
 
 __all__ = [
+    "RULES",
+    "Decision",
+    "DecisionRule",
     "Figures",
     "FscEstimate",
+    "RepeatedVerdict",
     "Verdict",
+    "decide",
     "estimate",
     "judged",
     "over_time",

@@ -1,4 +1,7 @@
-"""Verdicts on limits: probability that the fuel is above, guard bands (JCGM 106), and their words.
+"""Verdicts on limits, and rules by which ships are reported: guard bands, error rates, and words.
+
+Guard bands are those of JCGM 106 (2012), "The role of measurement uncertainty in conformity
+assessment". A verdict that is looked at repeatedly needs wider ones: ``repeated``.
 
 Probabilities and the interval are of one distribution: the normal one of content and standard
 uncertainty, cut at 0, as no fuel has less. It describes a content of which nothing is known before
@@ -8,7 +11,7 @@ the reading but that it is not negative (ISO 11929-1).
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal, TypeVar
 
 from scipy.special import log_ndtr, ndtr, ndtri, ndtri_exp
 
@@ -28,6 +31,12 @@ CONFIDENCE = 0.95
 
 GUARD, COVERAGE = float(ndtri(CONFIDENCE)), float(ndtri(0.5 + 0.5 * CONFIDENCE))
 """Standard uncertainties of a guard band, 1.645, and of half an interval, 1.960."""
+
+MISSED_OVER_LIMIT = 2.0
+"""Content of which the misses of a rule are stated, over the limit [-]."""
+
+_FAR = 1000.0
+"""Deviations beyond which a normal distribution's limits serve [-]."""
 
 _REJECTED = "C"
 """Quality of records that have no verdict."""
@@ -51,11 +60,117 @@ class Verdict:
     verdict : "above", "below" or "open"
     probability_above : that the fuel's sulphur content is above the limit, given the reading and
         that it is not negative
+    above_from_percent, below_to_percent : estimates beyond which the verdict is "above" and "below"
+        with this standard uncertainty [% m/m]
+    false_alarm, miss : shares of fuels at the limit that are called above and below, of one look
+        [-]
     """
 
     limit_percent: float
     verdict: Side
     probability_above: float
+    above_from_percent: float = math.nan
+    below_to_percent: float = math.nan
+    false_alarm: float = math.nan
+    miss: float = math.nan
+
+
+@dataclass(frozen=True, kw_only=True)
+class DecisionRule:
+    """Rule by which a ship is reported as suspect.
+
+    Attributes
+    ----------
+    name, title : in a word, and in words
+    limit_percent : of the fuel's sulphur content [% m/m]
+    suspect_percent : estimate from which the ship is suspect, whatever the uncertainty; None for a
+        guard band of 1.645 standard uncertainties above the limit [% m/m]
+    """
+
+    name: str
+    title: str
+    limit_percent: float
+    suspect_percent: float | None = None
+
+
+RULES = {
+    rule.name: rule
+    for rule in (
+        DecisionRule(
+            name="eca", title="control area, guard band of the uncertainty", limit_percent=0.10
+        ),
+        DecisionRule(
+            name="eca_0.10",
+            title="control area, no guard band",
+            limit_percent=0.10,
+            suspect_percent=0.10,
+        ),
+        DecisionRule(
+            name="eca_0.13",
+            title="control area, reported from 0.13 %",
+            limit_percent=0.10,
+            suspect_percent=0.13,
+        ),
+        DecisionRule(
+            name="eca_0.15",
+            title="control area, reported from 0.15 %",
+            limit_percent=0.10,
+            suspect_percent=0.15,
+        ),
+        DecisionRule(
+            name="global",
+            title="outside control areas, guard band of the uncertainty",
+            limit_percent=0.50,
+        ),
+        DecisionRule(
+            name="global_0.50",
+            title="outside control areas, no guard band",
+            limit_percent=0.50,
+            suspect_percent=0.50,
+        ),
+    )
+}
+"""Rules by name.
+
+Most parties to the Bonn Agreement report infringements from 0.15 % on (W. Van Roy et al.,
+Communications Earth & Environment 4 (2023), doi 10.1038/s43247-023-01050-7).
+"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Decision:
+    """What a rule makes of an estimate.
+
+    Attributes
+    ----------
+    rule, title, limit_percent : of the rule
+    suspect_from_percent : estimate from which the ship is suspect [% m/m]
+    suspect : whether it is; None for a record without a verdict
+    false_alarm : share of fuels at the limit that the rule reports, with this uncertainty [-]
+    missed_percent : content of which ``miss`` is stated [% m/m]
+    miss : share of fuels of that content that the rule does not report [-]
+    """
+
+    rule: str
+    title: str
+    limit_percent: float
+    suspect_from_percent: float
+    suspect: bool | None
+    false_alarm: float
+    missed_percent: float
+    miss: float
+
+
+_Recorded = TypeVar("_Recorded", Verdict, Decision)
+
+
+def from_record(kind: type[_Recorded], record: Mapping[str, Any]) -> _Recorded:
+    """Return a verdict or a decision from its record in JSON, where NaN is None."""
+    values: dict[str, Any] = {
+        name: math.nan if value is None and name != "suspect" else value
+        for name, value in record.items()
+    }
+    return kind(**values)
 
 
 def probability_above(limit: float, fsc: float, deviation: float) -> float:
@@ -79,7 +194,65 @@ def judged(limit: float, fsc: float, deviation: float, *, admitted: bool) -> Ver
             verdict = ABOVE
         elif probability < 1.0 - CONFIDENCE:
             verdict = BELOW
-    return Verdict(limit_percent=limit, verdict=verdict, probability_above=probability)
+    if not deviation > 0.0 or not math.isfinite(deviation):
+        return Verdict(limit_percent=limit, verdict=verdict, probability_above=probability)
+    below = _below_to(limit, deviation)
+    return Verdict(
+        limit_percent=limit,
+        verdict=verdict,
+        probability_above=probability,
+        above_from_percent=limit + GUARD * deviation,
+        below_to_percent=below,
+        false_alarm=float(ndtr(-GUARD)),
+        miss=float(ndtr((below - limit) / deviation)),
+    )
+
+
+def _below_to(limit: float, deviation: float) -> float:
+    """Return the estimate that has a probability of 5 % to be above the limit [% m/m].
+
+    With r deviations from 0 to the limit it lies x deviations below the limit, where
+    Phi(-x) = 5 % Phi(r - x). The right side has 5 % at most, so that x is 1.645 at least.
+    """
+    from scipy.optimize import brentq
+
+    reach = min(limit / deviation, _FAR)
+    tolerated = -math.log(1.0 - CONFIDENCE)
+    if reach < 1.0 / _FAR:
+        # Far below 0 the content is exponential, with the mean deviation/(x - r).
+        return limit - deviation * (0.5 * reach + tolerated / reach)
+
+    def excess(below: float) -> float:
+        return tolerated + float(log_ndtr(-below) - log_ndtr(reach - below))
+
+    most = GUARD + reach + 4.0 / reach
+    return limit - deviation * float(brentq(excess, GUARD - 1e-9, most))
+
+
+def decide(rule: DecisionRule, fsc: float, deviation: float, *, admitted: bool) -> Decision:
+    """Return what a rule makes of an estimate and its standard uncertainty [% m/m].
+
+    Parameters
+    ----------
+    admitted : whether the quality of the record admits a verdict
+    """
+    suspect_from = rule.suspect_percent
+    if suspect_from is None:
+        suspect_from = rule.limit_percent + GUARD * deviation
+    missed = MISSED_OVER_LIMIT * rule.limit_percent
+    known = math.isfinite(fsc) and deviation > 0.0
+    return Decision(
+        rule=rule.name,
+        title=rule.title,
+        limit_percent=rule.limit_percent,
+        suspect_from_percent=suspect_from,
+        suspect=fsc >= suspect_from if admitted and known else None,
+        false_alarm=float(ndtr((rule.limit_percent - suspect_from) / deviation))
+        if known
+        else math.nan,
+        missed_percent=missed,
+        miss=float(ndtr((suspect_from - missed) / deviation)) if known else math.nan,
+    )
 
 
 def interval(fsc: float, deviation: float) -> tuple[float, float]:
@@ -143,6 +316,60 @@ def verdict_words(
         return f"no verdict on the limit of {limit}: quality {_REJECTED} gives none"
     side = "not shown to be above or below" if verdict == OPEN else verdict
     return f"{side} the limit of {limit}; probability above it: {probability(probability_above)}"
+
+
+def repeated_words(looks: float, guard: float) -> str:
+    """Return how often a verdict was looked at and what that cost; empty where it was not."""
+    if not looks > 0 or math.isnan(guard):
+        return ""
+    return (
+        f"; by {looks:.0f} look{'s' * (looks > 1)}, the last of which needed {guard:.2f} standard"
+        " uncertainties from the limit"
+    )
+
+
+def rate_words(verdict: Verdict) -> str:
+    """Return where verdicts begin, and how often they are wrong for a fuel at the limit."""
+    if math.isnan(verdict.false_alarm):
+        return "no guard band: the uncertainty is not known"
+    above, below = probability(verdict.false_alarm), probability(verdict.miss)
+    return (
+        f"guard band: above from {verdict.above_from_percent:.3f} %, below to"
+        f" {verdict.below_to_percent:z.3f} %; of fuels at the limit {above} are called above and"
+        f" {below} below"
+    )
+
+
+def suspect_words(suspect: float | None, false_alarm: float, miss: float) -> str:
+    """Return whether a flight's rule reports the ship, with its rates; empty where it does not say.
+
+    Parameters
+    ----------
+    suspect : true or false; None or NaN without a rule, or for a record of quality C
+    """
+    if suspect is None or math.isnan(suspect) or math.isnan(false_alarm):
+        return ""
+    return (
+        f"{'suspect' if suspect else 'not suspect'} by the rule of the flight, which reports"
+        f" {probability(false_alarm)} of fuels at its limit and misses {probability(miss)} of fuels"
+        f" of {MISSED_OVER_LIMIT:g} times that"
+    )
+
+
+def decision_words(decision: Decision) -> str:
+    """Return what a rule makes of an estimate, and how often it is wrong."""
+    called = {True: "suspect", False: "not suspect", None: "no decision"}[decision.suspect]
+    words = (
+        f"rule {decision.rule} ({decision.title}), suspect from"
+        f" {decision.suspect_from_percent:.3f} % on: {called}"
+    )
+    if math.isnan(decision.false_alarm):
+        return words
+    return (
+        f"{words}; with this uncertainty it reports {probability(decision.false_alarm)} of fuels at"
+        f" the limit of {limit_words(decision.limit_percent)} and misses"
+        f" {probability(decision.miss)} of fuels of {limit_words(decision.missed_percent)}"
+    )
 
 
 def needed(probability_above: float) -> str:

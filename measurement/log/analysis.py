@@ -12,7 +12,7 @@ from measurement.errors import MeasurementError
 from measurement.estimate.estimator import ELAPSED_S, estimate, over_time, time_to_verdict
 from measurement.estimate.record import BRIDGED, SHORTEST, split_at_gaps
 from measurement.estimate.result import FscEstimate, Method, plain
-from measurement.estimate.verdict import LIMITS_PERCENT
+from measurement.estimate.verdict import LIMITS_PERCENT, Decision, DecisionRule, decide
 from measurement.gases import CARBON_FRACTION, GASES, UNITS
 from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings
@@ -36,6 +36,7 @@ class Analysis:
     table : of ``over_time``
     instrument : as the analyst knows it
     carbon : mass share of the fuel [-]
+    decision : by the rule, or None without one
     """
 
     estimate: FscEstimate
@@ -43,6 +44,7 @@ class Analysis:
     table: pd.DataFrame
     instrument: SnifferSpec
     carbon: float
+    decision: Decision | None = None
 
     def record(self, true_percent: float | None = None) -> dict[str, Any]:
         """Return the content of a report, for JSON.
@@ -71,6 +73,7 @@ class Analysis:
                 "used": _channels(self.estimate.instrument),
             },
             "carbon": self.carbon,
+            "decision": None if self.decision is None else plain(asdict(self.decision)),
             "true_percent": true_percent,
         }
 
@@ -88,6 +91,7 @@ def analyse(
     carbon: float = CARBON_FRACTION,
     limits_percent: Sequence[float] = LIMITS_PERCENT,
     points: int = POINTS,
+    rule: DecisionRule | None = None,
 ) -> Analysis:
     """Return the estimate by both methods, and over time.
 
@@ -95,6 +99,7 @@ def analyse(
     ----------
     readings, instrument, method, carbon, limits_percent : same as for ``estimate``
     points : even times of the estimate over time, in addition to those of ``ELAPSED_S``
+    rule : by which the ship is reported, if there is one
 
     Raises
     ------
@@ -111,7 +116,18 @@ def analyse(
     even = np.linspace(0.0, duration, points + 1)[1:]
     elapsed = {round(float(t), 3) for t in even} | {t for t in ELAPSED_S if t <= duration}
     table = over_time(readings, instrument, elapsed_s=sorted(elapsed), method=method, **chosen)
-    return Analysis(estimate=found, other=other, table=table, instrument=instrument, carbon=carbon)
+    decision = None
+    if rule is not None:
+        admitted = found.quality != "C"
+        decision = decide(rule, found.fsc_percent, found.total_percent, admitted=admitted)
+    return Analysis(
+        estimate=found,
+        other=other,
+        table=table,
+        instrument=instrument,
+        carbon=carbon,
+        decision=decision,
+    )
 
 
 # Gaps

@@ -11,7 +11,15 @@ import numpy as np
 from common.command_line import PROGRAM, refuse
 from measurement.errors import MeasurementError, naming
 from measurement.estimate.result import FscEstimate
-from measurement.estimate.verdict import OPEN, content_words, needed, next_step, verdict_words
+from measurement.estimate.verdict import (
+    OPEN,
+    content_words,
+    decision_words,
+    needed,
+    next_step,
+    rate_words,
+    verdict_words,
+)
 from measurement.gases import ASSUMED_LEAST, FUEL_SULPHUR_MOST, GASES
 from measurement.log.analysis import Analysis, analyse, find_gaps
 from measurement.log.config import LogConfig, read_config
@@ -51,6 +59,7 @@ def main(arguments: list[str] | None = None) -> int:
                 method=config.method,
                 carbon=config.carbon,
                 limits_percent=config.limits_percent,
+                rule=config.rule,
             )
         write_run(directory, flight, analysis, given.flight, given.config, _command(arguments))
     except MeasurementError as error:
@@ -114,6 +123,10 @@ def _summary(analysis: Analysis, name: str) -> Iterator[str]:
         words = verdict_words(verdict.verdict, verdict.limit_percent, chance, found.quality)
         is_open = verdict.verdict == OPEN and found.quality != "C"
         yield f"{words}; {needed(chance)}" if is_open else words
+        if found.quality != "C":
+            yield f"  {rate_words(verdict)}"
+    if analysis.decision is not None:
+        yield decision_words(analysis.decision)
     step = next_step(
         found.quality,
         passes=figures.passes,

@@ -11,7 +11,7 @@ from typing import Any
 from measurement.errors import MeasurementError, check_keys, naming
 from measurement.estimate.estimator import check_parameters
 from measurement.estimate.result import Method
-from measurement.estimate.verdict import LIMITS_PERCENT
+from measurement.estimate.verdict import LIMITS_PERCENT, RULES, DecisionRule
 from measurement.gases import CARBON_FRACTION, GASES, UNITS
 from measurement.sniffer.spec import SnifferSpec, sensor_of, sensor_preset
 
@@ -37,8 +37,12 @@ _KEYS = (
     "limits_percent",
     "method",
     "missing",
+    "rule",
     "scale",
 )
+
+_RULE_KEYS = ("limit_percent", "suspect_percent", "title")
+"""Keys of the table ``[rule]``."""
 
 _DEFAULT_INSTRUMENT = "unspecified"
 """Instrument of a flight without a configuration."""
@@ -77,6 +81,7 @@ class LogConfig:
         says what is assumed
     carbon : mass share of the fuel [-]
     limits_percent : that verdicts are given on [% m/m]
+    rule : by which the ship is reported, or None
     method : "regression" or "areas"
     missing : numbers that stand for missing readings in the file, as -9999
     columns : name in the file of each of ``COLUMNS``
@@ -88,6 +93,7 @@ class LogConfig:
     stated: Mapping[str, tuple[str, ...]] | None = None
     carbon: float = CARBON_FRACTION
     limits_percent: tuple[float, ...] = LIMITS_PERCENT
+    rule: DecisionRule | None = None
     method: Method = "regression"
     missing: tuple[float, ...] = ()
     columns: Mapping[str, str] = field(default_factory=lambda: dict(COLUMNS))
@@ -157,6 +163,7 @@ def _config(table: Mapping[str, Any], name: str) -> LogConfig:
         stated=stated,
         carbon=float(carbon),
         limits_percent=tuple(sorted(float(limit) for limit in limits)),
+        rule=_rule(table.get("rule")),
         method=method,
         missing=tuple(float(code) for code in missing),
         columns=columns,
@@ -172,6 +179,40 @@ def _sub_table(table: Mapping[str, Any], key: str, names: Sequence[str]) -> dict
         raise MeasurementError(f"{key} is {found!r}; give a table [{key}]")
     check_keys(found, names, f"[{key}]")
     return found
+
+
+def _rule(given: Any) -> DecisionRule | None:
+    """Return the rule of a name or a table; None without one."""
+    if given is None:
+        return None
+    if isinstance(given, str) and given in RULES:
+        return RULES[given]
+    if not isinstance(given, dict):
+        raise MeasurementError(
+            f"rule is {given!r}; give one of {', '.join(RULES)}, or a table [rule] with its"
+            " limit_percent and suspect_percent"
+        )
+    check_keys(given, _RULE_KEYS, "[rule]")
+    limit: Any = given.get("limit_percent")
+    suspect: Any = given.get("suspect_percent")
+    if not _is_finite(limit) or not 0.0 < limit <= 10.0:
+        raise MeasurementError(
+            f"rule.limit_percent is {limit!r}; give a number above 0, up to 10 % m/m"
+        )
+    if suspect is not None and not (_is_finite(suspect) and limit <= suspect <= 10.0):
+        raise MeasurementError(
+            f"rule.suspect_percent is {suspect!r}; give a number from the limit of"
+            f" {limit:g} % to 10 % m/m, or leave it out for a guard band"
+        )
+    title = given.get("title", "as configured")
+    if not isinstance(title, str) or not title.isprintable():
+        raise MeasurementError(f"rule.title is {title!r}; give a text of one line")
+    return DecisionRule(
+        name="own",
+        title=title,
+        limit_percent=float(limit),
+        suspect_percent=None if suspect is None else float(suspect),
+    )
 
 
 def _columns(table: Mapping[str, Any]) -> dict[str, str]:

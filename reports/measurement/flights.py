@@ -8,7 +8,13 @@ import numpy as np
 import pandas as pd
 
 from common.intervals import percent
-from measurement.estimate.verdict import content_words, counted_verdicts, verdict_words
+from measurement.estimate.verdict import (
+    content_words,
+    counted_verdicts,
+    repeated_words,
+    suspect_words,
+    verdict_words,
+)
 from measurement.gases import MASS_PERCENT
 from reports.document.blocks import Block, Card, Heading, Section, Text
 from reports.document.chart import Chart
@@ -235,7 +241,9 @@ def _track(run: RunData, row: "pd.Series[Any]", history: pd.DataFrame) -> Chart 
 
 def _verdict_words(row: "pd.Series[Any]") -> str:
     limit, chance = float(row["sulphur_limit_percent"]), float(row["probability_above"])
-    return verdict_words(str(row["sulphur_verdict"]), limit, chance, str(row["sulphur_quality"]))
+    words = verdict_words(str(row["sulphur_verdict"]), limit, chance, str(row["sulphur_quality"]))
+    looks, guard = (float(row.get(name, np.nan)) for name in ("verdict_looks", "verdict_guard"))
+    return f"{words}{repeated_words(looks, guard)}"
 
 
 def _told(row: "pd.Series[Any]") -> str:
@@ -248,9 +256,18 @@ def _told(row: "pd.Series[Any]") -> str:
             if row["sulphur_reason"] and pd.notna(row["sulphur_reason"])
             else "."
         )
+        + _suspect(row)
         + f" The fuel's own content is {row['fsc_fuel_percent']:.3f} %, of which a perfect instrument reads"
         f" {row['fsc_expected_percent']:.3f} %."
     )
+
+
+def _suspect(row: "pd.Series[Any]") -> str:
+    """Return what the rule of the flight makes of the ship, in a sentence; empty without one."""
+    names = ("sulphur_suspect", "suspect_false_alarm", "suspect_miss")
+    values = [row.get(name) for name in names]
+    words = suspect_words(*(float(value) if pd.notna(value) else np.nan for value in values))
+    return f" {words[0].upper()}{words[1:]}." if words else ""
 
 
 def _samples(record: Record, history: pd.DataFrame) -> pd.DataFrame:

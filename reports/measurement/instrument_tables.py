@@ -7,7 +7,16 @@ from common.intervals import percent
 from measurement.estimate.budget import CARBON_SD, SULPHATE_SHARE
 from measurement.estimate.passes import SNR_LEAST
 from measurement.estimate.quality import AGREEMENT_LEAST, PASSES_GOOD, SNR_GOOD, UNCERTAINTY_GOOD
-from measurement.estimate.verdict import CONFIDENCE, COVERAGE, GUARD
+from measurement.estimate.verdict import (
+    CONFIDENCE,
+    COVERAGE,
+    GUARD,
+    Decision,
+    Verdict,
+    decision_words,
+    from_record,
+    rate_words,
+)
 from measurement.gases import EXPECTED_PPB_PER_PPM, GASES, UNITS, fsc_factor, limit_words
 from reports.document.blocks import Table
 from reports.document.tables import number, pairs_table
@@ -206,6 +215,7 @@ def assumption_table(run: RunData, record: Record) -> Table:
         ["Limits", f"{limits} m/m"],
         ["A verdict", f"“above” where the content is more than {GUARD:.3f} standard uncertainties above the limit; “below” where"
          f" the fuel is below it with a probability of more than {percent(CONFIDENCE)}, given that no content is below 0"],
+        *_rates(record),
         ["Interval", f"the shortest that holds {percent(CONFIDENCE)}, given that no content is below 0: {COVERAGE:.3f} standard"
          " uncertainties on either side far above 0, fewer nearer to it, and one that begins at 0 next to it"],
         ["Quality A", f"CO2 signal to noise of {SNR_GOOD:g}, a standard uncertainty of {UNCERTAINTY_GOOD:g} times the lowest"
@@ -213,6 +223,17 @@ def assumption_table(run: RunData, record: Record) -> Table:
     ]  # fmt: skip
     caption = "How the log was read, and the thresholds and assumptions of the analysis."
     return pairs_table(rows, widths=(1.0, 3.0), caption=caption, breakable=True)
+
+
+def _rates(record: Record) -> list[list[str]]:
+    """Return how often the verdicts and the rule are wrong."""
+    verdicts = [from_record(Verdict, verdict) for verdict in record["estimate"]["verdicts"]]
+    rows = [
+        [f"Verdict on {limit_words(verdict.limit_percent)}", rate_words(verdict)]
+        for verdict in verdicts
+    ]
+    decision = record.get("decision")
+    return [*rows, ["Rule", decision_words(from_record(Decision, decision))]] if decision else rows
 
 
 def _columns(columns: dict[str, str]) -> str:

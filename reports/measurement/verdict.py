@@ -5,7 +5,10 @@ from typing import Any
 from measurement.estimate.verdict import (
     BELOW,
     OPEN,
+    Decision,
     content_words,
+    decision_words,
+    from_record,
     next_step,
     probability,
     verdict_words,
@@ -37,7 +40,9 @@ def measurement_verdict(record: Record) -> Verdict:
         holds=first["verdict"] != "above",
         complete=first["verdict"] == "below",
         headline=sentence(first, found["quality"], known=known),
-        detail=" ".join(filter(None, [_result(record), *others, _next_step(found)])),
+        detail=" ".join(
+            filter(None, [_result(record), *others, _decision(record), _next_step(found)])
+        ),
         failures=[f"quality {found['quality']}: {reason}" for reason in reasons],
         figures=_figures(record),
     )
@@ -72,6 +77,15 @@ def _result(record: Record) -> str:
         value(found, "fsc_percent"), value(found, "low_percent"), value(found, "high_percent")
     )
     return f"Fuel sulphur content {content}, from {passes} in {figures['duration_s']:.0f} s. Quality {found['quality']}."
+
+
+def _decision(record: Record) -> str:
+    """Return what the rule makes of the result, if there is a rule and a result."""
+    decision = record.get("decision")
+    if not decision or not _known(record["estimate"]):
+        return ""
+    words = decision_words(from_record(Decision, decision))
+    return f"{words[0].upper()}{words[1:]}."
 
 
 def _known(found: Record) -> bool:

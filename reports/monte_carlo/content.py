@@ -117,9 +117,9 @@ def _drivers(run: RunData, statistics: dict[str, Any]) -> list[Block]:
         "Borgonovo's δ says how much the distribution of a figure changes once an input is known: 0 not at all, 1 completely."
         " The first-order index S₁ is the fraction of the figure's variance that the input explains by itself. Of a finite number"
         " of flights neither is 0 for an input that does nothing: the noise floor is the largest index of some that do nothing, and"
-        f" what matters has an interval above it. Intervals are those of {percent(statistics['confidence'])} of resamples of the"
-        " flights. That of S₁ holds the true index as often; that of δ does not, as δ comes out a tenth too low of some hundred"
-        " flights."
+        f" what matters has an interval above it. The interval of S₁ holds the true index with {percent(statistics['confidence'])}; it"
+        " is wide where few flights decide on the index. The interval of δ is that of as many resamples of the flights, and holds"
+        " the true index less often, as δ comes out a tenth too low of some hundred flights."
     )
     return [
         # Of indices that there are: nobody needs to know how to read others.

@@ -17,7 +17,9 @@ from measurement.sniffer.spec import SnifferSpec
 if TYPE_CHECKING:
     import pandas as pd
 
+    from measurement.estimate.repeated import RepeatedVerdict
     from measurement.estimate.result import FscEstimate
+    from measurement.estimate.verdict import DecisionRule
 
 _INTERVAL = 60.0
 """About the time between estimates of a flight [s]: the time to a verdict is known to that."""
@@ -30,7 +32,7 @@ FIGURES = (
     "areas_fsc_uncertainty_percent", "areas_fsc_separate_percent",
     "areas_fsc_noise_percent", "areas_fsc_low_percent", "areas_fsc_high_percent",
     "sulphur_quality", "sulphur_reason", "sulphur_verdict", "probability_above", "verdict_2min", "verdict_time_s",
-    "co2_signal_to_noise", "so2_signal_to_noise",
+    "co2_signal_to_noise", "so2_signal_to_noise", "sulphur_suspect", "suspect_false_alarm", "suspect_miss",
 )  # fmt: skip
 """Columns of the summary."""
 
@@ -56,7 +58,12 @@ class FuelEstimate:
 
 
 def fuel_estimate(
-    readings: Readings, instrument: SnifferSpec, *, limit: float, expected: float
+    readings: Readings,
+    instrument: SnifferSpec,
+    *,
+    limit: float,
+    expected: float,
+    rule: "DecisionRule | None" = None,
 ) -> FuelEstimate:
     """Return what readings say of the fuel, by regression and by areas.
 
@@ -66,13 +73,16 @@ def fuel_estimate(
     instrument : as its data sheet says, which is all that the analyst knows
     limit : that the verdict is on [% m/m]
     expected : what a perfect instrument reads [% m/m]
+    rule : by which the ship is reported, if there is one
     """
     from measurement.estimate.estimator import time_to_verdict
     from measurement.estimate.verdict import OPEN
     from measurement.log.analysis import analyse
 
     try:
-        found = analyse(readings, instrument, limits_percent=(limit,), points=_points(readings))
+        found = analyse(
+            readings, instrument, limits_percent=(limit,), points=_points(readings), rule=rule
+        )
     except MeasurementError as error:
         return FuelEstimate(
             figures={"sulphur_quality": "C", "sulphur_reason": str(error), "sulphur_verdict": OPEN}
@@ -93,6 +103,12 @@ def fuel_estimate(
         "co2_signal_to_noise": by.figures.co2_snr,
         "so2_signal_to_noise": by.figures.so2_snr,
     }
+    if found.decision is not None:
+        figures |= {
+            "sulphur_suspect": found.decision.suspect,
+            "suspect_false_alarm": found.decision.false_alarm,
+            "suspect_miss": found.decision.miss,
+        }
     named = found.table.rename(columns=lambda name: name.removesuffix(f"_{limit:g}"))
     signals = {str(name): np.round(values, 4).tolist() for name, values in by.signals.items()}
     return FuelEstimate(
@@ -102,6 +118,42 @@ def fuel_estimate(
         ],
         document=found.record(expected) | {"signals": signals},
     )
+
+
+def repeated_figures(verdict: "RepeatedVerdict", row: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the figures of a flight that looked at its verdict repeatedly; its end is the last look.
+
+    Parameters
+    ----------
+    verdict : by the looks in flight
+    row : figures of the flight, those of ``fuel_estimate`` among them
+    """
+    from measurement.estimate.verdict import OPEN
+
+    admitted = row.get("sulphur_quality", "C") != "C"
+    if admitted:
+        verdict.look(
+            row["fsc_percent"],
+            noise=row["fsc_noise_percent"],
+            total=row["fsc_uncertainty_percent"],
+            admitted=True,
+            last=True,
+        )
+    return {
+        # What the whole record refuses has no verdict, whatever was found on the way.
+        "sulphur_verdict": verdict.verdict if admitted else OPEN,
+        "verdict_looks": verdict.looks,
+        "verdict_guard": verdict.guard if admitted else math.nan,
+    }
+
+
+def with_verdict(document: Mapping[str, Any] | None, verdict: str) -> Mapping[str, Any] | None:
+    """Return the record of an analysis with the verdict of a flight that looked repeatedly."""
+    if document is None:
+        return None
+    found = document["estimate"]
+    verdicts = [one | {"verdict": verdict} for one in found["verdicts"]]
+    return {**document, "estimate": {**found, "verdicts": verdicts}}
 
 
 def _points(readings: Readings) -> int:

@@ -16,6 +16,7 @@ from gnc.errors import InfeasibleError
 from gnc.estimation.navigation import MeasuredMotion
 from measurement.emission import expected_fsc
 from measurement.errors import MeasurementError
+from measurement.estimate.verdict import RULES
 from measurement.gases import GASES, UNITS
 from measurement.sniffer.sniffer import Readings, Sniffer
 from measurement.sniffer.spec import SnifferSpec, sensor_of, sensor_presets
@@ -48,6 +49,15 @@ _NOT_FLOWN = "unspecified"
 """Preset of a log's instrument of which nothing is known: there is no noise to sample."""
 
 
+_NO_RULE = "none"
+"""Name that stands for no rule."""
+
+
+def _rules() -> tuple[str, ...]:
+    """Return the names of rules by which ships are reported."""
+    return (_NO_RULE, *RULES)
+
+
 def flown_presets() -> tuple[str, ...]:
     """Return the names of the sniffers that can be flown."""
     return tuple(name for name in sensor_presets() if name != _NOT_FLOWN)
@@ -77,6 +87,8 @@ class SnifferSettings:
         cross-sensitivities are sampled within what is stated
     limit_percent : sulphur content that the verdict is on [% m/m]: 0.1 in an emission control area,
         0.5 elsewhere
+    rule : of measurement/estimate/verdict.py, by which a ship is reported as suspect; none for no
+        such rule
     dynamic_pressure_fraction : fraction of the dynamic pressure that the inlet passes on to the
         sensors [-]
     """
@@ -86,6 +98,7 @@ class SnifferSettings:
     )
     exact: bool = False
     limit_percent: float = 0.1
+    rule: str = field(default=_NO_RULE, metadata={"choices": _rules})
     dynamic_pressure_fraction: float = field(default=0.2, metadata={"limits": (0.0, 1.0)})
 
     def __post_init__(self) -> None:
@@ -109,6 +122,9 @@ class SnifferSettings:
             raise MeasurementError(
                 f"limit_percent is {self.limit_percent:g}; give above 0 to 5 % m/m, as 0.1 in an emission control area"
             )
+        if self.rule not in _rules():
+            guess = did_you_mean(self.rule, _rules()) or ";"
+            raise MeasurementError(f"rule is {self.rule!r}{guess} there are {', '.join(_rules())}")
         if not 0.0 <= self.dynamic_pressure_fraction <= 1.0:
             raise MeasurementError(
                 f"dynamic_pressure_fraction is {self.dynamic_pressure_fraction:g}; give 0 to 1"
@@ -241,7 +257,13 @@ class SnifferOnBoard:
             self._exhaust.fuel,
             expected_fsc(self._exhaust.fuel),
         )
-        known = fuel_estimate(self.readings(since), self.spec, limit=limit, expected=expected)
+        known = fuel_estimate(
+            self.readings(since),
+            self.spec,
+            limit=limit,
+            expected=expected,
+            rule=RULES.get(self._settings.rule),
+        )
         figures = {
             "sensor": self.spec.name,
             "fsc_fuel_percent": fuel.sulphur_percent,

@@ -149,6 +149,9 @@ _OF_SNIFFER = {
     "verdict_time_s": "time from which on the verdict does not change any more",
     "co2_signal_to_noise": "signal-to-noise ratio of the CO2 readings",
     "so2_signal_to_noise": "signal-to-noise ratio of the SO2 readings",
+    "sulphur_suspect": "whether payload.rule reports the ship as suspect; empty without a rule, or of quality C",
+    "suspect_false_alarm": "share of fuels at the rule's limit that it reports, with this uncertainty",
+    "suspect_miss": "share of fuels of twice that limit that it does not report, with this uncertainty",
     "plume_axis_crossings": "crossings of the smoke's mean axis seen from above, in the time evaluated, with smoke or without",
     "smoke_passes": "of those crossings the ones with smoke: once above exp(-2) of the concentration in the plume's centre",
     "hit_rate": "of those crossings the share whose peak is above 0.6 of the concentration in the centre of the plume",
@@ -172,6 +175,8 @@ _OF_SEARCH = {
     "axis_measurable_end": "estimated probability at the end that the plume can be crossed within the limits of the altitude",
     "altitude_outside_s": "time outside the limits of the altitude",
     "enough": "why the flight ended early, or empty",
+    "verdict_looks": "looks of a flight that ends with a verdict, its end among them, at which there could be one",
+    "verdict_guard": "standard uncertainties from the limit that the last of them needed for a verdict; 1.645 is that of one look",
 }
 """Of flights that search for the plume, are given its true axis, or end with a verdict."""
 

@@ -140,6 +140,7 @@ class ClosedLoop:
             message=ending.message,
             mode=ending.mode,
             enough=ending.enough,
+            verdict=ending.verdict,
             settled_at=self.settling.at,
             interventions=interventions(guarding, time_step),
             columns=recorder.columns,

@@ -6,6 +6,7 @@ from gnc.estimation.health import Fault
 from gnc.estimation.navigation import MeasuredMotion
 from gnc.guidance import Guidance
 from gnc.mission.mission import LOST, Mode
+from measurement.estimate.repeated import RepeatedVerdict
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.schema.sections.flight import DITCHED
 from scenarios.simulation.judge import Judge
@@ -96,6 +97,11 @@ class Ending:
             if self._judge is not None and self._judge.enough is not None
             else ""
         )
+
+    @property
+    def verdict(self) -> RepeatedVerdict | None:
+        """Return the verdict on the fuel by all looks, or None where nobody looked."""
+        return self._judge.verdict if self._judge is not None else None
 
     @property
     def mode(self) -> str:

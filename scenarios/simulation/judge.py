@@ -1,4 +1,8 @@
-"""When a flight has enough: a verdict on the fuel, or the knowledge that there will be none."""
+"""When a flight has enough: a verdict on the fuel, or the knowledge that there will be none.
+
+Each look at the readings could be wrong, and a flight ends at the first that finds a verdict. So the
+guard band allows for the looks before and after it (``measurement.estimate.repeated``).
+"""
 
 import math
 from enum import Enum
@@ -9,6 +13,7 @@ from gnc.mission.follow import PlumeFollowing
 from gnc.mission.mission import Mode
 from measurement.errors import MeasurementError
 from measurement.estimate.estimator import estimate
+from measurement.estimate.repeated import RepeatedVerdict
 from measurement.estimate.verdict import OPEN
 from scenarios.instruments.instrument import GasReader
 from scenarios.simulation.settling import Settling
@@ -17,7 +22,7 @@ INTERVAL = 15.0
 """Time between looks [s]."""
 
 _AGREEING = 2
-"""Looks in a row that have to say the same: a verdict may come and go while it is new."""
+"""Looks in a row that have to find the plume out of reach or the sensor failed, which may pass."""
 
 _MEASURABLE = 0.05
 """Probability that the plume can be crossed below which it is given up [-]."""
@@ -48,6 +53,7 @@ class Judge:
     ----------
     enough : why the flight leaves, or nothing
     left_at : when it began to [s]
+    verdict : on the fuel, by all looks
     """
 
     __slots__ = (
@@ -60,6 +66,7 @@ class Judge:
         "_settling",
         "enough",
         "left_at",
+        "verdict",
     )
 
     def __init__(self, reader: GasReader, mission: PlumeFollowing, settling: Settling) -> None:
@@ -67,6 +74,7 @@ class Judge:
         self._next, self._same = INTERVAL, 0
         self._last: Enough | None = None
         self.enough: Enough | None = None
+        self.verdict = RepeatedVerdict(reader.limit_percent)
         self.left_at, self._left_from = math.nan, math.inf
 
     @property
@@ -89,7 +97,8 @@ class Judge:
         found = self._found()
         self._same = self._same + 1 if found is self._last else 1
         self._last = found
-        if found is not None and self._same >= _AGREEING:
+        needed = 1 if found in (Enough.ABOVE, Enough.BELOW) else _AGREEING
+        if found is not None and self._same >= needed:
             self.enough, self.left_at, self._left_from = found, time, distance
             self._mission.depart()
         return False
@@ -117,5 +126,10 @@ class Judge:
             )
         except MeasurementError:
             return None
-        verdict = found.verdicts[0].verdict
+        verdict = self.verdict.look(
+            found.fsc_percent,
+            noise=found.noise_percent,
+            total=found.total_percent,
+            admitted=found.quality != "C",
+        )
         return None if verdict == OPEN else Enough(f"verdict: {verdict}")

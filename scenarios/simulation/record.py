@@ -1,6 +1,7 @@
 """What is recorded of a flight: its columns, each with unit and meaning, and how the flight ended."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -8,6 +9,9 @@ import numpy.typing as npt
 from common.text import did_you_mean
 from scenarios.simulation.interventions import Intervention
 from scenarios.simulation.outcome import Outcome
+
+if TYPE_CHECKING:
+    from measurement.estimate.repeated import RepeatedVerdict
 
 Array = npt.NDArray[np.float64]
 
@@ -95,6 +99,7 @@ class FlightRecord:
     outcome, message : how it ended, in a word and in a sentence
     mode : of the guidance at the end, or ``DITCHED``
     enough : why it left before its time, or nothing
+    verdict : on the fuel by all looks of a flight that ends with one, or None
     settled_at : when it had settled, not a number if it never had [s]
     interventions : each time that the keep-out guard changed commands
     columns : of the histories: ``COLUMNS``, and those of the payload
@@ -110,6 +115,7 @@ class FlightRecord:
     message: str
     mode: str
     enough: str = ""
+    verdict: "RepeatedVerdict | None" = None
     settled_at: float
     interventions: list[Intervention]
     columns: tuple[str, ...]

@@ -3,9 +3,11 @@
 Delta is half the mean distance between the figure's density and its density for a known input: 0 if
 the input does not matter, 1 if it determines the figure, in whatever form. E. Borgonovo, "A new
 uncertainty importance measure", Reliability Engineering & System Safety 92 (2007). The first-order
-index S1 is the fraction of the figure's variance that the input explains by itself. Both are
+index S1 is the fraction of the figure's variance that the input explains by itself. Delta is
 estimated by SALib from given data: E. Plischke, E. Borgonovo and C. L. Smith, "Global sensitivity
-measures from given data", European Journal of Operational Research 226 (2013).
+measures from given data", European Journal of Operational Research 226 (2013). S1 is not: within
+SALib's classes of an input its mean is taken to be constant, so that a dominant input comes out too
+low by more than its interval; ``first_order`` has no such classes.
 
 In a finite sample the indices of an input without any effect are not 0. So the indices of some
 random inputs without effect are estimated as well, and the largest of them is the noise floor.
@@ -22,6 +24,8 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
+from scenarios.statistics.first_order import first_order_index, functions_for
+
 FLIGHTS_MIN = 200
 """Least number of flights: with fewer, the classes of an input hold fewer than 50 each, too few for
 a density.
@@ -33,7 +37,7 @@ of a second.
 """
 
 RESAMPLES = 20
-"""Bootstrap samples for the interval of an index: they give its width to 16 %, 1/sqrt(2 19) for 20
+"""Bootstrap samples for the interval of delta: they give its width to 16 %, 1/sqrt(2 19) for 20
 values.
 """
 
@@ -106,8 +110,8 @@ def sensitivity_indices(
     inputs : a row per flight, a column per input; numbers, or words, which are categories without
         an order
     figure : figure of each flight, shape (n,); flights where it is not a number are left out
-    confidence : confidence of the intervals, between 0 and 1, of a normal distribution with the
-        bootstrap's deviation
+    confidence : confidence of the intervals, between 0 and 1; that of delta is of a normal
+        distribution with the bootstrap's deviation
     seed : seed of the choice of flights, the noise floor and the bootstrap
     samples : number of the sample that each flight is of, shape (n,); each is one of its own if not
         given
@@ -117,13 +121,17 @@ def sensitivity_indices(
     # In random order even if all are used: flights with equal inputs are put into classes by their
     # order.
     chosen = generator.permutation(known)[:FLIGHTS_MAX]
-    left_out = {str(key): why for key in inputs if (why := _unusable(inputs[key].iloc[chosen]))}
+    of, distinct = pd.factorize(chosen if samples is None else samples[chosen])
+    left_out = {
+        str(key): why
+        for key in inputs
+        if (why := _unusable(inputs[key].iloc[chosen], len(distinct)))
+    }
     codes = {str(key): _coded(inputs[key].iloc[chosen]) for key in inputs if key not in left_out}
     found: list[InputIndices] = []
     dummies: list[InputIndices] = []
     message = _reason_for_no_indices(figure[chosen], codes)
     if not message:
-        of, distinct = pd.factorize(chosen if samples is None else samples[chosen])
         resamples = [
             _resampled(of, generator.integers(len(distinct), size=len(distinct)))
             for _ in range(RESAMPLES)
@@ -131,11 +139,11 @@ def sensitivity_indices(
         without_effect = [generator.random(len(distinct))[of] for _ in range(DUMMIES)]
         try:
             found = [
-                _indices(key, values, figure[chosen], resamples, confidence)
+                _indices(key, values, figure[chosen], of, resamples, confidence)
                 for key, values in codes.items()
             ]
             dummies = [
-                _indices("", values, figure[chosen], resamples, confidence)
+                _indices("", values, figure[chosen], of, resamples, confidence)
                 for values in without_effect
             ]
         except np.linalg.LinAlgError:
@@ -157,11 +165,14 @@ def _resampled(of: Indices, picked: Indices) -> Indices:
     return np.concatenate([members[sample] for sample in picked])
 
 
-def _unusable(values: "pd.Series[float]") -> str:
+def _unusable(values: "pd.Series[float]", samples: int) -> str:
     """Return why an input has no index; empty if it has one."""
     if values.isna().any():
         return "not sampled for every flight"
-    return "the same in every flight" if values.nunique() < 2 else ""
+    kinds = values.nunique()
+    if not pd.api.types.is_numeric_dtype(values) and kinds > functions_for(samples):
+        return f"{kinds:,} categories in {samples:,} samples, too few of each"
+    return "the same in every flight" if kinds < 2 else ""
 
 
 def _reason_for_no_indices(figure: Array, inputs: dict[str, Array]) -> str:
@@ -182,47 +193,49 @@ def _coded(values: "pd.Series[float]") -> Array:
 
 
 def _indices(
-    key: str, values: Array, figure: Array, resamples: Sequence[Indices], confidence: float
+    key: str,
+    values: Array,
+    figure: Array,
+    of: Indices,
+    resamples: Sequence[Indices],
+    confidence: float,
 ) -> InputIndices:
     """Return the indices of one input, delta corrected for its bootstrap bias (Plischke et al., eq.
     30).
     """
     from scipy.special import ndtri
 
-    delta, first_order = _estimated(values, figure)
-    again = np.array([_estimated(values[chosen], figure[chosen]) for chosen in resamples])
-    delta_error, first_order_error = ndtri(0.5 + 0.5 * confidence) * again.std(axis=0, ddof=1)
+    delta = _delta(values, figure)
+    again = np.array([_delta(values[chosen], figure[chosen]) for chosen in resamples])
+    first = first_order_index(values, figure, confidence=confidence, samples=of)
     return InputIndices(
         key=key,
-        delta=2.0 * delta - float(again[:, 0].mean()),
-        delta_error=float(delta_error),
-        first_order=first_order,
-        first_order_error=float(first_order_error),
+        delta=2.0 * delta - float(again.mean()),
+        delta_error=float(ndtri(0.5 + 0.5 * confidence) * again.std(ddof=1)),
+        first_order=first.index,
+        first_order_error=first.half_width,
     )
 
 
-def _estimated(values: Array, figure: Array) -> tuple[float, float]:
-    """Return SALib's estimates of delta and S1 (Plischke et al., eq. 26 and below).
+def _delta(values: Array, figure: Array) -> float:
+    """Return SALib's estimate of delta (Plischke et al., eq. 26).
 
-    ``SALib.analyze.delta.analyze`` uses the same two functions. But its classes have equal size
-    whatever the input, so that some hold two categories and an input of two categories loses a
-    fifth of its indices; and it uses numpy's global generator.
+    ``SALib.analyze.delta.analyze`` uses the same function. But its classes have equal size whatever
+    the input, so that some hold two categories and an input of two categories loses a fifth of its
+    index; and it uses numpy's global generator.
 
     Raises
     ------
     numpy.linalg.LinAlgError : the figure is the same everywhere
     """
-    from SALib.analyze.delta import calc_delta, sobol_first
+    from SALib.analyze.delta import calc_delta
 
     grid = np.linspace(figure.min(), figure.max(), _GRID)
-    bounds = _class_bounds(values)
     with warnings.catch_warnings():
         # SALib warns of classes with a single figure, such as a rare category; they add nothing to
         # delta.
         warnings.simplefilter("ignore")
-        return float(calc_delta(figure, grid, values, bounds)), float(
-            sobol_first(figure, values, bounds)
-        )
+        return float(calc_delta(figure, grid, values, _class_bounds(values)))
 
 
 def _class_bounds(values: Array) -> Array:

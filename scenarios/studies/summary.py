@@ -9,7 +9,13 @@ from typing import Any, Self
 from common.intervals import CONFIDENCE, TELLING, percent, upper_bound
 from common.physics import SECONDS_PER_HOUR
 from common.run_layout import SUMMARY
-from measurement.estimate.verdict import content_words, counted_verdicts, verdict_words
+from measurement.estimate.verdict import (
+    content_words,
+    counted_verdicts,
+    repeated_words,
+    suspect_words,
+    verdict_words,
+)
 from scenarios.engine.task import Row
 from scenarios.simulation.outcome import Outcome
 from scenarios.world.faults import OF_SNIFFER
@@ -194,9 +200,15 @@ class FlightCounts:
             row["sulphur_limit_percent"],
             row["probability_above"],
             row["sulphur_quality"],
-        )
+        ) + repeated_words(row.get("verdict_looks", 0), row.get("verdict_guard", math.nan))
         low, high = row["fsc_low_percent"], row["fsc_high_percent"]
-        return [f"fuel sulphur {content_words(row['fsc_percent'], low, high)}: {words}"]
+        suspect = suspect_words(
+            row.get("sulphur_suspect"),
+            row.get("suspect_false_alarm", math.nan),
+            row.get("suspect_miss", math.nan),
+        )
+        content = f"fuel sulphur {content_words(row['fsc_percent'], low, high)}: {words}"
+        return [content, *([suspect] if suspect else [])]
 
     def bound_line(self, samples: int) -> str:
         """Return in how many flights the keep-out area was violated, with the bound on the

@@ -79,9 +79,8 @@ def flight_name(patrol: Patrol, number: int) -> str:
 
 
 def verdict_of(row: Row) -> str:
-    """Return the verdict with which a flight left; open without one."""
-    enough = str(row.get("enough", ""))
-    return enough.removeprefix("verdict: ") if enough.startswith("verdict: ") else "open"
+    """Return the verdict of a flight by all of its looks, its end among them; open without one."""
+    return str(row.get("sulphur_verdict", "open"))
 
 
 def wind_row(patrol: Patrol) -> Row:

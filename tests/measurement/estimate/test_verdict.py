@@ -11,12 +11,15 @@ from scipy.stats import norm, truncnorm
 from measurement.estimate.estimator import estimate, over_time, time_to_verdict
 from measurement.estimate.quality import quality_class
 from measurement.estimate.verdict import (
+    RULES,
     content_words,
+    decide,
     interval,
     judged,
     needed,
     next_step,
     probability_above,
+    suspect_words,
     verdict_words,
 )
 from measurement.gases import limit_words
@@ -287,3 +290,73 @@ def test_an_open_verdict_says_which_part_of_the_uncertainty_to_lower():
     assert "measure again in the plume" in next_step(
         "C", noise=float("nan"), **{**known, "passes": 0}
     )
+
+
+@pytest.mark.parametrize("deviation", [0.005, 0.02, 0.05, 0.3])
+def test_a_verdict_states_where_it_begins_and_how_often_it_is_wrong_at_the_limit(deviation):
+    verdict = judged(0.1, 0.1, deviation, admitted=True)
+    # The ends are those at which the verdict changes, and not a thousandth nearer.
+    step = 1e-3 * deviation
+    above, below = verdict.above_from_percent, verdict.below_to_percent
+    for end, side, outwards in ((above, "above", step), (below, "below", -step)):
+        assert judged(0.1, end + outwards, deviation, admitted=True).verdict == side
+        assert judged(0.1, end - outwards, deviation, admitted=True).verdict == "open"
+    # Rates of 100,000 readings of a fuel at the limit: 5 % are known to 0.07 %; three times that.
+    found = 0.1 + deviation * np.random.default_rng(3).standard_normal(100_000)
+    assert np.mean(found > above) == pytest.approx(verdict.false_alarm, abs=0.0021)
+    assert np.mean(found < below) == pytest.approx(verdict.miss, abs=0.0021)
+    assert verdict.false_alarm == pytest.approx(0.05, abs=1e-9)
+    assert verdict.miss <= 0.05 + 1e-9
+
+
+@pytest.mark.parametrize("deviation", [1e-320, 1e-12, 1e-3, 99.0, 101.0, 1e9, 1e300, math.inf])
+def test_guard_bands_of_any_uncertainty_are_those_of_the_probability(deviation):
+    verdict = judged(0.1, 0.1, deviation, admitted=True)
+    assert verdict.verdict == "open"
+    if 1e-12 < deviation < 1e9:
+        below = verdict.below_to_percent
+        # The closed form from 100 % on leaves out parts of a thousandth.
+        assert probability_above(0.1, below, deviation) == pytest.approx(0.05, rel=1e-3)
+
+
+@pytest.mark.parametrize("name", RULES)
+def test_the_rates_of_a_rule_are_those_of_repeated_readings(name):
+    rule, deviation = RULES[name], 0.03
+    generator = np.random.default_rng(4)
+    rates = []
+    for content in (rule.limit_percent, 2.0 * rule.limit_percent):
+        found = content + deviation * generator.standard_normal(4000)
+        decisions = [decide(rule, float(fsc), deviation, admitted=True) for fsc in found]
+        rates.append(np.mean([decision.suspect for decision in decisions]))
+    # Shares of 4000 are known to 0.8 %; three times that.
+    assert rates[0] == pytest.approx(decisions[0].false_alarm, abs=0.024)
+    assert 1.0 - rates[1] == pytest.approx(decisions[0].miss, abs=0.024)
+    assert decisions[0].missed_percent == 2.0 * rule.limit_percent
+
+
+def test_rules_are_stricter_the_higher_their_threshold():
+    decisions = [
+        decide(RULES[name], 0.14, 0.024, admitted=True)
+        for name in ("eca_0.10", "eca_0.13", "eca", "eca_0.15")
+    ]
+    # Phi of 0, 0.03/0.024, 1.645 and 0.05/0.024; an estimate of 0.14 is beyond 0.1395.
+    alarms = [0.5, norm.sf(1.25), 0.05, norm.sf(2.0833)]
+    assert [decision.false_alarm for decision in decisions] == pytest.approx(alarms, abs=1e-4)
+    assert [decision.suspect for decision in decisions] == [True, True, True, False]
+
+
+def test_a_record_without_a_verdict_has_no_decision():
+    assert decide(RULES["eca"], 0.4, 0.02, admitted=False).suspect is None
+    nothing = decide(RULES["eca_0.15"], math.nan, math.nan, admitted=True)
+    assert nothing.suspect is None
+    assert math.isnan(nothing.false_alarm)
+
+
+def test_a_flights_rule_is_told_with_its_rates_and_nothing_without_one():
+    assert suspect_words(True, 0.05, 0.02).startswith("suspect by the rule")
+    told = suspect_words(False, 0.05, 0.02)
+    assert told.startswith("not suspect")
+    assert "5.0 %" in told
+    assert "2.0 %" in told
+    assert suspect_words(None, 0.05, 0.02) == ""
+    assert suspect_words(math.nan, math.nan, math.nan) == ""

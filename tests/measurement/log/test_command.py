@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from logged_flights import run
+from scipy.stats import norm
 
 from common.provenance import provenance
 from measurement.log.command import main
@@ -87,6 +88,21 @@ def test_an_instrument_from_a_table_has_its_response_found(logged, capsys):
     assert (stated["noise"], stated["t90_sd"]) == (None, None)
     assert used["noise"] > 0.0
     assert used["t90_s"] == found["so2_t90_s"] != stated["t90_s"]
+
+
+@BRIEFLY
+def test_a_rule_decides_and_says_how_often_it_is_wrong(logged, capsys):
+    configured(logged, 'instrument = "electrochemical"\nrule = "eca_0.15"\n')
+    assert run(logged) == 0
+    record = recorded(logged)
+    decision, found = record["decision"], record["estimate"]
+    z = (0.15 - 0.10) / found["total_percent"]
+    assert decision["false_alarm"] == pytest.approx(norm.sf(z), rel=1e-6)
+    assert decision["suspect"] == (found["fsc_percent"] >= 0.15)
+    assert "rule eca_0.15 (" in capsys.readouterr().out
+    configured(logged, 'instrument = "electrochemical"\n')
+    assert run(logged) == 0
+    assert recorded(logged)["decision"] is None
 
 
 @BRIEFLY

@@ -1,5 +1,7 @@
 """The configuration of a logged flight: instrument, limits, columns, and details of the flight."""
 
+import re
+
 import pandas as pd
 import pytest
 
@@ -124,3 +126,34 @@ def test_times_that_lead_beyond_all_years_are_refused(logged, config):
     table.assign(time_s=[1e12 * i for i in range(301)]).to_csv(logged, index=False)
     with pytest.raises(MeasurementError, match=r"lasts 3e\+14 s .* year 9999"):
         read_flight(logged, config("flight.date = 2026-06-01T10:00:00Z\n"))
+
+
+@pytest.mark.parametrize(
+    ("text", "limit", "suspect"),
+    [
+        ('rule = "eca_0.13"', 0.10, 0.13),
+        ('rule = "global"', 0.50, None),
+        ("[rule]\nlimit_percent = 0.2\nsuspect_percent = 0.3", 0.2, 0.3),
+        ("[rule]\nlimit_percent = 0.2", 0.2, None),
+    ],
+)
+def test_a_rule_has_a_name_or_a_table(config, text, limit, suspect):
+    rule = config(text).rule
+    assert (rule.limit_percent, rule.suspect_percent) == (limit, suspect)
+
+
+@pytest.mark.parametrize(
+    ("text", "what"),
+    [
+        ('rule = "eca_0.12"', "rule is 'eca_0.12'"),
+        ("rule = 0.13", "rule is 0.13"),
+        ("[rule]\nsuspect_percent = 0.13", "rule.limit_percent is None"),
+        ("[rule]\nlimit_percent = nan", "rule.limit_percent is nan"),
+        ("[rule]\nlimit_percent = 0.2\nsuspect_percent = 0.1", "rule.suspect_percent is 0.1"),
+        ("[rule]\nlimit_percent = 0.2\nsuspect = 0.3", "suspect"),
+        ('[rule]\nlimit_percent = 0.2\ntitle = "a\\nb"', "rule.title"),
+    ],
+)
+def test_a_rule_that_cannot_be_is_refused_with_its_value(config, text, what):
+    with pytest.raises(MeasurementError, match=re.escape(what)):
+        config(text)

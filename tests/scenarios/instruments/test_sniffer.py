@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from scipy.stats import norm
 
 from measurement.emission import expected_fsc, fuel_preset
 from scenarios.engine.task import Task
@@ -118,6 +119,18 @@ def test_the_table_over_time_and_the_document_tell_the_same_result(slow):
     assert len(document["signals"]["time_s"]) > 50
 
 
+def test_a_rule_says_whether_the_ship_is_suspect_and_changes_nothing_else(slow):
+    row = slow[0]
+    with_rule = flown("payload.rule=eca_0.15")[0]
+    z = (0.15 - 0.10) / with_rule["fsc_uncertainty_percent"]
+    assert with_rule["suspect_false_alarm"] == pytest.approx(norm.sf(z), rel=1e-6)
+    assert with_rule["sulphur_suspect"] == (with_rule["fsc_percent"] >= 0.15)
+    assert "sulphur_suspect" not in row
+    assert {name: with_rule[name] for name in ("fsc_percent", "sulphur_verdict")} == {
+        name: row[name] for name in ("fsc_percent", "sulphur_verdict")
+    }
+
+
 def test_the_same_flight_reads_the_same(slow):
     _, history, _ = slow
     _, again, _ = flown()
@@ -141,6 +154,7 @@ def test_a_flight_without_payload_is_flown_alike(slow):
         ),
         ("payload.sensor=unspecified", "payload.sensor is 'unspecified'; there are alphasense_a4"),
         ("payload.limit_percent=0", "payload.limit_percent is 0"),
+        ("payload.rule=eca_0.14", "payload.rule is 'eca_0.14'; did you mean 'eca_0.1"),
         (
             "payload.limit_percent=0.1%",
             "payload.limit_percent is '0.1%'; it must be a number, e.g. limit_percent=0.1",

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from gnc.mission.mission import Mode
+from measurement.estimate.verdict import GUARD
 from scenarios.engine.task import Task
 from scenarios.experiment.requests import Experiment
 from scenarios.flight import FlightWork
@@ -64,6 +65,9 @@ def test_a_plume_is_found_and_the_flight_leaves_with_a_verdict(until_verdict):
     # time.
     assert row["enough"] == "verdict: above"
     assert row["sulphur_verdict"] == "above"
+    # By a guard band that is wider than that of one look.
+    assert row["verdict_looks"] >= 1
+    assert row["verdict_guard"] > GUARD
     assert modes(history)[0] is Mode.APPROACH
     assert {Mode.SEARCHING, Mode.FOUND} & set(modes(history))
     assert modes(history)[-1] is Mode.DEPARTING

@@ -1,4 +1,4 @@
-"""When a flight has enough: two looks that agree, or a plume that cannot be measured."""
+"""When a flight has enough: a verdict by all looks together, or a plume that cannot be measured."""
 
 import math
 from types import SimpleNamespace
@@ -38,12 +38,21 @@ class Mission:
         self.departing = True
 
 
-def judged(monkeypatch, verdicts, *, axis=None, settled=0.0):
-    """Return a judge whose looks find these verdicts one after the other, and its mission."""
-    looks = iter(verdicts)
+def judged(monkeypatch, contents, *, axis=None, settled=0.0, quality="B"):
+    """Return a judge whose looks find these contents one after the other, each with half the noise
+    of the one before, and its mission.
+    """
+    looks = iter(enumerate(contents))
 
     def estimate(*_, **__):
-        return SimpleNamespace(verdicts=(SimpleNamespace(verdict=next(looks)),))
+        number, content = next(looks)
+        noise = 0.04 * 0.5**number
+        return SimpleNamespace(
+            fsc_percent=content,
+            noise_percent=noise,
+            total_percent=math.hypot(noise, 0.005),
+            quality=quality,
+        )
 
     monkeypatch.setattr(judging, "estimate", estimate)
     reader = SimpleNamespace(limit_percent=0.1, spec=None, readings=lambda since: since)
@@ -60,19 +69,29 @@ def looks(judge, number, distance=230.0):
     ]
 
 
-def test_a_verdict_counts_from_the_second_look_that_agrees(monkeypatch):
-    judge, mission = judged(monkeypatch, ["above", "open", "below", "below"])
-    assert looks(judge, 3) == []
-    assert not mission.departing
-    looks_again, _ = judged(monkeypatch, ["above", "open", "below", "below"])
-    looks(looks_again, 4)
-    assert looks_again.enough is Enough.BELOW
-    assert looks_again.left_at == pytest.approx(4 * INTERVAL, abs=0.11)
+def test_a_flight_leaves_at_the_first_look_beyond_the_guard_band_of_repeated_looks(monkeypatch):
+    # 1.8 standard uncertainties above, then as many below: more than one look needs, 1.645, and
+    # less than one of several.
+    contents = [0.1 + 1.8 * 0.0403, 0.1 - 1.8 * 0.0206, 0.05]
+    judge, mission = judged(monkeypatch, contents)
+    assert looks(judge, 2) == []
+    assert (judge.enough, mission.departing) == (None, False)
+    again, mission = judged(monkeypatch, contents)
+    looks(again, 3)
+    assert (again.enough, mission.departing) == (Enough.BELOW, True)
+    assert again.left_at == pytest.approx(3 * INTERVAL, abs=0.11)
+    assert again.verdict.looks == 3
+
+
+def test_a_record_that_has_no_verdict_ends_no_flight(monkeypatch):
+    judge, mission = judged(monkeypatch, [2.0, 2.0, 2.0], quality="C")
+    looks(judge, 3)
+    assert (judge.enough, mission.departing, judge.verdict.looks) == (None, False, 0)
 
 
 def test_it_is_over_when_the_vehicle_has_gone_farther_than_where_it_left(monkeypatch):
-    judge, mission = judged(monkeypatch, ["above", "above"])
-    looks(judge, 2)
+    judge, mission = judged(monkeypatch, [0.5])
+    looks(judge, 1)
     assert mission.departing
     assert not judge.over(40.0, 230.0 + GONE - 1.0)
     assert judge.over(41.0, 230.0 + GONE + 1.0)
@@ -85,10 +104,10 @@ def test_before_the_flight_has_settled_no_reading_counts(monkeypatch):
 
 
 def test_off_its_orbit_and_where_it_is_detected_no_plume_is_out_of_reach(monkeypatch):
-    judge, mission = judged(monkeypatch, ["open"] * 9, axis=Axis(measurable=0.01))
+    judge, mission = judged(monkeypatch, [0.1] * 9, axis=Axis(measurable=0.01))
     mission.orbit = OrbitStatus(NO_CENTRE, 0.0, in_place=False)
     looks(judge, 3)
-    found, _ = judged(monkeypatch, ["open"] * 9, axis=Axis(measurable=0.01, mode=Mode.FOUND))
+    found, _ = judged(monkeypatch, [0.1] * 9, axis=Axis(measurable=0.01, mode=Mode.FOUND))
     looks(found, 3)
     assert (judge.enough, found.enough) == (None, None)
 
