@@ -30,6 +30,7 @@ from measurement.estimate.model import (
     with_one_shape,
 )
 from measurement.estimate.record import Record
+from measurement.estimate.timing import T90_LEAST, T90_MOST
 from measurement.sniffer.lag import Array
 from measurement.sniffer.spec import SnifferSpec
 
@@ -65,13 +66,10 @@ relative standard deviation of it, as the background is not quite what the model
 _STANDS_OUT = 3.0
 """Height of a pass over its line [standard deviations of the background over such a line]."""
 
-_ROUNDS, _ROUNDS_FREE = 2, 8
+_ROUNDS, _ROUNDS_FREE = 5, 10
 """Most rounds of linearising with a stated instrument, and with a t90 or delay to be found."""
 
-_VARIANCE_ROUNDS = 2
-"""Rounds in which the variances are found anew."""
-
-_SETTLED = 0.1
+_SETTLED = 0.2
 """Change of every property at which the linearisation has settled [units]."""
 
 _STEP_MOST = 3.0
@@ -107,14 +105,18 @@ class _State:
     foreign: tuple[int, ...] = ()
 
     @property
-    def offset(self) -> Array:
-        """Change of co2 from the linearisation's instrument to the stated one, shape (n,)."""
-        return np.asarray(self.data.columns @ self.place)
+    def signals(self) -> tuple[Array, Array]:
+        """The so2 and co2 of the stated instrument, shape (n,) [ppb], [ppm]."""
+        changes = self.data.columns * self.place
+        of_so2 = np.array([item.gas == "so2" for item in self.properties], dtype=bool)
+        so2 = self.data.so2 - self.data.cross * changes[:, of_so2].sum(axis=1)
+        return so2, self.data.co2 + changes.sum(axis=1)
 
     @property
     def residual(self) -> Array:
         """The residual r of the stated instrument, shape (n,) [ppb]."""
-        return np.asarray(self.data.so2 - self.slope * (self.data.co2 + self.offset))
+        so2, co2 = self.signals
+        return so2 - self.slope * co2
 
     @property
     def own(self) -> list[int]:
@@ -139,6 +141,11 @@ class _State:
         """The instrument z, shape (n,)."""
         return np.asarray(self.data.passes[:, self.own].sum(axis=1))
 
+    @property
+    def distortions(self) -> Array:
+        """Changes of r by a unit of each property, shape (n, p) [ppb]."""
+        return self.data.columns * self.data.slopes(self.properties, self.slope)
+
     def moved(self, instrument: SnifferSpec) -> SnifferSpec:
         """Return the stated instrument with its properties at ``place``."""
         for item, units in zip(self.properties, self.place, strict=True):
@@ -154,12 +161,23 @@ class _State:
         """Return mean and covariance of the properties, given the record [units]."""
         bare = replace(self, data=replace(self.data, columns=0.0 * self.data.columns))
         inverse = bare.inverse(self.freed)
-        columns = self.slope * self.data.columns
+        columns = self.distortions
         weighted = inverse @ columns
         priors = np.array([item.prior for item in self.properties])
         precision = np.diag(priors**-2.0) + columns.T @ weighted
         covariance: Array = np.asarray(np.linalg.inv(precision), dtype=np.float64)
         return -covariance @ (weighted.T @ self.residual), covariance
+
+    def unweighted_slope(self) -> float:
+        """Return the slope by the instrument z without weights, 0 if there is none.
+
+        It does not depend on the variances, and they depend on it little.
+        """
+        z, fixed = self.instrument_column, self.fixed
+        z = z - fixed @ (fixed.T @ z)
+        so2, co2 = self.signals
+        energy = float(z @ co2)
+        return float(z @ so2) / energy if energy > 0.0 else 0.0
 
     def refitted(self, varying: Array | None = None) -> "_State":
         """Return the state with the variances of the greatest likelihood (4)."""
@@ -177,7 +195,7 @@ class _State:
             z = self.data.equalised(operator @ self.data.read)  # (5)
         size = background_of_co2(self.data, self.variances, self.slope)
         errors = read_errors(self.data, self.variances, size)
-        return solve_slope(self.data, inverse, z, operator, errors, self.offset)
+        return solve_slope(self.data, inverse, z, operator, errors, self.signals)
 
     def with_between(self, between: float) -> "_State":
         """Return the state with a standard deviation of the slopes of passes [ppb/ppm]."""
@@ -305,19 +323,16 @@ _HAZE = "CO2 background varies as much within passes as the plume; fly closer or
 
 
 def _begun(record: Record, instrument: SnifferSpec) -> _State | None:
-    """Return a first slope, by ordinary instrumental variables; None without passes."""
+    """Return the state to begin with; None without passes."""
     properties = uncertain_properties(instrument)
     data = block_record(record, instrument, properties)
     if data is None or not data.windows:
         return None
-    z = data.passes.sum(axis=1)
-    z = z - data.fixed @ (data.fixed.T @ z)
-    energy = float(z @ data.co2)
-    first = float(z @ data.so2) / energy if energy > 0.0 else 0.0
-    slope = max(_SLOPE_LEAST, first)
-    start = Variances(noise=1.0, background=0.3 * slope, length=25.0)
+    start = Variances(noise=1.0, background=0.0, length=25.0)
     place = np.zeros(len(properties))
-    return _State(data=data, properties=properties, place=place, variances=start, slope=slope)
+    state = _State(data=data, properties=properties, place=place, variances=start, slope=0.0)
+    slope = max(_SLOPE_LEAST, state.unweighted_slope())
+    return replace(state, slope=slope, variances=replace(start, background=0.3 * slope))
 
 
 _SLOPE_LEAST = 0.1
@@ -330,13 +345,14 @@ def _linearised(record: Record, instrument: SnifferSpec, state: _State) -> _Stat
     stated = priors == 1.0
     rounds = _ROUNDS if stated.all() else _ROUNDS_FREE
     for number in range(rounds):
-        if number < _VARIANCE_ROUNDS:
-            state = state.refitted()
+        slope = max(_SLOPE_LEAST, state.unweighted_slope())
+        state = replace(state, slope=slope).refitted()
         inverse = state.inverse(state.fixed)
         state = state.with_slope(state.solved(inverse))
         place, _ = state.properties_found()
         near = np.clip(place - state.place, -_STEP_MOST, _STEP_MOST) + state.place
         place = np.where(stated, np.clip(place, -_STEP_MOST, _STEP_MOST), near)
+        place = _within_search(instrument, state.properties, place)
         settled = bool(np.all(np.abs(place - state.place) < _SETTLED))
         if settled or number == rounds - 1:
             return state
@@ -346,6 +362,17 @@ def _linearised(record: Record, instrument: SnifferSpec, state: _State) -> _Stat
             return state
         state = replace(moved, data=data)
     return state
+
+
+def _within_search(instrument: SnifferSpec, properties: Sequence[Property], place: Array) -> Array:
+    """Return the properties with a t90 that is not stated within the range that is searched."""
+    found = place.copy()
+    for i, item in enumerate(properties):
+        if item.prior != 1.0 and item.name == "t90_s":
+            start = instrument.known(item.gas).t90_s
+            least, most = (math.log(end / start) / item.unit for end in (T90_LEAST, T90_MOST))
+            found[i] = min(max(float(place[i]), least), most)
+    return found
 
 
 def _of_passes_that_stand_out(
@@ -470,7 +497,7 @@ def _result(
 ) -> Fit:
     """Return the fit with its figures."""
     data, priors = state.data, np.array([item.prior for item in state.properties])
-    columns = state.slope * data.columns
+    columns = state.distortions
     stated = priors == 1.0
     # Of (7), what the columns D add.
     response = float(np.sum((columns[:, stated].T @ found.weights) ** 2))
@@ -516,8 +543,8 @@ def _residuals(state: _State, size: float) -> Residuals:
         return np.asarray(values - basis @ (basis.T @ values))
 
     stated = np.array([item.prior == 1.0 for item in state.properties], dtype=bool)
-    columns = data.columns[:, stated]
-    shown = state.slope * columns @ state.place[stated]
+    columns = state.distortions[:, stated]
+    shown = columns @ state.place[stated]
     residual = beside(data.so2 - state.slope * data.co2 - shown)
     noise = beside(beside(data.noise(state.slope)).T)
     kernel = beside(beside(data.background(state.variances.length)).T)
@@ -527,7 +554,7 @@ def _residuals(state: _State, size: float) -> Residuals:
         energy=float(residual @ residual),
         noise=float(np.trace(noise)),
         background=(state.slope * size) ** 2 * float(np.trace(kernel)),
-        instrument=float(np.sum(beside(state.slope * columns) ** 2)),
+        instrument=float(np.sum(beside(columns) ** 2)),
         freedom=float(np.trace(expected)) ** 2 / squares if squares > 0.0 else 1.0,
     )
 

@@ -7,13 +7,15 @@ blocks. With the true slope b, the difference
 
 holds nothing of the ship's plume, whatever shape the plume has. What is left is Gaussian, with
 
-    V = s N + a^2 K(l) + b^2 D D' + c^2 Z Z'                                             (2)
+    V = s N + e^2 I + a^2 K(l) + D b b' D' + c^2 Z Z'                                    (2)
 
 * N : white noise of each channel through the filter that equalises it, and the walk of its zero,
   as they are stated; s is known to be 1 within some 30 %;
+* e : some hundredths of the plume, as no channel is exactly a lag;
 * K : an Ornstein-Uhlenbeck background, exp(-|dt|/l) in the air, read with the common response;
-* D : a column for each t90 and delay of SO2 and of CO2: the change of r by one standard deviation
-  of that property, for slope 1, in the plume alone. This marginalises the property;
+* D : a column for each t90 and delay of SO2 and of CO2: the change of co2 by one standard deviation
+  of that property, in the plume alone. This marginalises the property. For SO2, b is the slope of
+  its readings, with what it reads of NO and NO2;
 * Z : a column for each pass, its CO2: slopes of passes may differ by a random effect c.
 
 Constant, trend, the transients of the filters and passes of another fuel are fixed columns X. With
@@ -76,7 +78,7 @@ _FREE_LEAST = 3
 _INDEPENDENT = 1e-5
 """Least singular value of a column, relative to the largest."""
 
-_INEXACT = 0.01
+_INEXACT = 0.03
 """Least noise of a block, relative to the SO2 of the plume: no channel is exactly a lag, and no
 record exact. What varies between readings adds ``SAMPLING_SD`` for each time constant of CO2."""
 
@@ -262,10 +264,10 @@ class Property:
         return with_delay(instrument, self.gas, channel.delay_s + units * self.unit)
 
 
-_UNITS = {"t90_s": 0.1, "delay_s": 0.5}
+_UNITS = {"t90_s": 0.05, "delay_s": 0.1}
 """Units of properties that are not stated: of log(t90), and of the delay [s]."""
 
-_NOT_STATED = 100.0
+_NOT_STATED = 300.0
 """Standard deviation of such a property [units]."""
 
 
@@ -307,7 +309,8 @@ class BlockedRecord:
     passes : equalised CO2 of each pass over its line, shape (n, number of passes) [ppm]
     noises : of each gas, its share in so2 and in co2, and the covariance of its noise
     fixed : constant, trend and transients, orthonormal, shape (n, k)
-    columns : change of so2 or co2 by a unit of each property, of a plume of slope 1, shape (n, p)
+    columns : change of r by a unit of each property, for readings of slope 1, shape (n, p)
+    cross : slope of what the readings of SO2 have of other gases [ppb/ppm]
     """
 
     signals: Signals
@@ -321,6 +324,7 @@ class BlockedRecord:
     noises: list[tuple[float, float, Array]]
     fixed: Array
     columns: Array
+    cross: float
 
     def noise(self, slope: float) -> Array:
         """Return N of (2)."""
@@ -330,6 +334,10 @@ class BlockedRecord:
             if share:
                 total += share**2 * covariance
         return total
+
+    def slopes(self, properties: Sequence[Property], slope: float) -> Array:
+        """Return the slope of the readings that each property changes, shape (p,) [ppb/ppm]."""
+        return np.array([slope + self.cross * (item.gas == "so2") for item in properties])
 
     def background(self, length: float) -> Array:
         """Return K of (2)."""
@@ -385,19 +393,29 @@ def block_record(
         windows = _find_windows(blocks, read, noise, sum(co2.constants))
     over = _passes_over_lines(record, blocks, windows, native, read)
     each = _by_segments(record, over, lambda part: _from_rest(signals, part))
+    so2, passes = blocks.mean(signals.so2)[known], blocks.mean(each)[known]
+    others = signals.shares["so2"][0] * blocks.mean(signals.readings("so2"))[known] - so2
+    z = _beside(fixed, passes.sum(axis=1))
+    energy = float(z @ z)
     return BlockedRecord(
         signals=signals,
         blocks=blocks,
         known=known,
-        so2=blocks.mean(signals.so2)[known],
+        so2=so2,
         co2=blocks.mean(signals.co2)[known],
         read=read,
         windows=windows,
-        passes=blocks.mean(each)[known],
+        passes=passes,
         noises=_noises(signals, blocks, known),
         fixed=fixed,
         columns=blocks.mean(_distortions(signals, each.sum(axis=1), properties))[known],
+        cross=float(z @ others) / energy if energy > 0.0 else 0.0,
     )
+
+
+def _beside(fixed: Array, values: Array) -> Array:
+    """Return what fixed columns do not explain of values, in the shape of these."""
+    return np.asarray(values - fixed @ (fixed.T @ values))
 
 
 def _fixed_columns(time: Array, segment: Rows, common: tuple[float, ...]) -> Array:
@@ -548,11 +566,12 @@ class Likelihood:
         plume = float(np.std(data.passes.sum(axis=1) * slope)) if data.windows else 0.0
         record, co2 = data.signals.record, data.signals.instrument.known("co2")
         least = max(_INEXACT, SAMPLING_SD * record.step / co2.constants[0])
-        noise[np.diag_indices_from(noise)] += max(least * plume, 1e-9) ** 2
+        inexact = max(least * plume, 1e-9)
         self._noise = self.averaged(self.averaged(noise).T)
         priors = np.array([item.prior for item in properties])
-        columns = self.averaged(slope * data.columns * priors)
+        columns = self.averaged(data.columns * data.slopes(properties, slope) * priors)
         self._stated = columns @ columns.T
+        self._stated[np.diag_indices_from(self._stated)] += inexact**2 / self._size
         time = self.averaged(data.blocks.time[data.known])
         self._lags = np.abs(time[:, np.newaxis] - time)
         self._pole = data.signals.common[0]
@@ -730,7 +749,12 @@ def read_errors(data: BlockedRecord, found: Variances, size: float) -> Array:
 
 
 def solve_slope(
-    data: BlockedRecord, inverse: Array, z: Array, operator: Array, errors: Array, offset: Array
+    data: BlockedRecord,
+    inverse: Array,
+    z: Array,
+    operator: Array,
+    errors: Array,
+    signals: tuple[Array, Array],
 ) -> Slope:
     """Return the slope by (6) and (7).
 
@@ -739,17 +763,17 @@ def solve_slope(
     inverse : P of (3), shape (n, n)
     z, operator : of (5), shape (n,) [ppm], and its Q, of all blocks
     errors : covariance of the errors of CO2 as read, of all blocks [ppm^2]
-    offset : change of co2 by the difference between the stated instrument and that of the
-        linearisation, shape (n,) [ppm]
+    signals : so2 and co2 by the stated instrument, shape (n,) [ppb], [ppm]
     """
+    so2, co2 = signals
     covariance = data.equalised(data.equalised(operator @ errors).T).T  # C of (6)
     weighted = inverse @ z
-    whole = float(weighted @ (data.co2 + offset))
+    whole = float(weighted @ co2)
     energy = whole - float(np.vdot(inverse, covariance))
     if not (energy > 0.0 and float(z @ weighted) > 0.0):
         return Slope(slope=math.nan, deviation=math.nan, weights=0.0 * z, kept=0.0)
     return Slope(
-        slope=float(weighted @ data.so2) / energy,  # (6)
+        slope=float(weighted @ so2) / energy,  # (6)
         deviation=math.sqrt(float(z @ weighted)) / energy,  # (7)
         weights=weighted / energy,
         kept=energy / whole,

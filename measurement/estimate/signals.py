@@ -195,6 +195,10 @@ class Signals:
         """Return the standard deviation of a gas's readings."""
         return self.instrument.known(gas).noise
 
+    def readings(self, gas: str) -> Array:
+        """Return the readings of a gas at the common response and delay, shape (n,)."""
+        return _aligned(self.record, gas, self._poles(gas), self.common, self.delay_to_so2(gas))
+
     def delay_to_so2(self, gas: str) -> float:
         """Return the delay of SO2 less that of a gas [s]."""
         return self.instrument.known("so2").delay_s - self.instrument.known(gas).delay_s

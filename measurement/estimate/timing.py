@@ -15,8 +15,11 @@ from measurement.sniffer.spec import SnifferSpec
 DELAY_MOST = 30.0
 """Largest delay of SO2 after CO2 that is sought [s]."""
 
+T90_LEAST, T90_MOST = 0.5, 120.0
+"""Range of t90 of SO2 that is sought [s]."""
+
 _DELAY_SEARCH = tuple(float(d) for d in np.arange(-5.0, DELAY_MOST + 1.0, 1.0))
-_T90_SEARCH = tuple(float(t) for t in np.geomspace(0.5, 120.0, 14))
+_T90_SEARCH = tuple(float(t) for t in np.geomspace(T90_LEAST, T90_MOST, 14))
 """Grids of delay and t90 [s]."""
 
 
