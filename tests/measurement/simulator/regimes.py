@@ -83,24 +83,30 @@ class Sine:
 
 @dataclass(frozen=True)
 class Sway:
-    """CO2 with a gradient across the plume, which a UAV on its swings sees in step with its turns.
+    """CO2 with a gradient in space, which a UAV on its swings sees in step with its turns.
 
-    It turns on one side of the plume and then on the other, so that the period is two intervals
-    between passes; passes are in the middle of a swing, but for 15 % of an interval.
+    It turns on one side of the plume and then on the other. So a gradient across the plume has a
+    period of two intervals between passes, and is 0 in the passes but for 15 % of an interval; one
+    with height, of a UAV that climbs in turns, has a period of one, and extremes in passes.
 
     Attributes
     ----------
-    amplitude_ppm : between the middle and a turn [ppm]
+    amplitude_ppm : of the variation: from the middle to a turn, or, with height, half of what it is
+        from a pass to a turn [ppm]
+    with_height : whether it is with height
     """
 
     amplitude_ppm: float
+    with_height: bool = False
 
     def air(self, flight: Flight, generator: np.random.Generator) -> Array:
         """Return what it adds, shape (n, 4) [ppm]."""
         off = 0.15 * generator.standard_normal()
         swings = np.interp(flight.time, flight.middle, np.arange(len(flight.middle)))
-        side = generator.choice([-1.0, 1.0])
-        return _co2(side * self.amplitude_ppm * np.sin(math.pi * (swings + off)))
+        side = generator.choice([-1.0, 1.0]) * self.amplitude_ppm
+        if self.with_height:
+            return _co2(side * np.cos(2.0 * math.pi * swings))
+        return _co2(side * np.sin(math.pi * (swings + off)))
 
 
 @dataclass(frozen=True)
@@ -257,6 +263,12 @@ def _regimes() -> tuple[Regime, ...]:
         )
         for amplitude in (0.5, 1.0, 2.0)
     )
+    climb = Regime(
+        name="climb_1",
+        meaning="CO2 gradient with height, 2 ppm between passes and turns",
+        required="rarely wrong",
+        disturbances=(Sway(1.0, with_height=True),),
+    )
     second_ship = tuple(
         Regime(
             name=f"second_ship_{name}",
@@ -271,6 +283,7 @@ def _regimes() -> tuple[Regime, ...]:
         *haze,
         *sines,
         *sway,
+        climb,
         Regime(
             name="puffs",
             meaning="puffs of 3 ppm of CO2, one in 30 s, 3 to 10 s wide (sd)",
