@@ -348,9 +348,9 @@ def _regimes() -> tuple[Regime, ...]:
         ),
         Regime(
             name="two_poles",
-            meaning="SO2 with a second pole of 0.1 to 0.3 of the first, stated with one",
+            meaning="SO2 with a second pole of 0.2 to 0.5 of the first, stated with one",
             required="rarely wrong",
-            so2_second_pole=(0.1, 0.3),
+            so2_second_pole=(0.2, 0.5),
         ),
         Regime(
             name="haze_as_passes",
