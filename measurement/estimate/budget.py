@@ -48,6 +48,8 @@ def common_errors(
     instrument: SnifferSpec,
     measured: tuple[str, ...],
     changes: Callable[[SnifferSpec], tuple[float, Array]],
+    *,
+    timing: bool = True,
 ) -> tuple[dict[str, float], float]:
     """Return standard uncertainties of the result by name, and the energy they add to residuals.
 
@@ -61,10 +63,11 @@ def common_errors(
     measured : gases of the record
     changes : by how much result and residuals of another instrument differ from those of the
         instrument as it is known
+    timing : whether gain, t90 and delay of SO2 and CO2 are among them
     """
     squares: dict[str, float] = {}
     energy = 0.0
-    for name, channel in _moved_channels(instrument, measured):
+    for name, channel in _moved_channels(instrument, measured, timing):
         change, of_residuals = changes(instrument.with_channel(channel))
         squares[name] = squares.get(name, 0.0) + change**2
         energy += float(np.sum(of_residuals**2))
@@ -72,7 +75,7 @@ def common_errors(
 
 
 def _moved_channels(
-    instrument: SnifferSpec, measured: tuple[str, ...]
+    instrument: SnifferSpec, measured: tuple[str, ...], timing: bool
 ) -> Iterator[tuple[str, Channel]]:
     """Yield name and channel of each error, except of what was found from the record (infinite)."""
     for gas in measured:
@@ -82,14 +85,15 @@ def _moved_channels(
             if not any(instrument.known(main).cross.get(gas, 0.0) for main in ("so2", "co2")):
                 continue
             calibration = response = gas
-        if channel.gain_sd:
+        moves = timing or gas in _CORRECTING
+        if moves and channel.gain_sd:
             yield calibration, replace(channel, gain=channel.gain * (1.0 + channel.gain_sd))
         for other, deviation in channel.cross_sd.items():
             if other in measured and deviation:
                 cross = {**channel.cross, other: channel.cross.get(other, 0.0) + deviation}
                 name = other if other in _CORRECTING else "calibration"
                 yield name, replace(channel, cross=cross)
-        if 0.0 < channel.t90_sd < math.inf:
+        if moves and 0.0 < channel.t90_sd < math.inf:
             yield response, replace(channel, t90_s=channel.t90_s * (1.0 + channel.t90_sd))
-        if 0.0 < channel.delay_sd_s < math.inf:
+        if moves and 0.0 < channel.delay_sd_s < math.inf:
             yield response, replace(channel, delay_s=channel.delay_s + channel.delay_sd_s)

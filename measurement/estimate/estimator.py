@@ -16,16 +16,7 @@ from measurement.estimate.budget import (
     common_errors,
     unmeasured,
 )
-from measurement.estimate.fit import (
-    DELAY_MOST,
-    Alignment,
-    align,
-    fit_groups,
-    fit_slope,
-    regress,
-    stated_alignment,
-    with_instrument_errors,
-)
+from measurement.estimate.fit import ExcludedPass, Fit, fit_record
 from measurement.estimate.passes import (
     SNR_LEAST,
     Pass,
@@ -42,8 +33,14 @@ from measurement.estimate.quality import (
     residual_problem,
 )
 from measurement.estimate.record import Record, checked_record, readings_noise
-from measurement.estimate.result import Figures, FscEstimate, Method
-from measurement.estimate.signals import Ends, Signals, make_signals, signals_table
+from measurement.estimate.result import Figures, FscEstimate, Method, PassContent
+from measurement.estimate.signals import make_signals, signals_table
+from measurement.estimate.timing import (
+    DELAY_MOST,
+    check_timing_is_stated,
+    searched_timing,
+    so2_delay,
+)
 from measurement.estimate.verdict import LIMITS_PERCENT, OPEN, interval, judged
 from measurement.gases import CARBON_FRACTION, fsc_factor
 from measurement.sniffer.lag import Array
@@ -59,6 +56,9 @@ _CARBON_LEAST, _CARBON_MOST = 0.5, 0.95
 _OVERLAP_LEAST = 0.95
 """Least share of the SO2 that areas must read [-]: that of passes 2.0 t90 apart."""
 
+_DELAY_NEAR = 0.75
+"""Difference from the stated delay that the grid of the search may show by chance [s]."""
+
 _EXPLAINED_LEAST = 0.5
 """Least share of a misfit that another delay explains if it is the true one [-]."""
 
@@ -72,12 +72,12 @@ class _Ratio:
     ratio, noise : [ppb/ppm]
     misfit : mean square of the residuals over that of the noise [-]
     common : standard uncertainties by errors that do not average out, by name [ppb/ppm]
-    alignment : response and delay of SO2
+    instrument : with response and delay of SO2 as stated, or as they fit best
     overlap : excess of the ratio that separate passes would have [ppb/ppm]
     problems : reasons why there can be no verdict
     """
 
-    alignment: Alignment
+    instrument: SnifferSpec
     ratio: float = math.nan
     noise: float = math.nan
     misfit: float = math.nan
@@ -121,17 +121,21 @@ def estimate(
     ]
     instrument = replace(instrument, channels=tuple(channels))
     passes = find_passes(record, instrument.known("co2"))
+    fit = Fit(instrument=instrument)
+    ratio = _Ratio(instrument=instrument)
     if not passes:
         problems.append(_no_pass(noise["co2"]))
-        ratio = _Ratio(alignment=Alignment(instrument=instrument))
     else:
         problems += coarseness_problem(passes, record) or _too_short(record, instrument, passes)
+        if method == "areas":
+            check_timing_is_stated(instrument)
+        fit = fit_record(record, searched_timing(record, instrument))
         if method == "regression":
-            ratio = _by_regression(record, instrument)
+            ratio = _by_regression(record, instrument, fit)
         else:
             ratio = _by_areas(record, instrument, passes)
-        problems += ratio.problems
-    return _estimate_from(record, passes, ratio, method, carbon, limits_percent, problems)
+        problems += [*ratio.problems, *fit.problems]
+    return _estimate_from(record, passes, fit, ratio, method, carbon, limits_percent, problems)
 
 
 def check_parameters(method: str, carbon: float, limits_percent: Sequence[float]) -> None:
@@ -176,86 +180,56 @@ def _too_short(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) 
     )
 
 
-def _by_regression(record: Record, instrument: SnifferSpec) -> _Ratio:
+def _by_regression(record: Record, instrument: SnifferSpec, fit: Fit) -> _Ratio:
     """Return the slope of SO2 over CO2, with response and delay as they are stated or fit best."""
-    alignment = align(record, instrument)
-    found = regress(make_signals(record, alignment.instrument))
-
-    def aligned(moved: SnifferSpec, ends: Ends = (0, 0)) -> Signals:
-        near = align(record, moved, start=alignment.instrument)
-        return make_signals(record, near.instrument, ends)
-
-    as_known = aligned(alignment.instrument)
-    others: list[SnifferSpec] = []
-
-    def changes(moved: SnifferSpec) -> tuple[float, Array]:
-        other = aligned(moved, as_known.ends)
-        others.append(other.instrument)
-        # Compared over the samples that both know.
-        same = as_known
-        if other.ends != as_known.ends:
-            same = make_signals(record, as_known.instrument, other.ends)
-        slope, residual = fit_slope(other)
-        slope_known, residual_known = fit_slope(same)
-        if not math.isfinite(slope - slope_known):
-            # An error as large as the slope: with this instrument it may be anything.
-            return found.slope, np.zeros(1)
-        return slope - slope_known, residual - residual_known
-
-    parts, instrument_energy = common_errors(alignment.instrument, record.gases, changes)
-    response = math.hypot(parts.get("response", 0.0), alignment.slope_deviation)
-    problems = (
-        *_shown_delay_problem(record, instrument, found.misfit, as_known.count),
-        *residual_problem(found.misfit, found.residual_energy, instrument_energy, as_known.count),
-    )
+    problems: tuple[str, ...] = ()
+    parts: dict[str, float] = {}
+    if fit.residuals is not None:
+        parts, energy = common_errors(fit.instrument, record.gases, fit.change, timing=False)
+        gains = [fit.instrument.known(gas).gain_sd for gas in ("so2", "co2")]
+        parts["calibration"] = math.hypot(
+            parts.get("calibration", 0.0), *(gain * fit.slope for gain in gains)
+        )
+        problems = (
+            *_shown_delay_problem(record, instrument, fit),
+            *residual_problem(fit.residuals, energy),
+        )
     return _Ratio(
-        ratio=found.slope,
-        noise=found.noise,
-        misfit=found.misfit,
-        common={**parts, "response": response},
-        alignment=with_instrument_errors(alignment, as_known.instrument, others),
+        ratio=fit.slope,
+        noise=fit.noise,
+        misfit=fit.residuals.misfit if fit.residuals else math.nan,
+        common={**parts, "response": fit.response},
+        instrument=fit.instrument,
         problems=problems,
     )
 
 
-def _shown_delay_problem(
-    record: Record, instrument: SnifferSpec, misfit: float, samples: int
-) -> tuple[str, ...]:
+def _shown_delay_problem(record: Record, instrument: SnifferSpec, fit: Fit) -> tuple[str, ...]:
     """Return the problem of SO2 and CO2 that do not fit in time, as with the clocks of two loggers.
 
     The delay is sought over its whole range: far from the true one, small steps show no error.
     """
-    so2 = instrument.known("so2")
-    if math.isinf(so2.delay_sd_s) or not misfit > 0.0 or noise_explains(misfit, samples):
+    so2, residuals = instrument.known("so2"), fit.residuals
+    if math.isinf(so2.delay_sd_s) or residuals is None or noise_explains(residuals):
         return ()
-    free = align(record, instrument.with_channel(replace(so2, delay_sd_s=math.inf)))
+    free = searched_timing(record, instrument.with_channel(replace(so2, delay_sd_s=math.inf)))
+    stated = so2_delay(instrument)
+    if abs(so2_delay(free) - stated) <= _DELAY_NEAR:
+        return ()
+    found = fit_record(record, free)
     # With a clean fuel, the uncorrected effect of NO and NO2 is left, which may follow the CO2 of
     # another pass a little better than that of its pass.
-    remaining = regress(make_signals(record, free.instrument)).misfit - 1.0
-    if not remaining < (1.0 - _EXPLAINED_LEAST) * (misfit - 1.0):
+    if found.residuals is None:
         return ()
-
-    def refined_delay(moved: SnifferSpec) -> float:
-        return _delay(align(record, moved, start=free.instrument).instrument)
-
-    refined = refined_delay(free.instrument)
-
-    def changes(moved: SnifferSpec) -> tuple[float, Array]:
-        return refined_delay(moved) - refined, np.zeros(1)
-
-    parts, _ = common_errors(free.instrument, record.gases, changes)
-    deviation = math.hypot(so2.delay_sd_s, free.delay_sd_s, *parts.values())
-    return delay_problem(_delay(instrument), _delay(free.instrument), deviation)
-
-
-def _delay(instrument: SnifferSpec) -> float:
-    """Return the delay of SO2 after CO2 [s]."""
-    return instrument.known("so2").delay_s - instrument.known("co2").delay_s
+    remaining, whole = found.residuals.misfit - 1.0, residuals.misfit - 1.0
+    if not remaining < (1.0 - _EXPLAINED_LEAST) * whole:
+        return ()
+    deviation = math.hypot(so2.delay_sd_s, found.delay_sd_s)
+    return delay_problem(stated, so2_delay(found.instrument), deviation)
 
 
 def _by_areas(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> _Ratio:
     """Return the ratio of areas, with a common error where passes overlap in the slow channel."""
-    alignment = stated_alignment(instrument)
     found = area_ratio(record, instrument, passes)
 
     def changes(moved: SnifferSpec) -> tuple[float, Array]:
@@ -271,7 +245,7 @@ def _by_areas(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -
         noise=found.noise,
         misfit=1.0,
         common={**common, "overlap": abs(overlap)},
-        alignment=alignment,
+        instrument=instrument,
         overlap=overlap,
         problems=problems,
     )
@@ -280,6 +254,7 @@ def _by_areas(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -
 def _estimate_from(
     record: Record,
     passes: tuple[Pass, ...],
+    fit: Fit,
     ratio: _Ratio,
     method: Method,
     carbon: float,
@@ -287,7 +262,7 @@ def _estimate_from(
     problems: list[str],
 ) -> FscEstimate:
     """Return the estimate of the fuel from a ratio of SO2 to CO2."""
-    factor, instrument = fsc_factor(carbon), ratio.alignment.instrument
+    factor, instrument = fsc_factor(carbon), ratio.instrument
     so2 = instrument.known("so2")
     absent = unmeasured(instrument, record.gases, carbon)
     assumed = -sum(shift for shift, _ in absent.values())
@@ -307,22 +282,15 @@ def _estimate_from(
         doses = [found.dose_ppm_s for found in passes]
         problems = [*problems, *pending_so2_problem(fsc, total, read, doses)]
     signals = make_signals(record, instrument)
-    groups = fit_groups(
-        signals,
-        passes,
-        ratio.ratio,
-        misfit=ratio.misfit,
-        response=ratio.common.get("response", 0.0),
-    )
     table, so2_snr = signals_table(signals, ratio.ratio)
-    figures = _figures(record, passes, instrument, so2_snr)
+    figures = _figures(record, passes, fit, instrument, so2_snr)
     quality, reasons = quality_class(
         problems=problems,
         snr=figures.co2_snr,
         passes=len(passes),
         fsc=fsc,
         deviation=total,
-        agreement=groups.agreement,
+        agreement=fit.agreement,
         limit=min(limits),
         responses_stated=all(so2.cross.get(gas) for gas in so2.cross_sd),
     )
@@ -345,20 +313,34 @@ def _estimate_from(
         verdicts=tuple(judged(limit, fsc, total, admitted=quality != "C") for limit in limits),
         figures=figures,
         passes=passes,
-        pass_percent=tuple(factor * slope + assumed for slope in groups.slopes),
-        pass_deviation_percent=tuple(factor * deviation for deviation in groups.deviations),
-        agreement=groups.agreement,
+        excluded=tuple(_excluded(item, factor, assumed) for item in fit.excluded),
+        pass_percent=tuple(factor * slope + assumed for slope, _ in fit.groups),
+        pass_deviation_percent=tuple(factor * sd for _, sd in fit.groups),
+        agreement=fit.agreement,
         so2_t90_s=so2.t90_s,
-        so2_t90_sd_s=ratio.alignment.t90_sd_s,
-        delay_s=_delay(instrument),
-        delay_sd_s=ratio.alignment.delay_sd_s,
+        so2_t90_sd_s=fit.t90_sd_s,
+        delay_s=so2_delay(instrument),
+        delay_sd_s=fit.delay_sd_s,
         instrument=instrument,
         signals=table,
     )
 
 
+def _excluded(found: ExcludedPass, factor: float, assumed: float) -> PassContent:
+    """Return the sulphur content by a pass of another fuel."""
+    return PassContent(
+        time_s=found.time_s,
+        fsc_percent=factor * found.slope + assumed,
+        noise_percent=factor * found.deviation,
+    )
+
+
 def _figures(
-    record: Record, passes: tuple[Pass, ...], instrument: SnifferSpec, so2_snr: float
+    record: Record,
+    passes: tuple[Pass, ...],
+    fit: Fit,
+    instrument: SnifferSpec,
+    so2_snr: float,
 ) -> Figures:
     """Return the figures of a record: its length, its passes, and signal to noise."""
     noise = instrument.known("co2").noise
@@ -372,6 +354,10 @@ def _figures(
         dose_ppm_s=float(np.mean([found.dose_ppm_s for found in passes])) if passes else math.nan,
         co2_snr=float(np.median([found.snr for found in passes])) if passes else 0.0,
         so2_snr=so2_snr,
+        background_ppm=fit.background_ppm,
+        background_ppb=fit.background_ppb,
+        background_s=fit.background_s,
+        passes_excluded=len(fit.excluded),
     )
 
 

@@ -1,394 +1,642 @@
-"""Slope of SO2 over CO2: regression, response and delay of SO2 that fit best, groups of passes."""
+"""The fit of a record: rounds of ``model``, passes of other fuels, and what must not be judged.
+
+1. Properties of the instrument are linearised about the stated ones, then about those that the
+   record shows, with variances and slope found anew.
+2. Passes that do not stand out of the fitted background are no passes.
+3. A pass whose own slope is far off becomes a fixed column: it may be of another ship.
+4. The slopes of the others get a random effect.
+"""
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
-import numpy.typing as npt
 from scipy.special import chdtrc
 
-from measurement.errors import MeasurementError
-from measurement.estimate.passes import Pass, co2_excesses
+from measurement.estimate.model import (
+    BlockedRecord,
+    Likelihood,
+    Property,
+    Slope,
+    Variances,
+    background_of_co2,
+    block_record,
+    line_operator,
+    orthonormal,
+    read_errors,
+    solve_slope,
+    uncertain_properties,
+    with_one_shape,
+)
 from measurement.estimate.record import Record
-from measurement.estimate.signals import Signals, equalised, make_signals, shifted, without
+from measurement.estimate.timing import T90_LEAST, T90_MOST
 from measurement.sniffer.lag import Array
 from measurement.sniffer.spec import SnifferSpec
 
-# Regression
+FOREIGN_SIGMA = 4.5
+"""Standard deviations by which the slope of a pass of another fuel differs, at least."""
+
+FOREIGN_MOST = 0.25
+"""Largest share of the passes that may be left out."""
+
+_ALIKE = 0.05
+"""Standard deviation by which slopes of passes of one fuel differ, relative to the slope [-]: other
+gases come with another response, and the response is not quite what a lag is."""
+
+_COMPARED_LEAST = 4
+"""Fewest passes among which one can be seen to be of another fuel."""
+
+DISAGREE = 1e-6
+"""Probability of passes that differ as much, below which there is no verdict."""
+
+DISAGREE_SMALL, BETWEEN_MOST = 1e-3, 0.2
+"""The same for passes whose standard deviation relative to the slope is above the second figure."""
+
+CHANGE = 1e-4
+"""Probability of a change of slope between two passes, below which there is no verdict."""
+
+KEPT_LEAST = 0.5
+"""Least share of the instrument's energy that the plume must have for a verdict."""
+
+_CORRECTED_MOST, _CORRECTED_SPREAD = 0.05, 0.3
+"""Share of that energy that noise and background have from which on passes get one shape; and
+relative standard deviation of it, as the background is not quite what the model says."""
+
+_STANDS_OUT = 3.0
+"""Height of a pass over its line [standard deviations of the background over such a line]."""
+
+_ROUNDS, _ROUNDS_FREE = 5, 10
+"""Most rounds of linearising with a stated instrument, and with a t90 or delay to be found."""
+
+_SETTLED = 0.2
+"""Change of every property at which the linearisation has settled [units]."""
+
+_STEP_MOST = 3.0
+"""Largest distance of a property from what is stated, or step of one that is not [units]."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Slope:
-    """Slope of a regression.
+class ExcludedPass:
+    """A pass whose ratio is of another fuel: its time [s], its slope and noise [ppb/ppm]."""
 
-    Attributes
-    ----------
-    slope : SO2 over CO2 [ppb/ppm]
-    noise : standard deviation of the slope by the noise [ppb/ppm]
-    misfit : mean square of the residuals over that of the stated noise [-]
-    residual_energy : sum of squares of the residuals [ppb^2]
-    """
-
+    time_s: float
     slope: float
-    noise: float
-    misfit: float
-    residual_energy: float
-
-
-def fit_slope(signals: Signals) -> tuple[float, Array]:
-    """Return the slope [ppb/ppm] and the residuals, shape (n,) [ppb].
-
-    The slope is corrected for the noise of CO2, which would attenuate it. It is NaN where CO2 is
-    noise alone, or too few samples are known.
-    """
-    co2, so2 = signals.excess
-    energy = float(co2 @ co2) - _noise_energy(signals, 0.0, 1.0)
-    slope = float(co2 @ so2) / energy if energy > 0.0 and signals.enough else math.nan
-    return slope, so2 - slope * co2
-
-
-def regress(signals: Signals) -> Slope:
-    """Return the slope with its noise.
-
-    Where residuals are larger than the noise of the instrument's figures predicts, the noise is
-    scaled by the root of the misfit.
-    """
-    slope, residual = fit_slope(signals)
-    co2, _ = signals.excess
-    residual_energy = float(residual @ residual)
-    energy = float(co2 @ co2) - _noise_energy(signals, 0.0, 1.0)
-    misfit = variance = math.nan
-    if math.isfinite(slope):
-        expected = _noise_energy(signals, 1.0, -slope)
-        misfit = residual_energy / expected if expected > 0.0 else 1.0
-        variance = float(noise_covariance(signals, (co2 / energy)[:, np.newaxis], slope)[0, 0])
-        correlation = signals.count * sum(
-            (in_co2 * signals.noise(gas)) ** 4 * signals.noise_correlation(gas)
-            for gas, (_, in_co2) in signals.shares.items()
-            if in_co2
-        )
-        variance += slope**2 * correlation / energy**2
-    return Slope(
-        slope=slope,
-        noise=math.sqrt(variance * max(1.0, misfit)),
-        misfit=misfit,
-        residual_energy=residual_energy,
-    )
-
-
-def noise_covariance(signals: Signals, weights: Array, slope: float) -> Array:
-    """Return the covariance by noise and drift of weighted sums of ``so2 - slope co2``.
-
-    Parameters
-    ----------
-    weights : of the samples in k sums, shape (n, k)
-    """
-    covariance = np.zeros((weights.shape[1],) * 2)
-    for gas, (in_so2, in_co2) in signals.shares.items():
-        drift = signals.instrument.known(gas).random_walk
-        part = (in_so2 - slope * in_co2) * signals.backwards(gas, weights)
-        covariance += signals.noise(gas) ** 2 * part.T @ part
-        if drift > 0.0:
-            walk = np.cumsum(part[::-1], axis=0)
-            covariance += drift**2 * signals.record.step * walk.T @ walk
-    return covariance
-
-
-def _noise_energy(signals: Signals, so2: float, co2: float) -> float:
-    """Return the expected noise energy of ``so2 SO2 + co2 CO2`` beside the background."""
-    return sum(
-        (so2 * in_so2 + co2 * in_co2) ** 2 * signals.noise(gas) ** 2 * signals.noise_energy(gas)
-        for gas, (in_so2, in_co2) in signals.shares.items()
-        if so2 * in_so2 + co2 * in_co2
-    )
-
-
-def _residual_variance(signals: Signals, slope: float) -> float:
-    """Return the mean square of the residuals that the stated noise explains."""
-    return _noise_energy(signals, 1.0, -slope) / signals.count
-
-
-# Response time and delay of SO2, found from the record where they are not stated
-
-DELAY_MOST = 30.0
-"""Largest delay of SO2 after CO2 that is sought [s]."""
-
-_DELAY_SEARCH = tuple(float(d) for d in np.arange(-5.0, DELAY_MOST + 1.0, 1.0))
-_T90_SEARCH = tuple(float(t) for t in np.geomspace(0.5, 120.0, 14))
-"""Grids of delay and t90 [s] that are searched first."""
-
-_ROUNDS, _ROUNDS_NEAR = 8, 2
-"""Gauss-Newton steps at most, from the grid and from a start near the end."""
-
-_SMALL = 1e-3
-"""Step of log(t90) and delay [s] at which the fit has settled."""
-
-_STEPS = np.array([0.02, 0.1])
-"""Steps of the numerical derivatives in log(t90) and delay [s]."""
-
-_JUMPS = np.array([0.3, 1.0])
-"""Largest changes of log(t90) and delay [s] in one Gauss-Newton step."""
+    deviation: float
 
 
 @dataclass(frozen=True, kw_only=True)
-class Alignment:
-    """Response and delay of SO2.
+class _State:
+    """What is known during the fit.
 
     Attributes
     ----------
-    instrument : with the response and delay that fit best, where they are not stated
-    slope_deviation : standard deviation of the slope by what noise does to the fit; 0 where both
-        are stated [ppb/ppm]
-    t90_sd_s, delay_sd_s : standard deviations of t90 of SO2, and of its delay after CO2, without
-        the error by the time between readings [s]
+    data, properties : the record, linearised, and its instrument's properties
+    place : of the linearisation, by property [units]
+    variances, slope : found so far
+    foreign : indices of passes of other fuels
     """
 
-    instrument: SnifferSpec
-    slope_deviation: float = math.nan
+    data: BlockedRecord
+    properties: list[Property]
+    place: Array
+    variances: Variances
+    slope: float
+    foreign: tuple[int, ...] = ()
+
+    @property
+    def signals(self) -> tuple[Array, Array]:
+        """The so2 and co2 of the stated instrument, shape (n,) [ppb], [ppm]."""
+        changes = self.data.columns * self.place
+        of_so2 = np.array([item.gas == "so2" for item in self.properties], dtype=bool)
+        so2 = self.data.so2 - self.data.cross * changes[:, of_so2].sum(axis=1)
+        return so2, self.data.co2 + changes.sum(axis=1)
+
+    @property
+    def residual(self) -> Array:
+        """The residual r of the stated instrument, shape (n,) [ppb]."""
+        so2, co2 = self.signals
+        return so2 - self.slope * co2
+
+    @property
+    def own(self) -> list[int]:
+        """Indices of the passes of the ship."""
+        return [i for i in range(len(self.data.windows)) if i not in self.foreign]
+
+    @property
+    def fixed(self) -> Array:
+        """Fixed columns, passes of other fuels included."""
+        others = self.data.passes[:, list(self.foreign)]
+        return (
+            orthonormal(np.hstack([self.data.fixed, others])) if self.foreign else self.data.fixed
+        )
+
+    @property
+    def freed(self) -> Array:
+        """Fixed columns with z, so that an error of the slope cannot look like another thing."""
+        return orthonormal(np.hstack([self.fixed, self.instrument_column[:, np.newaxis]]))
+
+    @property
+    def instrument_column(self) -> Array:
+        """The instrument z, shape (n,)."""
+        return np.asarray(self.data.passes[:, self.own].sum(axis=1))
+
+    @property
+    def distortions(self) -> Array:
+        """Changes of r by a unit of each property, shape (n, p) [ppb]."""
+        return self.data.columns * self.data.slopes(self.properties, self.slope)
+
+    def moved(self, instrument: SnifferSpec) -> SnifferSpec:
+        """Return the stated instrument with its properties at ``place``."""
+        for item, units in zip(self.properties, self.place, strict=True):
+            instrument = item.moved(instrument, float(units))
+        return instrument
+
+    def inverse(self, fixed: Array, varying: Array | None = None) -> Array:
+        """Return P of (3)."""
+        likelihood = Likelihood(self.data, self.slope, self.properties)
+        return likelihood.inverse(self.variances, fixed, varying)[0]
+
+    def properties_found(self) -> tuple[Array, Array]:
+        """Return mean and covariance of the properties, given the record [units]."""
+        bare = replace(self, data=replace(self.data, columns=0.0 * self.data.columns))
+        inverse = bare.inverse(self.freed)
+        columns = self.distortions
+        weighted = inverse @ columns
+        priors = np.array([item.prior for item in self.properties])
+        precision = np.diag(priors**-2.0) + columns.T @ weighted
+        covariance: Array = np.asarray(np.linalg.inv(precision), dtype=np.float64)
+        return -covariance @ (weighted.T @ self.residual), covariance
+
+    def unweighted_slope(self) -> float:
+        """Return the slope by the instrument z without weights, 0 if there is none.
+
+        It does not depend on the variances, and they depend on it little.
+        """
+        z, fixed = self.instrument_column, self.fixed
+        z = z - fixed @ (fixed.T @ z)
+        so2, co2 = self.signals
+        energy = float(z @ co2)
+        return float(z @ so2) / energy if energy > 0.0 else 0.0
+
+    def refitted(self, varying: Array | None = None) -> "_State":
+        """Return the state with the variances of the greatest likelihood (4)."""
+        likelihood = Likelihood(self.data, self.slope, self.properties, coarse=True)
+        found = likelihood.fitted(self.residual, self.freed, self.variances, varying)
+        return replace(self, variances=found)
+
+    def solved(self, inverse: Array, *, one_shape: bool = False) -> Slope:
+        """Return the slope of the ship's passes."""
+        windows = [self.data.windows[i] for i in self.own]
+        operator = line_operator(len(self.data.read), windows)
+        z = self.instrument_column
+        if one_shape:
+            operator = with_one_shape(operator, windows, self.data.read)
+            z = self.data.equalised(operator @ self.data.read)  # (5)
+        size = background_of_co2(self.data, self.variances, self.slope)
+        errors = read_errors(self.data, self.variances, size)
+        return solve_slope(self.data, inverse, z, operator, errors, self.signals)
+
+    def with_between(self, between: float) -> "_State":
+        """Return the state with a standard deviation of the slopes of passes [ppb/ppm]."""
+        return replace(self, variances=replace(self.variances, between=between))
+
+    def with_slope(self, found: Slope) -> "_State":
+        """Return the state with a slope, if that is a number."""
+        return replace(self, slope=found.slope) if math.isfinite(found.slope) else self
+
+
+@dataclass(frozen=True, kw_only=True)
+class Residuals:
+    """Sums of squares of residuals beside a slow background, in blocks [ppb^2].
+
+    Attributes
+    ----------
+    energy, noise, background, instrument : found; expected of the stated noise, of the background
+        that CO2 shows, and of one standard deviation of each stated t90 and delay
+    freedom : degrees of freedom of what is expected [-]
+    """
+
+    energy: float
+    noise: float
+    background: float
+    instrument: float
+    freedom: float
+
+    @property
+    def misfit(self) -> float:
+        """Mean square of the residuals over that of the stated noise [-]; 1 without noise."""
+        return self.energy / self.noise if self.noise > 0.0 else 1.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fit:
+    """Slope of SO2 over CO2 of a record, and what was found with it.
+
+    Attributes
+    ----------
+    slope : [ppb/ppm]; NaN where the plume cannot be told from noise and background
+    noise : its standard deviation by noise, background and differences between passes
+    response : the same by t90 and delay of SO2 and CO2
+    residuals : how large they are
+    background_ppb, background_ppm, background_s : standard deviation of the background of the
+        residuals and of CO2, and its correlation length
+    agreement : probability that passes of one slope differ as much; NaN for a single pass
+    excluded : passes of another fuel
+    groups : slopes of groups of passes, and their noise
+    t90_sd_s, delay_sd_s : standard deviations of t90 of SO2 and of its delay after CO2 [s]
+    instrument : with the t90 and delay that the record shows where they are not stated
+    problems : reasons why there can be no verdict
+    """
+
+    slope: float = math.nan
+    noise: float = math.nan
+    response: float = math.nan
+    residuals: "Residuals | None" = None
+    background_ppb: float = math.nan
+    background_ppm: float = math.nan
+    background_s: float = math.nan
+    agreement: float = math.nan
+    excluded: tuple[ExcludedPass, ...] = ()
+    groups: tuple[tuple[float, float], ...] = ()
     t90_sd_s: float = math.nan
     delay_sd_s: float = math.nan
+    instrument: SnifferSpec
+    problems: tuple[str, ...] = ()
+    _state: _State | None = field(default=None, repr=False)
+    _weights: Array = field(default_factory=lambda: np.zeros(0), repr=False)
 
+    def change(self, moved: SnifferSpec) -> tuple[float, Array]:
+        """Return by how much slope and residuals change with another instrument.
 
-def stated_alignment(instrument: SnifferSpec) -> Alignment:
-    """Return response and delay as the instrument's figures state them.
-
-    Raises
-    ------
-    MeasurementError : they are not stated
-    """
-    so2, co2 = instrument.known("so2"), instrument.known("co2")
-    t90_sd_s = so2.t90_s * so2.t90_sd
-    delay_sd_s = math.hypot(so2.delay_sd_s, co2.delay_sd_s)
-    if not (math.isfinite(t90_sd_s) and math.isfinite(delay_sd_s)):
-        raise MeasurementError(
-            f"t90 and delay of '{instrument.name}' are not both given; give them, or use the"
-            " regression"
+        Parameters
+        ----------
+        moved : ``instrument`` with one property changed
+        """
+        state = self._state
+        if state is None:
+            return 0.0, np.zeros(1)
+        (so2, co2), (other_so2, other_co2) = (
+            state.data.means(instrument) for instrument in (self.instrument, moved)
         )
-    return Alignment(
-        instrument=instrument, slope_deviation=0.0, t90_sd_s=t90_sd_s, delay_sd_s=delay_sd_s
-    )
+        residual = other_so2 - so2 - self.slope * (other_co2 - co2)
+        fixed = state.fixed
+        return float(self._weights @ residual), residual - fixed @ (fixed.T @ residual)
 
 
-def align(record: Record, instrument: SnifferSpec, start: SnifferSpec | None = None) -> Alignment:
-    """Return response and delay of SO2, those not stated with the least squared residuals.
+def fit_record(record: Record, instrument: SnifferSpec) -> Fit:
+    """Return the fit of a record.
 
     Parameters
     ----------
-    record, instrument : an infinite deviation of t90 or delay of SO2 means that it is not stated
-    start : instrument with response and delay to start from; without it a grid is searched first
+    instrument : an infinite deviation of t90 or delay of SO2 means that it is not stated; the value
+        is where the search begins
     """
-    so2, co2 = instrument.known("so2"), instrument.known("co2")
-    free = np.flatnonzero(np.isinf([so2.t90_sd, so2.delay_sd_s]))
-    if not len(free):
-        return stated_alignment(instrument)
-    timing = _timing(start) if start else _grid_search(record, instrument, free)
-    covariance, slope_deviation = np.zeros((2, 2)), math.nan
-    for _ in range(_ROUNDS if start is None else _ROUNDS_NEAR):
-        step, covariance, slope_deviation = _gauss_newton(record, instrument, timing, free)
-        timing = timing + step
-        if np.abs(step).max() < _SMALL:
-            break
-    found = _with_timing(instrument, timing)
-    spread = np.sqrt(np.diagonal(covariance))
-    return Alignment(
-        instrument=found,
-        slope_deviation=slope_deviation,
-        t90_sd_s=found.known("so2").t90_s * (float(spread[0]) if 0 in free else so2.t90_sd),
-        delay_sd_s=float(spread[1]) if 1 in free else math.hypot(so2.delay_sd_s, co2.delay_sd_s),
-    )
+    state = _begun(record, instrument)
+    if state is None:
+        return Fit(instrument=instrument)
+    state = _linearised(record, instrument, state)
+    state, problems = _of_passes_that_stand_out(record, instrument, state)
+    state, alike, agreement = _without_foreign(state)
+    own = state.data.passes[:, state.own]
+    if len(state.own) > 2:
+        start = 0.1 * abs(state.slope) + state.solved(alike).deviation
+        state = state.with_between(max(1e-3, start)).refitted(own)
+    else:
+        state = state.with_between(0.0)
+    inverse = state.inverse(state.fixed, own)
+    found = state.solved(inverse)
+    whole = found.kept
+    if whole < 1.0 - _CORRECTED_MOST:
+        found = state.solved(inverse, one_shape=True)
+    if not math.isfinite(found.slope):
+        return Fit(instrument=instrument, problems=(*problems, _HAZE))
+    if whole < KEPT_LEAST:
+        problems = (*problems, _HAZE)
+    state = state.with_slope(found)
+    corrected = _CORRECTED_SPREAD * state.slope * max(0.0, 1.0 / found.kept - 1.0)
+    problems += _disagreement(state, alike, agreement)
+    return _result(instrument, state, inverse, found, corrected, agreement, problems)
 
 
-def with_instrument_errors(
-    alignment: Alignment, known: SnifferSpec, others: Sequence[SnifferSpec]
-) -> Alignment:
-    """Return an alignment whose deviations by noise include the effect of the instrument's errors.
+_HAZE = "CO2 background varies as much within passes as the plume; fly closer or wait"
 
-    Parameters
-    ----------
-    known, others : the instrument aligned as it is known, and with one error each
+
+def _begun(record: Record, instrument: SnifferSpec) -> _State | None:
+    """Return the state to begin with; None without passes."""
+    properties = uncertain_properties(instrument)
+    data = block_record(record, instrument, properties)
+    if data is None or not data.windows:
+        return None
+    start = Variances(noise=1.0, background=0.0, length=25.0)
+    place = np.zeros(len(properties))
+    state = _State(data=data, properties=properties, place=place, variances=start, slope=0.0)
+    slope = max(_SLOPE_LEAST, state.unweighted_slope())
+    return replace(state, slope=slope, variances=replace(start, background=0.3 * slope))
+
+
+_SLOPE_LEAST = 0.1
+"""Least slope by which the first variances are found [ppb/ppm]."""
+
+
+def _linearised(record: Record, instrument: SnifferSpec, state: _State) -> _State:
+    """Return the state linearised about the properties that the record shows."""
+    priors = np.array([item.prior for item in state.properties])
+    stated = priors == 1.0
+    rounds = _ROUNDS if stated.all() else _ROUNDS_FREE
+    for number in range(rounds):
+        slope = max(_SLOPE_LEAST, state.unweighted_slope())
+        state = replace(state, slope=slope).refitted()
+        inverse = state.inverse(state.fixed)
+        state = state.with_slope(state.solved(inverse))
+        place, _ = state.properties_found()
+        near = np.clip(place - state.place, -_STEP_MOST, _STEP_MOST) + state.place
+        place = np.where(stated, np.clip(place, -_STEP_MOST, _STEP_MOST), near)
+        place = _within_search(instrument, state.properties, place)
+        settled = bool(np.all(np.abs(place - state.place) < _SETTLED))
+        if settled or number == rounds - 1:
+            return state
+        moved = replace(state, place=place)
+        data = block_record(record, moved.moved(instrument), state.properties)
+        if data is None or not data.windows:
+            return state
+        state = replace(moved, data=data)
+    return state
+
+
+def _within_search(instrument: SnifferSpec, properties: Sequence[Property], place: Array) -> Array:
+    """Return the properties with a t90 that is not stated within the range that is searched."""
+    found = place.copy()
+    for i, item in enumerate(properties):
+        if item.prior != 1.0 and item.name == "t90_s":
+            start = instrument.known(item.gas).t90_s
+            least, most = (math.log(end / start) / item.unit for end in (T90_LEAST, T90_MOST))
+            found[i] = min(max(float(place[i]), least), most)
+    return found
+
+
+def _of_passes_that_stand_out(
+    record: Record, instrument: SnifferSpec, state: _State
+) -> tuple[_State, tuple[str, ...]]:
+    """Return the state with the passes that stand out of the background, and the problem of none.
+
+    Peaks of the background have been chosen for their height, so that (6) would not correct them.
     """
-    so2 = alignment.instrument.known("so2")
-    moves = [_timing(other) - _timing(known) for other in others] or np.zeros((1, 2))
-    log_t90, delay = np.linalg.norm(moves, axis=0).tolist()
-    t90_sd_s, delay_sd_s = alignment.t90_sd_s, alignment.delay_sd_s
-    if math.isinf(so2.t90_sd):
-        t90_sd_s = math.hypot(t90_sd_s, so2.t90_s * log_t90)
-    if math.isinf(so2.delay_sd_s):
-        delay_sd_s = math.hypot(delay_sd_s, delay)
-    return replace(alignment, t90_sd_s=t90_sd_s, delay_sd_s=delay_sd_s)
+    data = state.data
+    operator = line_operator(len(data.read), data.windows)
+    size = background_of_co2(data, state.variances, state.slope)
+    errors = read_errors(data, state.variances, size)
+    peaks = [window.peak for window in data.windows]
+    rows = operator[peaks]
+    deviations = np.sqrt(np.einsum("ij,jk,ik->i", rows, errors, rows))
+    high = rows @ data.read > _STANDS_OUT * deviations
+    if high.all():
+        return state, ()
+    if not high.any():
+        return state, (_HAZE,)
+    windows = [window for window, kept in zip(data.windows, high, strict=True) if kept]
+    fewer = block_record(record, state.moved(instrument), state.properties, windows)
+    if fewer is None:
+        return state, ()
+    state = replace(state, data=fewer).refitted()
+    return state.with_slope(state.solved(state.inverse(state.fixed))), ()
 
 
-def _timing(instrument: SnifferSpec) -> Array:
-    """Return log(t90) of SO2 and its delay after CO2 [s], shape (2,)."""
-    so2 = instrument.known("so2")
-    return np.array([math.log(so2.t90_s), so2.delay_s - instrument.known("co2").delay_s])
+def _without_foreign(state: _State) -> tuple[_State, Array, float]:
+    """Return the state without passes whose slope is far off, P, and how well the others agree.
+
+    Passes of one fuel may differ by ``_ALIKE``.
+    """
+    most = int(FOREIGN_MOST * len(state.data.windows))
+    while True:
+        state = state.with_between(_ALIKE * abs(state.slope))
+        own = state.data.passes[:, state.own]
+        inverse = state.inverse(state.fixed, own)
+        state = state.with_slope(state.solved(inverse))
+        against = own.T @ (inverse @ state.residual)
+        inner = own.T @ (inverse @ own)
+        strength = np.abs(against) / np.sqrt(np.maximum(np.diagonal(inner), 1e-12))
+        worst = int(np.argmax(strength))
+        too_few = len(state.data.windows) < _COMPARED_LEAST or len(state.foreign) >= most
+        if too_few or strength[worst] < FOREIGN_SIGMA:
+            return state, inverse, _agreement(against, inner)
+        state = replace(state, foreign=(*state.foreign, state.own[worst])).refitted()
 
 
-def _with_timing(instrument: SnifferSpec, timing: Array) -> SnifferSpec:
-    """Return the instrument with log(t90) of SO2 and its delay after CO2 [s], of either sign."""
-    late = max(0.0, -float(timing[1]) - instrument.known("co2").delay_s)
-    if late:
-        channels = tuple(
-            replace(channel, delay_s=channel.delay_s + late) for channel in instrument.channels
+def _agreement(against: Array, inner: Array) -> float:
+    """Return the probability that passes of one slope differ as much, by their scores."""
+    if len(against) < 2:
+        return math.nan
+    values, vectors = np.linalg.eigh(inner)
+    telling = values > 1e-4 * values[-1]
+    scores = (vectors.T @ against)[telling] ** 2 / values[telling]
+    return float(chdtrc(max(1, int(telling.sum()) - 1), float(scores.sum())))
+
+
+def _disagreement(state: _State, inverse: Array, agreement: float) -> tuple[str, ...]:
+    """Return the problem of passes that are not of one fuel, with the ratios that they show."""
+    count = len(state.data.windows)
+    full = len(state.foreign) >= max(1, int(FOREIGN_MOST * count))
+    varying = state.variances.between > BETWEEN_MOST * abs(state.slope)
+    change, chance = _change_of_slope(state, inverse)
+    disagree = agreement < DISAGREE or (agreement < DISAGREE_SMALL and varying)
+    if not (full or disagree or chance < CHANGE):
+        return ()
+    if chance < CHANGE and chance < agreement:
+        first, last = _times(state, change)
+        return (
+            "passes show at least two ratios: a change of fuel, or another ship's plume, between"
+            f" {first:.0f} and {last:.0f} s (p = {chance:.1g}); analyse both parts as two logs",
         )
-        instrument = replace(instrument, channels=channels)
-    delay = max(0.0, instrument.known("co2").delay_s + float(timing[1]))
-    return instrument.with_channel(
-        replace(instrument.known("so2"), t90_s=math.exp(float(timing[0])), delay_s=delay)
+    shown = f"p = {agreement:.1g}"
+    if full:
+        times = ", ".join(f"{item.time_s:.0f}" for item in _excluded(state))
+        shown = f"those at {times} s differ from the others"
+    return (
+        f"passes show at least two ratios: another ship's plume, or a change of fuel ({shown})",
     )
 
 
-def _gauss_newton(
-    record: Record, instrument: SnifferSpec, timing: Array, free: npt.NDArray[np.int64]
-) -> tuple[Array, Array, float]:
-    """Return the step of the timing, its covariance, and the deviation it adds to the slope."""
-    signals = make_signals(record, _with_timing(instrument, timing))
-    slope, residual = fit_slope(signals)
-    if not math.isfinite(slope):
-        return np.zeros(2), np.zeros((2, 2)), math.nan
-    by_timing = [_derivative(signals, instrument, timing, i, slope) for i in free]
-    derivatives = np.stack([-signals.excess[0], *by_timing], axis=1)
-    inverse = np.linalg.pinv(derivatives.T @ derivatives, hermitian=True)
-    step = np.zeros(2)
-    step[free] = np.clip(-(inverse @ (derivatives.T @ residual))[1:], -_JUMPS[free], _JUMPS[free])
-    # The noise of the residuals is not white: it reaches the fit by its covariance.
-    expected = _residual_variance(signals, slope) * signals.count
-    misfit = max(1.0, float(residual @ residual) / expected) if expected > 0.0 else 1.0
-    noise = misfit * noise_covariance(signals, derivatives, slope)
-    spread = inverse @ noise @ inverse
-    covariance = np.zeros((2, 2))
-    covariance[np.ix_(free, free)] = spread[1:, 1:]
-    with_timing_known = float(noise[0, 0]) / float(derivatives[:, 0] @ derivatives[:, 0]) ** 2
-    return step, covariance, math.sqrt(max(0.0, float(spread[0, 0]) - with_timing_known))
+def _times(state: _State, change: int) -> tuple[float, float]:
+    """Return the times of the passes before and after a change [s] since the first sample."""
+    own, time = state.own, state.data.blocks.time
+    before, after = (state.data.windows[own[i]].peak for i in (change - 1, change))
+    start = float(state.data.signals.record.time[0])
+    return float(time[before]) - start, float(time[after]) - start
 
 
-def _derivative(
-    signals: Signals, instrument: SnifferSpec, timing: Array, i: int, slope: float
-) -> Array:
-    """Return the derivative of residuals, over SO2's noise, by log(t90) or delay, shape (n,)."""
-    sides, noise, known = [], _so2_noise(signals), signals.known
-    for sign in (1.0, -1.0):
-        moved = timing.copy()
-        moved[i] += sign * _STEPS[i]
-        other = make_signals(signals.record, _with_timing(instrument, moved))
-        co2, so2 = other.excess
-        sides.append((so2 - slope * co2) * math.sqrt(noise / _so2_noise(other)))
-        known = known * other.known
-    return np.asarray(known * (sides[0] - sides[1]) / (2.0 * _STEPS[i]))
+def _change_of_slope(state: _State, inverse: Array) -> tuple[int, float]:
+    """Return the pass from which on the slope differs most, and the probability of so much.
 
-
-def _so2_noise(signals: Signals) -> float:
-    """Return the mean square of the noise of the SO2 signal, or 1 if it has none or is too short.
-
-    A small t90 of SO2 smooths it most: without this scale it would have the least residuals.
+    It is that of the largest of all changes by chance, at most their number times that of one.
     """
-    found = _residual_variance(signals, 0.0)
-    return found if found > 0.0 and signals.enough else 1.0
+    own = state.data.passes[:, state.own]
+    count = own.shape[1]
+    if count < _COMPARED_LEAST:
+        return 0, 1.0
+    # Later passes together, beside a slope that all have.
+    later = np.cumsum(own[:, ::-1], axis=1)[:, ::-1]
+    weighted = inverse @ later
+    inner = later.T @ weighted
+    free = inner - np.outer(inner[:, 0], inner[0]) / inner[0, 0]
+    scores = weighted.T @ state.residual
+    scores = scores - inner[:, 0] * scores[0] / inner[0, 0]
+    found = scores[1:] ** 2 / np.maximum(np.diagonal(free)[1:], 1e-9 * inner[0, 0])
+    change = 1 + int(np.argmax(found))
+    return change, min(1.0, (count - 1) * float(chdtrc(1, float(found[change - 1]))))
 
 
-def _grid_search(record: Record, instrument: SnifferSpec, free: npt.NDArray[np.int64]) -> Array:
-    """Return log(t90) and delay [s] on the grid that leave least of SO2 unexplained, over noise."""
-    best, least = _timing(instrument), math.inf
-    stated_delay = float(best[1])
-    for log_t90 in np.log(_T90_SEARCH) if 0 in free else best[:1]:
-        timing = np.array([log_t90, stated_delay])
-        signals = make_signals(record, _with_timing(instrument, timing))
-        _, so2 = signals.excess
-        energy, noise = float(so2 @ so2), _so2_noise(signals)
-        for delay in _DELAY_SEARCH if 1 in free else (stated_delay,):
-            moved = shifted(signals.co2, record.step, delay - stated_delay)
-            co2 = without(signals.basis, signals.known * moved)
-            # SO2 does not fall where CO2 rises: a negative share is none.
-            explained = max(0.0, float(co2 @ so2)) / max(float(np.linalg.norm(co2)), 1e-30)
-            unexplained = (energy - explained**2) / noise
-            if unexplained < least:
-                best, least = np.array([log_t90, delay]), unexplained
-    return best
+def _result(
+    instrument: SnifferSpec,
+    state: _State,
+    inverse: Array,
+    found: Slope,
+    corrected: float,
+    agreement: float,
+    problems: Sequence[str],
+) -> Fit:
+    """Return the fit with its figures."""
+    data, priors = state.data, np.array([item.prior for item in state.properties])
+    columns = state.distortions
+    stated = priors == 1.0
+    # Of (7), what the columns D add.
+    response = float(np.sum((columns[:, stated].T @ found.weights) ** 2))
+    t90_sd_s, delay_sd_s = _timing_deviations(instrument, state)
+    if not stated.all():
+        known = replace(state, properties=[p for p in state.properties if p.prior == 1.0])
+        known = replace(known, data=replace(data, columns=data.columns[:, stated]))
+        known = replace(known, place=state.place[stated])
+        own = data.passes[:, state.own] if state.variances.between else None
+        z = state.instrument_column
+        least = 1.0 / float(z @ known.inverse(state.fixed, own) @ z)
+        whole = 1.0 / float(z @ inverse @ z)
+        response += found.deviation**2 * max(0.0, 1.0 - least / whole)
+    noise = math.sqrt(max(0.0, found.deviation**2 - response) + corrected**2)
+    size = background_of_co2(data, state.variances, state.slope)
+    return Fit(
+        slope=state.slope,
+        noise=noise,
+        response=math.sqrt(response),
+        residuals=_residuals(state, size),
+        background_ppb=state.variances.background,
+        background_ppm=size,
+        background_s=state.variances.length,
+        agreement=agreement,
+        excluded=_excluded(state),
+        groups=_groups(state),
+        t90_sd_s=t90_sd_s,
+        delay_sd_s=delay_sd_s,
+        instrument=_with_found_timing(instrument, state),
+        problems=tuple(problems),
+        _state=state,
+        _weights=found.weights,
+    )
 
 
-# Sulphur content of groups of passes, and whether they agree
+def _residuals(state: _State, size: float) -> Residuals:
+    """Return the residuals of the slope, given the size of CO2's background [ppm]."""
+    data = state.data
+    slow = data.blocks.mean(data.signals.basis)[data.known]
+    basis = orthonormal(np.hstack([state.fixed, slow]))
+
+    def beside(values: Array) -> Array:
+        return np.asarray(values - basis @ (basis.T @ values))
+
+    stated = np.array([item.prior == 1.0 for item in state.properties], dtype=bool)
+    columns = state.distortions[:, stated]
+    shown = columns @ state.place[stated]
+    residual = beside(data.so2 - state.slope * data.co2 - shown)
+    noise = beside(beside(data.noise(state.slope)).T)
+    kernel = beside(beside(data.background(state.variances.length)).T)
+    expected = noise + (state.slope * size) ** 2 * kernel
+    squares = float(np.vdot(expected, expected))
+    return Residuals(
+        energy=float(residual @ residual),
+        noise=float(np.trace(noise)),
+        background=(state.slope * size) ** 2 * float(np.trace(kernel)),
+        instrument=float(np.sum(beside(columns) ** 2)),
+        freedom=float(np.trace(expected)) ** 2 / squares if squares > 0.0 else 1.0,
+    )
+
+
+def _excluded(state: _State) -> tuple[ExcludedPass, ...]:
+    """Return the passes of other fuels, with their slopes beside the ship's."""
+    if not state.foreign:
+        return ()
+    columns = state.data.passes[:, list(state.foreign)]
+    slopes, deviations = _own_slopes(state, columns)
+    times = [state.data.blocks.time[state.data.windows[i].peak] for i in state.foreign]
+    found = [
+        ExcludedPass(time_s=float(time), slope=slope, deviation=deviation)
+        for time, slope, deviation in zip(times, slopes, deviations, strict=True)
+    ]
+    return tuple(sorted(found, key=lambda item: item.time_s))
+
 
 _GROUPS_MAX = 8
 """Groups of passes at most: single passes overlap in a slow sensor and have large errors."""
 
 _TELLING = 0.1
-"""Least CO2 of a group beside the background, relative to the median group [-]."""
-
-_INDEPENDENT = 1e-6
-"""Least singular value of the groups' CO2, relative to the largest."""
+"""Least CO2 of a group, relative to the median group [-]."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Groups:
-    """Slopes of groups of neighbouring passes.
+def _groups(state: _State) -> tuple[tuple[float, float], ...]:
+    """Return slope and noise of groups of neighbouring passes, fitted together."""
+    count = len(state.data.windows)
+    if count < 2:
+        return ()
+    parts = np.array_split(np.arange(count), min(_GROUPS_MAX, count))
+    columns = np.stack([state.data.passes[:, part].sum(axis=1) for part in parts], axis=1)
+    norms = np.linalg.norm(columns, axis=0)
+    columns = columns[:, norms > _TELLING * np.median(norms)]
+    sizes = np.linalg.svd(columns, compute_uv=False)
+    if columns.shape[1] < 2 or sizes[-1] <= 1e-6 * sizes[0]:
+        return ()
+    return tuple(zip(*_own_slopes(state, columns), strict=True))
 
-    Attributes
-    ----------
-    slopes, deviations : of each group, and its noise [ppb/ppm]
-    agreement : probability that groups of one slope differ as much; NaN for fewer than two groups
+
+def _own_slopes(state: _State, columns: Array) -> tuple[list[float], list[float]]:
+    """Return slopes and their noise of passes or groups, beside the slope of all others."""
+    inverse = state.inverse(state.data.fixed)
+    weighted = inverse @ columns
+    covariance = np.linalg.pinv(columns.T @ weighted, hermitian=True)
+    differences = covariance @ (weighted.T @ state.residual)
+    deviations = np.sqrt(np.maximum(np.diagonal(covariance), 0.0))
+    return [float(state.slope + d) for d in differences], [float(d) for d in deviations]
+
+
+# Response and delay that are not stated
+
+
+def _with_found_timing(instrument: SnifferSpec, state: _State) -> SnifferSpec:
+    """Return the instrument with the properties that are not stated as the record shows them."""
+    for item, units in zip(state.properties, state.place, strict=True):
+        if item.prior != 1.0:
+            instrument = item.moved(instrument, float(units))
+    return instrument
+
+
+def _timing_deviations(instrument: SnifferSpec, state: _State) -> tuple[float, float]:
+    """Return the standard deviations of t90 of SO2, and of its delay after CO2 [s].
+
+    Where they are stated, these are the stated ones.
     """
-
-    slopes: tuple[float, ...] = ()
-    deviations: tuple[float, ...] = ()
-    agreement: float = math.nan
-
-
-def fit_groups(
-    signals: Signals, passes: Sequence[Pass], slope: float, *, misfit: float, response: float
-) -> Groups:
-    """Return the slopes of groups of passes, fitted together.
-
-    The equalised CO2 excess of each group is one signal of the fit.
-
-    Parameters
-    ----------
-    signals, slope, misfit : of the whole record
-    response : standard deviation of the slope by response and delay [ppb/ppm]; groups may differ by
-        as much, as a wrong response distorts each of them differently
-    """
-    if len(passes) < 2 or not math.isfinite(slope):
-        return Groups()
-    parts = np.array_split(np.arange(len(passes)), min(_GROUPS_MAX, len(passes)))
-    cuts = [0.5 * (passes[part[-1]].end_s + passes[part[-1] + 1].start_s) for part in parts[:-1]]
-    bounds = zip([-math.inf, *cuts], [*cuts, math.inf], strict=True)
-    co2 = np.stack([_co2_between(signals, low, high) for low, high in bounds], axis=1)
-    co2 = without(signals.basis, signals.known[:, np.newaxis] * co2)
-    # Of some groups little or nothing may be known.
-    norms = np.linalg.norm(co2, axis=0)
-    co2 = co2[:, norms > _TELLING * np.median(norms)]
-    if co2.shape[1] < 2:
-        return Groups()
-    sizes = np.linalg.svd(co2, compute_uv=False)
-    if sizes[-1] <= _INDEPENDENT * sizes[0]:
-        return Groups()
-    weights = np.asarray(np.linalg.pinv(co2), dtype=np.float64)
-    found = weights @ signals.excess[1]
-    covariance = max(1.0, misfit) * noise_covariance(signals, weights.T, slope)
-    return Groups(
-        slopes=tuple(float(v) for v in found),
-        deviations=tuple(float(v) for v in np.sqrt(np.diagonal(covariance))),
-        agreement=_agreement(found, covariance, response),
-    )
-
-
-def _agreement(slopes: Array, covariance: Array, response: float) -> float:
-    """Return the probability that slopes of one mean differ as much; NaN without noise."""
-    if not covariance.any():
-        return math.nan
-    inverse = np.linalg.inv(covariance + response**2 * np.eye(len(slopes)))
-    mean = float(inverse.sum(axis=0) @ slopes / inverse.sum())
-    chi_squared = float((slopes - mean) @ inverse @ (slopes - mean))
-    return float(chdtrc(len(slopes) - 1, max(0.0, chi_squared)))
-
-
-def _co2_between(signals: Signals, start: float, end: float) -> Array:
-    """Return the equalised CO2 excess of the readings between two times [s], shape (n,)."""
-    record, channel = signals.record, signals.instrument.known("co2")
-    delay = signals.delay_to_so2("co2")
-    parts = []
-    for time, excess in zip(record.times, co2_excesses(record, channel.noise), strict=True):
-        inside = np.where((time >= start) & (time < end), excess / channel.gain, 0.0)
-        filtered = equalised(inside, record.step, channel.constants, signals.common)
-        parts.append(shifted(filtered, record.step, delay))
-    return np.concatenate(parts)
+    so2, co2 = instrument.known("so2"), instrument.known("co2")
+    t90_sd_s = so2.t90_s * so2.t90_sd
+    delay_sd_s = math.hypot(so2.delay_sd_s, co2.delay_sd_s)
+    if math.isfinite(t90_sd_s) and math.isfinite(delay_sd_s):
+        return t90_sd_s, delay_sd_s
+    _, covariance = state.properties_found()
+    units = np.array([item.unit for item in state.properties])
+    covariance = covariance * np.outer(units, units)
+    names = [(item.gas, item.name) for item in state.properties]
+    if math.isinf(so2.t90_sd):
+        i = names.index(("so2", "t90_s"))
+        found = _with_found_timing(instrument, state).known("so2").t90_s
+        t90_sd_s = found * math.sqrt(max(0.0, covariance[i, i]))
+    if math.isinf(so2.delay_sd_s):
+        after = np.array(
+            [{"so2": 1.0, "co2": -1.0}[gas] * (name == "delay_s") for gas, name in names]
+        )
+        delay_sd_s = math.sqrt(max(0.0, float(after @ covariance @ after)))
+    return t90_sd_s, delay_sd_s

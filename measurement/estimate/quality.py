@@ -3,8 +3,9 @@
 import math
 from collections.abc import Sequence
 
-from measurement.estimate.fit import DELAY_MOST
+from measurement.estimate.fit import Residuals
 from measurement.estimate.result import Quality
+from measurement.estimate.timing import DELAY_MOST
 from measurement.gases import FUEL_SULPHUR_MOST
 
 SNR_GOOD = 20.0
@@ -101,32 +102,33 @@ def _impossible(passes: int, fsc: float, deviation: float) -> list[str]:
     return found
 
 
-def residual_problem(
-    misfit: float, residual_energy: float, instrument_energy: float, samples: int
-) -> tuple[str, ...]:
+def residual_problem(residuals: Residuals, others: float) -> tuple[str, ...]:
     """Return the problem of residuals that noise and the instrument's uncertainty do not explain.
 
     Parameters
     ----------
-    misfit : mean square of the residuals over that of the stated noise
-    residual_energy, instrument_energy : sum of squares of the residuals, and what the instrument's
-        uncertainty adds to it
+    residuals : of the fit
+    others : sum of squares by one standard deviation of each property that these do not have
     """
-    if not misfit > 0.0 or residual_energy == 0.0:
-        return ()
-    unexplained = 1.0 / (1.0 / misfit + STRANGE_SIGMA**2 * instrument_energy / residual_energy)
-    if noise_explains(unexplained, samples):
+    instrument = STRANGE_SIGMA**2 * (residuals.instrument + others)
+    expected = residuals.noise + residuals.background + instrument
+    if residuals.energy <= expected * _chance(residuals) or residuals.noise == 0.0:
         return ()
     return (
-        f"residuals are {math.sqrt(misfit):.1f} times the noise, more than the stated uncertainty"
-        " of the instrument explains: check its response, delay, noise and other gases",
+        f"residuals are {math.sqrt(residuals.misfit):.1f} times the noise, more than the stated"
+        " uncertainty of the instrument explains: check its response, delay, noise and other gases",
     )
 
 
-def noise_explains(misfit: float, samples: int) -> bool:
-    """Return whether the noise of so many samples explains a misfit."""
-    # The mean square of white noise over n samples has a relative standard deviation of sqrt(2/n).
-    return misfit <= 1.0 + STRANGE_SIGMA * math.sqrt(2.0 / samples)
+def noise_explains(residuals: Residuals) -> bool:
+    """Return whether noise and background alone explain the residuals."""
+    return residuals.energy <= (residuals.noise + residuals.background) * _chance(residuals)
+
+
+def _chance(residuals: Residuals) -> float:
+    """Return by how much residuals may exceed what is expected of them by chance [-]."""
+    # A sum of squares with n degrees of freedom has a relative standard deviation of sqrt(2/n).
+    return 1.0 + STRANGE_SIGMA * math.sqrt(2.0 / residuals.freedom)
 
 
 def pending_so2_problem(

@@ -27,6 +27,10 @@ class Figures:
     dose_ppm_s : CO2 of a pass, mean [ppm s]
     co2_snr : signal to noise of a pass's peak, median [-]
     so2_snr : standard deviation of the SO2 that the plume explains, over that of the rest [-]
+    background_ppm, background_ppb : standard deviation of the background of CO2 that varies, and of
+        what is left of SO2 beside the plume
+    background_s : correlation length of that background [s]
+    passes_excluded : number that are of another fuel
     """
 
     duration_s: float
@@ -36,6 +40,19 @@ class Figures:
     dose_ppm_s: float
     co2_snr: float
     so2_snr: float
+    background_ppm: float
+    background_ppb: float
+    background_s: float
+    passes_excluded: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class PassContent:
+    """Sulphur content by a single pass, and its noise [% m/m]; the time of its peak [s]."""
+
+    time_s: float
+    fsc_percent: float
+    noise_percent: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,6 +78,7 @@ class FscEstimate:
     verdicts : on each limit
     figures : of the record
     passes : through the plume
+    excluded : passes that are of another fuel, as of another ship
     pass_percent, pass_deviation_percent : sulphur content of groups of neighbouring passes and its
         noise
     agreement : probability that groups of the same fuel differ as much as these
@@ -89,6 +107,7 @@ class FscEstimate:
     verdicts: tuple[Verdict, ...]
     figures: Figures
     passes: tuple[Pass, ...]
+    excluded: tuple[PassContent, ...]
     pass_percent: tuple[float, ...]
     pass_deviation_percent: tuple[float, ...]
     agreement: float
@@ -106,6 +125,7 @@ class FscEstimate:
         values["figures"] = asdict(self.figures)
         values["verdicts"] = [asdict(verdict) for verdict in self.verdicts]
         values["passes"] = [asdict(found) for found in self.passes]
+        values["excluded"] = [asdict(found) for found in self.excluded]
         return {name: plain(value) for name, value in values.items()}
 
 

@@ -134,10 +134,9 @@ def background_basis(record: Record, common: Poles, known: Array) -> Array:
     columns = [np.maximum(0.0, 1.0 - np.abs(place - knot)) for knot in range(pieces + 1)]
     start = 0
     for segment in record.times:
-        # What an unknown state at the first sample leaves in a signal.
-        for constant in common:
+        for values in transients(segment, common):
             transient = np.zeros(len(time))
-            transient[start : start + len(segment)] = np.exp(-(segment - segment[0]) / constant)
+            transient[start : start + len(segment)] = values
             columns.append(transient)
         start += len(segment)
     # A knot in a gap may have no samples.
@@ -147,6 +146,16 @@ def background_basis(record: Record, common: Poles, known: Array) -> Array:
     unit = np.stack([column / np.linalg.norm(column) for column in columns], axis=1)
     basis, sizes, _ = np.linalg.svd(unit, full_matrices=False)
     return np.asarray(basis[:, sizes > _INDEPENDENT * sizes[0]])
+
+
+def transients(time: Array, common: Poles) -> list[Array]:
+    """Return what an unknown state at the first time leaves in a signal, by pole, shape (n,) each.
+
+    Parameters
+    ----------
+    time : of one segment [s]
+    """
+    return [np.exp(-(time - time[0]) / constant) for constant in common]
 
 
 def without(basis: Array, signal: Array) -> Array:
@@ -185,6 +194,10 @@ class Signals:
     def noise(self, gas: str) -> float:
         """Return the standard deviation of a gas's readings."""
         return self.instrument.known(gas).noise
+
+    def readings(self, gas: str) -> Array:
+        """Return the readings of a gas at the common response and delay, shape (n,)."""
+        return _aligned(self.record, gas, self._poles(gas), self.common, self.delay_to_so2(gas))
 
     def delay_to_so2(self, gas: str) -> float:
         """Return the delay of SO2 less that of a gas [s]."""
@@ -236,7 +249,7 @@ class Signals:
     def _noise_energy(self, gas: str) -> float:
         energy = 0.0
         for segment in self.record.times:
-            squares = self._impulse(gas, len(segment)) ** 2
+            squares = self.impulse(gas, len(segment)) ** 2
             # Each reading is in all samples after it.
             first, end = self.ends[0], len(segment) - self.ends[1]
             samples = np.maximum(0, end - np.maximum(first, np.arange(len(squares))))
@@ -246,16 +259,9 @@ class Signals:
             key, lambda: float(np.sum(self.backwards(gas, self.basis) ** 2))
         )
 
-    def noise_correlation(self, gas: str) -> float:
-        """Return the sum over all lags of the squared autocovariance of a gas's equalised noise.
-
-        It is for noise of standard deviation 1.
-        """
-        response = self._impulse(gas, len(self.so2))
-        return float(np.sum(np.correlate(response, response, mode="full") ** 2))
-
-    def _impulse(self, gas: str, longest: int) -> Array:
+    def impulse(self, gas: str, longest: int | None = None) -> Array:
         """Return how a reading of 1 is spread over the samples after it, shape (length,)."""
+        longest = len(self.so2) if longest is None else longest
         length = min(longest, int(_MEMORY * sum(self.common) / self.record.step) + 2)
         one = np.zeros(length)
         one[0] = 1.0

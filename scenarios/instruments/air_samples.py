@@ -11,6 +11,7 @@ import numpy.typing as npt
 from common.physics import STANDARD_GRAVITY
 from measurement.gases import GASES
 from measurement.plume.fluctuating_plume import PlumeSample
+from scenarios.world.background import Background
 from scenarios.world.exhaust import Exhaust
 
 Array = npt.NDArray[np.float64]
@@ -24,6 +25,9 @@ CLEAN_AIR = {"so2": 0.2, "co2": 420.0, "no": 0.1, "no2": 1.0}
 """Gases in clean air over the sea, in the units of readings; assumptions. They are far below the
 noise, but for CO2.
 """
+
+CO2 = GASES.index("co2")
+"""Its column."""
 
 PLACE_COLUMNS = ("north_m", "east_m", "altitude_m")
 RATE_COLUMNS = ("velocity_north_mps", "velocity_east_mps", "climb_rate_mps")
@@ -41,6 +45,7 @@ class AirSamples:
     ----------
     time : shape (n,) [s]
     air : gases, shape (n, 4), in the order and the units of ``measurement.gases``
+    background_co2 : CO2 without the exhaust, shape (n,) [ppm]
     pressure : in the sensors less that at the sea [hPa], shape (n,)
     above : height over the plume's mean axis [m], shape (n,)
     plume : there
@@ -48,6 +53,7 @@ class AirSamples:
 
     time: Array
     air: Array
+    background_co2: Array
     pressure: Array
     above: Array
     plume: PlumeSample
@@ -65,7 +71,8 @@ class AirSamples:
             return np.concatenate([getattr(part.plume, of) for part in parts])
 
         plume = PlumeSample(*(of_plume(name) for name in PlumeSample._fields))
-        return cls(whole("time"), whole("air"), whole("pressure"), whole("above"), plume)
+        names = ("time", "air", "background_co2", "pressure", "above")
+        return cls(plume=plume, **{name: whole(name) for name in names})
 
 
 class AirSampler:
@@ -74,13 +81,20 @@ class AirSampler:
 
     Parameters
     ----------
-    exhaust : in the air
+    exhaust, background : in the air
     dynamic_pressure_fraction : of the dynamic pressure that the inlet passes on to the sensors [-]
     """
 
-    def __init__(self, exhaust: Exhaust, *, dynamic_pressure_fraction: float) -> None:
-        self._exhaust, self._fraction, self._taken = exhaust, dynamic_pressure_fraction, 0
-        self.background = np.array([CLEAN_AIR[gas] for gas in GASES])
+    def __init__(
+        self,
+        exhaust: Exhaust,
+        background: Background,
+        *,
+        dynamic_pressure_fraction: float,
+    ) -> None:
+        self._exhaust, self._background = exhaust, background
+        self._fraction, self._taken = dynamic_pressure_fraction, 0
+        self._clean = np.array([CLEAN_AIR[gas] for gas in GASES])
 
     def advance(self, time: Array, place: Array, rate: Array, airspeed: Array) -> AirSamples:
         """Return the samples whose time has come, before the last time given.
@@ -99,9 +113,12 @@ class AirSampler:
         north, east, up = CubicHermiteSpline(time, place, rate)(at).T
         plume = self._exhaust.sample(at, north, east, up)
         flown = np.interp(at, time, airspeed)
+        clean = np.tile(self._clean, (len(at), 1))
+        clean[:, CO2] += self._background.at(at)
         return AirSamples(
             time=at,
-            air=self.background + self._exhaust.excess(plume.dilution),
+            air=clean + self._exhaust.excess(plume.dilution),
+            background_co2=clean[:, CO2],
             pressure=_AIR_DENSITY
             * (0.5 * self._fraction * flown**2 - STANDARD_GRAVITY * up)
             / 100.0,

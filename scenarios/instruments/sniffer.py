@@ -21,6 +21,7 @@ from measurement.gases import GASES, UNITS
 from measurement.sniffer.sniffer import Readings, Sniffer
 from measurement.sniffer.spec import SnifferSpec, sensor_of, sensor_presets
 from scenarios.instruments.air_samples import (
+    CO2,
     PLACE_COLUMNS,
     RATE_COLUMNS,
     TIME_STEP,
@@ -35,9 +36,6 @@ from scenarios.world.faults import SNIFFER_DEAD, SNIFFER_SATURATED
 from scenarios.world.world import World
 
 Array = npt.NDArray[np.float64]
-
-CO2 = GASES.index("co2")
-"""Its column."""
 
 _PASSED_ON = 0.45
 """Time between readings that are passed on in flight, at least [s]: those of a faster sniffer come
@@ -144,6 +142,7 @@ class SnifferOnBoard:
     COLUMNS = (
         *(f"{gas}_{UNITS[gas]}" for gas in GASES),
         *(f"{gas}_reading_{UNITS[gas]}" for gas in GASES),
+        "co2_background_ppm",
         "plume_across_m",
         "plume_above_m",
         "plume_fraction",
@@ -165,7 +164,9 @@ class SnifferOnBoard:
         actual = self.spec if self._settings.exact else self.spec.drawn(generator)
         self._sniffer = Sniffer(actual, generator=generator, time_step=TIME_STEP)
         self._sampler = AirSampler(
-            self._exhaust, dynamic_pressure_fraction=self._settings.dynamic_pressure_fraction
+            self._exhaust,
+            world.background,
+            dynamic_pressure_fraction=self._settings.dynamic_pressure_fraction,
         )
         self._air: list[AirSamples] = []
         self._read: list[Readings] = []
@@ -243,9 +244,11 @@ class SnifferOnBoard:
             self._advance(time[left], place, rate, column("airspeed_mps")[left])
         samples, readings = AirSamples.joined(self._air), _joined(self._read)
         at, air, above, plume = samples.time, samples.air, samples.above, samples.plume
+        background = samples.background_co2
         held = np.clip(np.searchsorted(readings.time, time, side="right") - 1, 0, len(readings) - 1)
         fraction = fraction_of_axis(plume)
-        along = [np.interp(time, at, values) for values in (*air.T, plume.across, above, fraction)]
+        beside = (background, plume.across, above, fraction)
+        along = [np.interp(time, at, values) for values in (*air.T, *beside)]
         columns = np.column_stack(
             [*along[: len(GASES)], readings.values[held], *along[len(GASES) :]]
         )
@@ -270,7 +273,7 @@ class SnifferOnBoard:
             "fsc_expected_percent": expected,
             "sulphur_limit_percent": limit,
         }
-        excess = air[:, CO2] - self._sampler.background[CO2]
+        excess = air[:, CO2] - background
         passed = pass_figures(
             plume.across[flown], above[flown], fraction[flown], excess[flown], time_step=TIME_STEP
         )

@@ -9,7 +9,6 @@ import pandas as pd
 from gnc.mission.mission import Mode
 from measurement.plume.fluctuating_plume import FOUND_WITHIN, HIT, passes
 from scenarios.engine.task import Row
-from scenarios.instruments.air_samples import CLEAN_AIR
 from scenarios.schema.sections.flight import FlightConfig
 
 Array = npt.NDArray[np.float64]
@@ -84,7 +83,7 @@ def _detected(history: pd.DataFrame, noise: float, step: float) -> npt.NDArray[n
         _BASE_QUANTILE
     )
     there = (
-        (history["co2_ppm"] - CLEAN_AIR["co2"])
+        (history["co2_ppm"] - history["co2_background_ppm"])
         .rolling(max(1, round(_MEMORY / step)), min_periods=1)
         .max()
     )

@@ -55,9 +55,10 @@ from scenarios.vehicles.sensors import SensorErrors
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 from scenarios.world.ais.track import AisVessel, usual_intervals
 from scenarios.world.ais_reports import no_outage, received_reports
+from scenarios.world.background import sampled_background
 from scenarios.world.exhaust import exhaust_of
 from scenarios.world.faults import VESSEL_DATA, sampled_fault
-from scenarios.world.noise import EXHAUST, Noise, own_generator, streams
+from scenarios.world.noise import BACKGROUND, EXHAUST, Noise, own_generator, streams
 from scenarios.world.vessel import VesselTruth
 from scenarios.world.weather import sampled_weather
 from scenarios.world.world import (
@@ -188,6 +189,7 @@ def following_flight(
             weather=weather,
             fault=fault,
             exhaust=exhaust,
+            background=sampled_background(scenario.air, covered, own_generator(noise, BACKGROUND)),
             place=place_of(scenario, vessel),
         ),
         sensing=Sensing(

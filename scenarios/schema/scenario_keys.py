@@ -32,6 +32,7 @@ from scenarios.schema.sections.patrol import PatrolConfig
 from scenarios.schema.sections.report import ReportConfig
 from scenarios.schema.sections.section import Range, Section, Seed, Title
 from scenarios.schema.sections.world import (
+    AirConfig,
     EmissionConfig,
     KeepoutConfig,
     PlaceConfig,
@@ -108,6 +109,7 @@ class ScenarioKeys(Section):
     keepout: KeepoutConfig = KeepoutConfig()
     wind: WindConfig = WindConfig()
     turbulence: TurbulenceConfig = TurbulenceConfig()
+    air: AirConfig = AirConfig()
     reports: VesselReportsConfig = VesselReportsConfig()
     sensors: SensorsConfig = SensorsConfig()
     fault: FaultConfig = FaultConfig()

@@ -23,6 +23,7 @@ INSTRUMENT_MEANINGS = {
             (gas.replace("_", "_reading_"), "reading, held until the next one"),
         )
     },
+    "co2_background_ppm": "true CO2 of the air without the exhaust",
     "plume_across_m": "place across the plume's mean axis",
     "plume_above_m": "height above the plume's mean axis",
     "plume_fraction": "concentration over that in the centre of the plume",

@@ -13,6 +13,7 @@ from common.registry import PluginError
 from scenarios.schema.extension_points import PLUME_MODELS, VESSEL_TRACKS
 from scenarios.schema.scenario import Scenario
 from scenarios.world.ais.track import AisVessel, ais_vessel
+from scenarios.world.background import UNIFORM, Background
 from scenarios.world.exhaust import Exhaust
 from scenarios.world.faults import TimedFault
 from scenarios.world.own_part import are_numbers, asked, is_number, is_own, refuse_answer
@@ -51,6 +52,7 @@ class World:
     weather : the air
     fault : what fails, and when
     exhaust : the vessel's smoke, or none
+    background : CO2 of the air beside it
     place : where on earth, and when
     """
 
@@ -62,6 +64,7 @@ class World:
     fault: TimedFault
     place: Place
     exhaust: Exhaust | None = None
+    background: Background = UNIFORM
 
 
 def vessel_of(scenario: Scenario) -> VesselTruth:

@@ -246,6 +246,19 @@ class WindConfig(Section):
         return self.speed_mps > 0.0 or self.table is not None
 
 
+class AirConfig(Section):
+    """The air that a sniffer reads beside the exhaust: clean, but for a CO2 that may vary."""
+
+    background: Literal["none", "haze", "sine", "steps"] = "none"
+    """How the CO2 of the air varies along a flight: not at all; as an Ornstein-Uhlenbeck process
+    (haze); as a sine of any phase; or by steps at random times.
+    """
+    background_ppm: NonNegative = 2.0
+    """Standard deviation of haze, amplitude of a sine, or standard deviation of a step [ppm]."""
+    background_s: Annotated[float, Field(ge=1.0, le=10_000.0)] = 30.0
+    """Correlation time of haze, period of a sine, or mean time between steps [s]."""
+
+
 class TurbulenceConfig(Section):
     """Turbulence of MIL-F-8785C, and discrete gusts."""
 

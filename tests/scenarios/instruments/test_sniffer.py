@@ -77,6 +77,24 @@ def test_a_flight_that_is_replayed_with_every_step_has_the_same_figures(slow):
     assert np.array_equal(every["co2_reading_ppm"][::2], history["co2_reading_ppm"])
 
 
+def test_a_background_adds_co2_to_the_air_and_changes_nothing_else(slow):
+    row, history, _ = slow
+    hazy_row, hazy, _ = flown("air.background=haze", "air.background_ppm=5", "air.background_s=20")
+    assert (history["co2_background_ppm"] == 420.0).all()
+    background = hazy["co2_background_ppm"] - 420.0
+    # Ten correlation times or so: the standard deviation is known to a third.
+    assert 2.0 < background.std() < 8.0
+    added = (hazy["co2_ppm"] - history["co2_ppm"]).to_numpy()
+    assert added == pytest.approx(background.to_numpy(), abs=1e-6)
+    others = ["north_m", "east_m", "so2_ppb", "so2_reading_ppb", "no2_reading_ppb"]
+    assert hazy[others].equals(history[others])
+    # What is said of the exhaust is not of the air around it.
+    for name in ("dose_per_pass_ppm_s", "smoke_passes", "fsc_expected_percent"):
+        assert hazy_row[name] == pytest.approx(row[name], rel=1e-9)
+    # The analyst does not know of it, and has another result.
+    assert hazy_row["fsc_percent"] != row["fsc_percent"]
+
+
 def test_gases_are_in_the_ratio_of_the_emission(slow):
     _, history, _ = slow
     excess = history[history["co2_ppm"] > 450.0]

@@ -35,6 +35,7 @@ def history(*, first=100.0, above=6.0, believed=80.0, deviation=4.0, duration=30
         "plume_above_m": above,
         "plume_fraction": fraction,
         "co2_ppm": co2,
+        "co2_background_ppm": 420.0,
         "co2_reading_ppm": np.roll(co2, 10),
     }
     if believed is not None:

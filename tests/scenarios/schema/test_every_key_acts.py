@@ -51,6 +51,7 @@ wind = { speed_mps = 5.0, from_deg = 80.0 }
 plume = { model = "fluctuating", source_height_m = 35.0 }
 emission = { ship = "container", fuel = "vlsfo", sulphur_percent = 0.3 }
 payload = { instruments = ["sniffer"], sensor = "fast" }
+air = { background = "sine", background_s = 20.0 }
 flight.crossings = 0
 flight.after_settling_s = 20.0
 start = { place_m = [-100.0, -280.0], course_deg = -20.0 }
@@ -114,6 +115,7 @@ VALUES = {
     "keepout.radius_m": 180.0, "keepout.shape": "cylinder", "wind.speed_mps": 3.0, "wind.from_deg": 100.0,
     "wind.roughness_m": 2e-4, "wind.height_m": 20.0,
     "turbulence.level": "light", "turbulence.gusts": 2, "turbulence.gust_speed_mps": 3.0, "turbulence.gust_length_s": 3.0,
+    "air.background": "haze", "air.background_ppm": 5.0, "air.background_s": 10.0,
     "reports.interval_s": [3.0, 6.0], "reports.position_sigma_m": 8.0, "reports.velocity_sigma_mps": 0.3,
     "reports.latency_max_s": 2.0, "reports.missing": 0.5,
     "sensors.position_sigma_m": 1.0, "sensors.velocity_sigma_mps": 0.1, "sensors.airspeed_sigma_mps": 0.3,
@@ -171,7 +173,7 @@ SEARCHING = (
 MEASURING = tuple(
     key
     for key in VALUES
-    if key.startswith(("emission.", "flight.", "payload.", "plume.", "wind."))
+    if key.startswith(("air.", "emission.", "flight.", "payload.", "plume.", "wind."))
     and key != "flight.until"
 )
 """Keys that act on what is measured, of a flight that is shorter than a verdict takes."""
