@@ -38,7 +38,7 @@ is kept over the wrong mean air. A wind estimate that changes during the turn do
 g = K/dt of the filter per second it changes by at most g times the integral of q - e, and the
 vehicle follows the change along its path; that is displaced by at most
 
-    min(1, g t/2)  sqrt(var integral q + p t^2).
+    min(1, g t/2)  sqrt(var integral (q - rho q_0) + var (T (1 - rho) q_0 - t e)).
 
 **How many standard deviations.** ``deviations`` returns the k that errors exceed at a stated rate.
 One rate, ``EXCEEDED_PER_HOUR``, holds for all processes in the vehicle's own motion; what places
@@ -173,6 +173,10 @@ class Process:
         return time - self.correlation_time * (1.0 - self.remaining(time))
 
 
+STILL = Process()
+"""Air without turbulence."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TurnDeviation:
     """An error of place that grows along a turn.
@@ -197,6 +201,9 @@ class TurnDeviation:
         i = min(int(place), last - 1)
         return self.sigmas[i] + (place - i) * (self.sigmas[i + 1] - self.sigmas[i])
 
+
+AS_COMMANDED = TurnDeviation()
+"""A turn without turbulence."""
 
 # ---------------------------------------------------------------- The budget
 
@@ -226,8 +233,8 @@ class ErrorBudget:
     own_velocity: Bias = Bias()
     gusts: Bias = Bias()
     wind_change: Bias = Bias()
-    turbulence: Process = Process()
-    turning: TurnDeviation = TurnDeviation()
+    turbulence: Process = STILL
+    turning: TurnDeviation = AS_COMMANDED
     response: Bias = Bias()
     failed_part: Bias = Bias()
     drift: Growth = Growth()
@@ -281,30 +288,35 @@ class ErrorBudget:
         air = self.turbulence
         return math.hypot(air.integral_from_known(age), wind_sigma * air.not_remaining(age))
 
-    def turn_sigma(self, time: float, wind_sigma: float, wind_gain: float) -> float:
+    def turn_sigma(self, time: float, wind: "WindErrorByGusts") -> float:
         """Return the standard deviation of a turn under satellite navigation in turbulence [m].
 
         Parameters
         ----------
         time : since it began [s]
-        wind_sigma : of the estimated wind by gusts [m/s]
-        wind_gain : share of the wind's error that a second of measurements corrects [1/s]
+        wind : error of the estimated wind when it began
         """
-        followed = min(1.0, 0.5 * wind_gain * time)
-        moved = followed * math.hypot(self.turbulence.integral(time), wind_sigma * time)
-        return math.hypot(self.turning.at(time), moved)
+        air = self.turbulence
+        gust_time = time - air.not_remaining(time)
+        by_known = (
+            (gust_time * air.sigma) ** 2
+            - 2.0 * gust_time * time * wind.covariance
+            + time * time * wind.variance
+        )
+        change = math.hypot(air.integral_from_known(time), math.sqrt(max(0.0, by_known)))
+        return math.hypot(self.turning.at(time), min(1.0, 0.5 * wind.gain * time) * change)
 
     def displacement(
-        self, *, lost: float = 0.0, wind_sigma: float = 0.0, wind_gain: float = 0.0
+        self, *, lost: float = 0.0, wind: "WindErrorByGusts | None" = None
     ) -> "Displacement":
         """Return by how much turbulence may take the vehicle off its predicted places from now on.
 
         Parameters
         ----------
         lost : time since satellite navigation was lost [s]
-        wind_sigma, wind_gain : see ``turn_sigma``
+        wind : error of the estimated wind, at the last fix; None where it is known exactly
         """
-        return Displacement(self, lost, wind_sigma, wind_gain)
+        return Displacement(self, lost, wind or WindErrorByGusts(STILL))
 
 
 class Displacement:
@@ -316,33 +328,30 @@ class Displacement:
     Parameters
     ----------
     budget : of errors
-    lost, wind_sigma, wind_gain : see ``ErrorBudget.displacement``
+    lost, wind : see ``ErrorBudget.displacement``
     """
 
-    def __init__(
-        self, budget: ErrorBudget, lost: float, wind_sigma: float, wind_gain: float
-    ) -> None:
+    def __init__(self, budget: ErrorBudget, lost: float, wind: "WindErrorByGusts") -> None:
         self._budget = budget
         self._k = budget.k
         self._may_drift = budget.may_drift
-        self.renew(lost, wind_sigma, wind_gain)
+        self.renew(lost, wind)
 
-    def renew(self, lost: float, wind_sigma: float, wind_gain: float) -> None:
+    def renew(self, lost: float, wind: "WindErrorByGusts") -> None:
         """Take in what is known now; see ``ErrorBudget.displacement``."""
         self._lost = lost
-        self._wind_sigma = wind_sigma
-        self._wind_gain = wind_gain
+        self._wind = wind
 
     def after(self, time: float) -> float:
         """Return the largest displacement after a time [s, m]."""
         if self._k == 0.0:
             return 0.0
-        budget, lost, wind_sigma = self._budget, self._lost, self._wind_sigma
+        budget, lost, wind = self._budget, self._lost, self._wind
         sigma = 0.0
         if lost == 0.0:
-            sigma = budget.turn_sigma(time, wind_sigma, self._wind_gain)
+            sigma = budget.turn_sigma(time, wind)
         if lost > 0.0 or self._may_drift:
-            drifted = budget.drift_sigma(lost + time, wind_sigma)
+            drifted = budget.drift_sigma(lost + time, wind.sigma)
             sigma = max(sigma, math.hypot(budget.turning.at(time), drifted))
         return self._k * sigma
 

@@ -29,9 +29,9 @@ the guard flies it where it finds nothing better.
 2. Commands within omega_max are flown, up to the airspeed at which the largest bank limits the
    turn, and in proportion above it. The filter is called once per time step.
 3. The vessel is in each of its discs.
-4. Airspeed stays between the fastest and the slowest that are predicted with. Velocity and wind are
-   in error by no more than ``speed_error`` and what the wind's filter says, and by ``drift_rate``
-   without satellite navigation.
+4. Airspeed stays between the fastest and the slowest that are predicted with. Velocity, wind and
+   turns are in error by no more than the terms of the error budget say, and without satellite
+   navigation by its drift as well.
 5. Flying straight away outruns the growth of the disc. Without reports that holds for a limited
    time, since discs grow ever faster.
 6. A turn away keeps off at the start.
@@ -47,6 +47,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import NamedTuple
 
+from gnc.estimation.error_budget import EXACT, ErrorBudget, WindErrorByGusts
 from gnc.estimation.navigation import AirMotion
 from gnc.estimation.vessel import Tube
 from gnc.guard.turn import (
@@ -97,23 +98,16 @@ class GuardParameters:
 
     Attributes
     ----------
-    radius : distance that the vehicle's path must keep from the vessel, r_min and ``allowance`` [m]
+    radius : distance that the vehicle's path must keep from the vessel: r_min, and what the failure
+        of a part may take it off its turn [m]
     heading_rate_max : omega_max, the largest command [rad/s]
     lag : time constant of the heading rate behind its command; 0 if it follows at once [s]
     delay : dead time before that [s]
     slow_lag : delay behind slow commands; None if that is ``delay`` + ``lag`` [s]
     time_step : for which a command is held [s]
-    speed_error : largest error of the vehicle's own velocity, of the wind, and by gusts, together
-        [m/s]
-    deviation : how much nearer than predicted the vehicle may come in a full reversal [m]
-    drift_rate : how fast dead reckoning may go wrong, where satellite navigation may be lost [m/s]
-    allowance : part of ``radius`` that is kept for what takes the vehicle off any predicted turn:
-        turbulence, a failed part [m]
-    wander : how much the error of the vehicle's position may change during a turn away [m]
+    errors : that are reckoned with
     turn_speed : airspeed up to which it can turn at ``heading_rate_max``; faster it turns at the
         same acceleration across [m/s]
-    slowest : airspeed that it may fall to in any turn away, for instance without thrust; infinite
-        where it keeps to its commands [m/s]
     """
 
     radius: float
@@ -122,13 +116,8 @@ class GuardParameters:
     delay: float = 0.0
     slow_lag: float | None = None
     time_step: float
-    speed_error: float = 0.0
-    deviation: float = 0.0
-    drift_rate: float = 0.0
-    allowance: float = 0.0
-    wander: float = 0.0
+    errors: ErrorBudget = EXACT
     turn_speed: float = math.inf
-    slowest: float = math.inf
 
 
 class GuardStatus(IntEnum):
@@ -309,17 +298,25 @@ class HeadingRateFilter:
             lag=p.lag,
             delay=p.delay,
             time_step=p.time_step,
-            deviation=p.deviation,
+            deviation=p.errors.response.size,
             turn_speed=p.turn_speed,
         )
         self.budget = SkipBudget(p.heading_rate_max, p.time_step)
+        errors = p.errors
+        self._drift_rate = errors.drift.rate
+        self._slowest = errors.slowest
         # Satellite navigation may be lost at any moment, and dead reckoning go wrong from then on.
-        self._speed_error = p.speed_error + p.drift_rate
+        self._speed_error = errors.steady_velocity + self._drift_rate
+        self._exact_wind = WindErrorByGusts(errors.turbulence)
+        self._displacement = errors.displacement(wind=self._exact_wind)
+        self._gusty = errors.turbulence.sigma > 0.0
         # Half a turn to the nearer side, half as much again for the disc's motion, and what the lag
         # takes from any heading rate.
         self._turn_time = 1.5 * math.pi / p.heading_rate_max + 2.0 * p.lag + p.delay + p.time_step
         # Slack that the declared errors may take from a turn that was safe.
-        self._explained = p.deviation + self._speed_error * self._turn_time + p.allowance + p.wander
+        self._explained = (
+            errors.response.size + errors.failed_part.size + errors.wander(self._turn_time)
+        )
         # In one step the command may differ from the turn by 2 omega_max, which displaces the
         # vehicle by V omega_max dt^2. In turn radii:
         self._resolution = max(_RESOLUTION, (p.heading_rate_max * p.time_step) ** 2)
@@ -501,8 +498,9 @@ class HeadingRateFilter:
         """Return the motion relative to a disc, with all that is uncertain in radius and growth."""
         since = time - disc.time
         wind_error = own.wind_error
-        drifted = (self._p.drift_rate + wind_error) * own.lost
-        slowest = min(slowest, self._p.slowest)
+        drifted = (self._drift_rate + wind_error) * own.lost
+        self._displacement.renew(own.lost, own.wind_by_gusts or self._exact_wind)
+        slowest = min(slowest, self._slowest)
         return RelativeMotion(
             x=own.ground_north - (disc.north + disc.velocity_north * since),
             y=own.ground_east - (disc.east + disc.velocity_east * since),
@@ -519,6 +517,8 @@ class HeadingRateFilter:
             growth=self._speed_error + wind_error + disc.growth + disc.acceleration * since,
             acceleration=disc.acceleration,
             pending_rate=pending_rate,
+            wind_error=wind_error,
+            displacement=self._displacement if self._gusty else None,
         )
 
     def time_until_near(self, motion: RelativeMotion) -> float:
@@ -533,6 +533,7 @@ class HeadingRateFilter:
         gap = (
             math.hypot(motion.x, motion.y)
             - motion.radius
+            - self._displacement.after(duration)
             - (closing + 0.5 * acceleration * duration) * duration
         )
         return min(gap / (closing + 1.5 * acceleration * duration), duration)
@@ -649,8 +650,14 @@ class HeadingRateFilter:
 
     def _explained_slack(self, motion: RelativeMotion) -> float:
         """Return the slack that declared errors may have taken from a safe turn since [m]."""
+        turn_time = self._turn_time * max(1.0, motion.fastest / self._turn_speed)
+        # Of the growth, that of the disc is in all predictions.
+        error = self._speed_error + motion.wind_error
         return (
-            self._explained + _SPEED_SWITCH_ERROR * (motion.fastest - motion.slowest) / self._rate
+            self._explained
+            + error * turn_time
+            + self._displacement.after(turn_time)
+            + _SPEED_SWITCH_ERROR * (motion.fastest - motion.slowest) / self._rate
         )
 
     def _turn_command(self, side: float, motion: RelativeMotion) -> float:

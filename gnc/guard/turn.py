@@ -24,6 +24,7 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from gnc.estimation.error_budget import Displacement
 from gnc.numeric import limited
 
 LEAST_CHANGE = 0.2
@@ -80,6 +81,8 @@ class RelativeMotion:
         [m/s^2]
     pending_rate : change of heading rate that stands for the course still to come of earlier
         commands [rad/s]
+    wind_error : part of the growth that is an error of the wind [m/s]
+    displacement : by turbulence, kept beside the radius; none where None
     """
 
     def __init__(
@@ -97,6 +100,8 @@ class RelativeMotion:
         growth: float,
         acceleration: float,
         pending_rate: float,
+        wind_error: float = 0.0,
+        displacement: Displacement | None = None,
     ) -> None:
         self.x = x
         self.y = y
@@ -110,6 +115,8 @@ class RelativeMotion:
         self.growth = growth
         self.acceleration = acceleration
         self.pending_rate = pending_rate
+        self.wind_error = wind_error
+        self.displacement = displacement
 
     def moved(self, x: float, y: float, course: float, heading_rate: float) -> "RelativeMotion":
         """Return the same disc and speeds with the vehicle elsewhere [m, m, rad, rad/s]."""
@@ -126,6 +133,8 @@ class RelativeMotion:
             growth=self.growth,
             acceleration=self.acceleration,
             pending_rate=self.pending_rate,
+            wind_error=self.wind_error,
+            displacement=self.displacement,
         )
 
     def at_one_speed(self, speed: float) -> "RelativeMotion":
@@ -630,7 +639,10 @@ class _TurnPath:
     def _allowed(self) -> float:
         """Return the distance from the disc's centre to keep now [m]."""
         time, motion = self._time, self._motion
-        return self._kept + (motion.growth + 0.5 * motion.acceleration * time) * time
+        allowed = self._kept + (motion.growth + 0.5 * motion.acceleration * time) * time
+        if motion.displacement is not None:
+            allowed += motion.displacement.after(time)
+        return allowed
 
 
 def recedes(

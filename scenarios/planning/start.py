@@ -70,7 +70,7 @@ def check_start(
     vessel: Sequence[Tube],
     *,
     wind: tuple[float, float],
-    wind_error: float = 0.0,
+    known: AirMotion | None = None,
     airspeed: float,
     keepout_radius: float,
 ) -> None:
@@ -81,8 +81,9 @@ def check_start(
     start, guard : the start, and the guard that would have to keep out; any start is accepted
         without
     vessel : discs in each of which it is for certain, at time 0
-    wind, wind_error : north and east, and by how much more than in the end its first measurement
-        may be wrong [m/s]
+    wind : north and east [m/s]
+    known : motion by the first measurement, whose wind is as wrong as it may be at the start; None
+        where it is known exactly
     airspeed : of the UAV [m/s]
     keepout_radius : r_min [m]
 
@@ -109,7 +110,8 @@ def check_start(
         course=start.course,
         wind_north=wind[0],
         wind_east=wind[1],
-        wind_error=wind_error,
+        wind_error=known.wind_error if known else 0.0,
+        wind_by_gusts=known.wind_by_gusts if known else None,
     )
     clearance = HeadingRateFilter(guard).clearance(0.0, own, vessel, airspeed)
     if clearance < 0.0:

@@ -113,8 +113,11 @@ class ClosedLoop:
             demand, command = tracker.heading_rate_demand, guidance.heading_rate_command
             if demand > demand_max or -demand > demand_max:
                 demand_max = abs(demand)
-            if command > command_max or -command > command_max:
-                command_max = abs(command)
+            # A turn away in a gust is omega_max over the mean air, and may be more through the air.
+            turning = tracker.heading_rate_command
+            commanded = min(abs(command), abs(turning))
+            if commanded > command_max:
+                command_max = commanded
             saturated += tracker.saturated
             if guidance.guarding and guard is not None:
                 guarding.append(

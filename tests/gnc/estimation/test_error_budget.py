@@ -106,23 +106,30 @@ def test_what_is_known_exactly_has_no_error():
 
 
 TURNING = TurnDeviation(interval=1.0, sigmas=(0.0, 1.0, 2.0))
-KNOWN = {"wind_sigma": 0.4, "wind_gain": 0.004}
+
+
+def settled_wind():
+    """Return the error of a wind that has been measured for 5 min."""
+    wind = WindErrorByGusts(GUSTS)
+    for number in range(600):
+        wind.measure(max(0.002, 1.0 / (number + 1)), 0.5)
+    return wind
 
 
 def test_a_loss_of_satellites_costs_nothing_where_it_is_not_declared():
-    steady = ErrorBudget(turbulence=GUSTS, turning=TURNING).displacement(**KNOWN)
+    steady = ErrorBudget(turbulence=GUSTS, turning=TURNING).displacement(wind=settled_wind())
     losing = ErrorBudget(turbulence=GUSTS, turning=TURNING, drift=Growth(rate=1.0))
-    assert steady.after(6.0) < losing.displacement(**KNOWN).after(6.0)
+    assert steady.after(6.0) < losing.displacement(wind=settled_wind()).after(6.0)
     # What was allowed for before the loss is enough after it.
     for age in (0.1, 1.0, 5.0):
-        after = losing.displacement(lost=age, **KNOWN).after(6.0 - age)
-        assert after <= losing.displacement(**KNOWN).after(6.0)
+        after = losing.displacement(lost=age, wind=settled_wind()).after(6.0 - age)
+        assert after <= losing.displacement(wind=settled_wind()).after(6.0)
 
 
 @pytest.mark.parametrize("lost", [0.0, 20.0])
 def test_displacement_grows_with_time(lost):
     budget = ErrorBudget(turbulence=GUSTS, turning=TURNING, drift=Growth(rate=1.0))
-    displacement = budget.displacement(lost=lost, **KNOWN)
+    displacement = budget.displacement(lost=lost, wind=settled_wind())
     found = [displacement.after(time) for time in np.arange(0.0, 60.0, 0.5)]
     assert np.all(np.diff(found) >= 0.0)
 

@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 from flight_cases import plan, scenario
+from scenarios.planning.air.dead_reckoning import drift_rate
 
 from aircraft.weather import TURBULENCE, low_altitude_turbulence
 from aircraft.wind import CALM, WindField
 from gnc.estimation.navigation import EstimatedNavigation, SatelliteFix, SensorReadings
-from scenarios.planning.air.dead_reckoning import drift_rate
 from scenarios.planning.air.estimated_wind import navigation_parameters, wind_change
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 
