@@ -113,11 +113,11 @@ class ClosedLoop:
             demand, command = tracker.heading_rate_demand, guidance.heading_rate_command
             if demand > demand_max or -demand > demand_max:
                 demand_max = abs(demand)
-            # A turn away in a gust is omega_max over the mean air, and may be more through the air.
-            turning = tracker.heading_rate_command
-            commanded = min(abs(command), abs(turning))
-            if commanded > command_max:
-                command_max = commanded
+            commanded = abs(command)
+            if commanded > plan.heading_rate_max:
+                # In a gust, omega_max over the mean air may take more through the air.
+                commanded = min(commanded, abs(tracker.heading_rate_command))
+            command_max = max(command_max, commanded)
             saturated += tracker.saturated
             if guidance.guarding and guard is not None:
                 guarding.append(
