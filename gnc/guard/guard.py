@@ -72,10 +72,6 @@ _SAME_SPEED = 0.05
 """Airspeeds that differ by no more count as one, the faster [m/s]. A turn away then keeps off by
 the same to some centimetres, at most 0.2 m at a turn radius of 40 m."""
 
-_SPEED_SWITCH_ERROR = 0.05
-"""Share of the difference between the turn radii when fast and slow by which a vehicle may come
-nearer than predicted [-]."""
-
 _BISECTIONS = 5
 """Halvings of the fraction of the turn away that is mixed in: it is found to 1/32."""
 
@@ -315,7 +311,10 @@ class HeadingRateFilter:
         self._turn_time = 1.5 * math.pi / p.heading_rate_max + 2.0 * p.lag + p.delay + p.time_step
         # Slack that the declared errors may take from a turn that was safe.
         self._explained = (
-            errors.response.size + errors.failed_part.size + errors.wander(self._turn_time)
+            errors.response.size
+            + errors.failed_part.size
+            + errors.wander(self._turn_time)
+            + errors.k * errors.turning.at(self._turn_time)
         )
         # In one step the command may differ from the turn by 2 omega_max, which displaces the
         # vehicle by V omega_max dt^2. In turn radii:
@@ -653,12 +652,7 @@ class HeadingRateFilter:
         turn_time = self._turn_time * max(1.0, motion.fastest / self._turn_speed)
         # Of the growth, that of the disc is in all predictions.
         error = self._speed_error + motion.wind_error
-        return (
-            self._explained
-            + error * turn_time
-            + self._displacement.after(turn_time)
-            + _SPEED_SWITCH_ERROR * (motion.fastest - motion.slowest) / self._rate
-        )
+        return self._explained + error * turn_time
 
     def _turn_command(self, side: float, motion: RelativeMotion) -> float:
         """Return the command of a turn away [rad/s]: straight away from the disc and no farther."""

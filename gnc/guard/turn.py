@@ -56,6 +56,13 @@ _ROLLING_TIMES = 3.0
 """The 3 of docs/keepout_guard.md, "Evaluating less often": commands may go on for this many times
 the shortest time in which they can use up the slack by the course that they take [-]."""
 
+_SPEED_SWITCH_ERROR = 0.05
+"""Share of the difference between the turn radii when fast and slow by which a vehicle that slows
+down at any moment may come nearer than predicted [-]."""
+
+_NEVER_AWAY = -1e-9
+"""Slack of a turn that has kept off so far, but from which the disc does not fall behind [m]."""
+
 _NEWTON_STEPS = 3
 """Steps that find the closest approach between two points: each squares the error of the one before
 [-]."""
@@ -402,8 +409,8 @@ class TurnPrediction:
 
         The turn is over once the vehicle recedes and the turn makes it recede faster: by going on
         until it heads straight away, and straight on then, it recedes for good. From a disc that
-        closes in faster than the vehicle flies it turns no farther than that, and is followed for
-        as long as a turn takes.
+        closes in faster than the vehicle flies it turns no farther than that, is followed for as
+        long as a turn takes, and does not keep off.
 
         Parameters
         ----------
@@ -437,6 +444,7 @@ class TurnPrediction:
         least = path.slack + deviation
         outward = self._outward(side, start)
         slack_per_lever, rise = -1.0, 0.0
+        over = False
         for point in range(math.ceil(self._points_max * leg.stretch)):
             if least < floor:
                 break
@@ -465,10 +473,14 @@ class TurnPrediction:
             # Passing straight away between two points counts as well: it would have stopped there.
             if side * path.heading_rate >= 0.0 and (outward >= 0.0 or last_outward >= 0.0):
                 # The turn is over. One point more may allow more time until the next look.
+                over = True
                 last_best = slack_per_lever
                 slack_per_lever = max(slack_per_lever, min(least_rate, rise / duration))
                 if slack_per_lever == last_best or outward < 0.0:
                     break
+        if not over:
+            # The disc gains on the vehicle for as long as a turn takes: it keeps off no longer.
+            least = min(least, _NEVER_AWAY)
         free_rate = max(slack_per_lever, 0.0)
         free_time = min(free_rate / loss_rate, self.time_until_once_round(side, start, motion))
         return TurnAway(least, free_time, free_rate / motion.fastest, counted)
@@ -575,6 +587,7 @@ class _TurnPath:
         """Fly a slower leg while the vehicle flies away; the radii differ by so much [m]."""
         self._other_leg = slow_leg
         self._radii_difference = radii_difference
+        self._kept += _SPEED_SWITCH_ERROR * radii_difference
 
     def advance(self) -> None:
         """Go on to the next point."""

@@ -41,6 +41,7 @@ from guard_cases import (
 from hypothesis import given
 from hypothesis import strategies as st
 
+from gnc.estimation.error_budget import EXACT, Bias, ErrorBudget, Process
 from gnc.estimation.vessel import Tube
 from gnc.guard.guard import Demand, GuardStatus, HeadingRateFilter, KeepoutGuard, SpeedRange
 from gnc.numeric import limited, wrap
@@ -268,13 +269,19 @@ def test_without_a_way_out_it_reports_lost_and_flies_the_better_turn():
     assert LOST not in statuses[-200:]
 
 
-@pytest.mark.parametrize("declared", ["allowance", "wander"])
-def test_slack_that_a_declared_allowance_or_position_error_explains_is_not_lost(declared):
+@pytest.mark.parametrize(
+    ("errors", "status"),
+    [
+        (EXACT, LOST),
+        (ErrorBudget(failed_part=Bias(size=10.0)), INTERVENING),
+        (ErrorBudget(own_position=Process(sigma=3.0, correlation_time=60.0)), INTERVENING),
+    ],
+)
+def test_slack_that_declared_errors_explain_is_not_lost(errors, status):
     # 3 m within the radius already; a guard without declared errors has no explanation.
-    for size, status in ((0.0, LOST), (10.0, INTERVENING)):
-        guard = DiscGuard(**{declared: size})
-        guard.limit(0.0, (0.0, RADIUS - 3.0, 0.5 * math.pi, 0.0))
-        assert guard.status is status
+    guard = DiscGuard(errors=errors)
+    guard.limit(0.0, (0.0, RADIUS - 3.0, 0.5 * math.pi, 0.0))
+    assert guard.status is status
 
 
 @pytest.mark.parametrize("off", [0.0, 0.01, -0.01])
