@@ -18,7 +18,7 @@ from common.run_layout import REPORT_HTML, REPORT_PDF, flight_of
 if TYPE_CHECKING:
     from scenarios.engine.executors import ExecutorFactory
 
-MET, NOT_MET = 0, 1
+MET, NOT_MET, UNEXPLAINED = 0, 1, 3
 
 _WATCHED_TIME_LIMIT = 1e6
 """Longest computing time of a flight that is shown in real time [s]."""
@@ -95,8 +95,9 @@ def command(
     """Fly a scenario and write a report.
 
     Exit status: 0 every flight kept out, completed and met its criteria (or kept out, where the
-    scenario requires no more; or every trajectory converged), 1 some did not, 2 bad input, 130
-    interrupted. Of a flight that is replayed: 0 its row is identical, 1 it is not.
+    scenario requires no more; or every trajectory converged), 1 some did not, 2 bad input, 3 a
+    flight entered the keep-out area although every premise of its guard held, 130 interrupted. Of
+    a flight that is replayed: 0 its row is identical, 1 it is not.
     """
     from scenarios.engine.executors import ExecutorFactory
     from scenarios.engine.task import Limits
@@ -234,6 +235,8 @@ def _run(
         )
         return INTERRUPTED
     status = _report(directory, changed=result.changed, wanted=not no_report)
+    if result.summary.unexplained:
+        return UNEXPLAINED
     return status or (MET if result.all_met else NOT_MET)
 
 

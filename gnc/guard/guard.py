@@ -169,6 +169,20 @@ class Guarded:
         self.status = status
 
 
+class Reckoning(NamedTuple):
+    """What turns away are predicted with besides the error budget.
+
+    Attributes
+    ----------
+    fastest, slowest : airspeeds between which the vehicle stays [m/s]
+    change : largest recent change of command, over a full reversal [-]
+    """
+
+    fastest: float
+    slowest: float
+    change: float
+
+
 class KeepoutGuard:
     """Filters the demands of a guidance. It keeps a memory and must be called once per time step.
 
@@ -194,6 +208,16 @@ class KeepoutGuard:
     def status(self) -> GuardStatus:
         """What the guard did at the last step."""
         return self._heading_rates.status
+
+    @property
+    def reckoning(self) -> Reckoning:
+        """What turns away are predicted with after the last step."""
+        speeds, turns = self._speeds, self._heading_rates
+        return Reckoning(
+            fastest=speeds.fastest(speeds.highest),
+            slowest=min(speeds.slowest(speeds.lowest), turns.slowest),
+            change=turns.history.change,
+        )
 
     def filter(self, demand: Demand, own: AirMotion, vessels: Sequence[Tube]) -> Guarded:
         """Return the commands that keep out and are nearest to the demand.
@@ -273,6 +297,7 @@ class HeadingRateFilter:
     Attributes
     ----------
     status : what was done at the last step
+    slowest : airspeed that the vehicle may fall to in any turn [m/s]
     prediction, history, budget : of turns; of the commands; of those that need no look
     """
 
@@ -300,7 +325,7 @@ class HeadingRateFilter:
         self.budget = SkipBudget(p.heading_rate_max, p.time_step)
         errors = p.errors
         self._drift_rate = errors.drift.rate
-        self._slowest = errors.slowest
+        self.slowest = errors.slowest
         # Satellite navigation may be lost at any moment, and dead reckoning go wrong from then on.
         self._speed_error = errors.steady_velocity + self._drift_rate
         self._exact_wind = WindErrorByGusts(errors.turbulence)
@@ -499,7 +524,7 @@ class HeadingRateFilter:
         wind_error = own.wind_error
         drifted = (self._drift_rate + wind_error) * own.lost
         self._displacement.renew(own.lost, own.wind_by_gusts or self._exact_wind)
-        slowest = min(slowest, self._slowest)
+        slowest = min(slowest, self.slowest)
         return RelativeMotion(
             x=own.ground_north - (disc.north + disc.velocity_north * since),
             y=own.ground_east - (disc.east + disc.velocity_east * since),

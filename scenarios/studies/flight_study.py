@@ -348,12 +348,13 @@ class FlightStudy:
             whole.add(row)
             trial_counts[row["trial"]].add(row)
         lines = [
+            *whole.unexplained_lines(),
             *(reports.described() for reports in self.vessel_files.values()),
             f"flights: {whole.line()}",
         ]
         if len(trial_counts) > 1:
             lines += [f"  {trial}: {counts.line()}" for trial, counts in trial_counts.items()]
-        lines += [*self._comparison_lines(journal), *whole.sulphur_lines()]
+        lines += [*whole.premise_lines(), *self._comparison_lines(journal), *whole.sulphur_lines()]
         if whole.flown > whole.without_area and all(self._sampled_at_random().values()):
             samples = sum(
                 of.beside // flights_per_sample(self.trials[trial])
@@ -373,6 +374,7 @@ class FlightStudy:
             lines=lines,
             manifest=manifest,
             beside_left=left,
+            unexplained=whole.unexplained,
         )
 
     def _comparison_lines(self, journal: Journal) -> list[str]:

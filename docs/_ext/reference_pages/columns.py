@@ -18,6 +18,7 @@ from scenarios.metrics.columns import (
 from scenarios.metrics.finding import FINDING_FIGURES
 from scenarios.metrics.meanings import CONVERGENCE_MEANINGS, MEANINGS
 from scenarios.metrics.window import MEASURED_COLUMNS, WINDOW_COLUMNS
+from scenarios.simulation.guard_belief import GuardBelief
 from scenarios.simulation.plume_readings import PlumeBelief
 from scenarios.simulation.record import MEANINGS as HISTORY_MEANINGS
 from scenarios.simulation.record import unit_of
@@ -60,6 +61,7 @@ def tables() -> dict[str, tuple[Iterable[str], Mapping[str, str]]]:
         **{name: (of, MEANINGS[name]) for name, of in columns.items()},
         "flights/ID.parquet": (HISTORY_MEANINGS, histories),
         "flights/ID.parquet, of flights with a sniffer": (SnifferOnBoard.COLUMNS, histories),
+        "flights/ID.parquet, of flights with a keep-out guard": (GuardBelief.COLUMNS, histories),
         "flights/ID.parquet, of flights that search for the plume": (
             PlumeBelief.COLUMNS,
             histories,
