@@ -460,7 +460,7 @@ class HeadingRateFilter:
             turn,
             side,
             command=command,
-            last=history.last,
+            recent=history.range_with(command),
             slowest=min(slowest, fastest) - _SAME_SPEED,
             fastest=fastest + _SAME_SPEED,
         )
@@ -689,7 +689,8 @@ class CommandHistory:
         [rad/s]
     change : largest recent change of command, over a full reversal; it counts less the older it is
         [-]
-    last : command at the last look [rad/s]
+    recent : commands within dead time and lag of the last one, of which any two make a change
+        [rad/s]
     """
 
     def __init__(
@@ -730,7 +731,9 @@ class CommandHistory:
         self._rates: list[float] = []
         self.under_way: deque[float] = deque(maxlen=count)
         self.change = LEAST_CHANGE
-        self.last = 0.0
+        # A reversal in steps counts as one at once, however often the guard looks.
+        window = max(1, round((delay + lag) / time_step))
+        self.recent: deque[float] = deque([0.0], maxlen=window)
 
     @property
     def newest(self) -> float:
@@ -759,7 +762,8 @@ class CommandHistory:
             self._take_in(rate)
         elif not self._begun:
             # A flight begins: the turn that is flown is under way.
-            self.last = rate
+            self.recent.append(rate)
+            self.recent.popleft()
             self.under_way.extend([rate] * (self.under_way.maxlen or 0))
         if self._lag == 0.0:
             return 0.0
@@ -767,8 +771,14 @@ class CommandHistory:
 
     def change_with(self, command: float) -> float:
         """Return ``change`` if a command [rad/s] is given now."""
-        now = abs(command - self.last) / self._reversal
+        lowest, highest = self.range_with(command)
+        now = (highest - lowest) / self._reversal
         return now if now > self.change else self.change
+
+    def range_with(self, command: float) -> tuple[float, float]:
+        """Return the lowest and the highest recent command if one [rad/s] is given now [rad/s]."""
+        recent = self.recent
+        return min(command, *recent), max(command, *recent)
 
     def _take_in(self, rate: float) -> None:
         """Take in the commands and heading rates since the last look [rad/s]."""
@@ -784,13 +794,11 @@ class CommandHistory:
         remembered = self._lack * self._kept ** len(commands)
         lack = remembered + acted - turned - self._slow_lag_after_delay * rate_change
         self._lack = limited(lack, self._lack_max)
-        # What changed little by little since the last look counts as if it had changed at once.
-        newest = commands[-1]
-        commands.append(self.last)
-        highest, lowest = max(commands), min(commands)
-        faded = self.change * self._fading ** len(rates)
-        self.change = max((highest - lowest) / self._reversal, faded, LEAST_CHANGE)
-        self.last = newest
+        recent, change = self.recent, self.change
+        for command in commands:
+            recent.append(command)
+            change = max(change * self._fading, (max(recent) - min(recent)) / self._reversal)
+        self.change = max(change, LEAST_CHANGE)
         commands.clear()
         rates.clear()
 
@@ -856,7 +864,7 @@ class SkipBudget:
         side: float,
         *,
         command: float,
-        last: float,
+        recent: tuple[float, float],
         slowest: float,
         fastest: float,
     ) -> None:
@@ -866,7 +874,8 @@ class SkipBudget:
         ----------
         turn : away that keeps off; None if there is none, and nothing may be skipped
         side : of the turn; 0 where the disc is out of reach
-        command, last : that was looked at, and at the look before [rad/s]
+        command : that was looked at [rad/s]
+        recent : lowest and highest of it and the recent ones [rad/s]
         slowest, fastest : airspeeds at which the turn was predicted [m/s]
         """
         if turn is None:
@@ -877,7 +886,7 @@ class SkipBudget:
         self._course_per_rate = side * self._time_step
         # Commands that change by no more than the turn's deviation counts, and that are not too
         # little of the turn.
-        middle, half = 0.5 * (last + command), turn.change * self._rate
+        middle, half = 0.5 * (recent[0] + recent[1]), turn.change * self._rate
         least = self.least_of_turn(side, command) if side else -self._rate
         self._lowest = max(middle - half, least if side > 0.0 else -self._rate)
         self._highest = min(middle + half, -least if side < 0.0 else self._rate)

@@ -432,26 +432,24 @@ class TurnPrediction:
         if motion.slowest != motion.fastest:
             radii_difference = (motion.fastest - motion.slowest) * leg.stretch / rate
             path.slow_down_while_receding(self._leg(side, motion.slowest), radii_difference)
+        loss_rate = 2.0 * motion.fastest * rate * against / _ROLLING_TIMES
         # Commands before the turn displace the vehicle by the course that they take from it, times
         # a lever; and they use up slack by rolling, which makes the turn deviate more.
-        loss_rate = 2.0 * motion.fastest * rate * against / _ROLLING_TIMES
-        added_deviation = max(0.0, self._deviation * max(change, against) - deviation)
-        rolling = added_deviation / (loss_rate * max(lag, time_step))
+        rolling = max(0.0, self._deviation * max(change, against) - deviation) / (
+            loss_rate * max(lag, time_step)
+        )
         acting = time - self._delay
         fade = self._step.decay if time > self._delay else 1.0
-        least_rate = math.inf
         # At the start itself the vehicle has not deviated yet.
         least = path.slack + deviation
         outward = self._outward(side, start)
-        slack_per_lever, rise = -1.0, 0.0
-        over = False
+        slack_per_lever, rise, least_rate, over = -1.0, 0.0, math.inf, False
         for point in range(math.ceil(self._points_max * leg.stretch)):
             if least < floor:
                 break
             last_slack, last_rise, last_outward = path.slack, rise, outward
             path.advance()
-            outward = path.outward
-            rise = path.slack - last_slack
+            outward, rise = path.outward, path.slack - last_slack
             acting += duration
             fade *= decay
             lever = acting - lag * (1.0 - fade) + rolling
