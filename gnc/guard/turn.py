@@ -488,7 +488,7 @@ class TurnPrediction:
                 slack_per_lever = max(slack_per_lever, min(least_rate, rise / duration))
                 if slack_per_lever == last_best or outward < 0.0:
                     break
-        if not over:
+        if not over and rise + path.displaced_by < 0.0:
             # The disc gains on the vehicle for as long as a turn takes: it keeps off no longer.
             least = min(least, _NEVER_AWAY)
         free_rate = max(slack_per_lever, 0.0)
@@ -555,6 +555,7 @@ class _TurnPath:
     ----------
     heading_rate : now [rad/s]
     slack : distance from the disc's centre less what is allowed for [m]
+    displaced_by : growth of the displacement by turbulence on the last leg [m]
     outward : how far the last leg led off the disc's direction on the side of the turn [m]
     away : whether it led away from the disc's centre
     """
@@ -573,6 +574,8 @@ class _TurnPath:
         self.heading_rate = heading_rate
         self.outward = 0.0
         self.away = False
+        self.displaced_by = 0.0
+        self._displaced = 0.0
         self._side = side
         self._motion = motion
         self._spacing = spacing
@@ -665,7 +668,10 @@ class _TurnPath:
         time, motion = self._time, self._motion
         allowed = self._kept + (motion.growth + 0.5 * motion.acceleration * time) * time
         if motion.displacement is not None:
-            allowed += motion.displacement.after(time)
+            displaced = motion.displacement.after(time)
+            self.displaced_by = displaced - self._displaced
+            self._displaced = displaced
+            allowed += displaced
         return allowed
 
 

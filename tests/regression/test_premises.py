@@ -93,5 +93,5 @@ def test_an_ordinary_flight_without_satellites_in_moderate_turbulence_keeps_out(
     study = load_study("sea_turbulence_moderate", overrides)
     run_study(study, "sea_turbulence_moderate", tmp_path, executor_factory=InProcessExecutor)
     rows = pd.read_csv(tmp_path / "summary.csv")
-    assert len(rows) == 8
+    assert set(rows.outcome) == {"completed"}
     assert (rows.min_distance_m >= rows.keepout_radius_m).all()

@@ -331,6 +331,15 @@ def test_a_vehicle_heading_straight_away_from_a_disc_that_closes_in_flies_on(off
     assert command == pytest.approx(-off / TIME_STEP)
 
 
+def test_a_disc_that_is_faster_than_the_vehicle_is_fled_from_as_soon_as_it_is_in_reach():
+    # 130 m ahead of it, which it makes up for in 26 s or less: longer than a turn takes.
+    guard = DiscGuard()
+    command = guard.limit(0.3, (RADIUS + 130.0, 0.0, 0.0, 0.0), (SPEED + 5.0, 0.0))
+    assert guard.status is INTERVENING
+    # It heads straight away already.
+    assert command == pytest.approx(0.0, abs=1e-9)
+
+
 @pytest.mark.parametrize("want", [HEADING_RATE_MAX, -HEADING_RATE_MAX, 0.0])
 def test_a_vehicle_that_a_growing_disc_overtakes_flies_straight_away_from_it(want):
     guard, state = DiscGuard(), (0.0, 210.0, 1.0, 0.0)
