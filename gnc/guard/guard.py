@@ -255,9 +255,12 @@ class Encounter:
 
 
 class _BackupTurn(NamedTuple):
-    """A turn away that may be flown: its slack [m], its side, and against what it was predicted."""
+    """A turn away that may be flown: its slack [m], whether the disc falls behind in the end, its
+    side, and against what it was predicted.
+    """
 
     slack: float
+    ends: bool
     side: float
     encounter: Encounter
 
@@ -446,7 +449,7 @@ class HeadingRateFilter:
             motion = self.relative_motion(disc, time, own, fastest, slowest, pending)
             far_for = self.time_until_near(motion)
             if far_for > 0.0:
-                side, turn = 0.0, TurnAway(math.inf, far_for, math.inf, change)
+                side, turn = 0.0, TurnAway(math.inf, far_for, math.inf, change, True)
             else:
                 motions = self.motions_when_acting(motion)
                 side, turn = self._safe_turn_after(command, motions, change)
@@ -560,7 +563,7 @@ class HeadingRateFilter:
         nearer = nearer_side(start.x, start.y, start.course)
         for side in (nearer, -nearer):
             turn = self.turn_after(side, command, motions, change, floor)
-            if turn.slack >= floor:
+            if turn.slack >= floor and turn.ends:
                 return side, turn
         return 0.0, None
 
@@ -579,7 +582,7 @@ class HeadingRateFilter:
         prediction = self.prediction
         against = 0.5 - 0.5 * self.budget.least_of_turn(side, command) / self._rate
         slack = free_time = free_course = math.inf
-        counted = 1.0
+        counted, ends = 1.0, True
         for motion in motions:
             turn = prediction.turn_away(
                 side,
@@ -595,9 +598,10 @@ class HeadingRateFilter:
             free_time = min(turn.free_time, free_time)
             free_course = min(turn.free_course, free_course)
             counted = min(counted, turn.change)
+            ends = ends and turn.ends
             if slack < floor:
                 break
-        return TurnAway(slack, free_time, free_course, counted)
+        return TurnAway(slack, free_time, free_course, counted, ends)
 
     def _mix(self, command: float, encounters: Sequence[Encounter]) -> float:
         """Return the command with the least of a turn away that keeps off, or that turn [rad/s]."""
@@ -609,7 +613,7 @@ class HeadingRateFilter:
         floor = self._resolution * first.fastest / self._rate
         lost = backup.slack < -self._explained_slack(first) - floor
         self.status = GuardStatus.LOST if lost else GuardStatus.INTERVENING
-        if backup.slack < 0.0:
+        if backup.slack < 0.0 or not backup.ends:
             return turn
         self._kept_off = backup.encounter.disc
         low, high, mixed = 0.0, 1.0, turn
@@ -637,7 +641,7 @@ class HeadingRateFilter:
                 command = self._turn_command(side, first)
                 change = self.history.change_with(command)
                 found = self.turn_after(side, command, encounter.motions, change, -math.inf)
-                turn = _BackupTurn(found.slack, side, encounter)
+                turn = _BackupTurn(found.slack, found.ends, side, encounter)
                 if safe_side and turn.slack >= 0.0:
                     return turn
                 turns.append(turn)
@@ -763,8 +767,7 @@ class CommandHistory:
             self._take_in(rate)
         elif not self._begun:
             # A flight begins: the turn that is flown is under way.
-            self.recent.append(rate)
-            self.recent.popleft()
+            self.recent[0] = rate
             self.under_way.extend([rate] * (self.under_way.maxlen or 0))
         if self._lag == 0.0:
             return 0.0

@@ -59,9 +59,6 @@ _SPEED_SWITCH_ERROR = 0.05
 """Share of the difference between the turn radii when fast and slow by which a vehicle that slows
 down at any moment may come nearer than predicted [-]."""
 
-_NEVER_AWAY = -1e-9
-"""Slack of a turn that has kept off so far, but from which the disc does not fall behind [m]."""
-
 _NEWTON_STEPS = 3
 """Steps that find the closest approach between two points: each squares the error of the one before
 [-]."""
@@ -177,10 +174,19 @@ class TurnAway:
     free_course : course that these may take from the turn in all [rad]
     change : share of a full reversal that its deviation counts, by rolling into it or by recent
         changes of command [-]
+    ends : whether the disc falls behind in the end
     """
 
-    def __init__(self, slack: float, free_time: float, free_course: float, change: float) -> None:
+    def __init__(
+        self,
+        slack: float,
+        free_time: float,
+        free_course: float,
+        change: float,
+        ends: bool = True,
+    ) -> None:
         self.slack = slack
+        self.ends = ends
         self.free_time = free_time
         self.free_course = free_course
         self.change = change
@@ -422,7 +428,7 @@ class TurnPrediction:
         The turn is over once the vehicle recedes and the turn makes it recede faster: by going on
         until it heads straight away, and straight on then, it recedes for good. From a disc that
         closes in faster than the vehicle flies it turns no farther than that, is followed for as
-        long as a turn takes, and does not keep off.
+        long as a turn takes, and does not fall behind.
 
         Parameters
         ----------
@@ -488,12 +494,11 @@ class TurnPrediction:
                 slack_per_lever = max(slack_per_lever, min(least_rate, rise / duration))
                 if slack_per_lever == last_best or outward < 0.0:
                     break
-        if not over and rise + path.displaced_by < 0.0:
-            # The disc gains on the vehicle for as long as a turn takes: it keeps off no longer.
-            least = min(least, _NEVER_AWAY)
         free_rate = max(slack_per_lever, 0.0)
         free_time = min(free_rate / loss_rate, self.time_until_once_round(side, start, motion))
-        return TurnAway(least, free_time, free_rate / motion.fastest, counted)
+        # A disc may gain on the vehicle for as long as a turn takes, and longer.
+        ends = over or rise + path.displaced_by >= 0.0
+        return TurnAway(least, free_time, free_rate / motion.fastest, counted, ends)
 
     def _leg(self, side: float, speed: float) -> _Leg:
         """Return what is flown between two points of a full turn at an airspeed [m/s]."""
