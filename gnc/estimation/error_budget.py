@@ -48,6 +48,7 @@ the vessel's discs goes by ``following.touches_per_hour``.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 EXCEEDED_PER_HOUR = 0.1
 """How often a process in the vehicle's own motion may exceed what is reckoned with [1/h].
@@ -317,6 +318,33 @@ class ErrorBudget:
         wind : error of the estimated wind, at the last fix; None where it is known exactly
         """
         return Displacement(self, lost, wind or WindErrorByGusts(STILL))
+
+    def parts(self, time: float, wind: "WindErrorByGusts | None" = None) -> "dict[str, Part]":
+        """Return what each term may displace the vehicle by in a turn, by its name.
+
+        Parameters
+        ----------
+        time : of the turn [s]
+        wind : see ``displacement``
+        """
+        by_turbulence = self.displacement(wind=wind).after(time)
+        return {
+            "own position": Part(self.wander(time), self.own_position.key),
+            "own velocity": Part(self.own_velocity.size * time, self.own_velocity.key),
+            "gusts": Part(self.gusts.size * time, self.gusts.key),
+            "change of the wind": Part(self.wind_change.size * time, self.wind_change.key),
+            "turbulence": Part(by_turbulence, self.turbulence.key),
+            "response of turns": Part(self.response.size, self.response.key),
+            "failure of a part": Part(self.failed_part.size, self.failed_part.key),
+            "drift of dead reckoning": Part(self.drift.rate * time, self.drift.key),
+        }
+
+
+class Part(NamedTuple):
+    """What a term may displace the vehicle by [m], and the key of the scenario that declares it."""
+
+    distance: float
+    key: str
 
 
 class Displacement:

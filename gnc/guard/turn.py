@@ -22,7 +22,6 @@ the left. ``docs/keepout_guard.md`` derives what is used here.
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
 
 from gnc.estimation.error_budget import Displacement
 from gnc.numeric import limited
@@ -60,9 +59,6 @@ _SPEED_SWITCH_ERROR = 0.05
 """Share of the difference between the turn radii when fast and slow by which a vehicle that slows
 down at any moment may come nearer than predicted [-]."""
 
-_NEVER_AWAY = -1e-9
-"""Slack of a turn that has kept off so far, but from which the disc does not fall behind [m]."""
-
 _NEWTON_STEPS = 3
 """Steps that find the closest approach between two points: each squares the error of the one before
 [-]."""
@@ -75,8 +71,8 @@ _WHOLE_STEP = 1e-6
 class RelativeMotion:
     """A vehicle's motion relative to a disc, and how the disc grows.
 
-    This class and ``TurnPoint`` are made at each look or point: compiled, a plain class takes a
-    sixth of the time of a NamedTuple.
+    Like the others of this module it is a plain class: the guard makes many at each look, and
+    compiled they take a sixth of the time of a NamedTuple.
 
     Attributes
     ----------
@@ -152,7 +148,7 @@ class RelativeMotion:
         return same
 
 
-class TurnStart(NamedTuple):
+class TurnStart:
     """Where a turn begins.
 
     Attributes
@@ -161,13 +157,14 @@ class TurnStart(NamedTuple):
     course, heading_rate : [rad, rad/s]
     """
 
-    x: float
-    y: float
-    course: float
-    heading_rate: float
+    def __init__(self, x: float, y: float, course: float, heading_rate: float) -> None:
+        self.x = x
+        self.y = y
+        self.course = course
+        self.heading_rate = heading_rate
 
 
-class TurnAway(NamedTuple):
+class TurnAway:
     """A full turn away, and what commands before it cannot spoil it.
 
     Attributes
@@ -177,12 +174,22 @@ class TurnAway(NamedTuple):
     free_course : course that these may take from the turn in all [rad]
     change : share of a full reversal that its deviation counts, by rolling into it or by recent
         changes of command [-]
+    ends : whether the disc falls behind in the end
     """
 
-    slack: float
-    free_time: float
-    free_course: float
-    change: float
+    def __init__(
+        self,
+        slack: float,
+        free_time: float,
+        free_course: float,
+        change: float,
+        ends: bool = True,
+    ) -> None:
+        self.slack = slack
+        self.ends = ends
+        self.free_time = free_time
+        self.free_course = free_course
+        self.change = change
 
 
 class TurnPoint:
@@ -203,7 +210,7 @@ class TurnPoint:
         self.speed = speed
 
 
-class HeldResponse(NamedTuple):
+class HeldResponse:
     """Coefficients of a first-order lag under a held command.
 
     From a heading rate r, under a command u that is held for ``duration``,
@@ -218,13 +225,14 @@ class HeldResponse(NamedTuple):
     decay : [-]
     """
 
-    duration: float
-    turned: float
-    mean: float
-    decay: float
+    def __init__(self, duration: float, turned: float, mean: float, decay: float) -> None:
+        self.duration = duration
+        self.turned = turned
+        self.mean = mean
+        self.decay = decay
 
 
-class _Leg(NamedTuple):
+class _Leg:
     """What is flown between two points of a full turn at one airspeed.
 
     Attributes
@@ -236,12 +244,21 @@ class _Leg(NamedTuple):
     speed : airspeed [m/s]
     """
 
-    way: float
-    course_to_middle: float
-    course_turned: float
-    rate_gained: float
-    stretch: float
-    speed: float
+    def __init__(
+        self,
+        way: float,
+        course_to_middle: float,
+        course_turned: float,
+        rate_gained: float,
+        stretch: float,
+        speed: float,
+    ) -> None:
+        self.way = way
+        self.course_to_middle = course_to_middle
+        self.course_turned = course_turned
+        self.rate_gained = rate_gained
+        self.stretch = stretch
+        self.speed = speed
 
 
 def held_response(duration: float, lag: float) -> HeldResponse:
@@ -356,12 +373,12 @@ class TurnPrediction:
         mean_course_time = 0.0
         response = self._first_step
         for command in under_way:
-            duration, turned, mean, decay = response
+            duration, turned, mean = response.duration, response.turned, response.mean
             mean_course_time += duration * (
                 course + mean * heading_rate + (0.5 * duration - mean) * command
             )
             course += turned * heading_rate + (duration - turned) * command
-            heading_rate = decay * heading_rate + (1.0 - decay) * command
+            heading_rate = response.decay * heading_rate + (1.0 - response.decay) * command
             response = self._step
         # One chord will do, with the sine over arc of half the course turned.
         mean_course, half_turned = mean_course_time / self._delay, 0.5 * (course - motion.course)
@@ -381,7 +398,8 @@ class TurnPrediction:
         if motion.fastest > self._turn_speed:
             # At the largest bank a turn is the slower the faster the vehicle flies.
             command = limited(command, self._rate * self._turn_speed / motion.fastest)
-        duration, turned, mean, decay = self._step
+        step = self._step
+        duration, turned, mean = step.duration, step.turned, step.mean
         heading_rate = motion.heading_rate
         middle = motion.course + mean * heading_rate + (0.5 * duration - mean) * command
         cos, sin = math.cos(middle), math.sin(middle)
@@ -391,7 +409,7 @@ class TurnPrediction:
             motion.x + (speed * cos - motion.disc_north) * duration,
             motion.y + (speed * sin - motion.disc_east) * duration,
             motion.course + turned * heading_rate + (duration - turned) * command,
-            decay * heading_rate + (1.0 - decay) * command,
+            step.decay * heading_rate + (1.0 - step.decay) * command,
         )
 
     def turn_away(
@@ -410,7 +428,7 @@ class TurnPrediction:
         The turn is over once the vehicle recedes and the turn makes it recede faster: by going on
         until it heads straight away, and straight on then, it recedes for good. From a disc that
         closes in faster than the vehicle flies it turns no farther than that, is followed for as
-        long as a turn takes, and does not keep off.
+        long as a turn takes, and does not fall behind.
 
         Parameters
         ----------
@@ -432,26 +450,24 @@ class TurnPrediction:
         if motion.slowest != motion.fastest:
             radii_difference = (motion.fastest - motion.slowest) * leg.stretch / rate
             path.slow_down_while_receding(self._leg(side, motion.slowest), radii_difference)
+        loss_rate = 2.0 * motion.fastest * rate * against / _ROLLING_TIMES
         # Commands before the turn displace the vehicle by the course that they take from it, times
         # a lever; and they use up slack by rolling, which makes the turn deviate more.
-        loss_rate = 2.0 * motion.fastest * rate * against / _ROLLING_TIMES
-        added_deviation = max(0.0, self._deviation * max(change, against) - deviation)
-        rolling = added_deviation / (loss_rate * max(lag, time_step))
+        rolling = max(0.0, self._deviation * max(change, against) - deviation) / (
+            loss_rate * max(lag, time_step)
+        )
         acting = time - self._delay
         fade = self._step.decay if time > self._delay else 1.0
-        least_rate = math.inf
         # At the start itself the vehicle has not deviated yet.
         least = path.slack + deviation
         outward = self._outward(side, start)
-        slack_per_lever, rise = -1.0, 0.0
-        over = False
+        slack_per_lever, rise, least_rate, over = -1.0, 0.0, math.inf, False
         for point in range(math.ceil(self._points_max * leg.stretch)):
             if least < floor:
                 break
             last_slack, last_rise, last_outward = path.slack, rise, outward
             path.advance()
-            outward = path.outward
-            rise = path.slack - last_slack
+            outward, rise = path.outward, path.slack - last_slack
             acting += duration
             fade *= decay
             lever = acting - lag * (1.0 - fade) + rolling
@@ -478,24 +494,23 @@ class TurnPrediction:
                 slack_per_lever = max(slack_per_lever, min(least_rate, rise / duration))
                 if slack_per_lever == last_best or outward < 0.0:
                     break
-        if not over:
-            # The disc gains on the vehicle for as long as a turn takes: it keeps off no longer.
-            least = min(least, _NEVER_AWAY)
         free_rate = max(slack_per_lever, 0.0)
         free_time = min(free_rate / loss_rate, self.time_until_once_round(side, start, motion))
-        return TurnAway(least, free_time, free_rate / motion.fastest, counted)
+        # A disc may gain on the vehicle for as long as a turn takes, and longer.
+        ends = over or rise + path.displaced_by >= 0.0
+        return TurnAway(least, free_time, free_rate / motion.fastest, counted, ends)
 
     def _leg(self, side: float, speed: float) -> _Leg:
         """Return what is flown between two points of a full turn at an airspeed [m/s]."""
-        duration, turned, mean, decay = self._spacing
+        spacing = self._spacing
         # At the largest bank a turn is the slower the faster the vehicle flies.
         stretch = max(1.0, speed / self._turn_speed)
         rate = side * self._rate / stretch
         return _Leg(
-            way=speed * duration * self._chord_over_arc,
-            course_to_middle=(0.5 * duration - mean) * rate,
-            course_turned=(duration - turned) * rate,
-            rate_gained=(1.0 - decay) * rate,
+            way=speed * spacing.duration * self._chord_over_arc,
+            course_to_middle=(0.5 * spacing.duration - spacing.mean) * rate,
+            course_turned=(spacing.duration - spacing.turned) * rate,
+            rate_gained=(1.0 - spacing.decay) * rate,
             stretch=stretch,
             speed=speed,
         )
@@ -505,7 +520,7 @@ class TurnPrediction:
 
         It is 0 where the turn begins beyond straight away by no more than one that ends there.
         """
-        x, y, course, _ = start
+        x, y, course = start.x, start.y, start.course
         cos, sin = math.cos(course), math.sin(course)
         outward = side * (y * cos - x * sin)
         beyond = -self._overshoot_sine * math.sqrt(x * x + y * y) < outward < 0.0
@@ -518,7 +533,7 @@ class TurnPrediction:
         the other way, by what crosses it: all of the disc's speed, and the vehicle's speed across
         while it has so far left to turn.
         """
-        x, y, course, _ = start
+        x, y, course = start.x, start.y, start.course
         to_turn = side * math.remainder(math.atan2(y, x) - course, 2.0 * math.pi) + self.overshoot
         if to_turn < 0.0:
             return math.inf
@@ -545,6 +560,7 @@ class _TurnPath:
     ----------
     heading_rate : now [rad/s]
     slack : distance from the disc's centre less what is allowed for [m]
+    displaced_by : growth of the displacement by turbulence on the last leg [m]
     outward : how far the last leg led off the disc's direction on the side of the turn [m]
     away : whether it led away from the disc's centre
     """
@@ -563,6 +579,8 @@ class _TurnPath:
         self.heading_rate = heading_rate
         self.outward = 0.0
         self.away = False
+        self.displaced_by = 0.0
+        self._displaced = 0.0
         self._side = side
         self._motion = motion
         self._spacing = spacing
@@ -570,7 +588,7 @@ class _TurnPath:
         self._kept = motion.radius + deviation
         self._disc_north = motion.disc_north * spacing.duration
         self._disc_east = motion.disc_east * spacing.duration
-        x, y, course, _ = start
+        x, y, course = start.x, start.y, start.course
         allowed = self._allowed()
         self.slack = math.sqrt(x * x + y * y) - allowed
         self._now = TurnPoint(x, y, course, allowed, leg.speed)
@@ -591,11 +609,11 @@ class _TurnPath:
 
     def advance(self) -> None:
         """Go on to the next point."""
-        duration, turned, mean, decay = self._spacing
+        spacing = self._spacing
         point, leg, heading_rate = self._now, self._leg, self.heading_rate
         x, y, course = point.x, point.y, point.course
         north, east = self._disc_north, self._disc_east
-        middle = course + mean * heading_rate + leg.course_to_middle
+        middle = course + spacing.mean * heading_rate + leg.course_to_middle
         cos, sin = math.cos(middle), math.sin(middle)
         if self._other_leg is not None:
             away = recedes(x, y, cos, sin, leg.way, north, east)
@@ -608,9 +626,9 @@ class _TurnPath:
                 self._turned_at_switch = self._side * (course - self._start_course)
         x += leg.way * cos - north
         y += leg.way * sin - east
-        course += turned * heading_rate + leg.course_turned
-        self.heading_rate = decay * heading_rate + leg.rate_gained
-        self._time += duration
+        course += spacing.turned * heading_rate + leg.course_turned
+        self.heading_rate = spacing.decay * heading_rate + leg.rate_gained
+        self._time += spacing.duration
         allowed = self._allowed()
         if self._slowed:
             allowed += speed_switch_allowance(
@@ -631,7 +649,8 @@ class _TurnPath:
     def fly_straight_on(self) -> None:
         """Keep to the course and to the airspeed from here on."""
         self.heading_rate = 0.0
-        self._leg = self._leg._replace(course_to_middle=0.0, course_turned=0.0, rate_gained=0.0)
+        leg = self._leg
+        self._leg = _Leg(leg.way, 0.0, 0.0, 0.0, leg.stretch, leg.speed)
         self._other_leg = None
 
     def closest_about_last_point(self, *, first: bool) -> float:
@@ -654,7 +673,10 @@ class _TurnPath:
         time, motion = self._time, self._motion
         allowed = self._kept + (motion.growth + 0.5 * motion.acceleration * time) * time
         if motion.displacement is not None:
-            allowed += motion.displacement.after(time)
+            displaced = motion.displacement.after(time)
+            self.displaced_by = displaced - self._displaced
+            self._displaced = displaced
+            allowed += displaced
         return allowed
 
 
