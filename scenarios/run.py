@@ -17,6 +17,7 @@ from common.run_layout import REPORT_HTML, REPORT_PDF, flight_of
 
 if TYPE_CHECKING:
     from scenarios.engine.executors import ExecutorFactory
+    from scenarios.engine.runner import RunResult
 
 MET, NOT_MET, UNEXPLAINED = 0, 1, 3
 
@@ -235,9 +236,17 @@ def _run(
         )
         return INTERRUPTED
     status = _report(directory, changed=result.changed, wanted=not no_report)
+    return exit_status(result, status)
+
+
+def exit_status(result: "RunResult", report_status: int) -> int:
+    """Return the exit status of a run that was not interrupted.
+
+    What contradicts the theorem of the guard stands before a report that could not be built.
+    """
     if result.summary.unexplained:
         return UNEXPLAINED
-    return status or (MET if result.all_met else NOT_MET)
+    return report_status or (MET if result.all_met else NOT_MET)
 
 
 def _again(directory: Path, *, out: Path | None, resume: bool) -> str:
