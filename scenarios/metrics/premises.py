@@ -249,7 +249,8 @@ def _airspeed_ratios(flight: _Flight) -> Ratios:
         column("velocity_east_mps") - flight.wind_east,
     )
     slowest, fastest = _speed_range(flight)
-    half = 0.5 * (fastest - slowest) + flight.velocity_error
+    beyond = np.maximum(flight.velocity_error, SPEED_RESOLUTION)
+    half = 0.5 * (fastest - slowest) + beyond
     off_middle = np.abs(speed - 0.5 * (fastest + slowest))
     return Ratios(flight.time, _ratio(off_middle, half, SPEED_RESOLUTION))
 
