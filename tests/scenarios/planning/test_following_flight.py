@@ -226,7 +226,7 @@ def test_a_start_is_judged_by_the_wind_at_its_height():
             InfeasibleError, match="where the best turn away comes within"
         ) as refused:
             plan(scenario(wind=wind, plume={"source_height_m": height}, **given))
-        words.add(str(refused.value))
+        words.add(str(refused.value).partition("keepout.radius_m")[0])
     assert len(words) == 1
 
 
@@ -243,8 +243,11 @@ def test_dead_reckoning_is_reckoned_with_where_satellite_navigation_is_declared_
 
 def test_the_guard_keeps_the_deviation_that_is_declared():
     # The kinematic vehicle has none of its own.
-    assert plan(scenario()).guidance.guard.deviation == 0.0
-    assert plan(scenario(following={"turn_deviation_m": 6.8})).guidance.guard.deviation == 6.8
+    assert plan(scenario()).guidance.guard.errors.response.size == 0.0
+    assert (
+        plan(scenario(following={"turn_deviation_m": 6.8})).guidance.guard.errors.response.size
+        == 6.8
+    )
 
 
 def test_a_vessel_data_fault_silences_its_reports():
