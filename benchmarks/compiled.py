@@ -23,7 +23,8 @@ MODULES = {
     "gnc": (
         "guidance", "numeric", "steering", "tracker", "unicycle",
         "airspeed",
-        "estimation/health", "estimation/navigation", "estimation/thrust", "estimation/vessel",
+        "estimation/error_budget", "estimation/health", "estimation/navigation",
+        "estimation/thrust", "estimation/vessel",
         "paper",
         "mission/follow", "mission/mission", "mission/standoff", "mission/track", "mission/way",
         "reference/moving_centre", "reference/oscillating", "reference/steered",

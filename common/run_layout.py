@@ -62,6 +62,9 @@ SHIPS = "ships.csv"
 PHASES = "phases.csv"
 """A row per stretch of a patrol: the way to a ship, and the flight beside it."""
 
+PREMISES = "premises.csv"
+"""A row per case and term of the error budget: how near errors came to what is reckoned with."""
+
 TUNING_TABLE = "tuning.csv"
 """A row for each setting that the tuner of an arena tried."""
 
@@ -78,6 +81,7 @@ TABLES = (
     SAMPLES,
     SHIPS,
     PHASES,
+    PREMISES,
     TUNING_TABLE,
     WINDOW_TABLE,
 )

@@ -171,9 +171,12 @@ class Guidance:
             command, pace, held = guarded.heading_rate, guarded.pace, guarded.pace_held
             self.guarding = guarded.status is not GuardStatus.FREE
         tracker.heading_rate_command = command
-        # A turn away is flown in full in gusts, too: it was predicted without them.
+        # A turn away is flown in full in gusts, too: it was predicted over the mean air. Where a
+        # gust makes the vehicle slower through the air, it turns faster there, at the same bank.
         limit = self._heading_rate_max
-        full = self.guarding and abs(command) >= limit
+        if self.guarding and own.wind_by_gusts is not None and own.air_ratio < 1.0:
+            limit /= own.air_ratio
+        full = self.guarding and abs(command) >= self._heading_rate_max
         command /= own.air_ratio
         bounded = math.copysign(limit, command) if full else limited(command, limit)
         if bounded != command:

@@ -33,7 +33,7 @@ from reports.run.letterhead import letterhead, title
 from reports.run.run_data import RunData
 
 STUDIES: dict[str, Callable[[RunData], Findings]] = {
-    **dict.fromkeys(("flights", "trials", "monte_carlo", "falsify"), flights_content),
+    **dict.fromkeys(("flights", "trials", "monte_carlo", "falsify", "premises"), flights_content),
     "paper": paper_content,
     "arena": arena_content,
     "patrol": patrol_content,

@@ -18,9 +18,9 @@ from common.run_layout import REPORT_HTML, REPORT_PDF, flight_of
 
 if TYPE_CHECKING:
     from scenarios.engine.executors import ExecutorFactory
-    from scenarios.engine.runner import Launch
+    from scenarios.engine.runner import Launch, RunResult
 
-MET, NOT_MET = 0, 1
+MET, NOT_MET, UNEXPLAINED = 0, 1, 3
 
 _WATCHED_TIME_LIMIT = 1e6
 """Longest computing time of a flight that is shown in real time [s]."""
@@ -97,9 +97,9 @@ def command(
     """Fly a scenario and write a report.
 
     Exit status: 0 every flight kept out, completed and met its criteria (or kept out, where the
-    scenario requires no more; or every trajectory converged), 1 some did not, 2 bad input, 130
-    interrupted, by Ctrl-C or SIGTERM. Of a flight that is replayed: 0 its row is identical, 1 it is
-    not.
+    scenario requires no more; or every trajectory converged), 1 some did not, 2 bad input, 3 a
+    flight entered the keep-out area although every premise of its guard held, 130 interrupted, by
+    Ctrl-C or SIGTERM. Of a flight that is replayed: 0 its row is identical, 1 it is not.
     """
     from scenarios.engine.executors import ExecutorFactory
     from scenarios.engine.task import Limits
@@ -236,7 +236,17 @@ def _run(
         )
         return INTERRUPTED
     status = _report(directory, changed=result.changed, wanted=not no_report)
-    return status or (MET if result.all_met else NOT_MET)
+    return exit_status(result, status)
+
+
+def exit_status(result: "RunResult", report_status: int) -> int:
+    """Return the exit status of a run that was not interrupted.
+
+    What contradicts the theorem of the guard stands before a report that could not be built.
+    """
+    if result.summary.unexplained:
+        return UNEXPLAINED
+    return report_status or (MET if result.all_met else NOT_MET)
 
 
 def _print_launch(launch: "Launch") -> None:

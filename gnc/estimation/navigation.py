@@ -9,6 +9,8 @@ import math
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from gnc.estimation.error_budget import STILL, Process, WindErrorByGusts
+
 NOISE_DEVIATIONS = 3.0
 """Standard deviations of noise that are allowed for [-]."""
 
@@ -95,7 +97,9 @@ class AirMotion:
     course : of the motion through the mean air, from -pi to pi [rad]
     heading_rate : rate of that course [rad/s]
     wind_north, wind_east : velocity of the air mass [m/s]
-    wind_error : error of the wind beyond its final one, while few measurements are in it [m/s]
+    wind_error : error of the wind beyond its final one, while few measurements are in it, by
+        sensors and by the vehicle's own motion [m/s]
+    wind_by_gusts : error of the wind by turbulence; None where there is none
     lost : time since satellite navigation was lost [s]
     speed : of the motion through the mean air [m/s]
     """
@@ -107,6 +111,7 @@ class AirMotion:
     wind_north: float = 0.0
     wind_east: float = 0.0
     wind_error: float = 0.0
+    wind_by_gusts: WindErrorByGusts | None = None
     lost: float = 0.0
     speed: float = 0.0
 
@@ -167,6 +172,7 @@ class WindFilter:
     Attributes
     ----------
     north, east : estimated velocity of the air mass, 0 before anything is measured [m/s]
+    gain : share of the last measurement in the estimate, in the mean over directions [-]
     variance_north, variance_east, covariance : of that estimate [m^2/s^2]
     """
 
@@ -180,6 +186,7 @@ class WindFilter:
         self.variance_east = 0.0
         self.north = 0.0
         self.east = 0.0
+        self.gain = 0.0
 
     @property
     def sigma(self) -> float:
@@ -219,12 +226,16 @@ class WindFilter:
             self.variance_north = along * cos_c * cos_c + across * sin_c * sin_c
             self.variance_east = along * sin_c * sin_c + across * cos_c * cos_c
             self.covariance = (along - across) * sin_c * cos_c
+            self.gain = 1.0
             return
         drift = self._drift_variance * time_step
         self.variance_north += drift
         self.variance_east += drift
+        before = self.variance_north + self.variance_east
         self._correct(cos_c, sin_c, north * cos_c + east * sin_c, along)
         self._correct(-sin_c, cos_c, east * cos_c - north * sin_c, across)
+        if before > 0.0:
+            self.gain = 1.0 - (self.variance_north + self.variance_east) / before
 
     def _correct(self, h_north: float, h_east: float, measured: float, variance: float) -> None:
         """Correct by the wind's component in the direction of the unit vector h."""
@@ -254,6 +265,7 @@ class NavigationParameters:
         guard allows for it at all times
     first_wind_error : largest error of the first measurement of the wind, by the vehicle's own
         motion, as it rolls or climbs [m/s]
+    turbulence : as the vehicle meets it [m/s]
     wind_interval : guidance steps between measurements of the wind
     time_step : of the guidance [s]
     """
@@ -266,12 +278,16 @@ class NavigationParameters:
     wind_noise: float = 0.0
     wind_error: float = 0.0
     first_wind_error: float = 0.0
+    turbulence: Process = STILL
     wind_interval: int
     time_step: float
 
 
 class EstimatedNavigation(OwnMotion):
     """The motion estimated from sensors, by dead reckoning while satellite navigation is lost.
+
+    Dead reckoning takes the air to move with the estimated wind, and in turbulence with what is
+    left of the last gust that was measured (``gnc.estimation.error_budget``).
 
     An autopilot turns against the gusty air, the guidance over the mean air:
     ``gnc.airspeed.air_turn``.
@@ -296,6 +312,12 @@ class EstimatedNavigation(OwnMotion):
         self._first_variance = 0.0
         self._step_north = 0.0
         self._step_east = 0.0
+        turbulence = parameters.turbulence
+        if turbulence.sigma > 0.0:
+            self.wind_by_gusts = WindErrorByGusts(turbulence)
+        self._gust_kept = turbulence.remaining(parameters.time_step)
+        self._gust_north = 0.0
+        self._gust_east = 0.0
         self.wind = WindFilter(
             airspeed_sigma=parameters.airspeed_sigma,
             course_sigma=parameters.course_sigma,
@@ -312,9 +334,12 @@ class EstimatedNavigation(OwnMotion):
         else:
             self.ground_north, self.ground_east, self.velocity_north, self.velocity_east = fix
             self.lost = 0.0
+            air_course = heading + self._crab(roll)
             self._until_measured -= 1
             if self._until_measured < 0:
-                self._measure_wind(airspeed, heading + self._crab(roll))
+                self._measure_wind(airspeed, air_course)
+            if self.wind_by_gusts is not None:
+                self._measure_gust(airspeed, air_course)
         self.drift_north += self._step_north
         self.drift_east += self._step_east
         self.north = self.ground_north - self.drift_north
@@ -333,6 +358,8 @@ class EstimatedNavigation(OwnMotion):
         since = p.wind_interval * p.time_step + self._unmeasured
         wind.update(airspeed, air_course, self.velocity_north, self.velocity_east, since)
         self._unmeasured = 0.0
+        if self.wind_by_gusts is not None:
+            self.wind_by_gusts.measure(wind.gain, since)
         self.wind_north = wind.north
         self.wind_east = wind.east
         self._step_north = p.time_step * wind.north
@@ -347,12 +374,22 @@ class EstimatedNavigation(OwnMotion):
             beyond = min(p.wind_noise, NOISE_DEVIATIONS * sigma) - p.wind_error
             self.wind_error += max(0.0, beyond)
 
+    def _measure_gust(self, airspeed: float, air_course: float) -> None:
+        """Take in the gust now: the wind triangle, less the estimated wind."""
+        self._gust_north = self.velocity_north - airspeed * math.cos(air_course) - self.wind_north
+        self._gust_east = self.velocity_east - airspeed * math.sin(air_course) - self.wind_east
+
     def _reckon(self, airspeed: float, air_course: float) -> None:
         time_step = self._parameters.time_step
         before_north = self.velocity_north
         before_east = self.velocity_east
         self.velocity_north = self.wind_north + airspeed * math.cos(air_course)
         self.velocity_east = self.wind_east + airspeed * math.sin(air_course)
+        if self.wind_by_gusts is not None:
+            self._gust_north *= self._gust_kept
+            self._gust_east *= self._gust_kept
+            self.velocity_north += self._gust_north
+            self.velocity_east += self._gust_east
         # The trapezoidal rule: with the velocity at one end alone, half a turn would be wrong by
         # the way of a step.
         self.ground_north += 0.5 * time_step * (before_north + self.velocity_north)

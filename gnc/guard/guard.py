@@ -29,9 +29,9 @@ the guard flies it where it finds nothing better.
 2. Commands within omega_max are flown, up to the airspeed at which the largest bank limits the
    turn, and in proportion above it. The filter is called once per time step.
 3. The vessel is in each of its discs.
-4. Airspeed stays between the fastest and the slowest that are predicted with. Velocity and wind are
-   in error by no more than ``speed_error`` and what the wind's filter says, and by ``drift_rate``
-   without satellite navigation.
+4. Airspeed stays between the fastest and the slowest that are predicted with. Velocity, wind and
+   turns are in error by no more than the terms of the error budget say, and without satellite
+   navigation by its drift as well.
 5. Flying straight away outruns the growth of the disc. Without reports that holds for a limited
    time, since discs grow ever faster.
 6. A turn away keeps off at the start.
@@ -47,6 +47,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import NamedTuple
 
+from gnc.estimation.error_budget import EXACT, ErrorBudget, WindErrorByGusts
 from gnc.estimation.navigation import AirMotion
 from gnc.estimation.vessel import Tube
 from gnc.guard.turn import (
@@ -71,10 +72,6 @@ _SAME_SPEED = 0.05
 """Airspeeds that differ by no more count as one, the faster [m/s]. A turn away then keeps off by
 the same to some centimetres, at most 0.2 m at a turn radius of 40 m."""
 
-_SPEED_SWITCH_ERROR = 0.05
-"""Share of the difference between the turn radii when fast and slow by which a vehicle may come
-nearer than predicted [-]."""
-
 _BISECTIONS = 5
 """Halvings of the fraction of the turn away that is mixed in: it is found to 1/32."""
 
@@ -97,23 +94,16 @@ class GuardParameters:
 
     Attributes
     ----------
-    radius : distance that the vehicle's path must keep from the vessel, r_min and ``allowance`` [m]
+    radius : distance that the vehicle's path must keep from the vessel: r_min, and what the failure
+        of a part may take it off its turn [m]
     heading_rate_max : omega_max, the largest command [rad/s]
     lag : time constant of the heading rate behind its command; 0 if it follows at once [s]
     delay : dead time before that [s]
     slow_lag : delay behind slow commands; None if that is ``delay`` + ``lag`` [s]
     time_step : for which a command is held [s]
-    speed_error : largest error of the vehicle's own velocity, of the wind, and by gusts, together
-        [m/s]
-    deviation : how much nearer than predicted the vehicle may come in a full reversal [m]
-    drift_rate : how fast dead reckoning may go wrong, where satellite navigation may be lost [m/s]
-    allowance : part of ``radius`` that is kept for what takes the vehicle off any predicted turn:
-        turbulence, a failed part [m]
-    wander : how much the error of the vehicle's position may change during a turn away [m]
+    errors : that are reckoned with
     turn_speed : airspeed up to which it can turn at ``heading_rate_max``; faster it turns at the
         same acceleration across [m/s]
-    slowest : airspeed that it may fall to in any turn away, for instance without thrust; infinite
-        where it keeps to its commands [m/s]
     """
 
     radius: float
@@ -122,13 +112,8 @@ class GuardParameters:
     delay: float = 0.0
     slow_lag: float | None = None
     time_step: float
-    speed_error: float = 0.0
-    deviation: float = 0.0
-    drift_rate: float = 0.0
-    allowance: float = 0.0
-    wander: float = 0.0
+    errors: ErrorBudget = EXACT
     turn_speed: float = math.inf
-    slowest: float = math.inf
 
 
 class GuardStatus(IntEnum):
@@ -184,6 +169,20 @@ class Guarded:
         self.status = status
 
 
+class Reckoning(NamedTuple):
+    """What turns away are predicted with besides the error budget.
+
+    Attributes
+    ----------
+    fastest, slowest : airspeeds between which the vehicle stays [m/s]
+    change : largest recent change of command, over a full reversal [-]
+    """
+
+    fastest: float
+    slowest: float
+    change: float
+
+
 class KeepoutGuard:
     """Filters the demands of a guidance. It keeps a memory and must be called once per time step.
 
@@ -209,6 +208,16 @@ class KeepoutGuard:
     def status(self) -> GuardStatus:
         """What the guard did at the last step."""
         return self._heading_rates.status
+
+    @property
+    def reckoning(self) -> Reckoning:
+        """What turns away are predicted with after the last step."""
+        speeds, turns = self._speeds, self._heading_rates
+        return Reckoning(
+            fastest=speeds.fastest(speeds.highest),
+            slowest=min(speeds.slowest(speeds.lowest), turns.slowest),
+            change=turns.history.change,
+        )
 
     def filter(self, demand: Demand, own: AirMotion, vessels: Sequence[Tube]) -> Guarded:
         """Return the commands that keep out and are nearest to the demand.
@@ -270,9 +279,12 @@ class Encounter:
 
 
 class _BackupTurn(NamedTuple):
-    """A turn away that may be flown: its slack [m], its side, and against what it was predicted."""
+    """A turn away that may be flown: its slack [m], whether the disc falls behind in the end, its
+    side, and against what it was predicted.
+    """
 
     slack: float
+    ends: bool
     side: float
     encounter: Encounter
 
@@ -289,6 +301,7 @@ class HeadingRateFilter:
     Attributes
     ----------
     status : what was done at the last step
+    slowest : airspeed that the vehicle may fall to in any turn [m/s]
     prediction, history, budget : of turns; of the commands; of those that need no look
     """
 
@@ -310,17 +323,28 @@ class HeadingRateFilter:
             lag=p.lag,
             delay=p.delay,
             time_step=p.time_step,
-            deviation=p.deviation,
+            deviation=p.errors.response.size,
             turn_speed=p.turn_speed,
         )
         self.budget = SkipBudget(p.heading_rate_max, p.time_step)
+        errors = p.errors
+        self._drift_rate = errors.drift.rate
+        self.slowest = errors.slowest
         # Satellite navigation may be lost at any moment, and dead reckoning go wrong from then on.
-        self._speed_error = p.speed_error + p.drift_rate
+        self._speed_error = errors.steady_velocity + self._drift_rate
+        self._exact_wind = WindErrorByGusts(errors.turbulence)
+        self._displacement = errors.displacement(wind=self._exact_wind)
+        self._gusty = errors.turbulence.sigma > 0.0
         # Half a turn to the nearer side, half as much again for the disc's motion, and what the lag
         # takes from any heading rate.
         self._turn_time = 1.5 * math.pi / p.heading_rate_max + 2.0 * p.lag + p.delay + p.time_step
         # Slack that the declared errors may take from a turn that was safe.
-        self._explained = p.deviation + self._speed_error * self._turn_time + p.allowance + p.wander
+        self._explained = (
+            errors.response.size
+            + errors.failed_part.size
+            + errors.wander(self._turn_time)
+            + errors.k * errors.turning.at(self._turn_time)
+        )
         # In one step the command may differ from the turn by 2 omega_max, which displaces the
         # vehicle by V omega_max dt^2. In turn radii:
         self._resolution = max(_RESOLUTION, (p.heading_rate_max * p.time_step) ** 2)
@@ -450,7 +474,7 @@ class HeadingRateFilter:
             motion = self.relative_motion(disc, time, own, fastest, slowest, pending)
             far_for = self.time_until_near(motion)
             if far_for > 0.0:
-                side, turn = 0.0, TurnAway(math.inf, far_for, math.inf, change)
+                side, turn = 0.0, TurnAway(math.inf, far_for, math.inf, change, True)
             else:
                 motions = self.motions_when_acting(motion)
                 side, turn = self._safe_turn_after(command, motions, change)
@@ -465,7 +489,7 @@ class HeadingRateFilter:
             turn,
             side,
             command=command,
-            last=history.last,
+            recent=history.range_with(command),
             slowest=min(slowest, fastest) - _SAME_SPEED,
             fastest=fastest + _SAME_SPEED,
         )
@@ -502,8 +526,9 @@ class HeadingRateFilter:
         """Return the motion relative to a disc, with all that is uncertain in radius and growth."""
         since = time - disc.time
         wind_error = own.wind_error
-        drifted = (self._p.drift_rate + wind_error) * own.lost
-        slowest = min(slowest, self._p.slowest)
+        drifted = (self._drift_rate + wind_error) * own.lost
+        self._displacement.renew(own.lost, own.wind_by_gusts or self._exact_wind)
+        slowest = min(slowest, self.slowest)
         return RelativeMotion(
             x=own.ground_north - (disc.north + disc.velocity_north * since),
             y=own.ground_east - (disc.east + disc.velocity_east * since),
@@ -520,6 +545,8 @@ class HeadingRateFilter:
             growth=self._speed_error + wind_error + disc.growth + disc.acceleration * since,
             acceleration=disc.acceleration,
             pending_rate=pending_rate,
+            wind_error=wind_error,
+            displacement=self._displacement if self._gusty else None,
         )
 
     def time_until_near(self, motion: RelativeMotion) -> float:
@@ -534,6 +561,7 @@ class HeadingRateFilter:
         gap = (
             math.hypot(motion.x, motion.y)
             - motion.radius
+            - self._displacement.after(duration)
             - (closing + 0.5 * acceleration * duration) * duration
         )
         return min(gap / (closing + 1.5 * acceleration * duration), duration)
@@ -560,7 +588,7 @@ class HeadingRateFilter:
         nearer = nearer_side(start.x, start.y, start.course)
         for side in (nearer, -nearer):
             turn = self.turn_after(side, command, motions, change, floor)
-            if turn.slack >= floor:
+            if turn.slack >= floor and turn.ends:
                 return side, turn
         return 0.0, None
 
@@ -579,7 +607,7 @@ class HeadingRateFilter:
         prediction = self.prediction
         against = 0.5 - 0.5 * self.budget.least_of_turn(side, command) / self._rate
         slack = free_time = free_course = math.inf
-        counted = 1.0
+        counted, ends = 1.0, True
         for motion in motions:
             turn = prediction.turn_away(
                 side,
@@ -595,9 +623,10 @@ class HeadingRateFilter:
             free_time = min(turn.free_time, free_time)
             free_course = min(turn.free_course, free_course)
             counted = min(counted, turn.change)
+            ends = ends and turn.ends
             if slack < floor:
                 break
-        return TurnAway(slack, free_time, free_course, counted)
+        return TurnAway(slack, free_time, free_course, counted, ends)
 
     def _mix(self, command: float, encounters: Sequence[Encounter]) -> float:
         """Return the command with the least of a turn away that keeps off, or that turn [rad/s]."""
@@ -609,7 +638,7 @@ class HeadingRateFilter:
         floor = self._resolution * first.fastest / self._rate
         lost = backup.slack < -self._explained_slack(first) - floor
         self.status = GuardStatus.LOST if lost else GuardStatus.INTERVENING
-        if backup.slack < 0.0:
+        if backup.slack < 0.0 or not backup.ends:
             return turn
         self._kept_off = backup.encounter.disc
         low, high, mixed = 0.0, 1.0, turn
@@ -637,7 +666,7 @@ class HeadingRateFilter:
                 command = self._turn_command(side, first)
                 change = self.history.change_with(command)
                 found = self.turn_after(side, command, encounter.motions, change, -math.inf)
-                turn = _BackupTurn(found.slack, side, encounter)
+                turn = _BackupTurn(found.slack, found.ends, side, encounter)
                 if safe_side and turn.slack >= 0.0:
                     return turn
                 turns.append(turn)
@@ -650,9 +679,10 @@ class HeadingRateFilter:
 
     def _explained_slack(self, motion: RelativeMotion) -> float:
         """Return the slack that declared errors may have taken from a safe turn since [m]."""
-        return (
-            self._explained + _SPEED_SWITCH_ERROR * (motion.fastest - motion.slowest) / self._rate
-        )
+        turn_time = self._turn_time * max(1.0, motion.fastest / self._turn_speed)
+        # Of the growth, that of the disc is in all predictions.
+        error = self._speed_error + motion.wind_error
+        return self._explained + error * turn_time
 
     def _turn_command(self, side: float, motion: RelativeMotion) -> float:
         """Return the command of a turn away [rad/s]: straight away from the disc and no farther."""
@@ -689,7 +719,8 @@ class CommandHistory:
         [rad/s]
     change : largest recent change of command, over a full reversal; it counts less the older it is
         [-]
-    last : command at the last look [rad/s]
+    recent : commands within dead time and lag of the last one, of which any two make a change
+        [rad/s]
     """
 
     def __init__(
@@ -730,7 +761,9 @@ class CommandHistory:
         self._rates: list[float] = []
         self.under_way: deque[float] = deque(maxlen=count)
         self.change = LEAST_CHANGE
-        self.last = 0.0
+        # A reversal in steps counts as one at once, however often the guard looks.
+        window = max(1, round((delay + lag) / time_step))
+        self.recent: deque[float] = deque([0.0], maxlen=window)
 
     @property
     def newest(self) -> float:
@@ -759,7 +792,7 @@ class CommandHistory:
             self._take_in(rate)
         elif not self._begun:
             # A flight begins: the turn that is flown is under way.
-            self.last = rate
+            self.recent[0] = rate
             self.under_way.extend([rate] * (self.under_way.maxlen or 0))
         if self._lag == 0.0:
             return 0.0
@@ -767,8 +800,14 @@ class CommandHistory:
 
     def change_with(self, command: float) -> float:
         """Return ``change`` if a command [rad/s] is given now."""
-        now = abs(command - self.last) / self._reversal
+        lowest, highest = self.range_with(command)
+        now = (highest - lowest) / self._reversal
         return now if now > self.change else self.change
+
+    def range_with(self, command: float) -> tuple[float, float]:
+        """Return the lowest and the highest recent command if one [rad/s] is given now [rad/s]."""
+        recent = self.recent
+        return min(command, *recent), max(command, *recent)
 
     def _take_in(self, rate: float) -> None:
         """Take in the commands and heading rates since the last look [rad/s]."""
@@ -784,13 +823,11 @@ class CommandHistory:
         remembered = self._lack * self._kept ** len(commands)
         lack = remembered + acted - turned - self._slow_lag_after_delay * rate_change
         self._lack = limited(lack, self._lack_max)
-        # What changed little by little since the last look counts as if it had changed at once.
-        newest = commands[-1]
-        commands.append(self.last)
-        highest, lowest = max(commands), min(commands)
-        faded = self.change * self._fading ** len(rates)
-        self.change = max((highest - lowest) / self._reversal, faded, LEAST_CHANGE)
-        self.last = newest
+        recent, change = self.recent, self.change
+        for command in commands:
+            recent.append(command)
+            change = max(change * self._fading, (max(recent) - min(recent)) / self._reversal)
+        self.change = max(change, LEAST_CHANGE)
         commands.clear()
         rates.clear()
 
@@ -856,7 +893,7 @@ class SkipBudget:
         side: float,
         *,
         command: float,
-        last: float,
+        recent: tuple[float, float],
         slowest: float,
         fastest: float,
     ) -> None:
@@ -866,7 +903,8 @@ class SkipBudget:
         ----------
         turn : away that keeps off; None if there is none, and nothing may be skipped
         side : of the turn; 0 where the disc is out of reach
-        command, last : that was looked at, and at the look before [rad/s]
+        command : that was looked at [rad/s]
+        recent : lowest and highest of it and the recent ones [rad/s]
         slowest, fastest : airspeeds at which the turn was predicted [m/s]
         """
         if turn is None:
@@ -877,7 +915,7 @@ class SkipBudget:
         self._course_per_rate = side * self._time_step
         # Commands that change by no more than the turn's deviation counts, and that are not too
         # little of the turn.
-        middle, half = 0.5 * (last + command), turn.change * self._rate
+        middle, half = 0.5 * (recent[0] + recent[1]), turn.change * self._rate
         least = self.least_of_turn(side, command) if side else -self._rate
         self._lowest = max(middle - half, least if side > 0.0 else -self._rate)
         self._highest = min(middle + half, -least if side < 0.0 else self._rate)

@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 
+from gnc.estimation.error_budget import ErrorBudget
 from gnc.estimation.health import Fault
 from gnc.estimation.navigation import OwnMotion
 from gnc.estimation.vessel import TargetMotion
@@ -37,7 +38,7 @@ class FollowingParameters:
         may be [s]
     reach, reach_time : distance that the vessel may be, after that time, from where it is assumed
         to be, while its reports come [m, s]
-    drift_rate : error rate of dead reckoning [m/s]
+    errors : that are reckoned with
     plan_interval : guidance steps between plans
     axis : how the plume's axis is known, and so the altitude
     """
@@ -53,7 +54,7 @@ class FollowingParameters:
     stale: float
     reach: float
     reach_time: float
-    drift_rate: float
+    errors: ErrorBudget
     plan_interval: int
     axis: AxisParameters
 
@@ -175,7 +176,11 @@ class PlumeFollowing:
             * (tube.east - vessel.east + p.reach_time * (tube.velocity_east - vessel.velocity_east))
             for tube in vessel.tubes
         )
-        drifted = (p.drift_rate + own.wind_error) * own.lost
+        drifted = 0.0
+        if own.lost > 0.0:
+            drifted = (p.errors.drift.rate + own.wind_error) * own.lost
+            wind = own.wind_by_gusts
+            drifted += p.errors.displacement(lost=own.lost, wind=wind).after(0.0)
         last = self._orbit_range
         self._orbit_range = max(0.0, reach - p.reach) + drifted
         self._orbit_rate = (self._orbit_range - last) / self._plan_time if self._plan_time else 0.0

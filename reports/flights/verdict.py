@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 
 from common.intervals import percent
+from common.premises import UNEXPLAINED
 from reports.document.blocks import Card, Verdict
 from reports.document.tables import approach, span
 from reports.flights.bounds import counted_as_violations, sampled, violation_bound
@@ -34,8 +35,10 @@ from reports.run.columns import (
     lost,
     met,
     passed,
+    premises_exceeded,
     radii_differ,
     total,
+    unexplained,
     violated,
 )
 from reports.run.flight_config import keepout_shape
@@ -90,11 +93,14 @@ def flight_verdict(run: RunData, trials: list[Trial]) -> Verdict:
     headlines = [
         words for words in (sulphur_headline(run), _headline(run, trials, flown, planned)) if words
     ]
+    if wrong := count(unexplained(flown)):
+        flights = f"{wrong:,} flight{'s' * (wrong > 1)}"
+        headlines = [f"The keep-out guard is wrong: in {flights} {UNEXPLAINED}", *headlines[::-1]]
     return Verdict(
         holds=kept and not sulphur_above(run),
         complete=count(met(rows)) == planned and sulphur_below(run),
         # What must never happen stands before what was measured.
-        headline=". ".join(headlines if kept else headlines[::-1]),
+        headline=". ".join(headlines if kept or wrong else headlines[::-1]),
         detail=_detail(run, trials, flown, planned),
         failures=[
             *(line for trial in trials for line in failure_lines(trial)),
@@ -252,6 +258,20 @@ def _bound_figure(run: RunData, trials: list[Trial]) -> list[Card]:
     return [Card(name, percent(bound[0]))]
 
 
+def _premise_cards(flown: pd.DataFrame) -> list[Card]:
+    """Return how many flights had a premise of the keep-out guard exceeded, and how many violated
+    its area without.
+    """
+    flights = premises_exceeded(flown)
+    if not flights:
+        return []
+    wrong, some = count(unexplained(flown)), sum(bool(terms) for terms in flights)
+    return [
+        Card("Violations with every premise of the guard held", f"{wrong:,}", "0", wrong == 0),
+        Card("Flights with a premise of the guard exceeded", f"{some:,} of {len(flights):,}"),
+    ]
+
+
 def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[Card]:
     if not len(flown):
         return [
@@ -279,6 +299,7 @@ def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[Car
             if len(beside)
             else []
         ),
+        *_premise_cards(flown),
         *([_closest_figure(trials, beside)] if len(beside) else []),
         Card(
             "Missions completed", f"{done:,} of {planned:,}", *(allowed or ("all", done == planned))

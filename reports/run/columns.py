@@ -4,6 +4,8 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
+from common.premises import EXCEEDED, UNEXPLAINED_VIOLATION, exceeded_terms
+
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
@@ -85,6 +87,18 @@ def violated(rows: pd.DataFrame) -> Mask:
     """Return which flights violated the keep-out area."""
     inside: Mask = column(rows, "keepout_violations") > 0.0
     return inside
+
+
+def unexplained(rows: pd.DataFrame) -> Mask:
+    """Return which flights violated the keep-out area although every premise of the guard held."""
+    return (rows["outcome"] == UNEXPLAINED_VIOLATION).to_numpy(dtype=np.bool_)
+
+
+def premises_exceeded(rows: pd.DataFrame) -> list[list[str]]:
+    """Return of each flight whose premises were measured the terms that did not hold."""
+    if EXCEEDED not in rows:
+        return []
+    return [exceeded_terms({EXCEEDED: said}) for said in rows[EXCEEDED].dropna()]
 
 
 def lost(rows: pd.DataFrame) -> Mask:

@@ -41,6 +41,7 @@ class StudySummary:
     manifest : entries for the manifest of the run
     beside_left : number of items of comparisons that are not done, which count neither as done nor
         as planned
+    unexplained : number of items that contradict what is proved
     """
 
     done: int
@@ -48,6 +49,7 @@ class StudySummary:
     lines: list[str]
     manifest: dict[str, Any]
     beside_left: int = 0
+    unexplained: int = 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

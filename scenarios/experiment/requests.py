@@ -142,6 +142,10 @@ class Experiment:
         """
         return self._point(number)[0].stream
 
+    def label(self, number: int) -> str:
+        """Return the name of a flight's point, as of its case."""
+        return self._point(number)[0].label
+
     def index(self, number: int) -> int:
         """Return the number of a flight among those of its point."""
         return self._point(number)[1]

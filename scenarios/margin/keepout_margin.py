@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from common.physics import SECONDS_PER_HOUR
+from gnc.estimation.error_budget import deviations
 from gnc.estimation.vessel import FilterParameters, Tube, VesselLimits, VesselReport, tube
 from scenarios.margin.report_scatter import mean_interval, scatter_allowance
 from scenarios.margin.tracking_spread import CALM_AIR_SPREAD, SpreadTable, planned_margin
@@ -18,10 +19,6 @@ VESSEL_ACCELERATION, VESSEL_MEMORY = 0.02, 40.0
 reckons with: a ship's.
 """
 
-_ROUNDS = 10
-"""In which k is found that its own rarity depends on: each leaves a tenth of the error or less [-].
-"""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KeepoutMargin:
@@ -31,15 +28,12 @@ class KeepoutMargin:
     ----------
     tracking_sigma : predicted standard deviation of the tracking error towards the vessel [m]
     total : that the orbit keeps from the keep-out area [m]
-    guard : that the keep-out guard keeps beyond the keep-out area, of wherever the vessel may be
-        [m]
     reach : how far the vessel may be from where it is taken to be, as long as its reports are not
         overdue [m]
     """
 
     tracking_sigma: float
     total: float
-    guard: float
     reach: float
 
 
@@ -79,27 +73,18 @@ def vessel_limits(scenario: Scenario, horizon: float) -> VesselLimits:
 def _deviations(scenario: Scenario) -> float:
     """Return how many standard deviations errors exceed as often as the keep-out area may be
     touched [-].
-
-    A normal error in two dimensions exceeds k standard deviations with the probability p =
-    exp(-k^2/2). That of a report, as it ages, goes from that of her place to that of her velocity,
-    and exceeds k at some age with p (1 + k sqrt(pi/8)) at most, by Rice's formula over a quarter of
-    a circle. That of the vehicle's own place wanders with a time constant T, and comes to exceed k
-    with a rate of p k^2/T at most (Kramers, "Brownian motion in a field of force and the diffusion
-    model of chemical reactions", Physica, 1940).
     """
     flight, reports = scenario.flight, scenario.reports
     # A flight begins with a report, however rare they are.
     reported = SECONDS_PER_HOUR / flight.duration_max_s
     if not reports.exact:
         reported += SECONDS_PER_HOUR / mean_interval(reports.interval_s)
-    wandering = (
-        SECONDS_PER_HOUR / NAVIGATION_TIME if scenario.sensors.position_sigma_m > 0.0 else 0.0
+    wanders = scenario.sensors.position_sigma_m > 0.0
+    return deviations(
+        scenario.following.touches_per_hour,
+        ageing=reported,
+        correlation_times=(NAVIGATION_TIME,) if wanders else (),
     )
-    k = 1.0
-    for _ in range(_ROUNDS):
-        chances = reported * (1.0 + k * math.sqrt(math.pi / 8.0)) + wandering * k * k
-        k = math.sqrt(2.0 * math.log(max(1.0, chances / scenario.following.touches_per_hour)))
-    return k
 
 
 def widest_tube(

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from gnc.estimation.error_budget import WindErrorByGusts
 from gnc.estimation.navigation import AirMotion
 from gnc.estimation.vessel import Tube
 from gnc.guard.guard import GuardParameters, HeadingRateFilter
@@ -30,7 +31,12 @@ _FAR = 3.0
 
 
 def orbit_distance(
-    guard: GuardParameters, vessel: Tube, orbit: Orbit, direction: tuple[float, float] = ASTERN
+    guard: GuardParameters,
+    vessel: Tube,
+    orbit: Orbit,
+    direction: tuple[float, float] = ASTERN,
+    *,
+    wind: WindErrorByGusts | None = None,
 ) -> float:
     """Return the smallest distance of an orbit from the vessel for which a turn away is always left
     to the guard [m].
@@ -43,6 +49,7 @@ def orbit_distance(
     vessel : where it may be, as large as that becomes
     orbit : about a centre of oscillation
     direction : of that centre from the vessel, a unit vector, ahead and to the right [-]
+    wind : error of the estimated wind by turbulence
     """
     ahead, right = direction
     phases = _PHASES if orbit.symmetric and abs(right) < _ALIGNED else 2 * _PHASES
@@ -65,6 +72,7 @@ def orbit_distance(
                 ground_east=y + right * distance + right * along,
                 course=course,
                 heading_rate=rate,
+                wind_by_gusts=wind,
             )
             for x, y, course, rate in points
         ]
@@ -72,7 +80,14 @@ def orbit_distance(
     return _distance(guard, vessel, motions, orbit.speed, mean)
 
 
-def circle_distance(guard: GuardParameters, vessel: Tube, speed: float, drift: float) -> float:
+def circle_distance(
+    guard: GuardParameters,
+    vessel: Tube,
+    speed: float,
+    drift: float,
+    *,
+    wind: WindErrorByGusts | None = None,
+) -> float:
     """Return the smallest radius of a circle about the vessel on which a turn away is always left
     to the guard [m].
 
@@ -81,6 +96,7 @@ def circle_distance(guard: GuardParameters, vessel: Tube, speed: float, drift: f
     guard : its parameters
     vessel : where it may be, as large as that becomes
     speed, drift : of the vehicle and of the vessel through the air [m/s]
+    wind : error of the estimated wind by turbulence
     """
     point = CirclePoint(speed)
 
@@ -95,6 +111,7 @@ def circle_distance(guard: GuardParameters, vessel: Tube, speed: float, drift: f
                     ground_east=place[1],
                     course=point.course,
                     heading_rate=point.heading_rate,
+                    wind_by_gusts=wind,
                 )
             )
         return found

@@ -30,6 +30,7 @@ import numpy.typing as npt
 from aircraft.weather import GustStatistics
 from common.physics import SECONDS_PER_HOUR
 from gnc.airspeed import SpeedHold
+from gnc.estimation.error_budget import AS_COMMANDED, TurnDeviation
 from gnc.reference.reference import Orbit
 from gnc.tracker import TrackingParameters
 from innerloop.schedule import Schedule
@@ -75,10 +76,12 @@ class SpreadTable:
     ----------
     speed_ratios : nu, ascending [-]
     spreads : at each of them
+    turning : of a turn away
     """
 
     speed_ratios: tuple[float, ...]
     spreads: tuple[Spread, ...]
+    turning: TurnDeviation = AS_COMMANDED
 
     def at(self, nu: float) -> Spread:
         """Return the spread at the nearest speed ratio."""

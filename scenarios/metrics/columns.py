@@ -1,5 +1,7 @@
 """Columns of a run's tables, in order. A figure that a flight does not have is empty."""
 
+from common.premises import PREMISE_COLUMNS
+
 SUMMARY_COLUMNS = (
     "flight_id", "trial", "variant", "beside", "outcome", "message", "criteria_met", "kept_out", "required", "aircraft",
     "fidelity", "seed", "nu", "nu_min", "nu_max", "wind_speed_mps", "wind_from_deg", "vessel_speed_mps", "turbulence",
@@ -17,7 +19,7 @@ SUMMARY_COLUMNS = (
     "heading_rate_error_rms_rad_s", "heading_rate_demand_max_rad_s", "heading_rate_command_max_rad_s",
     "heading_rate_limit_rad_s", "heading_rate_bound_rad_s", "heading_rate_flown_max_rad_s", "epsilon_per_m", "look_ahead_m",
     "steering_max_rad_s", "saturation_fraction", "guard_interventions", "guard_time_s", "guard_after_settling_s",
-    "guard_lost_s", "wind_error_rms_mps", "vessel_error_rms_m", "vessel_error_max_m", "centre_error_rms_m", "duration_s",
+    "guard_lost_s", *PREMISE_COLUMNS, "wind_error_rms_mps", "vessel_error_rms_m", "vessel_error_max_m", "centre_error_rms_m", "duration_s",
     "wall_time_s",
 )  # fmt: skip
 """Of ``summary.csv`` and ``comparison.csv``: a row per flight."""

@@ -6,14 +6,17 @@ import numpy as np
 import numpy.typing as npt
 
 from aircraft.wind import CALM
+from common.premises import UNEXPLAINED
 from common.text import utc_text
 from gnc.mission.mission import LEAVING, Mode
 from gnc.mission.track import DirectParameters
 from scenarios.engine.task import Row
 from scenarios.metrics.crossings import Crossing, find_crossings
 from scenarios.metrics.keepout import closest_approach, keepout_figures
+from scenarios.metrics.premises import is_unexplained, premise_figures
 from scenarios.metrics.sample import rms
 from scenarios.planning.flight_plan import FlightPlan
+from scenarios.simulation.outcome import Outcome
 from scenarios.simulation.record import FlightRecord
 from scenarios.world.ais.track import AisVessel
 from scenarios.world.place import Place
@@ -139,7 +142,9 @@ def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Cr
     if plan.world is None:
         return row, []
     position, velocity = in_vessel_frame(record, plan.source_height)
-    row |= _keepout_figures(plan, record, position, velocity)
+    row |= _keepout_figures(plan, record, position, velocity) | premise_figures(plan, record)
+    if is_unexplained(row):
+        row |= {"outcome": Outcome.UNEXPLAINED_VIOLATION.value, "message": UNEXPLAINED}
     if not settled.any():
         return row, []
     if beside.any():

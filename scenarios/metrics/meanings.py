@@ -6,6 +6,7 @@ Units are the ends of the names. "Settled" is said of the flight from its settli
 
 from collections.abc import Mapping
 
+from common.premises import EXCEEDED, TERMS, ratio_column, time_column
 from common.run_layout import (
     COMPARISON,
     CROSSINGS,
@@ -68,8 +69,18 @@ _PLANNED = {
 }
 """Known before the flight, of ``summary.csv`` and ``comparison.csv``."""
 
+_PREMISES = {
+    name: meaning
+    for term, what in TERMS.items()
+    for name, meaning in (
+        (ratio_column(term), f"largest error over what the guard reckons with: {what}"),
+        (time_column(term), "time of that ratio; of turns, at which the turn began"),
+    )
+}
+"""How the premises of the guard's theorem held."""
+
 _MEASURED = {
-    "outcome": "completed, not_settled, incomplete, aircraft_lost, diverged, infeasible, trim_failed or failed",
+    "outcome": "completed, not_settled, incomplete, aircraft_lost, diverged, unexplained_violation, infeasible, trim_failed or failed",
     "message": "the reason of an outcome other than completed",
     "criteria_met": "whether the flight kept out, completed its mission and met every other criterion",
     "kept_out": "whether it kept out of the keep-out area and was observed to its end",
@@ -115,6 +126,8 @@ _MEASURED = {
     "guard_time_s": "total time in which the keep-out guard changed commands",
     "guard_after_settling_s": "part of that time after settling",
     "guard_lost_s": "time in which no turn away held the guard's radius, by more than the declared errors explain",
+    EXCEEDED: "premises of the guard's theorem that did not hold: terms with a ratio above 1, or none",
+    **_PREMISES,
     "wind_error_rms_mps": "root mean square error of the estimated wind, settled",
     "vessel_error_rms_m": "root mean square error of the vessel's estimated position, settled",
     "vessel_error_max_m": "largest error of the vessel's estimated position over the whole flight",

@@ -15,6 +15,7 @@ from scenarios.errors import InputError
 from scenarios.instruments.instrument import EvaluatedInstrument, Evaluation, figures_of, tables_of
 from scenarios.metrics.columns import FLIGHT_COLUMNS, SUMMARY_COLUMNS
 from scenarios.metrics.finding import FINDING_FIGURES
+from scenarios.simulation.guard_belief import GuardBelief
 from scenarios.simulation.plume_readings import PlumeBelief
 from scenarios.simulation.record import MEANINGS
 from scenarios.world.own_part import asked, refuse_answer
@@ -40,7 +41,7 @@ def check_instruments(named: Iterable[tuple[str, Any]]) -> None:
     InputError : one fills a column, a figure or a table that is filled already, or declares what
         are no names
     """
-    columns = dict.fromkeys((*MEANINGS, *PlumeBelief.COLUMNS), _FLIGHT)
+    columns = dict.fromkeys((*MEANINGS, *PlumeBelief.COLUMNS, *GuardBelief.COLUMNS), _FLIGHT)
     figures = dict.fromkeys((*SUMMARY_COLUMNS, *FINDING_FIGURES), _FLIGHT)
     tables = dict.fromkeys(TABLES, _RUN)
     for name, instrument in named:

@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from gnc.airspeed import PaceHold
 from gnc.errors import InfeasibleError
+from gnc.estimation.error_budget import AS_COMMANDED, ErrorBudget
 from gnc.estimation.health import HealthParameters
 from gnc.estimation.vessel import ReachableSet, Tube, VesselLimits
 from gnc.guard.guard import GuardParameters
@@ -23,11 +24,10 @@ from scenarios.margin.keepout_margin import (
 )
 from scenarios.margin.orbit_room import circle_distance, orbit_distance
 from scenarios.margin.tracking_spread import SpreadTable
-from scenarios.planning.air.dead_reckoning import drift_rate
 from scenarios.planning.air.estimated_wind import (
-    first_wind_error,
+    first_known,
     navigation_parameters,
-    wind_change,
+    wind_known_on_orbit,
 )
 from scenarios.planning.air.flown_heights import check_not_outrun
 from scenarios.planning.bounded_steering import given_steering
@@ -35,6 +35,7 @@ from scenarios.planning.declared_vessel import check_vessel
 from scenarios.planning.flight_plan import FlightPlan, Sensing
 from scenarios.planning.guidance import (
     controlled_heading_rate,
+    flight_errors,
     following_parameters,
     guard_parameters,
     guidance_lag,
@@ -104,24 +105,17 @@ def following_flight(
     sigma, level = tracking_level(scenario, spreads, nu)
     radius = scenario.keepout.radius_m
     air = mean_wind(scenario, vessel)
+    turning = spreads.turning if spreads else AS_COMMANDED
     guarded = guard_parameters(
-        scenario,
-        setup,
-        radius,
-        turbulence=level,
-        wind_change=wind_change(scenario, air, setup.altitude_error),
-        drift_rate=drift_rate(
-            scenario, air, turn_time(scenario, setup.reversal), setup.altitude_error
-        ),
+        scenario, setup, radius, flight_errors(scenario, setup, air, turning)
     )
     oscillation = oscillation_at(g, scenario.reference, nu)
     nearer = satellite_noise(scenario, setup, oscillation.amplitude)
     widest = widest_tube(limits, scenario.reports, plan_period=plan_period(g), noise=nearer)
-    nearest = _nearest(scenario, guarded, widest, oscillation)
+    nearest = _nearest(scenario, setup, guarded, widest, oscillation)
     farthest = max(radius + f.margin_min_m, nearest) + level
-    reach = widest.reach(turn_time(scenario, setup.reversal))
     margin = KeepoutMargin(
-        tracking_sigma=sigma, total=farthest - radius, guard=guarded.allowance, reach=reach
+        tracking_sigma=sigma, total=farthest - radius, reach=widest.reach(limits.horizon)
     )
     mission: FollowingParameters | StandoffParameters
     orbit: PeriodicPath
@@ -133,7 +127,7 @@ def following_flight(
     else:
         nearest, orbit = radius + margin.total + oscillation.half_widths()[0], oscillation
         further = additional_distance(scenario, vessel, nearest, wind.at_start)
-        periods, mission = _following(scenario, setup, margin, vessel, further, guarded.drift_rate)
+        periods, mission = _following(scenario, setup, margin, vessel, further, guarded.errors)
         climbed_to = nearest + further
     check_not_outrun(scenario, vessel, air, climbed_to)
     start = sampled_start(
@@ -168,7 +162,7 @@ def following_flight(
         guard,
         known.tubes(0.0),
         wind=air.now(0.0, scenario.altitude),
-        wind_error=first_wind_error(scenario, setup),
+        known=first_known(scenario, setup),
         airspeed=g.airspeed_mps,
         keepout_radius=radius,
     )
@@ -210,13 +204,21 @@ def following_flight(
     )
 
 
-def _nearest(scenario: Scenario, guard: GuardParameters, widest: Tube, oscillation: Orbit) -> float:
+def _nearest(
+    scenario: Scenario,
+    setup: VehicleSetup,
+    guard: GuardParameters,
+    widest: Tube,
+    oscillation: Orbit,
+) -> float:
     """Return the smallest distance of the orbit, or of the circle about the vessel, at which the
     guard does not act [m].
     """
+    wind = wind_known_on_orbit(scenario, setup)
     if scenario.stands_off:
-        return circle_distance(guard, widest, oscillation.speed, oscillation.nu * oscillation.speed)
-    return orbit_distance(guard, widest, oscillation)
+        drift = oscillation.nu * oscillation.speed
+        return circle_distance(guard, widest, oscillation.speed, drift, wind=wind)
+    return orbit_distance(guard, widest, oscillation, wind=wind)
 
 
 def _following(
@@ -225,10 +227,10 @@ def _following(
     margin: KeepoutMargin,
     vessel: VesselTruth,
     further: float,
-    drifting: float,
+    errors: ErrorBudget,
 ) -> tuple[tuple[float, ...], FollowingParameters]:
     """Return the periods of the orbit over nu [s], and how the plume is followed, ``further`` off
-    [m] and ``drifting`` [m/s].
+    [m].
     """
     # Before its orbits: a shape that cannot be steered says so, whatever else it cannot do beside a
     # fast vessel.
@@ -245,7 +247,7 @@ def _following(
         swing=swing,
         vessel_course=vessel.course(0.0),
         additional_distance=further,
-        drift_rate=drifting,
+        errors=errors,
     )
 
 

@@ -5,9 +5,11 @@ from collections.abc import Sequence
 
 from aircraft.faults import OF_THRUST
 from aircraft.weather import TURBULENCE, low_altitude_turbulence
+from aircraft.wind import WindField
 from common.physics import heading_rate_for_bank
 from gnc.airspeed import SpeedHold, design_speed_hold
 from gnc.errors import InfeasibleError
+from gnc.estimation.error_budget import Bias, ErrorBudget, TurnDeviation
 from gnc.estimation.health import CHECK_INTERVAL
 from gnc.estimation.navigation import NOISE_DEVIATIONS
 from gnc.guard.guard import GuardParameters
@@ -21,7 +23,7 @@ from innerloop.flight.part_failure import PartFailure, glide_airspeed
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from scenarios.margin.keepout_margin import KeepoutMargin
 from scenarios.margin.satellite_noise import noise_allowance, position_scatter
-from scenarios.planning.air.dead_reckoning import velocity_error
+from scenarios.planning.air.errors import error_budget
 from scenarios.planning.air.flown_heights import climbs, glides
 from scenarios.planning.bounded_steering import Steering, given_steering, steering_law
 from scenarios.planning.limits import omega_max, plan_interval
@@ -148,50 +150,49 @@ def guidance_lag(scenario: Scenario, setup: VehicleSetup) -> float:
 
 
 def guard_parameters(
-    scenario: Scenario,
-    setup: VehicleSetup,
-    radius: float,
-    *,
-    turbulence: float = 0.0,
-    wind_change: float = 0.0,
-    drift_rate: float = 0.0,
+    scenario: Scenario, setup: VehicleSetup, radius: float, errors: ErrorBudget | None = None
 ) -> GuardParameters:
     """Return the guard that keeps a radius about wherever the vessel may be.
 
     Parameters
     ----------
     scenario, setup : the flight, and its vehicle
-    radius, turbulence : to keep, and to keep beside for turbulence [m]
-    wind_change : by which the estimated wind may be in error, since it changes [m/s]
-    drift_rate : how fast dead reckoning may go wrong [m/s]
+    radius : to keep [m]
+    errors : that are reckoned with; None where all but the vehicle's response is known exactly
     """
-    f, air = scenario.following, scenario.turbulence
-    wander = math.sqrt(-2.0 * math.expm1(-turn_time(scenario, setup.reversal) / NAVIGATION_TIME))
-    speed_error = (
-        max(f.speed_error_mps, velocity_error(scenario, drift_rate))
-        + air.gust_speed_mps
-        + wind_change
-    )
-    failure = part_failure(scenario, setup)
-    allowance = turbulence + (failure.glide_deviation if failure else 0.0)
+    budget = errors or ErrorBudget(response=Bias(size=setup.response_error))
     return GuardParameters(
-        radius=radius + allowance,
-        deviation=max(setup.response_error, f.turn_deviation_m if scenario.follows else 0.0),
+        radius=radius + budget.failed_part.size,
         heading_rate_max=omega_max(scenario.guidance),
         lag=setup.reversal.lag,
         delay=setup.reversal.delay,
         slow_lag=setup.lag,
         time_step=1.0 / scenario.guidance.rate_hz,
-        # A gust may begin at any moment; and one that blows turns with the vehicle in the
-        # prediction, but not in the air.
-        speed_error=speed_error if scenario.follows else 0.0,
-        drift_rate=drift_rate,
-        allowance=allowance,
-        wander=NOISE_DEVIATIONS * scenario.sensors.position_sigma_m * wander
-        if scenario.follows
-        else 0.0,
+        errors=budget,
         turn_speed=setup.turning_airspeed(omega_max(scenario.guidance)),
+    )
+
+
+def flight_errors(
+    scenario: Scenario, setup: VehicleSetup, wind: WindField, turning: TurnDeviation
+) -> ErrorBudget:
+    """Return the error budget of a flight beside a vessel.
+
+    Parameters
+    ----------
+    scenario, setup : the flight, and its vehicle
+    wind : mean wind of the flight
+    turning : how far turbulence takes a turn off its commands
+    """
+    failure = part_failure(scenario, setup)
+    return error_budget(
+        scenario,
+        setup,
+        wind,
+        turn=turn_time(scenario, setup.reversal),
+        turning=turning,
         slowest=slowest_without_thrust(scenario, setup),
+        failed_part=failure.glide_deviation if failure else 0.0,
     )
 
 
@@ -265,7 +266,7 @@ def following_parameters(
     swing: Swing,
     vessel_course: float,
     additional_distance: float,
-    drift_rate: float,
+    errors: ErrorBudget,
 ) -> FollowingParameters:
     """Return how the plume of a moving vessel is followed.
 
@@ -278,7 +279,7 @@ def following_parameters(
     swing : courses of the reference, by its shape
     vessel_course : at the start [rad]
     additional_distance : from the vessel, beyond what keeps out [m]
-    drift_rate : how fast dead reckoning may go wrong [m/s]
+    errors : of the flight
     """
     g, f, reports = scenario.guidance, scenario.following, scenario.reports
     fastest, radius = omega_max(g), scenario.keepout.radius_m
@@ -307,7 +308,7 @@ def following_parameters(
         stale=max(STALE_MIN, reports.interval_s[1] + reports.latency_max_s),
         reach=margin.reach,
         reach_time=turn_time(scenario, setup.reversal),
-        drift_rate=drift_rate,
+        errors=errors,
         plan_interval=plan_interval(g),
         axis=axis,
     )

@@ -13,6 +13,7 @@ from innerloop.store import Designed
 from scenarios.errors import InputError
 from scenarios.margin.tracking_spread import SpreadTable, tracking_spreads
 from scenarios.planning.guidance import speed_hold, tracking_parameters
+from scenarios.planning.limits import omega_max
 from scenarios.planning.reference import oscillation_at
 from scenarios.planning.scaling import scaled_law_defaults
 from scenarios.schema.load import with_values
@@ -114,6 +115,9 @@ def _planned_for(scenario: Scenario, defaults: Mapping[str, float]) -> Scenario:
 
 
 def _spread_table(scenario: Scenario, found: Designed, setup: VehicleSetup) -> SpreadTable:
+    # It needs python-control, which a flight in calm air does without.
+    from scenarios.margin.turn_spread import turn_deviation
+
     schedule = found.design.schedule
     air = low_altitude_turbulence(
         scenario.altitude, TURBULENCE[scenario.turbulence.level].wind_at_20ft
@@ -127,6 +131,15 @@ def _spread_table(scenario: Scenario, found: Designed, setup: VehicleSetup) -> S
     return SpreadTable(
         speed_ratios=tuple(orbits),
         spreads=tracking_spreads(schedule, air, [*orbits.values()], tracking, hold, span=span),
+        turning=turn_deviation(
+            schedule,
+            air,
+            speed=scenario.guidance.airspeed_mps,
+            heading_rate=omega_max(scenario.guidance),
+            time_step=tracking.time_step,
+            span=span,
+            key="turbulence.level",
+        ),
     )
 
 

@@ -70,7 +70,7 @@ def check_start(
     vessel: Sequence[Tube],
     *,
     wind: tuple[float, float],
-    wind_error: float = 0.0,
+    known: AirMotion | None = None,
     airspeed: float,
     keepout_radius: float,
 ) -> None:
@@ -81,8 +81,9 @@ def check_start(
     start, guard : the start, and the guard that would have to keep out; any start is accepted
         without
     vessel : discs in each of which it is for certain, at time 0
-    wind, wind_error : north and east, and by how much more than in the end its first measurement
-        may be wrong [m/s]
+    wind : north and east [m/s]
+    known : motion by the first measurement, whose wind is as wrong as it may be at the start; None
+        where it is known exactly
     airspeed : of the UAV [m/s]
     keepout_radius : r_min [m]
 
@@ -109,7 +110,8 @@ def check_start(
         course=start.course,
         wind_north=wind[0],
         wind_east=wind[1],
-        wind_error=wind_error,
+        wind_error=known.wind_error if known else 0.0,
+        wind_by_gusts=known.wind_by_gusts if known else None,
     )
     clearance = HeadingRateFilter(guard).clearance(0.0, own, vessel, airspeed)
     if clearance < 0.0:
@@ -117,6 +119,16 @@ def check_start(
             f"the start lies {math.hypot(start.north, start.east):.1f} m from the vessel on course"
             f" {math.degrees(start.course):.0f} deg, where the best turn away comes within"
             f" {max(0.0, guard.radius + clearance):.1f} m of where it may be; keepout.radius_m is {keepout_radius:g} m, and"
-            f" the guard has to keep {guard.radius:.1f} m: start farther away (start.distance_m) or on another course"
+            f" the guard has to keep {guard.radius:.1f} m{_most_of_errors(guard, own)}: start farther away (start.distance_m) or on another course"
             " (start.course_deg)"
         )
+
+
+def _most_of_errors(guard: GuardParameters, own: AirMotion) -> str:
+    """Return which term of the error budget takes most of the room, in words; none without one."""
+    turn = math.pi / guard.heading_rate_max + guard.delay + guard.lag
+    parts = guard.errors.parts(turn, own.wind_by_gusts)
+    name, (distance, key) = max(parts.items(), key=lambda part: part[1].distance)
+    if distance == 0.0 or not key:
+        return ""
+    return f" and, for errors, most for {name}: {distance:.1f} m in half a turn ({key})"

@@ -14,7 +14,7 @@ from scenarios.schema.extension_points import PAYLOADS, PLUME_MODELS
 from scenarios.schema.keys import line, split_unit
 from scenarios.schema.sections.guidance import GuidanceConfig
 
-FLIGHT_STUDIES = ("flights", "paper", "monte_carlo", "falsify", "arena", "patrol")
+FLIGHT_STUDIES = ("flights", "paper", "monte_carlo", "falsify", "arena", "patrol", "premises")
 """Studies whose scenario files are those of flights."""
 
 DIMENSIONLESS = "-"

@@ -46,6 +46,7 @@ KINDS: dict[str, type[Any]] = {
     "falsify": Scenario,
     "arena": Scenario,
     "patrol": Scenario,
+    "premises": Scenario,
 }
 """What a file may say of ``study``, and the scenario that it then holds."""
 

@@ -4,6 +4,7 @@ closed here only.
 
 import math
 from collections.abc import Generator, Sequence
+from typing import Any
 
 from gnc.guard.guard import GuardStatus
 from gnc.guidance import Guidance
@@ -12,6 +13,7 @@ from gnc.mission.follow import PlumeFollowing
 from scenarios.instruments.instrument import GasReader, Instrument
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.simulation.ending import Ending
+from scenarios.simulation.guard_belief import GuardBelief
 from scenarios.simulation.interventions import interventions
 from scenarios.simulation.judge import Judge
 from scenarios.simulation.onboard import OnboardSensing
@@ -61,7 +63,12 @@ class ClosedLoop:
             after=plan.after_settling,
         )
         axis = axis_of(guidance)
-        beliefs = (PlumeBelief(axis),) if isinstance(axis, SearchedAxis) else ()
+        beliefs: list[Any] = [PlumeBelief(axis)] if isinstance(axis, SearchedAxis) else []
+        self._guard_belief: GuardBelief | None = None
+        if guidance.guard is not None and plan.world is not None:
+            vessel = plan.world.vessel
+            self._guard_belief = GuardBelief(guidance, guidance.guard, vessel, plan.time_step)
+            beliefs.append(self._guard_belief)
         self._recorder = Recorder(
             guidance, vehicle, plan.world, (*payload, *beliefs), self.settling
         )
@@ -87,6 +94,7 @@ class ClosedLoop:
             self.ending,
         )
         mission, target, guard = guidance.mission, guidance.target, guidance.guard
+        belief = self._guard_belief
         guide, motion_of, advance, reference_of = (
             guidance.step,
             self.vehicle.motion,
@@ -113,8 +121,11 @@ class ClosedLoop:
             demand, command = tracker.heading_rate_demand, guidance.heading_rate_command
             if demand > demand_max or -demand > demand_max:
                 demand_max = abs(demand)
-            if command > command_max or -command > command_max:
-                command_max = abs(command)
+            commanded = abs(command)
+            if commanded > plan.heading_rate_max:
+                # In a gust, omega_max over the mean air may take more through the air.
+                commanded = min(commanded, abs(tracker.heading_rate_command))
+            command_max = max(command_max, commanded)
             saturated += tracker.saturated
             if guidance.guarding and guard is not None:
                 guarding.append(
@@ -132,6 +143,8 @@ class ClosedLoop:
                 if sampled and ending.reached(time, motion, sample, complete=complete):
                     break
             command, airspeed = yield command, guidance.airspeed_command
+            if belief is not None:
+                belief.command(tracker.heading_rate_command)
             advance(command, airspeed - airspeed_error)
         ending.guarded, ending.saturated = bool(guarding), saturated / (step + 1)
         rows = recorder.rows()

@@ -2,6 +2,8 @@
 
 from enum import Enum
 
+from common import premises
+
 
 class Outcome(Enum):
     """How a flight ended.
@@ -9,7 +11,9 @@ class Outcome(Enum):
     A flight completed if its aircraft came through, and its mission was flown: it settled, and
     crossed the plume as often as was asked for, or once at least; one without a vessel only has to
     last. ``NOT_SETTLED`` and ``INCOMPLETE`` are missions that were not flown; ``AIRCRAFT_LOST`` and
-    ``DIVERGED`` are aircraft that do not come back.
+    ``DIVERGED`` are aircraft that do not come back. ``UNEXPLAINED_VIOLATION`` is an aircraft that
+    came through and entered the keep-out area although every premise of the guard's theorem held:
+    an error of the theorem or of its code.
     """
 
     COMPLETED = "completed"
@@ -17,6 +21,7 @@ class Outcome(Enum):
     INCOMPLETE = "incomplete"
     AIRCRAFT_LOST = "aircraft_lost"
     DIVERGED = "diverged"
+    UNEXPLAINED_VIOLATION = premises.UNEXPLAINED_VIOLATION
     INFEASIBLE = "infeasible"
     TRIM_FAILED = "trim_failed"
     FAILED = "failed"

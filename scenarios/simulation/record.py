@@ -141,7 +141,7 @@ class FlightRecord:
 
 
 _UNITS = (
-    ("_per_m", "1/m"), ("_per_s", "1/s"), ("_percent", "%"), ("_rad_s", "rad/s"), ("_mps", "m/s"), ("_rad", "rad"), ("_m", "m"),
+    ("_m2_s2", "m2/s2"), ("_per_m", "1/m"), ("_per_s", "1/s"), ("_percent", "%"), ("_rad_s", "rad/s"), ("_mps", "m/s"), ("_rad", "rad"), ("_m", "m"),
     ("_ppm_s", "ppm s"), ("_s", "s"), ("_deg", "deg"), ("_utc", "UTC"), ("_ppb", "ppb"), ("_ppm", "ppm"), ("_per_hour", "1/h"),
     ("_s_per_minute", "s/min"), ("crossings_per_minute", "1/min"),
 )  # fmt: skip

@@ -11,6 +11,7 @@ import pyarrow.parquet as pq
 
 from common.run_layout import evaluation_path, time_history_path
 from scenarios.engine.task import Row, Task
+from scenarios.simulation.guard_belief import BELIEF_MEANINGS
 from scenarios.simulation.outcome import Outcome
 from scenarios.simulation.record import MEANINGS, unit_of
 
@@ -34,9 +35,10 @@ INSTRUMENT_MEANINGS = {
     "axis_spread_estimated_m": "estimated vertical spread of the plume",
     "axis_spread_across_estimated_m": "estimated horizontal spread of the plume",
     "axis_measurable": "estimated probability that the plume can be crossed within the limits of the altitude",
+    **BELIEF_MEANINGS,
     "axis_innovation": "mean normalised innovation squared of the passes, 1 where the filter is consistent",
 }
-"""Of time histories, of a sniffer and of a search for the plume."""
+"""Of time histories, of a sniffer, of a search for the plume and of the keep-out guard."""
 
 UNFINISHED = (Outcome.NOT_SETTLED.value, Outcome.INCOMPLETE.value)
 """Outcomes of missions that were not completed though the aircraft came through."""

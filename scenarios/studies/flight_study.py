@@ -355,6 +355,7 @@ class FlightStudy:
             whole.add(row)
             trial_counts[row["trial"]].add(row)
         lines = [
+            *whole.unexplained_lines(),
             *(reports.described() for reports in self.vessel_files.values()),
             f"flights: {whole.line()}",
         ]
@@ -362,7 +363,7 @@ class FlightStudy:
             lines += [f"  {trial}: {counts.line()}" for trial, counts in trial_counts.items()]
         points = {*map(random_numbers_of_points, self.trials.values())}
         lines += [POINTS_OF_SWEEP[kind] for kind in sorted(points) if kind]
-        lines += [*self._comparison_lines(journal), *whole.sulphur_lines()]
+        lines += [*whole.premise_lines(), *self._comparison_lines(journal), *whole.sulphur_lines()]
         if whole.flown > whole.without_area and all(self._sampled_at_random().values()):
             samples = sum(
                 of.beside // flights_per_sample(self.trials[trial])
@@ -382,6 +383,7 @@ class FlightStudy:
             lines=lines,
             manifest=manifest,
             beside_left=left,
+            unexplained=whole.unexplained,
         )
 
     def _comparison_lines(self, journal: Journal) -> list[str]:

@@ -8,6 +8,7 @@ from typing import Any, Self
 
 from common.intervals import CONFIDENCE, TELLING, percent, upper_bound
 from common.physics import SECONDS_PER_HOUR
+from common.premises import EXCEEDED, TERMS, UNEXPLAINED, exceeded_terms
 from common.run_layout import SUMMARY
 from measurement.estimate.verdict import (
     content_words,
@@ -58,6 +59,9 @@ class FlightCounts:
     required : number of flights by what exit status 0 requires of them
     violating : number of flights with a keep-out violation
     keepout_violations : number of keep-out violations
+    with_premises, exceeding : number of flights whose guard has premises that were measured, and of
+        those in which one did not hold
+    exceeded : number of flights by the premise that did not hold
     shapes : number of flights by the shape of their keep-out area, which distances are measured
         from
     nearest : closest approach to the vessel, infinite if no flight is done [m]
@@ -83,6 +87,9 @@ class FlightCounts:
     required: Counter[str] = field(default_factory=Counter)
     violating: int = 0
     keepout_violations: int = 0
+    with_premises: int = 0
+    exceeding: int = 0
+    exceeded: Counter[str] = field(default_factory=Counter)
     shapes: Counter[str] = field(default_factory=Counter)
     nearest: float = math.inf
     duration: float = 0.0
@@ -119,6 +126,10 @@ class FlightCounts:
         self.passed += done if required == "keep_out" else bool(row["criteria_met"])
         self.violating += row.get("keepout_violations", 0) > 0
         self.keepout_violations += int(row.get("keepout_violations", 0))
+        terms = exceeded_terms(row)
+        self.with_premises += EXCEEDED in row
+        self.exceeding += bool(terms)
+        self.exceeded.update(terms)
         if "keepout_shape" in row:
             self.shapes[row["keepout_shape"]] += 1
         self.nearest = min(self.nearest, row.get("min_distance_m", math.inf))
@@ -172,6 +183,30 @@ class FlightCounts:
         kept = f"{self.kept_out} of {beside} kept out, {violations}"
         about = f" ({_MEASURED_FROM[next(iter(self.shapes))]})" if len(self.shapes) == 1 else ""
         return f"{counts}; {kept}, closest approach {self.nearest:.1f} m{about}"
+
+    @property
+    def unexplained(self) -> int:
+        """Number of flights with a keep-out violation although every premise held."""
+        return self.outcomes[Outcome.UNEXPLAINED_VIOLATION.value]
+
+    def unexplained_lines(self) -> list[str]:
+        """Return that the theorem of the guard or its code is wrong, where a flight shows it."""
+        if not self.unexplained:
+            return []
+        flights = f"{self.unexplained} flight{'s' * (self.unexplained > 1)}"
+        return [
+            f"THE KEEP-OUT GUARD IS WRONG: in {flights} with a keep-out violation {UNEXPLAINED}"
+        ]
+
+    def premise_lines(self) -> list[str]:
+        """Return in how many flights a premise of the keep-out guard did not hold, and which."""
+        if not self.with_premises:
+            return []
+        of = f"{self.with_premises} flight{'s' * (self.with_premises > 1)}"
+        if not self.exceeding:
+            return [f"premises of the keep-out guard: all held in {of}"]
+        terms = ", ".join(f"{TERMS[term]} in {n}" for term, n in self.exceeded.most_common())
+        return [f"premises of the keep-out guard: exceeded in {self.exceeding} of {of}: {terms}"]
 
     def sulphur_lines(self) -> list[str]:
         """Return what was measured of the fuel: of one flight content and verdict, of several how
@@ -332,6 +367,8 @@ class FlightCounts:
             "flights_kept_out": self.kept_out,
             "flights_met_criteria": self.met,
             "flights_passed": self.passed,
+            "flights_with_a_premise_exceeded": self.exceeding,
+            "premises_exceeded": dict(self.exceeded),
         }
 
 

@@ -18,10 +18,13 @@ from scenarios.metrics.columns import (
 from scenarios.metrics.finding import FINDING_FIGURES
 from scenarios.metrics.meanings import CONVERGENCE_MEANINGS, MEANINGS
 from scenarios.metrics.window import MEASURED_COLUMNS, WINDOW_COLUMNS
+from scenarios.simulation.guard_belief import GuardBelief
 from scenarios.simulation.plume_readings import PlumeBelief
 from scenarios.simulation.record import MEANINGS as HISTORY_MEANINGS
 from scenarios.simulation.record import unit_of
 from scenarios.simulation.time_history import INSTRUMENT_MEANINGS
+from scenarios.statistics.premises import TABLE_COLUMNS as PREMISE_COLUMNS
+from scenarios.statistics.premises import TABLE_MEANINGS as PREMISE_MEANINGS
 from scenarios.studies.arena.study import TUNING_COLUMNS
 from scenarios.studies.convergence.ensemble import COLUMNS as CONVERGENCE_COLUMNS
 from scenarios.studies.patrol.meanings import MEANINGS as PATROL_MEANINGS
@@ -60,6 +63,7 @@ def tables() -> dict[str, tuple[Iterable[str], Mapping[str, str]]]:
         **{name: (of, MEANINGS[name]) for name, of in columns.items()},
         "flights/ID.parquet": (HISTORY_MEANINGS, histories),
         "flights/ID.parquet, of flights with a sniffer": (SnifferOnBoard.COLUMNS, histories),
+        "flights/ID.parquet, of flights with a keep-out guard": (GuardBelief.COLUMNS, histories),
         "flights/ID.parquet, of flights that search for the plume": (
             PlumeBelief.COLUMNS,
             histories,
@@ -71,6 +75,7 @@ def tables() -> dict[str, tuple[Iterable[str], Mapping[str, str]]]:
         "summary.csv, of patrols": (PATROL_COLUMNS, PATROL_MEANINGS[SUMMARY]),
         "ships.csv, of patrols": (SHIP_COLUMNS, PATROL_MEANINGS[SHIPS]),
         "phases.csv, of patrols": (PHASE_COLUMNS, PATROL_MEANINGS[PHASES]),
+        "premises.csv": (PREMISE_COLUMNS, PREMISE_MEANINGS),
         "samples.csv of the log of a flight": (SAMPLE_MEANINGS, SAMPLE_MEANINGS),
         "export/NAME.tracks.csv": (
             ("flight_id", *TRACK_COLUMNS),

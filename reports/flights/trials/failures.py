@@ -2,16 +2,27 @@
 for page 1.
 """
 
+from collections import Counter
 from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from common.premises import TERMS, ratio_column
 from reports.document.tables import ending, in_symbols, number, span
 from reports.flights.criteria import counted, criteria_of
 from reports.flights.names import fault_name, told_name
-from reports.run.columns import Mask, column, count, largest, met, violated, was_flown
+from reports.run.columns import (
+    Mask,
+    column,
+    count,
+    largest,
+    met,
+    premises_exceeded,
+    violated,
+    was_flown,
+)
 from reports.run.trials import Trial
 
 _NAMED_MAX = 3
@@ -101,7 +112,7 @@ def _reason(row: "pd.Series[Any]") -> str:
 
 def noteworthy(flown: pd.DataFrame) -> list[str]:
     """Return what a reader has to know of the flights, whether or not a criterion asks for it."""
-    lines = []
+    lines = _premise_lines(flown)
     unable = column(flown, "guard_lost_s")
     if without := count(unable > 0.0):
         lines.append(
@@ -120,6 +131,23 @@ def noteworthy(flown: pd.DataFrame) -> list[str]:
             f"{_in_flights(len(begun), len(flown))} a fault began, as the scenario has it: {kind}, at {times} s."
         )
     return lines
+
+
+def _premise_lines(flown: pd.DataFrame) -> list[str]:
+    """Return in how many flights a premise of the keep-out guard did not hold, and which."""
+    flights = premises_exceeded(flown)
+    counts = Counter(term for terms in flights for term in terms)
+    if not counts:
+        return []
+    some = sum(bool(terms) for terms in flights)
+    largest_of = "; ".join(
+        f"{TERMS[term]} in {number_of:,}, up to {np.nanmax(column(flown, ratio_column(term))):.2f}"
+        for term, number_of in counts.most_common()
+    )
+    return [
+        f"{_in_flights(some, len(flights))} an error was larger than the keep-out guard reckons"
+        f" with, as a ratio to that: {largest_of}."
+    ]
 
 
 def _in_flights(some: int, flown: int) -> str:

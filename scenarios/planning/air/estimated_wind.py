@@ -6,12 +6,14 @@ import math
 
 from aircraft.weather import TURBULENCE, low_altitude_turbulence
 from aircraft.wind import WindField
+from gnc.estimation.error_budget import Process, WindErrorByGusts
 from gnc.estimation.navigation import (
     NOISE_DEVIATIONS,
     EstimatedNavigation,
     NavigationParameters,
     SatelliteFix,
     SensorReadings,
+    WindFilter,
 )
 from scenarios.planning.air.flown_heights import climbs, flown_heights, glides
 from scenarios.planning.limits import plan_interval, plan_period
@@ -31,6 +33,11 @@ the c172p, and 3.3 % of an X8 that climbs.
 
 _WIND_DRIFT = 0.02
 """By how much the wind may change in the root of a second [m/s]."""
+
+_UNTIL_ORBIT = 120.0
+"""Time for which the wind has been measured when an orbit is joined that the guard is to leave
+alone [s]; earlier the guard may act on it.
+"""
 
 WIND_FOLLOWED = 20.0
 """Time within which the estimated wind follows a change [s]: of a wind that turns steadily it is
@@ -53,6 +60,7 @@ def navigation_parameters(scenario: Scenario, setup: VehicleSetup) -> Navigation
         wind_noise=NOISE_DEVIATIONS * _measured_noise(scenario),
         first_wind_error=_FIRST_WIND * g.airspeed_mps,
         wind_error=NOISE_DEVIATIONS * wind_noise_left(scenario),
+        turbulence=turbulence_met(scenario),
         wind_interval=plan_interval(scenario.guidance),
         time_step=time_step,
     )
@@ -88,16 +96,48 @@ def wind_noise_left(scenario: Scenario) -> float:
     return math.sqrt(0.5 * gain) * wind_noise(scenario)
 
 
-def first_wind_error(scenario: Scenario, setup: VehicleSetup) -> float:
-    """Return by how much more than in the end the wind may be wrong that is measured at the start
-    [m/s].
-    """
+def first_known(scenario: Scenario, setup: VehicleSetup) -> EstimatedNavigation:
+    """Return the navigation after its first measurement: how wrong the wind may be at the start."""
     airspeed = scenario.guidance.airspeed_mps
     navigation = EstimatedNavigation(navigation_parameters(scenario, setup))
     navigation.update(
         SensorReadings(SatelliteFix(0.0, 0.0, airspeed, 0.0), airspeed, 0.0, 0.0, 0.0, 0.0)
     )
-    return navigation.wind_error
+    return navigation
+
+
+def turbulence_met(scenario: Scenario) -> Process:
+    """Return a horizontal component of the turbulence as the vehicle meets it [m/s]."""
+    level = scenario.turbulence.level
+    if level == "none" or scenario.fidelity == "kinematic":
+        return Process()
+    air = low_altitude_turbulence(scenario.altitude, TURBULENCE[level].wind_at_20ft)
+    return Process(
+        sigma=air.horizontal,
+        correlation_time=air.horizontal_length / scenario.guidance.airspeed_mps,
+        key="turbulence.level",
+    )
+
+
+def wind_known_on_orbit(scenario: Scenario, setup: VehicleSetup) -> WindErrorByGusts | None:
+    """Return the error of the estimated wind by turbulence as an orbit begins; none in calm air.
+
+    The filter runs ``_UNTIL_ORBIT`` on a straight way: its gains hardly depend on courses.
+    """
+    parameters = navigation_parameters(scenario, setup)
+    if parameters.turbulence.sigma == 0.0:
+        return None
+    airspeed, period = scenario.guidance.airspeed_mps, plan_period(scenario.guidance)
+    known = WindErrorByGusts(parameters.turbulence)
+    wind = WindFilter(
+        airspeed_sigma=parameters.airspeed_sigma,
+        course_sigma=parameters.course_sigma,
+        drift=parameters.wind_drift,
+    )
+    for _ in range(math.ceil(_UNTIL_ORBIT / period)):
+        wind.update(airspeed, 0.0, airspeed, 0.0, period)
+        known.measure(wind.gain, period)
+    return known
 
 
 def wind_change(scenario: Scenario, wind: WindField, altitude_error: float) -> float:

@@ -424,3 +424,31 @@ def test_a_flight_that_was_flown_before_an_instrument_failed_counts_with_its_vio
     ).verdict
     assert judged.headline == "Keep-out violations in 1 of 4 flights, 1 in all"
     assert judged.failures[0] == "steady_00001: failed; no such gas"
+
+
+def test_a_premise_that_did_not_hold_is_named_with_its_largest_ratio(run):
+    report = content(
+        with_values(run, 0, premises_exceeded="drift, wind", premise_drift_ratio_max=2.5)
+    )
+    assert any(
+        "drift of dead reckoning in 1, up to 2.50" in line for line in report.verdict.failures
+    )
+    assert ("Flights with a premise of the guard exceeded", "1 of 4") in [
+        (figure.name, figure.value) for figure in report.verdict.figures
+    ]
+
+
+def test_a_violation_that_no_premise_explains_comes_before_anything_else(run):
+    values = {
+        "outcome": "unexplained_violation",
+        "criteria_met": False,
+        "kept_out": False,
+        "keepout_violations": 1,
+        "keepout_depth_m": 3.0,
+    }
+    report = content(with_values(run, 0, **values))
+    assert report.verdict.headline.startswith("The keep-out guard is wrong: in 1 flight ")
+    assert not report.verdict.holds
+    assert ("Violations with every premise of the guard held", "1", "0", False) in [
+        (figure.name, figure.value, figure.limit, figure.met) for figure in report.verdict.figures
+    ]

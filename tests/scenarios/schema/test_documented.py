@@ -107,11 +107,11 @@ def test_studies_are_those_in_which_a_key_can_act():
     assert BY_KEY["ensemble.samples"].studies == ("convergence",)
     # Those of one point refuse several; and beside the cases that a paper study needs there is no
     # sweep.
-    assert BY_KEY["sweep"].studies == ("flights", "monte_carlo")
+    assert BY_KEY["sweep"].studies == ("flights", "monte_carlo", "premises")
     assert (
         BY_KEY["comparison.nu"].studies
         == BY_KEY["cases.0.name"].studies
-        == ("flights", "paper", "monte_carlo")
+        == ("flights", "paper", "monte_carlo", "premises")
     )
     assert BY_KEY["share"].studies == ("trials",)
 

@@ -9,6 +9,7 @@ from flight_cases import ASTERN, SPEED, fly, plan, scenario
 from scenarios.instruments.instrument import payload
 from scenarios.schema.scenario import Scenario
 from scenarios.simulation import closed_loop
+from scenarios.simulation.guard_belief import GuardBelief
 from scenarios.simulation.record import COLUMNS, MEANINGS, unit_of
 from scenarios.simulation.release import release
 from scenarios.vehicles.kinematic import KinematicVehicle
@@ -70,8 +71,9 @@ def test_what_an_instrument_reads_is_in_the_time_history():
 @MISSIONS
 def test_both_missions_record_the_same_columns(given):
     record = flown(given)
-    assert record.columns == COLUMNS
-    assert record.history.shape == (601, len(COLUMNS))
+    # And what a guard believes, where there is one.
+    assert record.columns in (COLUMNS, (*COLUMNS, *GuardBelief.COLUMNS))
+    assert record.history.shape == (601, len(record.columns))
     # 10 samples a second, from the start to the end.
     np.testing.assert_allclose(record.column("time_s"), 0.1 * np.arange(601), rtol=0.0, atol=1e-9)
     own = [

@@ -302,3 +302,27 @@ def test_a_flight_whose_sniffer_gave_nothing_says_why():
     }
     (line,) = FlightCounts.of([row] * 2, planned=2).sulphur_lines()
     assert line == "no fuel sulphur content in 2 flights: no pass through a plume"
+
+
+def test_premises_that_did_not_hold_are_counted_by_their_term():
+    rows = [
+        row(0, premises_exceeded="none"),
+        row(1, premises_exceeded="wind, drift"),
+        row(2, premises_exceeded="drift"),
+        # Without a guard there are none.
+        row(3),
+    ]
+    counts = FlightCounts.of(rows, planned=4)
+    assert (counts.with_premises, counts.exceeding) == (3, 2)
+    assert counts.exceeded == {"drift": 2, "wind": 1}
+    (line,) = counts.premise_lines()
+    assert "exceeded in 2 of 3 flights: drift of dead reckoning in 2, wind" in line
+    assert counts.unexplained_lines() == []
+    assert FlightCounts.of(rows[3:], planned=1).premise_lines() == []
+
+
+def test_a_violation_that_no_premise_explains_is_said_loudly():
+    inside = row(0, "unexplained_violation", met=False, keepout_violations=1, kept_out=False)
+    counts = FlightCounts.of([inside], planned=1)
+    (line,) = counts.unexplained_lines()
+    assert line.startswith("THE KEEP-OUT GUARD IS WRONG: in 1 flight")

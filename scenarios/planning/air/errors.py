@@ -1,9 +1,8 @@
-"""How far dead reckoning goes wrong in air that changes: while satellites are lost, the wind is
-taken to be as it was before.
+"""The error budget of a flight beside a vessel, from what its scenario declares.
 
-By how much it may go wrong in steady air, by errors of sensors and of the estimated wind, is
-declared, or follows from the sensors and the airspeed if that is more. Here is what the scenario's
-own air adds: of its mean wind, of its gusts, and of its turbulence.
+By how much dead reckoning may go wrong in steady air, by errors of sensors and of the estimated
+wind, is declared, or follows from the sensors and the airspeed if that is more. The scenario's own
+air adds to it: its mean wind, its gusts, and its turbulence.
 """
 
 import math
@@ -11,24 +10,25 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from aircraft.weather import TURBULENCE, low_altitude_turbulence
 from aircraft.wind import WindField
+from gnc.estimation.error_budget import Bias, ErrorBudget, Growth, Process, TurnDeviation
 from gnc.estimation.navigation import NOISE_DEVIATIONS
 from scenarios.planning.air.estimated_wind import (
     WIND_FOLLOWED,
     largest_wind_change,
+    turbulence_met,
     wind_bias,
+    wind_change,
     wind_followed,
     wind_noise,
     wind_noise_left,
 )
 from scenarios.schema.scenario import Scenario
+from scenarios.vehicles.sensors import NAVIGATION_TIME
+from scenarios.vehicles.vehicle_setup import VehicleSetup
 from scenarios.world.faults import SATELLITES
 
 Array = npt.NDArray[np.float64]
-
-_DEVIATIONS = 3.0
-"""Standard deviations of what turbulence displaces that are allowed for [-]."""
 
 _CHANGING_TURNS = 0.02
 """Share of the airspeed by which dead reckoning goes wrong by itself [-]: its table of crab angles
@@ -42,10 +42,59 @@ _AGES = 200
 """Ages of an outage at which that is looked at [-]."""
 
 
+def error_budget(
+    scenario: Scenario,
+    setup: VehicleSetup,
+    wind: WindField,
+    *,
+    turn: float,
+    turning: TurnDeviation,
+    slowest: float,
+    failed_part: float,
+) -> ErrorBudget:
+    """Return the errors of a flight beside a vessel.
+
+    Parameters
+    ----------
+    scenario, setup : the flight, and its vehicle
+    wind : mean wind of the flight
+    turn : time of a turn away [s]
+    turning : how far turbulence takes a turn off its commands
+    slowest : airspeed that the vehicle may fall to in a turn [m/s]
+    failed_part : how far the failure of a part takes a turn off its commands [m]
+    """
+    f, altitude_error = scenario.following, setup.altitude_error
+    drift = drift_rate(scenario, wind, turn, altitude_error)
+    own_velocity = velocity_error(scenario, drift)
+    declared = f.speed_error_mps >= own_velocity
+    return ErrorBudget(
+        own_position=Process(
+            sigma=scenario.sensors.position_sigma_m,
+            correlation_time=NAVIGATION_TIME,
+            key="sensors.position_sigma_m",
+        ),
+        own_velocity=Bias(
+            size=max(f.speed_error_mps, own_velocity),
+            key="following.speed_error_mps" if declared else "sensors",
+        ),
+        gusts=Bias(size=scenario.turbulence.gust_speed_mps, key="turbulence.gust_speed_mps"),
+        wind_change=Bias(size=wind_change(scenario, wind, altitude_error), key="wind.table"),
+        turbulence=turbulence_met(scenario),
+        turning=turning,
+        response=Bias(
+            size=max(setup.response_error, f.turn_deviation_m), key="following.turn_deviation_m"
+        ),
+        failed_part=Bias(size=failed_part, key="fault.kind"),
+        drift=Growth(rate=drift, key="following.drift_rate_mps"),
+        slowest=slowest,
+    )
+
+
 def drift_rate(
     scenario: Scenario, wind: WindField, turn: float, altitude_error: float = 0.0
 ) -> float:
-    """Return how fast dead reckoning may go wrong [m/s]; 0 where satellite navigation is not lost.
+    """Return how fast dead reckoning may go wrong, turbulence aside [m/s]; 0 where satellite
+    navigation is not lost.
 
     Parameters
     ----------
@@ -60,9 +109,7 @@ def drift_rate(
     # The wind may have changed before the loss, too, and its estimate not have followed.
     changed = largest_wind_change(scenario, wind, outage + wind_followed(scenario), altitude_error)
     age = np.linspace(0.0, min(outage, duration), _AGES)
-    covered = float(
-        np.max((_by_gusts(scenario, age) + _by_turbulence(scenario, age)) / (age + turn))
-    )
+    covered = float(np.max(_by_gusts(scenario, age) / (age + turn)))
     # An airspeed and a heading with biases are wrong in the estimated wind, and the other way round
     # once the vehicle has turned.
     sensed = (
@@ -129,20 +176,3 @@ def _by_gusts(scenario: Scenario, age: Array) -> Array:
     air = scenario.turbulence
     about_the_peak = np.sin(np.minimum(0.5 * np.pi, 0.5 * np.pi * age / air.gust_length_s))
     return 0.5 * air.gust_speed_mps * (age + 2.0 * air.gust_length_s / np.pi * about_the_peak)
-
-
-def _by_turbulence(scenario: Scenario, age: Array) -> Array:
-    """Return what turbulence displaces by in an outage of some age [m].
-
-    A component of an exponential correlation, of deviation sigma and time T = L/V, displaces by a
-    deviation of sigma sqrt(2 T (t - T (1 - exp(-t/T)))) in a time t (Taylor, "Diffusion by
-    Continuous Movements", 1922).
-    """
-    if scenario.turbulence.level == "none":
-        return np.zeros_like(age)
-    wind_at_20ft = TURBULENCE[scenario.turbulence.level].wind_at_20ft
-    air = low_altitude_turbulence(scenario.altitude, wind_at_20ft)
-    correlated = air.horizontal_length / scenario.guidance.airspeed_mps
-    lasting = np.maximum(0.0, age + correlated * np.expm1(-age / correlated))
-    displaced: Array = _DEVIATIONS * air.horizontal * np.sqrt(2.0 * correlated * lasting)
-    return displaced

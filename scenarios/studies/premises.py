@@ -1,0 +1,45 @@
+"""The premises of the keep-out guard in the corners of what may be declared, as a study."""
+
+from dataclasses import replace
+
+import pandas as pd
+
+from common.premises import PREMISE_COLUMNS
+from common.run_layout import PREMISES, SUMMARY
+from gnc.estimation.error_budget import EXCEEDED_PER_HOUR
+from scenarios.engine.journal import Journal
+from scenarios.engine.run_directory import RunDirectory
+from scenarios.engine.runner import StudySummary
+from scenarios.statistics.premises import premise_lines, premise_table
+from scenarios.studies.flight_study import FlightStudy
+from scenarios.studies.rows import frame
+from scenarios.studies.study import study
+
+_COLUMNS = ("flight_id", "turbulence", "duration_s", *PREMISE_COLUMNS)
+"""Columns of the summary that the table is made of."""
+
+
+@study("premises")
+class PremisesStudy(FlightStudy):
+    """Flights of cases; for each case and term of the error budget a table says how near errors came
+    to it, and in how many flights they were larger.
+    """
+
+    def export(self, run: RunDirectory, journal: Journal) -> None:
+        """Write its tables."""
+        super().export(run, journal)
+        run.write_frame(PREMISES, self._table(journal))
+
+    def summary(self, journal: Journal) -> StudySummary:
+        """Return the result so far, with the table."""
+        found = super().summary(journal)
+        return replace(found, lines=[*found.lines, *premise_lines(self._table(journal))])
+
+    def _table(self, journal: Journal) -> pd.DataFrame:
+        numbered = list(journal.numbered(SUMMARY))
+        cases = []
+        for number, _ in numbered:
+            (experiment,) = self.experiments.values()
+            cases.append(experiment.label(number))
+        rows = frame((row for _, row in numbered), _COLUMNS)
+        return premise_table(rows, cases, EXCEEDED_PER_HOUR)
