@@ -21,7 +21,7 @@ from gnc.compiled import FOLDER, INDEX, ROOT, sources_hash
 
 MODULES = {
     "gnc": (
-        "guidance", "numeric", "tracker", "unicycle",
+        "guidance", "numeric", "steering", "tracker", "unicycle",
         "airspeed",
         "estimation/error_budget", "estimation/health", "estimation/navigation",
         "estimation/vessel",

@@ -524,29 +524,6 @@ def relative_velocity(
     return rho_rate, omega_rho
 
 
-def relative_motion(
-    parameters: LookAhead,
-    to_reference_north: float,
-    to_reference_east: float,
-    reference_course: float,
-    course: float,
-    reference_speed: float,
-    speed: float,
-    reference_heading_rate: float,
-) -> tuple[RelativeState, float]:
-    """Return the relative state (19) and omega_rho (18) [rad/s], what the steering laws need.
-
-    Parameters are those of ``relative_state`` and ``relative_velocity``.
-    """
-    state = relative_state(
-        parameters, to_reference_north, to_reference_east, reference_course, course
-    )
-    _, omega_rho = relative_velocity(
-        parameters, state, reference_speed, speed, reference_heading_rate
-    )
-    return state, omega_rho
-
-
 def state_rates(
     parameters: LookAhead,
     state: RelativeState,

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from gnc.estimation.navigation import AirMotion
-from gnc.laws import STILL_AIR, Air, LimitedLaw, Motion, SteeringLaw
 from gnc.reference.reference import Reference
+from gnc.steering import STILL_AIR, Air, LimitedLaw, Motion, SteeringLaw
 from gnc.unicycle import lag_ahead
 
 
@@ -30,25 +30,22 @@ class TrackingParameters:
     lag: float
 
 
-class _Instant:
-    """The reference at an instant, waiting to become that of now."""
+class PlacedReference:
+    """A reference that is placed from outside; attributes are those of ``Reference``."""
 
-    def __init__(self, north: float, east: float, course: float, heading_rate: float) -> None:
+    def __init__(
+        self,
+        speed: float,
+        north: float = 0.0,
+        east: float = 0.0,
+        course: float = 0.0,
+        heading_rate: float = 0.0,
+    ) -> None:
+        self.speed = speed
         self.north = north
         self.east = east
         self.course = course
         self.heading_rate = heading_rate
-
-
-@dataclass(slots=True)
-class PlacedReference:
-    """A reference that is moved from outside; attributes are those of ``Reference``."""
-
-    speed: float
-    north: float = 0.0
-    east: float = 0.0
-    course: float = 0.0
-    heading_rate: float = 0.0
 
 
 class ReferenceTracker:
@@ -122,19 +119,12 @@ class Tracker(ReferenceTracker, Generic[AnyReference]):
         reference: AnyReference,
         wind: AirMotion | None = None,
     ) -> None:
-        now = PlacedReference(
-            reference.speed,
-            reference.north,
-            reference.east,
-            reference.course,
-            reference.heading_rate,
-        )
-        super().__init__(parameters, now)
+        super().__init__(parameters, _copied(reference))
         self.ahead = reference
         self._wind = wind
         self._air = STILL_AIR
         # The reference moves once, ahead of time; here it waits until that time has come.
-        self._until_ahead: deque[_Instant] = deque()
+        self._until_ahead: deque[PlacedReference] = deque()
         steps_ahead = round(parameters.lag / parameters.time_step)
         for _ in range(steps_ahead):
             self._move_ahead()
@@ -162,14 +152,20 @@ class Tracker(ReferenceTracker, Generic[AnyReference]):
         self.heading_rate_command = command
         self.saturated = command != demand
         self._move_ahead()
-        now = self.reference
-        arrived = self._until_ahead.popleft()
-        now.north, now.east = arrived.north, arrived.east
-        now.course, now.heading_rate = arrived.course, arrived.heading_rate
+        self.reference = self._until_ahead.popleft()
         return command
 
     def _move_ahead(self) -> None:
-        ahead = self.ahead
-        ahead.step()
-        instant = _Instant(ahead.north, ahead.east, ahead.course, ahead.heading_rate)
-        self._until_ahead.append(instant)
+        self.ahead.step()
+        self._until_ahead.append(_copied(self.ahead))
+
+
+def _copied(reference: Reference) -> PlacedReference:
+    """Return where a reference is now."""
+    return PlacedReference(
+        reference.speed,
+        reference.north,
+        reference.east,
+        reference.course,
+        reference.heading_rate,
+    )

@@ -244,7 +244,7 @@ class KeepoutGuard:
             self._speeds.include(pace)
 
 
-class Encounter(NamedTuple):
+class Encounter:
     """A disc and the vehicle's motions relative to it when a command begins to act.
 
     Attributes
@@ -253,8 +253,9 @@ class Encounter(NamedTuple):
     motions : fast first and slow then; and, where that differs, slow all along and fast all along
     """
 
-    disc: Tube
-    motions: tuple[RelativeMotion, ...]
+    def __init__(self, disc: Tube, motions: tuple[RelativeMotion, ...]) -> None:
+        self.disc = disc
+        self.motions = motions
 
 
 class _BackupTurn(NamedTuple):

@@ -22,7 +22,6 @@ the left. ``docs/keepout_guard.md`` derives what is used here.
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
 
 from gnc.estimation.error_budget import Displacement
 from gnc.numeric import limited
@@ -68,8 +67,8 @@ _WHOLE_STEP = 1e-6
 class RelativeMotion:
     """A vehicle's motion relative to a disc, and how the disc grows.
 
-    This class and ``TurnPoint`` are made at each look or point: compiled, a plain class takes a
-    sixth of the time of a NamedTuple.
+    Like the others of this module it is a plain class: the guard makes many at each look, and
+    compiled they take a sixth of the time of a NamedTuple.
 
     Attributes
     ----------
@@ -145,7 +144,7 @@ class RelativeMotion:
         return same
 
 
-class TurnStart(NamedTuple):
+class TurnStart:
     """Where a turn begins.
 
     Attributes
@@ -154,13 +153,14 @@ class TurnStart(NamedTuple):
     course, heading_rate : [rad, rad/s]
     """
 
-    x: float
-    y: float
-    course: float
-    heading_rate: float
+    def __init__(self, x: float, y: float, course: float, heading_rate: float) -> None:
+        self.x = x
+        self.y = y
+        self.course = course
+        self.heading_rate = heading_rate
 
 
-class TurnAway(NamedTuple):
+class TurnAway:
     """A full turn away, and what commands before it cannot spoil it.
 
     Attributes
@@ -172,10 +172,11 @@ class TurnAway(NamedTuple):
         changes of command [-]
     """
 
-    slack: float
-    free_time: float
-    free_course: float
-    change: float
+    def __init__(self, slack: float, free_time: float, free_course: float, change: float) -> None:
+        self.slack = slack
+        self.free_time = free_time
+        self.free_course = free_course
+        self.change = change
 
 
 class TurnPoint:
@@ -196,7 +197,7 @@ class TurnPoint:
         self.speed = speed
 
 
-class HeldResponse(NamedTuple):
+class HeldResponse:
     """Coefficients of a first-order lag under a held command.
 
     From a heading rate r, under a command u that is held for ``duration``,
@@ -211,13 +212,14 @@ class HeldResponse(NamedTuple):
     decay : [-]
     """
 
-    duration: float
-    turned: float
-    mean: float
-    decay: float
+    def __init__(self, duration: float, turned: float, mean: float, decay: float) -> None:
+        self.duration = duration
+        self.turned = turned
+        self.mean = mean
+        self.decay = decay
 
 
-class _Leg(NamedTuple):
+class _Leg:
     """What is flown between two points of a full turn at one airspeed.
 
     Attributes
@@ -229,12 +231,21 @@ class _Leg(NamedTuple):
     speed : airspeed [m/s]
     """
 
-    way: float
-    course_to_middle: float
-    course_turned: float
-    rate_gained: float
-    stretch: float
-    speed: float
+    def __init__(
+        self,
+        way: float,
+        course_to_middle: float,
+        course_turned: float,
+        rate_gained: float,
+        stretch: float,
+        speed: float,
+    ) -> None:
+        self.way = way
+        self.course_to_middle = course_to_middle
+        self.course_turned = course_turned
+        self.rate_gained = rate_gained
+        self.stretch = stretch
+        self.speed = speed
 
 
 def held_response(duration: float, lag: float) -> HeldResponse:
@@ -349,12 +360,12 @@ class TurnPrediction:
         mean_course_time = 0.0
         response = self._first_step
         for command in under_way:
-            duration, turned, mean, decay = response
+            duration, turned, mean = response.duration, response.turned, response.mean
             mean_course_time += duration * (
                 course + mean * heading_rate + (0.5 * duration - mean) * command
             )
             course += turned * heading_rate + (duration - turned) * command
-            heading_rate = decay * heading_rate + (1.0 - decay) * command
+            heading_rate = response.decay * heading_rate + (1.0 - response.decay) * command
             response = self._step
         # One chord will do, with the sine over arc of half the course turned.
         mean_course, half_turned = mean_course_time / self._delay, 0.5 * (course - motion.course)
@@ -374,7 +385,8 @@ class TurnPrediction:
         if motion.fastest > self._turn_speed:
             # At the largest bank a turn is the slower the faster the vehicle flies.
             command = limited(command, self._rate * self._turn_speed / motion.fastest)
-        duration, turned, mean, decay = self._step
+        step = self._step
+        duration, turned, mean = step.duration, step.turned, step.mean
         heading_rate = motion.heading_rate
         middle = motion.course + mean * heading_rate + (0.5 * duration - mean) * command
         cos, sin = math.cos(middle), math.sin(middle)
@@ -384,7 +396,7 @@ class TurnPrediction:
             motion.x + (speed * cos - motion.disc_north) * duration,
             motion.y + (speed * sin - motion.disc_east) * duration,
             motion.course + turned * heading_rate + (duration - turned) * command,
-            decay * heading_rate + (1.0 - decay) * command,
+            step.decay * heading_rate + (1.0 - step.decay) * command,
         )
 
     def turn_away(
@@ -475,15 +487,15 @@ class TurnPrediction:
 
     def _leg(self, side: float, speed: float) -> _Leg:
         """Return what is flown between two points of a full turn at an airspeed [m/s]."""
-        duration, turned, mean, decay = self._spacing
+        spacing = self._spacing
         # At the largest bank a turn is the slower the faster the vehicle flies.
         stretch = max(1.0, speed / self._turn_speed)
         rate = side * self._rate / stretch
         return _Leg(
-            way=speed * duration * self._chord_over_arc,
-            course_to_middle=(0.5 * duration - mean) * rate,
-            course_turned=(duration - turned) * rate,
-            rate_gained=(1.0 - decay) * rate,
+            way=speed * spacing.duration * self._chord_over_arc,
+            course_to_middle=(0.5 * spacing.duration - spacing.mean) * rate,
+            course_turned=(spacing.duration - spacing.turned) * rate,
+            rate_gained=(1.0 - spacing.decay) * rate,
             stretch=stretch,
             speed=speed,
         )
@@ -493,7 +505,7 @@ class TurnPrediction:
 
         It is 0 where the turn begins beyond straight away by no more than one that ends there.
         """
-        x, y, course, _ = start
+        x, y, course = start.x, start.y, start.course
         cos, sin = math.cos(course), math.sin(course)
         outward = side * (y * cos - x * sin)
         beyond = -self._overshoot_sine * math.sqrt(x * x + y * y) < outward < 0.0
@@ -506,7 +518,7 @@ class TurnPrediction:
         the other way, by what crosses it: all of the disc's speed, and the vehicle's speed across
         while it has so far left to turn.
         """
-        x, y, course, _ = start
+        x, y, course = start.x, start.y, start.course
         to_turn = side * math.remainder(math.atan2(y, x) - course, 2.0 * math.pi) + self.overshoot
         if to_turn < 0.0:
             return math.inf
@@ -558,7 +570,7 @@ class _TurnPath:
         self._kept = motion.radius + deviation
         self._disc_north = motion.disc_north * spacing.duration
         self._disc_east = motion.disc_east * spacing.duration
-        x, y, course, _ = start
+        x, y, course = start.x, start.y, start.course
         allowed = self._allowed()
         self.slack = math.sqrt(x * x + y * y) - allowed
         self._now = TurnPoint(x, y, course, allowed, leg.speed)
@@ -578,11 +590,11 @@ class _TurnPath:
 
     def advance(self) -> None:
         """Go on to the next point."""
-        duration, turned, mean, decay = self._spacing
+        spacing = self._spacing
         point, leg, heading_rate = self._now, self._leg, self.heading_rate
         x, y, course = point.x, point.y, point.course
         north, east = self._disc_north, self._disc_east
-        middle = course + mean * heading_rate + leg.course_to_middle
+        middle = course + spacing.mean * heading_rate + leg.course_to_middle
         cos, sin = math.cos(middle), math.sin(middle)
         if self._other_leg is not None:
             away = recedes(x, y, cos, sin, leg.way, north, east)
@@ -595,9 +607,9 @@ class _TurnPath:
                 self._turned_at_switch = self._side * (course - self._start_course)
         x += leg.way * cos - north
         y += leg.way * sin - east
-        course += turned * heading_rate + leg.course_turned
-        self.heading_rate = decay * heading_rate + leg.rate_gained
-        self._time += duration
+        course += spacing.turned * heading_rate + leg.course_turned
+        self.heading_rate = spacing.decay * heading_rate + leg.rate_gained
+        self._time += spacing.duration
         allowed = self._allowed()
         if self._slowed:
             allowed += speed_switch_allowance(
@@ -618,7 +630,8 @@ class _TurnPath:
     def fly_straight_on(self) -> None:
         """Keep to the course and to the airspeed from here on."""
         self.heading_rate = 0.0
-        self._leg = self._leg._replace(course_to_middle=0.0, course_turned=0.0, rate_gained=0.0)
+        leg = self._leg
+        self._leg = _Leg(leg.way, 0.0, 0.0, 0.0, leg.stretch, leg.speed)
         self._other_leg = None
 
     def closest_about_last_point(self, *, first: bool) -> float:

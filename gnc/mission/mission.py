@@ -47,8 +47,10 @@ TRACK = None
 """In place of an ordered heading rate: the tracker commands it."""
 
 
-class Order(NamedTuple):
+class Order:
     """What the guidance is to do in this step.
+
+    A plain class, same as ``RelativeMotion``: one is made at each step.
 
     Attributes
     ----------
@@ -58,10 +60,13 @@ class Order(NamedTuple):
     mode : what is being done
     """
 
-    heading_rate: float | None
-    airspeed: float
-    altitude: float
-    mode: Mode
+    def __init__(
+        self, heading_rate: float | None, airspeed: float, altitude: float, mode: Mode
+    ) -> None:
+        self.heading_rate = heading_rate
+        self.airspeed = airspeed
+        self.altitude = altitude
+        self.mode = mode
 
 
 class Centre(NamedTuple):

@@ -12,13 +12,13 @@ from dataclasses import dataclass
 from gnc.estimation.health import Fault
 from gnc.estimation.navigation import OwnMotion
 from gnc.estimation.vessel import TargetMotion
-from gnc.laws import Air, Motion
 from gnc.mission.axis import AxisHeight, Climb
 from gnc.mission.mission import LOST, TRACK, Centre, Mode, OrbitStatus, Order
 from gnc.mission.track import CLOSING_RATE, STANDOFF
 from gnc.mission.way import COURSE_GAIN, Egress
 from gnc.numeric import limited, wrap
 from gnc.path_laws.lgvf import heading_for
+from gnc.steering import Air, Motion
 from gnc.tracker import PlacedReference, ReferenceTracker, TrackingParameters
 from gnc.unicycle import lag_ahead
 from gnc.vectors import Vector, along, course_of, minus, norm, plus, scaled

@@ -10,10 +10,11 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from gnc.laws import ONLY_CIRCLES, ONLY_MOVING_POINTS, Air, Motion, steering_law
+from gnc.laws import ONLY_CIRCLES, ONLY_MOVING_POINTS, steering_law
 from gnc.numeric import clip, wrap
 from gnc.path_laws.path import PathLaw, PathMotion, path_motion, turn_rate
 from gnc.reference.reference import Reference
+from gnc.steering import Air, Motion
 from gnc.vectors import Vector, along, course_of, cross, dot, minus, norm, plus, scaled
 
 PERIOD = 17.0

@@ -15,8 +15,9 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
-from gnc.laws import Air, CheckedLaw, Motion
+from gnc.laws import CheckedLaw
 from gnc.reference.reference import Reference
+from gnc.steering import Air, Motion
 from gnc.vectors import Vector, along, cross, norm, plus, right_of, scaled
 
 _SPEED_MIN = 0.1

@@ -10,17 +10,11 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from gnc.laws import (
-    ONLY_CIRCLES,
-    ONLY_MOVING_POINTS,
-    Air,
-    CheckedLaw,
-    Motion,
-    steering_law,
-)
+from gnc.laws import ONLY_CIRCLES, ONLY_MOVING_POINTS, CheckedLaw, steering_law
 from gnc.numeric import limited, wrap
 from gnc.path_laws.path import PathLaw, PathMotion, turn_rate
 from gnc.reference.reference import Reference
+from gnc.steering import Air, Motion
 from gnc.vectors import Vector, along, course_of, cross, dot, minus, norm, plus, scaled
 
 _ORIGIN = (0.0, 0.0)

@@ -10,11 +10,12 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from gnc.laws import ONLY_CIRCLES, Air, CheckedLaw, Motion, steering_law
+from gnc.laws import ONLY_CIRCLES, CheckedLaw, steering_law
 from gnc.numeric import limited, wrap
 from gnc.path_laws.lgvf import Field, heading_for
 from gnc.path_laws.path import PathLaw, PathMotion
 from gnc.reference.reference import Reference
+from gnc.steering import Air, Motion
 from gnc.vectors import Vector, along, course_of, cross, dot, minus, norm, scaled
 
 _HALF_PI = 0.5 * math.pi

@@ -207,10 +207,11 @@ class SinusoidSwing:
 
     def frequency(self, eta: float, heading_rate: float) -> float:
         """Return omega_0 by the heading rate or the roll rate, the lower one [rad/s]."""
-        eta = max(ETA_FREQUENCY, eta)
-        by_heading_rate = min(self.heading_rate, heading_rate) / eta
+        eta = eta if eta > ETA_FREQUENCY else ETA_FREQUENCY
+        largest = heading_rate if heading_rate < self.heading_rate else self.heading_rate
+        by_heading_rate = largest / eta
         by_roll_rate = math.sqrt(self.acceleration / eta)
-        return min(by_roll_rate, by_heading_rate)
+        return by_heading_rate if by_heading_rate < by_roll_rate else by_roll_rate
 
     def course(self, eta: float, phase: float) -> float:
         """Return the course offset eta cos(theta) [rad]."""

@@ -8,8 +8,9 @@ from typing import Any
 
 from gnc.analysis.bounds import BoundedSteering, fastest_within, heading_rate_bound
 from gnc.errors import InfeasibleError
-from gnc.laws import STEERING_LAWS, SteeringLaw
+from gnc.laws import STEERING_LAWS
 from gnc.paper import LookAhead, look_ahead
+from gnc.steering import SteeringLaw
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.guidance import GuidanceConfig
 

@@ -4,6 +4,7 @@ commands.
 
 import math
 from collections import deque
+from typing import NamedTuple
 
 import pytest
 from gnc_cases import HEADING_RATE_MAX, SPEED
@@ -12,7 +13,7 @@ from hypothesis import strategies as st
 from gnc.estimation.navigation import AirMotion
 from gnc.estimation.vessel import Tube
 from gnc.guard.guard import GuardParameters, HeadingRateFilter
-from gnc.guard.turn import RelativeMotion, TurnStart
+from gnc.guard.turn import RelativeMotion
 from gnc.numeric import wrap
 from gnc.unicycle import lagged_move, unicycle_move
 
@@ -37,6 +38,15 @@ def parameters_of(**changes):
     return GuardParameters(**(defaults | changes))
 
 
+class State(NamedTuple):
+    """State of a vehicle, relative to a disc's centre or to the origin [m, m, rad, rad/s]."""
+
+    x: float
+    y: float
+    course: float
+    heading_rate: float
+
+
 def known_motion(state, **changes):
     """Return a state (north, east, course, heading rate) as the guard takes it."""
     north, east, course, heading_rate = state
@@ -47,9 +57,7 @@ def known_motion(state, **changes):
 
 def polar(distance, bearing, course, heading_rate=0.0):
     """Return the state of a vehicle at a distance [m] and bearing [rad] from the origin."""
-    return TurnStart(
-        distance * math.cos(bearing), distance * math.sin(bearing), course, heading_rate
-    )
+    return State(distance * math.cos(bearing), distance * math.sin(bearing), course, heading_rate)
 
 
 def relative_motion(state, velocity=(0.0, 0.0), **changes):

@@ -221,6 +221,43 @@ def test_the_turn_stays_on_the_side_that_was_safe(off):
     assert set(turned) == {math.copysign(1.0, off)}
 
 
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_turn_to_the_other_side_is_flown_where_only_that_one_keeps_off(side):
+    # Off the middle of the disc, and so near that a command towards the middle takes the way out.
+    wanted = -side * HEADING_RATE_MAX
+
+    def state(distance):
+        return (-distance, 40.0 * side, 0.0, 0.0)
+
+    near = state(bisected(lambda distance: DiscGuard().allows(wanted, state(distance))) - 1.0)
+    # The vehicle comes from the other side, where the other turn was the safe one. At another
+    # airspeed the guard looks again.
+    guard, unbiased = DiscGuard(), DiscGuard()
+    assert guard.limit(0.0, (-300.0, -40.0 * side, 0.0, 0.0)) == 0.0
+    command = guard.limit(wanted, near, speed=SPEED + 0.1)
+    assert command * side > 0.0
+    assert command == unbiased.limit(wanted, near, speed=SPEED + 0.1)
+    assert guard.status is INTERVENING
+
+
+@LAGS
+def test_as_much_of_a_turn_away_is_mixed_in_as_is_needed_and_no_more(lag, delay):
+    guard, state, mixed = DiscGuard(lag=lag, delay=delay), (-330.0, 40.0, 0.0, 0.0), 0
+    under_way = deque([0.0] * round(delay / TIME_STEP))
+    for step in range(400):
+        wanted, before = aim_at_the_centre(step, *state[:3]), copy.deepcopy(guard)
+        command = guard.limit(wanted, state)
+        if command != wanted and abs(command) < HEADING_RATE_MAX:
+            mixed += 1
+            assert copy.deepcopy(before).allows(command, state)
+            turn = math.copysign(HEADING_RATE_MAX, command - wanted)
+            # The fraction is found to a sixteenth or better.
+            assert not before.allows(command - (turn - wanted) / 16.0, state)
+        under_way.append(command)
+        state = moved(state, under_way.popleft(), lag, TIME_STEP)
+    assert mixed > 20
+
+
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.6, 0.9])
 def test_it_leaves_the_settled_orbit_alone_and_would_not_with_a_larger_radius(nu):
     # The paper's rule places the orbit 1.3 to 9.7 m off where 1 m is required; the guard keeps
@@ -395,6 +432,33 @@ def test_a_turn_away_passes_exactly_where_one_that_begins_now_keeps_off(side, de
     # Each closest approach is predicted to a thousandth of a turn radius; the bisections end within
     # 0.03 m.
     assert bisected(passes) == pytest.approx(bisected(keeps_off), abs=2.0 * floor + 0.05)
+
+
+@pytest.mark.parametrize("first", [0, 1])
+def test_of_two_discs_the_one_that_reaches_less_far_counts_however_old_its_report_is(first):
+    # The vessel may speed up by 0.2 m/s2 since it was reported at rest, 40 s ago: a disc of 160 m
+    # that grows by 8 m/s. Another one of just that growth is 10 m larger.
+    now, acceleration = 40.0, 0.2
+    old = AT_REST._replace(acceleration=acceleration)
+    larger = Tube(
+        now,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.5 * acceleration * now**2 + 10.0,
+        acceleration * now,
+        acceleration,
+    )
+    discs = (old, larger) if first == 0 else (larger, old)
+
+    def passes(distance, discs):
+        own = known_motion((-distance, 0.0, math.radians(100.0), 0.0))
+        return HeadingRateFilter(parameters_of()).allows(0.0, now, own, discs, SPEED)
+
+    distance = 160.0 + bisected(lambda distance: passes(160.0 + distance, (old,)))
+    assert passes(distance, discs)
+    assert not passes(distance, (larger,))
 
 
 def test_wind_acts_like_a_vessel_that_moves_against_it_in_still_air():

@@ -19,10 +19,18 @@ from guard_cases import (
     random_velocity,
     relative_motion,
 )
+from scipy.interpolate import CubicHermiteSpline
+from scipy.optimize import minimize_scalar
 
 from gnc.estimation.vessel import Tube
 from gnc.guard.guard import HeadingRateFilter
-from gnc.guard.turn import TurnPrediction, TurnStart, nearer_side
+from gnc.guard.turn import (
+    TurnPoint,
+    TurnPrediction,
+    TurnStart,
+    closest_between_samples,
+    nearer_side,
+)
 from gnc.numeric import wrap
 
 
@@ -39,16 +47,28 @@ def slack(prediction, side, motion, *, change=0.0):
     return turn.slack
 
 
-def turn_by_hand(side, state, velocity, lag, delay, speed=SPEED, rate=HEADING_RATE_MAX):
+def turn_by_hand(
+    side,
+    state,
+    velocity,
+    lag,
+    delay,
+    speed=SPEED,
+    rate=HEADING_RATE_MAX,
+    growth=0.0,
+    acceleration=0.0,
+):
     """Return by how much a full turn keeps the radius [m], flown in small steps until it heads
-    straight away, or for two turns.
+    straight away, or for two turns. The radius grows at a rate [m/s] that rises [m/s2].
     """
     x, y, course, turn = state
     closest, piece = math.inf, 0.005
     for i in range(round(30.0 * HEADING_RATE_MAX / rate / piece)):
-        begun = i * piece >= delay - 1e-9
+        time = i * piece
+        begun = time >= delay - 1e-9
         if begun:
-            closest = min(closest, math.hypot(x, y))
+            grown = (growth + 0.5 * acceleration * time) * time
+            closest = min(closest, math.hypot(x, y) - grown)
         x, y, course, turn = moved(
             (x, y, course, turn), side * rate if begun else turn, lag, piece, speed
         )
@@ -111,6 +131,42 @@ def test_a_small_disc_between_two_points_of_a_turn_is_not_missed():
         assert found == pytest.approx(apart.min(), abs=1e-4 * TURN_RADIUS)
 
 
+def test_the_closest_approach_between_two_points_is_that_of_the_cubic_through_them():
+    # Four times as far apart as the points of a turn, and past a disc that moves and grows.
+    generator, duration = np.random.default_rng(16), 1.0
+    for _ in range(40):
+        turned = generator.choice([-0.5, 0.5])
+        courses = generator.uniform(-math.pi, math.pi) + np.array([0.0, turned])
+        drift = np.array(random_velocity(generator, 0.3 * SPEED))
+        rates = SPEED * np.array([np.cos(courses), np.sin(courses)]).T - drift
+        middle, chord = courses.mean(), SPEED * math.sin(0.25) / 0.25
+        end = chord * np.array([math.cos(middle), math.sin(middle)]) - drift
+        ends = np.array([[0.0, 0.0], end])
+        cubic = CubicHermiteSpline([0.0, 1.0], ends, rates)
+        ends += generator.uniform(-0.3, 0.3, 2) * SPEED - cubic(generator.uniform(0.3, 0.7))
+        allowed = 50.0 + np.array([0.0, generator.uniform(0.0, 3.0)])
+        late, now = (TurnPoint(*ends[i], courses[i], allowed[i], SPEED) for i in (0, 1))
+        found = closest_between_samples(
+            late,
+            late,
+            now,
+            disc_north=drift[0],
+            disc_east=drift[1],
+            duration=duration,
+            first=True,
+        )
+        path = CubicHermiteSpline([0.0, 1.0], ends, rates)
+
+        def slack_at(share, path=path, allowed=allowed):
+            return float(np.hypot(*path(share)) - np.interp(share, [0.0, 1.0], allowed))
+
+        best = minimize_scalar(
+            slack_at, bounds=(0.0, 1.0), method="bounded", options={"xatol": 1e-9}
+        )
+        # Three steps of Newton's method; the search's own error is smaller.
+        assert found == pytest.approx(best.fun, abs=1e-6)
+
+
 def test_a_vehicle_too_fast_for_omega_max_is_predicted_to_turn_more_slowly():
     generator = np.random.default_rng(8)
     for _ in range(6):
@@ -130,8 +186,63 @@ def test_a_command_leads_no_farther_than_the_vehicle_can_turn_at_its_speed():
     for speed, rate in ((SPEED, HEADING_RATE_MAX), (1.5 * SPEED, HEADING_RATE_MAX / 1.5)):
         found = prediction.after(HEADING_RATE_MAX, relative_motion(state, fastest=speed))
         flown = moved(state, rate, 0.25, 0.2, speed)
-        assert found[:2] == pytest.approx(flown[:2], abs=1e-3)
-        assert found[2:] == pytest.approx(flown[2:], abs=1e-12)
+        assert (found.x, found.y) == pytest.approx(flown[:2], abs=1e-3)
+        assert (found.course, found.heading_rate) == pytest.approx(flown[2:], abs=1e-12)
+
+
+@pytest.mark.parametrize("lag", [0.0, 0.25])
+def test_a_command_leads_where_the_vehicle_flies_in_small_steps(lag):
+    # At any heading rate, beside a disc that moves; at the slowest while it flies away from it.
+    generator = np.random.default_rng(12)
+    prediction, duration, pieces = predictor(lag=lag, time_step=0.2), 0.2, 40
+    for _ in range(50):
+        state, velocity = random_start(generator), random_velocity(generator, 0.6 * SPEED)
+        command = generator.uniform(-1.0, 1.0) * HEADING_RATE_MAX
+        motion = relative_motion(state, velocity, fastest=1.2 * SPEED, slowest=0.9 * SPEED)
+        found = prediction.after(command, motion)
+        away = math.cos(math.atan2(state.y, state.x) - state.course) > 0.0
+        flown = state
+        for _ in range(pieces):
+            flown = moved(flown, command, lag, duration / pieces, (0.9 if away else 1.2) * SPEED)
+        # The prediction takes the arc for the chord: x^2/24 of 4.7 m longer for x = 0.1 rad.
+        expected = (flown[0] - velocity[0] * duration, flown[1] - velocity[1] * duration)
+        assert (found.x, found.y) == pytest.approx(expected, abs=2e-3)
+        assert (found.course, found.heading_rate) == pytest.approx(flown[2:], abs=1e-12)
+
+
+@pytest.mark.parametrize("lag", [0.05, 0.25])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_the_turn_to_either_side_is_that_flown_in_small_steps(side, lag):
+    # The worse side as well; also from beyond straight away, where it leads once round.
+    generator, prediction = np.random.default_rng(14), predictor(lag=lag)
+    for _ in range(30):
+        bearing, distance = generator.uniform(-math.pi, math.pi), generator.uniform(205.0, 320.0)
+        # So far left to turn until it heads straight away, or so far beyond that.
+        left = generator.choice([generator.uniform(0.1, math.pi), -generator.uniform(0.5, 2.5)])
+        turn = generator.uniform(-1.0, 1.0) * HEADING_RATE_MAX
+        state = polar(distance, bearing, bearing - side * left, turn)
+        # In sum slower than the vehicle, which straight away outruns both for good.
+        velocity = random_velocity(generator, generator.uniform(0.0, 0.6) * SPEED)
+        grows = {"growth": generator.uniform(0.0, 3.0), "acceleration": generator.uniform(0.0, 0.1)}
+        flown = turn_by_hand(side, state, velocity, lag, 0.0, **grows)
+        found = slack(prediction, side, relative_motion(state, velocity, **grows))
+        assert found == pytest.approx(flown, abs=1e-3 * TURN_RADIUS)
+
+
+@pytest.mark.parametrize("beyond", [0.1, 0.5, 1.0, 1.5])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_turn_from_beyond_straight_away_leads_once_round_a_circle_in_any_direction(side, beyond):
+    # Without lag it is a circle, beside a disc at rest.
+    prediction = predictor(lag=0.0)
+    for bearing in np.linspace(-math.pi, math.pi, 24):
+        x, y, course, _ = state = polar(300.0, bearing, bearing + side * beyond)
+        middle = (
+            x - side * TURN_RADIUS * math.sin(course),
+            y + side * TURN_RADIUS * math.cos(course),
+        )
+        found = slack(prediction, side, relative_motion(state))
+        nearest = math.hypot(*middle) - TURN_RADIUS - RADIUS
+        assert found == pytest.approx(nearest, abs=1e-3 * TURN_RADIUS)
 
 
 def test_no_speed_between_the_fastest_and_the_slowest_comes_nearer_than_predicted():
@@ -146,7 +257,7 @@ def test_no_speed_between_the_fastest_and_the_slowest_comes_nearer_than_predicte
         course = generator.uniform(-math.pi, math.pi)
         turn = generator.uniform(-1.0, 1.0) * HEADING_RATE_MAX
         start = polar(distance, bearing, course, turn)
-        side = nearer_side(*start[:3])
+        side = nearer_side(start.x, start.y, start.course)
         changing, all_fast, all_slow = (
             slack(
                 predictor(),
@@ -340,3 +451,66 @@ def test_no_turn_passes_straight_away_sooner_than_predicted():
             left = side * math.remainder(math.atan2(y, x) - course, 2.0 * math.pi)
             least = min(least, left + prediction.overshoot)
     assert -0.002 < least < 0.1
+
+
+@pytest.mark.parametrize(("distance", "radius"), [(300.0, 200.0), (1.0, 0.3)])
+def test_a_turn_from_straight_away_off_a_disc_at_rest_is_once_round_by_its_overshoot(
+    distance, radius
+):
+    # Nothing crosses the line to the disc, so the course alone leads beyond straight away: whole
+    # turns more or less of it make no difference.
+    prediction = predictor()
+    for bearing, side, whole_turns in ((0.3, 1.0, 0), (2.0, -1.0, 1), (-1.5, 1.0, -3)):
+        start = polar(distance, bearing, bearing + 2.0 * math.pi * whole_turns)
+        motion = relative_motion(start, radius=radius)
+        found = prediction.time_until_once_round(side, start, motion)
+        # Rounding of courses of up to 20 rad.
+        assert found == pytest.approx(prediction.overshoot / HEADING_RATE_MAX, rel=1e-12)
+
+
+def test_the_farther_a_vehicle_has_to_turn_the_more_of_its_speed_may_cross_the_line_to_the_disc():
+    # Beyond a right angle it passes abeam on the way, where all of its speed crosses. Close to the
+    # disc its radius is the shortest line.
+    prediction, crossing = predictor(), []
+    for left in np.linspace(0.0, math.pi - 0.01, 40):
+        start = polar(RADIUS + 1.0, 1.0, 1.0 - left)
+        time = prediction.time_until_once_round(1.0, start, relative_motion(start, (3.0, 0.0)))
+        crossing.append((left + prediction.overshoot) / time - HEADING_RATE_MAX)
+    # Rounding of rates of 0.6 rad/s.
+    assert np.all(np.diff(crossing) >= -1e-12)
+    # At straight away the disc alone crosses, beyond a right angle both at full speed.
+    assert crossing[0] * RADIUS == pytest.approx(3.0, rel=1e-9)
+    assert crossing[-1] * RADIUS == pytest.approx(SPEED + 3.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize(
+    ("distance", "off"), [(243.0, 0.0), (250.0, 0.0), (280.0, 0.4), (280.0, 0.9), (330.0, 0.0)]
+)
+def test_a_turn_may_lose_as_much_course_as_its_slack_allows_while_it_lasts_and_after(
+    side, distance, off
+):
+    # Without lag it is a circle beside a disc at rest. A course c that is lost before it displaces
+    # the vehicle by c V_r t after a time t: by no more than the slack then, and by less than the
+    # slack grows once the vehicle flies straight on. It does so at the time that allows most.
+    x, y, course, _ = start = polar(distance, 0.3, 0.3 + math.pi - side * off)
+    times = np.linspace(0.01, 6.5, 5000)
+    courses = course + side * HEADING_RATE_MAX * times
+    north = x + side * TURN_RADIUS * (np.sin(courses) - math.sin(course))
+    east = y - side * TURN_RADIUS * (np.cos(courses) - math.cos(course))
+    kept = np.hypot(north, east) - RADIUS
+    while_turning, after = np.minimum.accumulate(kept / times), np.gradient(kept, times)
+    most = np.max(np.minimum(while_turning, after)) / SPEED
+    prediction, motion = predictor(lag=0.0), relative_motion(start)
+    soonest = prediction.time_until_once_round(side, start, motion)
+    for against in (1.0, 0.4):
+        turn = prediction.turn_away(
+            side, start, motion, change=0.0, time=0.0, floor=-math.inf, against=against
+        )
+        assert turn.slack == pytest.approx(kept.min(), abs=1e-3 * TURN_RADIUS)
+        # It may end at points an eighth of a radian apart: 2 % less where the best end is between.
+        assert 0.97 * most < turn.free_course < 1.001 * most
+        # Commands that far against the turn take course at 2 omega_max or less of it, and may go on
+        # for three times as long as that takes: docs/keepout_guard.md, "Evaluating less often".
+        lost = 2.0 * HEADING_RATE_MAX * against
+        assert turn.free_time == pytest.approx(min(3.0 * turn.free_course / lost, soonest))

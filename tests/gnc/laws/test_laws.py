@@ -20,18 +20,9 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from gnc.errors import InfeasibleError, LawError
-from gnc.laws import (
-    STEERING_LAWS,
-    STILL_AIR,
-    CascadeLaw,
-    LimitedLaw,
-    LineOfSightLaw,
-    LyapunovLaw,
-    Motion,
-    line_of_sight_law,
-    started,
-)
+from gnc.laws import STEERING_LAWS, CascadeLaw, LineOfSightLaw, LyapunovLaw, line_of_sight_law
 from gnc.paper import RelativeState, cascade_law, equilibrium, h, lyapunov_law, relative_velocity
+from gnc.steering import STILL_AIR, LimitedLaw, Motion, started
 
 # What the laws command in the guidance is tested in test_guidance.py.
 GAIN, RATE_MAX, K_1 = 1.5, 0.4, 0.001

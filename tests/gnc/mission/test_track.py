@@ -76,7 +76,8 @@ def settles(flight):
 
 def test_without_a_way_it_tracks_from_the_first_step_on_and_overrides_nothing(mission):
     order = mission.plan(0.0, TrueNavigation(), SteadyTarget(0.0, 0.0), renew=True, guarding=False)
-    assert order == (TRACK, SPEED, 62.0, Mode.TRACKING)
+    assert order.heading_rate is TRACK
+    assert (order.airspeed, order.altitude, order.mode) == (SPEED, 62.0, Mode.TRACKING)
     centre, error, in_place = mission.orbit
     assert (error, in_place) == (0.0, True)
     # Its reference is placed beforehand: it knows no centre.
