@@ -72,10 +72,6 @@ _SAME_SPEED = 0.05
 """Airspeeds that differ by no more count as one, the faster [m/s]. A turn away then keeps off by
 the same to some centimetres, at most 0.2 m at a turn radius of 40 m."""
 
-_SPEED_SWITCH_ERROR = 0.05
-"""Share of the difference between the turn radii when fast and slow by which a vehicle may come
-nearer than predicted [-]."""
-
 _BISECTIONS = 5
 """Halvings of the fraction of the turn away that is mixed in: it is found to 1/32."""
 
@@ -259,9 +255,12 @@ class Encounter:
 
 
 class _BackupTurn(NamedTuple):
-    """A turn away that may be flown: its slack [m], its side, and against what it was predicted."""
+    """A turn away that may be flown: its slack [m], whether the disc falls behind in the end, its
+    side, and against what it was predicted.
+    """
 
     slack: float
+    ends: bool
     side: float
     encounter: Encounter
 
@@ -316,7 +315,10 @@ class HeadingRateFilter:
         self._turn_time = 1.5 * math.pi / p.heading_rate_max + 2.0 * p.lag + p.delay + p.time_step
         # Slack that the declared errors may take from a turn that was safe.
         self._explained = (
-            errors.response.size + errors.failed_part.size + errors.wander(self._turn_time)
+            errors.response.size
+            + errors.failed_part.size
+            + errors.wander(self._turn_time)
+            + errors.k * errors.turning.at(self._turn_time)
         )
         # In one step the command may differ from the turn by 2 omega_max, which displaces the
         # vehicle by V omega_max dt^2. In turn radii:
@@ -447,7 +449,7 @@ class HeadingRateFilter:
             motion = self.relative_motion(disc, time, own, fastest, slowest, pending)
             far_for = self.time_until_near(motion)
             if far_for > 0.0:
-                side, turn = 0.0, TurnAway(math.inf, far_for, math.inf, change)
+                side, turn = 0.0, TurnAway(math.inf, far_for, math.inf, change, True)
             else:
                 motions = self.motions_when_acting(motion)
                 side, turn = self._safe_turn_after(command, motions, change)
@@ -462,7 +464,7 @@ class HeadingRateFilter:
             turn,
             side,
             command=command,
-            last=history.last,
+            recent=history.range_with(command),
             slowest=min(slowest, fastest) - _SAME_SPEED,
             fastest=fastest + _SAME_SPEED,
         )
@@ -561,7 +563,7 @@ class HeadingRateFilter:
         nearer = nearer_side(start.x, start.y, start.course)
         for side in (nearer, -nearer):
             turn = self.turn_after(side, command, motions, change, floor)
-            if turn.slack >= floor:
+            if turn.slack >= floor and turn.ends:
                 return side, turn
         return 0.0, None
 
@@ -580,7 +582,7 @@ class HeadingRateFilter:
         prediction = self.prediction
         against = 0.5 - 0.5 * self.budget.least_of_turn(side, command) / self._rate
         slack = free_time = free_course = math.inf
-        counted = 1.0
+        counted, ends = 1.0, True
         for motion in motions:
             turn = prediction.turn_away(
                 side,
@@ -596,9 +598,10 @@ class HeadingRateFilter:
             free_time = min(turn.free_time, free_time)
             free_course = min(turn.free_course, free_course)
             counted = min(counted, turn.change)
+            ends = ends and turn.ends
             if slack < floor:
                 break
-        return TurnAway(slack, free_time, free_course, counted)
+        return TurnAway(slack, free_time, free_course, counted, ends)
 
     def _mix(self, command: float, encounters: Sequence[Encounter]) -> float:
         """Return the command with the least of a turn away that keeps off, or that turn [rad/s]."""
@@ -610,7 +613,7 @@ class HeadingRateFilter:
         floor = self._resolution * first.fastest / self._rate
         lost = backup.slack < -self._explained_slack(first) - floor
         self.status = GuardStatus.LOST if lost else GuardStatus.INTERVENING
-        if backup.slack < 0.0:
+        if backup.slack < 0.0 or not backup.ends:
             return turn
         self._kept_off = backup.encounter.disc
         low, high, mixed = 0.0, 1.0, turn
@@ -638,7 +641,7 @@ class HeadingRateFilter:
                 command = self._turn_command(side, first)
                 change = self.history.change_with(command)
                 found = self.turn_after(side, command, encounter.motions, change, -math.inf)
-                turn = _BackupTurn(found.slack, side, encounter)
+                turn = _BackupTurn(found.slack, found.ends, side, encounter)
                 if safe_side and turn.slack >= 0.0:
                     return turn
                 turns.append(turn)
@@ -654,12 +657,7 @@ class HeadingRateFilter:
         turn_time = self._turn_time * max(1.0, motion.fastest / self._turn_speed)
         # Of the growth, that of the disc is in all predictions.
         error = self._speed_error + motion.wind_error
-        return (
-            self._explained
-            + error * turn_time
-            + self._displacement.after(turn_time)
-            + _SPEED_SWITCH_ERROR * (motion.fastest - motion.slowest) / self._rate
-        )
+        return self._explained + error * turn_time
 
     def _turn_command(self, side: float, motion: RelativeMotion) -> float:
         """Return the command of a turn away [rad/s]: straight away from the disc and no farther."""
@@ -696,7 +694,8 @@ class CommandHistory:
         [rad/s]
     change : largest recent change of command, over a full reversal; it counts less the older it is
         [-]
-    last : command at the last look [rad/s]
+    recent : commands within dead time and lag of the last one, of which any two make a change
+        [rad/s]
     """
 
     def __init__(
@@ -737,7 +736,9 @@ class CommandHistory:
         self._rates: list[float] = []
         self.under_way: deque[float] = deque(maxlen=count)
         self.change = LEAST_CHANGE
-        self.last = 0.0
+        # A reversal in steps counts as one at once, however often the guard looks.
+        window = max(1, round((delay + lag) / time_step))
+        self.recent: deque[float] = deque([0.0], maxlen=window)
 
     @property
     def newest(self) -> float:
@@ -766,7 +767,7 @@ class CommandHistory:
             self._take_in(rate)
         elif not self._begun:
             # A flight begins: the turn that is flown is under way.
-            self.last = rate
+            self.recent[0] = rate
             self.under_way.extend([rate] * (self.under_way.maxlen or 0))
         if self._lag == 0.0:
             return 0.0
@@ -774,8 +775,14 @@ class CommandHistory:
 
     def change_with(self, command: float) -> float:
         """Return ``change`` if a command [rad/s] is given now."""
-        now = abs(command - self.last) / self._reversal
+        lowest, highest = self.range_with(command)
+        now = (highest - lowest) / self._reversal
         return now if now > self.change else self.change
+
+    def range_with(self, command: float) -> tuple[float, float]:
+        """Return the lowest and the highest recent command if one [rad/s] is given now [rad/s]."""
+        recent = self.recent
+        return min(command, *recent), max(command, *recent)
 
     def _take_in(self, rate: float) -> None:
         """Take in the commands and heading rates since the last look [rad/s]."""
@@ -791,13 +798,11 @@ class CommandHistory:
         remembered = self._lack * self._kept ** len(commands)
         lack = remembered + acted - turned - self._slow_lag_after_delay * rate_change
         self._lack = limited(lack, self._lack_max)
-        # What changed little by little since the last look counts as if it had changed at once.
-        newest = commands[-1]
-        commands.append(self.last)
-        highest, lowest = max(commands), min(commands)
-        faded = self.change * self._fading ** len(rates)
-        self.change = max((highest - lowest) / self._reversal, faded, LEAST_CHANGE)
-        self.last = newest
+        recent, change = self.recent, self.change
+        for command in commands:
+            recent.append(command)
+            change = max(change * self._fading, (max(recent) - min(recent)) / self._reversal)
+        self.change = max(change, LEAST_CHANGE)
         commands.clear()
         rates.clear()
 
@@ -863,7 +868,7 @@ class SkipBudget:
         side: float,
         *,
         command: float,
-        last: float,
+        recent: tuple[float, float],
         slowest: float,
         fastest: float,
     ) -> None:
@@ -873,7 +878,8 @@ class SkipBudget:
         ----------
         turn : away that keeps off; None if there is none, and nothing may be skipped
         side : of the turn; 0 where the disc is out of reach
-        command, last : that was looked at, and at the look before [rad/s]
+        command : that was looked at [rad/s]
+        recent : lowest and highest of it and the recent ones [rad/s]
         slowest, fastest : airspeeds at which the turn was predicted [m/s]
         """
         if turn is None:
@@ -884,7 +890,7 @@ class SkipBudget:
         self._course_per_rate = side * self._time_step
         # Commands that change by no more than the turn's deviation counts, and that are not too
         # little of the turn.
-        middle, half = 0.5 * (last + command), turn.change * self._rate
+        middle, half = 0.5 * (recent[0] + recent[1]), turn.change * self._rate
         least = self.least_of_turn(side, command) if side else -self._rate
         self._lowest = max(middle - half, least if side > 0.0 else -self._rate)
         self._highest = min(middle + half, -least if side < 0.0 else self._rate)

@@ -55,6 +55,10 @@ _ROLLING_TIMES = 3.0
 """The 3 of docs/keepout_guard.md, "Evaluating less often": commands may go on for this many times
 the shortest time in which they can use up the slack by the course that they take [-]."""
 
+_SPEED_SWITCH_ERROR = 0.05
+"""Share of the difference between the turn radii when fast and slow by which a vehicle that slows
+down at any moment may come nearer than predicted [-]."""
+
 _NEWTON_STEPS = 3
 """Steps that find the closest approach between two points: each squares the error of the one before
 [-]."""
@@ -170,10 +174,19 @@ class TurnAway:
     free_course : course that these may take from the turn in all [rad]
     change : share of a full reversal that its deviation counts, by rolling into it or by recent
         changes of command [-]
+    ends : whether the disc falls behind in the end
     """
 
-    def __init__(self, slack: float, free_time: float, free_course: float, change: float) -> None:
+    def __init__(
+        self,
+        slack: float,
+        free_time: float,
+        free_course: float,
+        change: float,
+        ends: bool = True,
+    ) -> None:
         self.slack = slack
+        self.ends = ends
         self.free_time = free_time
         self.free_course = free_course
         self.change = change
@@ -414,8 +427,8 @@ class TurnPrediction:
 
         The turn is over once the vehicle recedes and the turn makes it recede faster: by going on
         until it heads straight away, and straight on then, it recedes for good. From a disc that
-        closes in faster than the vehicle flies it turns no farther than that, and is followed for
-        as long as a turn takes.
+        closes in faster than the vehicle flies it turns no farther than that, is followed for as
+        long as a turn takes, and does not fall behind.
 
         Parameters
         ----------
@@ -437,25 +450,24 @@ class TurnPrediction:
         if motion.slowest != motion.fastest:
             radii_difference = (motion.fastest - motion.slowest) * leg.stretch / rate
             path.slow_down_while_receding(self._leg(side, motion.slowest), radii_difference)
+        loss_rate = 2.0 * motion.fastest * rate * against / _ROLLING_TIMES
         # Commands before the turn displace the vehicle by the course that they take from it, times
         # a lever; and they use up slack by rolling, which makes the turn deviate more.
-        loss_rate = 2.0 * motion.fastest * rate * against / _ROLLING_TIMES
-        added_deviation = max(0.0, self._deviation * max(change, against) - deviation)
-        rolling = added_deviation / (loss_rate * max(lag, time_step))
+        rolling = max(0.0, self._deviation * max(change, against) - deviation) / (
+            loss_rate * max(lag, time_step)
+        )
         acting = time - self._delay
         fade = self._step.decay if time > self._delay else 1.0
-        least_rate = math.inf
         # At the start itself the vehicle has not deviated yet.
         least = path.slack + deviation
         outward = self._outward(side, start)
-        slack_per_lever, rise = -1.0, 0.0
+        slack_per_lever, rise, least_rate, over = -1.0, 0.0, math.inf, False
         for point in range(math.ceil(self._points_max * leg.stretch)):
             if least < floor:
                 break
             last_slack, last_rise, last_outward = path.slack, rise, outward
             path.advance()
-            outward = path.outward
-            rise = path.slack - last_slack
+            outward, rise = path.outward, path.slack - last_slack
             acting += duration
             fade *= decay
             lever = acting - lag * (1.0 - fade) + rolling
@@ -477,13 +489,16 @@ class TurnPrediction:
             # Passing straight away between two points counts as well: it would have stopped there.
             if side * path.heading_rate >= 0.0 and (outward >= 0.0 or last_outward >= 0.0):
                 # The turn is over. One point more may allow more time until the next look.
+                over = True
                 last_best = slack_per_lever
                 slack_per_lever = max(slack_per_lever, min(least_rate, rise / duration))
                 if slack_per_lever == last_best or outward < 0.0:
                     break
         free_rate = max(slack_per_lever, 0.0)
         free_time = min(free_rate / loss_rate, self.time_until_once_round(side, start, motion))
-        return TurnAway(least, free_time, free_rate / motion.fastest, counted)
+        # A disc may gain on the vehicle for as long as a turn takes, and longer.
+        ends = over or rise + path.displaced_by >= 0.0
+        return TurnAway(least, free_time, free_rate / motion.fastest, counted, ends)
 
     def _leg(self, side: float, speed: float) -> _Leg:
         """Return what is flown between two points of a full turn at an airspeed [m/s]."""
@@ -545,6 +560,7 @@ class _TurnPath:
     ----------
     heading_rate : now [rad/s]
     slack : distance from the disc's centre less what is allowed for [m]
+    displaced_by : growth of the displacement by turbulence on the last leg [m]
     outward : how far the last leg led off the disc's direction on the side of the turn [m]
     away : whether it led away from the disc's centre
     """
@@ -563,6 +579,8 @@ class _TurnPath:
         self.heading_rate = heading_rate
         self.outward = 0.0
         self.away = False
+        self.displaced_by = 0.0
+        self._displaced = 0.0
         self._side = side
         self._motion = motion
         self._spacing = spacing
@@ -587,6 +605,7 @@ class _TurnPath:
         """Fly a slower leg while the vehicle flies away; the radii differ by so much [m]."""
         self._other_leg = slow_leg
         self._radii_difference = radii_difference
+        self._kept += _SPEED_SWITCH_ERROR * radii_difference
 
     def advance(self) -> None:
         """Go on to the next point."""
@@ -654,7 +673,10 @@ class _TurnPath:
         time, motion = self._time, self._motion
         allowed = self._kept + (motion.growth + 0.5 * motion.acceleration * time) * time
         if motion.displacement is not None:
-            allowed += motion.displacement.after(time)
+            displaced = motion.displacement.after(time)
+            self.displaced_by = displaced - self._displaced
+            self._displaced = displaced
+            allowed += displaced
         return allowed
 
 

@@ -22,6 +22,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gnc.airspeed import PaceHold, SpeedHold
+from gnc.estimation.error_budget import ErrorBudget, Growth
 from gnc.estimation.health import HealthParameters
 from gnc.estimation.navigation import EstimatedNavigation, NavigationParameters, TrueNavigation
 from gnc.estimation.vessel import (
@@ -408,7 +409,7 @@ def following(*, guard=GUARD, climb=0.0):
         stale=12.0,
         reach=0.0,
         reach_time=9.0,
-        drift_rate=1.0,
+        errors=ErrorBudget(drift=Growth(rate=1.0)),
         plan_interval=PLAN_INTERVAL,
         axis=PredictedPlume(
             height=AxisHeight(source=60.0, climb=climb),

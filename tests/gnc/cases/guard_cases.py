@@ -10,6 +10,7 @@ import pytest
 from gnc_cases import HEADING_RATE_MAX, SPEED
 from hypothesis import strategies as st
 
+from gnc.estimation.error_budget import Bias, ErrorBudget, Growth
 from gnc.estimation.navigation import AirMotion
 from gnc.estimation.vessel import Tube
 from gnc.guard.guard import GuardParameters, HeadingRateFilter
@@ -27,8 +28,25 @@ commands = st.floats(-HEADING_RATE_MAX, HEADING_RATE_MAX)
 distances = st.floats(0.0, 700.0)
 
 
+def errors_of(*, speed_error=0.0, deviation=0.0, drift_rate=0.0, failed_part=0.0, slowest=math.inf):
+    """Return an error budget [m/s, m, m/s, m, m/s]."""
+    return ErrorBudget(
+        own_velocity=Bias(size=speed_error),
+        response=Bias(size=deviation),
+        failed_part=Bias(size=failed_part),
+        drift=Growth(rate=drift_rate),
+        slowest=slowest,
+    )
+
+
 def parameters_of(**changes):
-    """Return the parameters of a guard of 200 m for a vehicle with a lag of 0.4 s."""
+    """Return the parameters of a guard of 200 m for a vehicle with a lag of 0.4 s.
+
+    Those of ``errors_of`` are its error budget.
+    """
+    stated = {name for name in changes if name in errors_of.__kwdefaults__}
+    if stated:
+        changes["errors"] = errors_of(**{name: changes.pop(name) for name in stated})
     defaults = {
         "radius": RADIUS,
         "heading_rate_max": HEADING_RATE_MAX,

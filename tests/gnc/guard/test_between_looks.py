@@ -153,7 +153,7 @@ def test_a_command_or_airspeed_beyond_those_that_were_counted_is_looked_at(
     assert guard.budget.steps > 0
     guard.limit(command, 0.05, own, (AT_REST,), fastest, slowest)
     # A look takes in the commands since the last one.
-    assert (guard.history.last == first) == looks
+    assert (guard.history.recent[-1] == first) == looks
 
 
 @pytest.mark.parametrize(
@@ -208,7 +208,9 @@ def budget_after_a_look(*, free_time=1.05, free_course=0.21, side=1.0):
     """
     budget = SkipBudget(0.5, 0.1)
     turn = TurnAway(slack=1.0, free_time=free_time, free_course=free_course, change=0.5)
-    budget.reset(turn, side, command=0.5 * side, last=0.5 * side, slowest=19.0, fastest=21.0)
+    budget.reset(
+        turn, side, command=0.5 * side, recent=(0.5 * side, 0.5 * side), slowest=19.0, fastest=21.0
+    )
     return budget
 
 
@@ -242,7 +244,7 @@ def test_commands_are_skipped_until_time_or_course_is_used_up(side):
 
 def test_a_look_that_finds_no_turn_leaves_nothing_to_skip():
     budget = budget_after_a_look()
-    budget.reset(None, 0.0, command=0.5, last=0.5, slowest=19.0, fastest=21.0)
+    budget.reset(None, 0.0, command=0.5, recent=(0.5, 0.5), slowest=19.0, fastest=21.0)
     assert skips(budget, 0.5) == 0
 
 

@@ -80,7 +80,7 @@ def test_the_newest_command_can_be_replaced():
     assert history.newest == 0.5
     history.newest = 0.1
     assert history.take_in(0.0) == pytest.approx(-0.2 * TIME_STEP / 0.4, rel=1e-12)
-    assert history.last == 0.1
+    assert history.recent[-1] == 0.1
 
 
 def test_a_constant_lack_is_forgotten():
@@ -139,8 +139,31 @@ def test_the_largest_recent_change_counts_less_with_time():
     assert history.change_with(1.5 * HEADING_RATE_MAX) == pytest.approx(1.0, rel=1e-12)
     append(history, [-0.5 * HEADING_RATE_MAX] * 40, 0.0)
     history.take_in(0.0)
-    faded = 0.75 * math.exp(-40 * TIME_STEP / (CHANGE_DECAY * 0.4))
+    # The first of the commands is within the lag of the last one, 8 steps, for 6 steps more.
+    faded = 0.75 * math.exp(-(40 - 6) * TIME_STEP / (CHANGE_DECAY * 0.4))
     assert history.change == pytest.approx(faded, rel=1e-12)
     append(history, [-0.5 * HEADING_RATE_MAX] * 2000, 0.0)
+    history.take_in(0.0)
+    assert history.change == LEAST_CHANGE
+
+
+def test_the_change_does_not_depend_on_how_often_the_guard_looks():
+    # From rest a jump of half a reversal, then a ramp to the other side within the lag.
+    commands = [HEADING_RATE_MAX - 0.5 * HEADING_RATE_MAX * step for step in range(5)]
+    found = []
+    for together in (1, 2, 5):
+        history = begun(0.4, 0.0)
+        for first in range(0, len(commands), together):
+            append(history, commands[first : first + together], 0.0)
+            history.take_in(0.0)
+        found.append(history.change)
+    assert found == [1.0, 1.0, 1.0]
+
+
+def test_a_slow_change_of_commands_is_none_however_rarely_the_guard_looks():
+    # From one side to the other in 10 s: in a lag of 0.4 s 3.5 % of it, less than counts at all.
+    commands = [HEADING_RATE_MAX * (1.0 - 0.01 * step) for step in range(200)]
+    history = begun(0.4, 0.0, rate=HEADING_RATE_MAX)
+    append(history, commands, 0.0)
     history.take_in(0.0)
     assert history.change == LEAST_CHANGE

@@ -41,6 +41,7 @@ from guard_cases import (
 from hypothesis import given
 from hypothesis import strategies as st
 
+from gnc.estimation.error_budget import EXACT, Bias, ErrorBudget, Process
 from gnc.estimation.vessel import Tube
 from gnc.guard.guard import Demand, GuardStatus, HeadingRateFilter, KeepoutGuard, SpeedRange
 from gnc.numeric import limited, wrap
@@ -305,13 +306,19 @@ def test_without_a_way_out_it_reports_lost_and_flies_the_better_turn():
     assert LOST not in statuses[-200:]
 
 
-@pytest.mark.parametrize("declared", ["allowance", "wander"])
-def test_slack_that_a_declared_allowance_or_position_error_explains_is_not_lost(declared):
+@pytest.mark.parametrize(
+    ("errors", "status"),
+    [
+        (EXACT, LOST),
+        (ErrorBudget(failed_part=Bias(size=10.0)), INTERVENING),
+        (ErrorBudget(own_position=Process(sigma=3.0, correlation_time=60.0)), INTERVENING),
+    ],
+)
+def test_slack_that_declared_errors_explain_is_not_lost(errors, status):
     # 3 m within the radius already; a guard without declared errors has no explanation.
-    for size, status in ((0.0, LOST), (10.0, INTERVENING)):
-        guard = DiscGuard(**{declared: size})
-        guard.limit(0.0, (0.0, RADIUS - 3.0, 0.5 * math.pi, 0.0))
-        assert guard.status is status
+    guard = DiscGuard(errors=errors)
+    guard.limit(0.0, (0.0, RADIUS - 3.0, 0.5 * math.pi, 0.0))
+    assert guard.status is status
 
 
 @pytest.mark.parametrize("off", [0.0, 0.01, -0.01])
@@ -322,6 +329,15 @@ def test_a_vehicle_heading_straight_away_from_a_disc_that_closes_in_flies_on(off
     command = guard.limit(HEADING_RATE_MAX, state, (0.0, SPEED + 0.1))
     assert guard.status is INTERVENING
     assert command == pytest.approx(-off / TIME_STEP)
+
+
+def test_a_disc_that_is_faster_than_the_vehicle_is_fled_from_as_soon_as_it_is_in_reach():
+    # 130 m ahead of it, which it makes up for in 26 s or less: longer than a turn takes.
+    guard = DiscGuard()
+    command = guard.limit(0.3, (RADIUS + 130.0, 0.0, 0.0, 0.0), (SPEED + 5.0, 0.0))
+    assert guard.status is INTERVENING
+    # It heads straight away already.
+    assert command == pytest.approx(0.0, abs=1e-9)
 
 
 @pytest.mark.parametrize("want", [HEADING_RATE_MAX, -HEADING_RATE_MAX, 0.0])
@@ -501,7 +517,8 @@ FAR = known_motion((-1500.0, 0.0, 0.0, 0.0), speed=SPEED)
 
 
 def test_a_faster_pace_is_flown_only_where_the_faster_vehicle_can_turn_away_too():
-    near = known_motion((-nearest_head_on(), 0.0, 0.0, 0.0), speed=SPEED)
+    # Slowing down on the way costs 5 % of the difference between the turn radii: 0.1 m.
+    near = known_motion((-nearest_head_on() - 0.2, 0.0, 0.0, 0.0), speed=SPEED)
     for pace in (SPEED, SPEED - 1.0):
         guarded = guard_with_pace().filter(Demand(0.0, 0.0, pace), near, (AT_REST,))
         assert fields_of(guarded) == (0.0, pace, False, FREE)
@@ -588,17 +605,26 @@ def fly_without_thrust(fails, closing, slowest):
     return closest, statuses
 
 
+def failures(closing):
+    """Return times [s] at which thrust may fail.
+
+    Both close in by 340 m until the guard acts; the fall takes 4.2 s, a turn away 6 s.
+    """
+    until = 340.0 / (SPEED + closing)
+    return [until + after for after in (-6.0, -4.0, -2.0, -1.0, 0.0, 1.0, 2.0)]
+
+
 @pytest.mark.parametrize("closing", [5.0, 13.0])
 def test_a_vehicle_that_slows_down_to_the_slowest_keeps_out_whenever_it_begins_to(closing):
-    # Both close in by 340 m until the guard acts; the fall takes 4.2 s, a turn away 6 s.
-    until = 340.0 / (SPEED + closing)
-    times = [until + after for after in (-6.0, -4.0, -2.0, -1.0, 0.0, 1.0, 2.0)]
-    for fails in times:
+    for fails in failures(closing):
         closest, statuses = fly_without_thrust(fails, closing, SLOWEST)
         assert closest >= RADIUS
         assert LOST not in statuses
-    # A guard that takes the vehicle to keep its present airspeed lets it in.
-    assert min(fly_without_thrust(fails, closing, math.inf)[0] for fails in times) < RADIUS
+
+
+def test_a_guard_that_takes_a_vehicle_without_thrust_to_keep_its_airspeed_lets_it_in():
+    closest = [fly_without_thrust(fails, 13.0, math.inf)[0] for fails in failures(13.0)]
+    assert min(closest) < RADIUS
 
 
 def test_the_clearance_takes_the_slowest_airspeed_into_account():

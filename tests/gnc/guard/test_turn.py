@@ -276,11 +276,11 @@ def test_no_speed_between_the_fastest_and_the_slowest_comes_nearer_than_predicte
             rising = min(turns_at_many_speeds(side, start, velocity, fast, slow)) - radius
             beyond_rising.append(min(changing, at_one) - rising)
     assert len(beyond) > 30
-    # Turn radii of 46 and 37 m. Two predictions at constant speeds miss the closest approach by
-    # more than a metre.
-    assert max(beyond) < 0.05 * (fast - slow) / HEADING_RATE_MAX
+    # Turn radii of 46 and 37 m, of whose difference 5 % are kept. Two predictions at constant
+    # speeds miss the closest approach by more than a metre.
+    assert max(beyond) < 0.0
     assert max(beyond_two) > 1.0
-    assert np.median(beyond) > -0.3
+    assert np.median(beyond) > -0.3 - 0.05 * (fast - slow) / HEADING_RATE_MAX
     # One that speeds up, for instance once it glides without thrust, comes no nearer than one that
     # keeps its speed.
     assert max(beyond_rising) < 0.02
