@@ -67,7 +67,7 @@ def turn_deviation(
     density = _gusts_in_turn(turbulence, speed, span, heading_rate)
     interval = _HALF_TURNS * math.pi / heading_rate / _TIMES
     sigmas = [
-        _deviation(interval * i, by_speed, by_rate, density, speed, heading_rate)
+        displacement_sigma(interval * i, by_speed, by_rate, density, speed, heading_rate)
         for i in range(_TIMES + 1)
     ]
     # What the loop takes back in the end may still be there at the next turn: it only grows here.
@@ -131,7 +131,7 @@ def _gusts_in_turn(
     return found
 
 
-def _deviation(
+def displacement_sigma(
     time: float,
     by_speed: Complex,
     by_rate: Complex,
@@ -139,7 +139,16 @@ def _deviation(
     speed: float,
     heading_rate: float,
 ) -> float:
-    """Return the standard deviation of z in its worst direction after a time [s, m]."""
+    """Return the standard deviation of z in its worst direction after a time [m].
+
+    Parameters
+    ----------
+    time : since the start [s]
+    by_speed, by_rate : response of speed and course rate to gusts at ``FREQUENCIES``, shape
+        (frequencies, gusts)
+    density : of the gusts, of the same shape; their variance is its integral over pi
+    speed, heading_rate : of the turn [m/s, rad/s]
+    """
     if time == 0.0:
         return 0.0
     w = FREQUENCIES[:, None]

@@ -104,15 +104,18 @@ def following_flight(
     sigma, level = tracking_level(scenario, spreads, nu)
     radius = scenario.keepout.radius_m
     air = mean_wind(scenario, vessel)
-    errors = flight_errors(scenario, setup, air, spreads.turning if spreads else AS_COMMANDED)
-    guarded = guard_parameters(scenario, setup, radius, errors)
+    turning = spreads.turning if spreads else AS_COMMANDED
+    guarded = guard_parameters(
+        scenario, setup, radius, flight_errors(scenario, setup, air, turning)
+    )
     oscillation = oscillation_at(g, scenario.reference, nu)
     nearer = satellite_noise(scenario, setup, oscillation.amplitude)
     widest = widest_tube(limits, scenario.reports, plan_period=plan_period(g), noise=nearer)
     nearest = _nearest(scenario, setup, guarded, widest, oscillation)
     farthest = max(radius + f.margin_min_m, nearest) + level
-    reach = widest.reach(turn_time(scenario, setup.reversal))
-    margin = KeepoutMargin(tracking_sigma=sigma, total=farthest - radius, reach=reach)
+    margin = KeepoutMargin(
+        tracking_sigma=sigma, total=farthest - radius, reach=widest.reach(limits.horizon)
+    )
     mission: FollowingParameters | StandoffParameters
     orbit: PeriodicPath
     if scenario.stands_off:
@@ -123,7 +126,7 @@ def following_flight(
     else:
         nearest, orbit = radius + margin.total + oscillation.half_widths()[0], oscillation
         further = additional_distance(scenario, vessel, nearest, wind.at_start)
-        periods, mission = _following(scenario, setup, margin, vessel, further, errors)
+        periods, mission = _following(scenario, setup, margin, vessel, further, guarded.errors)
         climbed_to = nearest + further
     check_not_outrun(scenario, vessel, air, climbed_to)
     start = sampled_start(

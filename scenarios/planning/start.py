@@ -119,6 +119,16 @@ def check_start(
             f"the start lies {math.hypot(start.north, start.east):.1f} m from the vessel on course"
             f" {math.degrees(start.course):.0f} deg, where the best turn away comes within"
             f" {max(0.0, guard.radius + clearance):.1f} m of where it may be; keepout.radius_m is {keepout_radius:g} m, and"
-            f" the guard has to keep {guard.radius:.1f} m: start farther away (start.distance_m) or on another course"
+            f" the guard has to keep {guard.radius:.1f} m{_most_of_errors(guard, own)}: start farther away (start.distance_m) or on another course"
             " (start.course_deg)"
         )
+
+
+def _most_of_errors(guard: GuardParameters, own: AirMotion) -> str:
+    """Return which term of the error budget takes most of the room, in words; none without one."""
+    turn = math.pi / guard.heading_rate_max + guard.delay + guard.lag
+    parts = guard.errors.parts(turn, own.wind_by_gusts)
+    name, (distance, key) = max(parts.items(), key=lambda part: part[1].distance)
+    if distance == 0.0 or not key:
+        return ""
+    return f" and, for errors, most for {name}: {distance:.1f} m in half a turn ({key})"

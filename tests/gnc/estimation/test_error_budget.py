@@ -139,3 +139,18 @@ def test_velocities_that_last_add_up():
         own_velocity=Bias(size=0.5), gusts=Bias(size=4.0), wind_change=Bias(size=0.25)
     )
     assert budget.velocity(0.0) == 4.75
+
+
+def test_the_parts_of_a_turn_name_what_takes_the_room():
+    budget = ErrorBudget(
+        own_velocity=Bias(size=0.5, key="following.speed_error_mps"),
+        response=Bias(size=3.0, key="following.turn_deviation_m"),
+        turbulence=GUSTS,
+        turning=TURNING,
+    )
+    parts = budget.parts(6.0)
+    assert parts["own velocity"] == (3.0, "following.speed_error_mps")
+    assert parts["response of turns"].distance == 3.0
+    # The deviation of the turn goes on as between its last times: 2 m after 2 s, 6 m after 6 s.
+    assert parts["turbulence"].distance == pytest.approx(6.0 * budget.k)
+    assert max(parts, key=lambda name: parts[name].distance) == "turbulence"

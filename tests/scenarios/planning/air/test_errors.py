@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 from flight_cases import plan, scenario
-from scenarios.planning.air.dead_reckoning import drift_rate
 
 from aircraft.weather import TURBULENCE, low_altitude_turbulence
 from aircraft.wind import CALM, WindField
 from gnc.estimation.navigation import EstimatedNavigation, SatelliteFix, SensorReadings
+from scenarios.planning.air.errors import drift_rate
 from scenarios.planning.air.estimated_wind import navigation_parameters, wind_change
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 
@@ -54,7 +54,7 @@ def test_in_a_climb_it_reckons_with_the_airspeed_along_it_which_leads_ahead_by_i
 
 def test_guard_and_mission_reckon_with_the_same_rate():
     guidance = plan(scenario(fault=FAULT, following={"drift_rate_mps": 1.7})).guidance
-    assert guidance.guard.drift_rate == guidance.mission.drift_rate == 1.7
+    assert guidance.guard.errors.drift.rate == guidance.mission.errors.drift.rate == 1.7
 
 
 def test_a_wind_that_changes_adds_its_largest_change_in_an_outage_and_until_its_estimate_has_followed():
@@ -83,25 +83,13 @@ def test_gusts_displace_by_no_more_than_is_reckoned_with(speed, rise, count):
     assert added <= 2.0 * speed
 
 
-@pytest.mark.parametrize("level", ["light", "moderate"])
-def test_turbulence_displaces_by_more_than_is_reckoned_with_about_as_often_as_three_deviations(
-    level,
-):
-    height, speed, step = 60.0, scenario().guidance.airspeed_mps, 0.1
-    air = low_altitude_turbulence(height, TURBULENCE[level].wind_at_20ft)
-    sigma, correlated = air.horizontal, air.horizontal_length / speed
-    noise, kept = np.random.default_rng(1), math.exp(-step / correlated)
-    velocity, moved, exceeded = sigma * noise.standard_normal(20_000), np.zeros(20_000), []
-    added = in_air(level=level)
-    for n in range(1, round(OUTAGE / step) + 1):
-        velocity = kept * velocity + sigma * math.sqrt(1.0 - kept**2) * noise.standard_normal(
-            velocity.size
-        )
-        moved += step * velocity
-        exceeded.append(np.mean(np.abs(moved) > added * (n * step + TURN)))
-    # Of a normal distribution 0.27 % lie beyond three deviations: so many at the worst age, and
-    # fewer at any other.
-    assert 0.001 < max(exceeded) < 0.004
+def test_turbulence_is_a_term_of_its_own_with_its_key():
+    errors = plan(scenario(fault=FAULT, turbulence={"level": "light"}, fidelity="six_dof")).guidance
+    air = low_altitude_turbulence(60.0, TURBULENCE["light"].wind_at_20ft)
+    gusts = errors.guard.errors.turbulence
+    assert (gusts.sigma, gusts.key) == (air.horizontal, "turbulence.level")
+    assert gusts.correlation_time == air.horizontal_length / 19.42
+    assert errors.guard.errors.drift.rate == rate()
 
 
 @pytest.mark.parametrize("sigma_deg", [5.0, 15.0])
