@@ -43,6 +43,12 @@ TOGETHER = (
 0.8 in still air she has 15.5.
 """
 
+
+def outage(duration: float) -> tuple[str, str]:
+    """Return the keys that declare losses of satellite navigation of a duration [s]."""
+    return "fault.kind=satellite_navigation", f"fault.satellite_navigation_s={duration:g}"
+
+
 DECLARATIONS: dict[str, tuple[str, ...]] = {
     "everything known": (),
     "satellite navigation, 1.5 m": ("sensors.position_sigma_m=1.5",),
@@ -52,7 +58,11 @@ DECLARATIONS: dict[str, tuple[str, ...]] = {
     "gusts of 4 m/s": ("turbulence.gusts=3", "turbulence.gust_speed_mps=4"),
     "gusts of 8 m/s": ("turbulence.gusts=3", "turbulence.gust_speed_mps=8"),
     "light turbulence": ("turbulence.level=light",),
+    "light turbulence, outages of 10 s": (*outage(10), "turbulence.level=light"),
+    "light turbulence, outages of 60 s": (*outage(60), "turbulence.level=light"),
     "moderate turbulence": ("turbulence.level=moderate",),
+    "moderate turbulence, outages of 10 s": (*outage(10), "turbulence.level=moderate"),
+    "moderate turbulence, outages of 60 s": (*outage(60), "turbulence.level=moderate"),
     "AIS every 2 to 10 s, a ship that keeps its course and speed": AIS,
     "AIS, a ship that may accelerate by 0.1 m/s²": (*AIS, "following.vessel_acceleration_mps2=0.1"),
     "AIS, by 0.25 m/s²": (*AIS, *SHIP),
