@@ -57,7 +57,10 @@ That alone violates nothing: the vehicle has to be at the limit of its guard jus
 error has to point towards the vessel.
 """
 
-SECONDS_PER_HOUR = 3600.0
+_SECONDS_PER_HOUR = 3600.0
+
+_KNOWN_BETTER = 0.95
+"""Share of the variance of the estimated wind down to which it counts as it was [-]."""
 
 _ROUNDS = 10
 """In which k is found that its rate depends on: each leaves a tenth of the error or less [-]."""
@@ -90,7 +93,7 @@ def deviations(
     >>> round(deviations(0.1, correlation_times=[11.3]), 2)
     4.72
     """
-    wandering = sum(SECONDS_PER_HOUR / time for time in correlation_times)
+    wandering = sum(_SECONDS_PER_HOUR / time for time in correlation_times)
     k = 1.0
     for _ in range(_ROUNDS):
         chances = draws + ageing * (1.0 + k * math.sqrt(math.pi / 8.0)) + wandering * k * k
@@ -363,17 +366,33 @@ class Displacement:
         self._budget = budget
         self._k = budget.k
         self._may_drift = budget.may_drift
-        self.renew(lost, wind)
+        # All turns that are predicted at a moment are evaluated at the same times.
+        self._found: dict[float, float] = {}
+        self._lost = lost
+        self._wind = wind.snapshot()
 
     def renew(self, lost: float, wind: "WindErrorByGusts") -> None:
-        """Take in what is known now; see ``ErrorBudget.displacement``."""
+        """Take in what is known now; see ``ErrorBudget.displacement``.
+
+        An estimate that has become a little better counts as it was, which is on the safe side.
+        """
+        known = self._wind.variance
+        if lost == self._lost and _KNOWN_BETTER * known <= wind.variance <= known:
+            return
+        self._found.clear()
         self._lost = lost
-        self._wind = wind
+        self._wind = wind.snapshot()
 
     def after(self, time: float) -> float:
         """Return the largest displacement after a time [s, m]."""
         if self._k == 0.0:
             return 0.0
+        found = self._found.get(time)
+        if found is None:
+            found = self._found[time] = self._k * self._sigma(time)
+        return found
+
+    def _sigma(self, time: float) -> float:
         budget, lost, wind = self._budget, self._lost, self._wind
         sigma = 0.0
         if lost == 0.0:
@@ -381,7 +400,7 @@ class Displacement:
         if lost > 0.0 or self._may_drift:
             drifted = budget.drift_sigma(lost + time, wind.sigma)
             sigma = max(sigma, math.hypot(budget.turning.at(time), drifted))
-        return self._k * sigma
+        return sigma
 
 
 EXACT = ErrorBudget()
@@ -412,6 +431,14 @@ class WindErrorByGusts:
     def sigma(self) -> float:
         """Standard deviation of each component of the error [m/s]."""
         return math.sqrt(self.variance)
+
+    def snapshot(self) -> "WindErrorByGusts":
+        """Return the error as it is now."""
+        same = WindErrorByGusts(self._turbulence)
+        same.variance = self.variance
+        same.covariance = self.covariance
+        same.gain = self.gain
+        return same
 
     def measure(self, gain: float, time: float) -> None:
         """Take in a measurement.

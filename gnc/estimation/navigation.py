@@ -318,6 +318,7 @@ class EstimatedNavigation(OwnMotion):
         self._gust_kept = turbulence.remaining(parameters.time_step)
         self._gust_north = 0.0
         self._gust_east = 0.0
+        self._last_reading: SensorReadings | None = None
         self.wind = WindFilter(
             airspeed_sigma=parameters.airspeed_sigma,
             course_sigma=parameters.course_sigma,
@@ -334,12 +335,10 @@ class EstimatedNavigation(OwnMotion):
         else:
             self.ground_north, self.ground_east, self.velocity_north, self.velocity_east = fix
             self.lost = 0.0
-            air_course = heading + self._crab(roll)
+            self._last_reading = measurement
             self._until_measured -= 1
             if self._until_measured < 0:
-                self._measure_wind(airspeed, air_course)
-            if self.wind_by_gusts is not None:
-                self._measure_gust(airspeed, air_course)
+                self._measure_wind(airspeed, heading + self._crab(roll))
         self.drift_north += self._step_north
         self.drift_east += self._step_east
         self.north = self.ground_north - self.drift_north
@@ -374,10 +373,18 @@ class EstimatedNavigation(OwnMotion):
             beyond = min(p.wind_noise, NOISE_DEVIATIONS * sigma) - p.wind_error
             self.wind_error += max(0.0, beyond)
 
-    def _measure_gust(self, airspeed: float, air_course: float) -> None:
-        """Take in the gust now: the wind triangle, less the estimated wind."""
-        self._gust_north = self.velocity_north - airspeed * math.cos(air_course) - self.wind_north
-        self._gust_east = self.velocity_east - airspeed * math.sin(air_course) - self.wind_east
+    def _measure_last_gust(self) -> None:
+        """Take in the gust at the last fix: its wind triangle, less the estimated wind."""
+        last = self._last_reading
+        if last is None or last.fix is None:
+            return
+        air_course = last.heading + self._crab(last.roll)
+        self._gust_north = (
+            last.fix.velocity_north - last.airspeed * math.cos(air_course) - self.wind_north
+        )
+        self._gust_east = (
+            last.fix.velocity_east - last.airspeed * math.sin(air_course) - self.wind_east
+        )
 
     def _reckon(self, airspeed: float, air_course: float) -> None:
         time_step = self._parameters.time_step
@@ -386,6 +393,8 @@ class EstimatedNavigation(OwnMotion):
         self.velocity_north = self.wind_north + airspeed * math.cos(air_course)
         self.velocity_east = self.wind_east + airspeed * math.sin(air_course)
         if self.wind_by_gusts is not None:
+            if self.lost == 0.0:
+                self._measure_last_gust()
             self._gust_north *= self._gust_kept
             self._gust_east *= self._gust_kept
             self.velocity_north += self._gust_north

@@ -561,7 +561,8 @@ class HeadingRateFilter:
         gap = (
             math.hypot(motion.x, motion.y)
             - motion.radius
-            - self._displacement.after(duration)
+            # The next look may be as late as a turn from now.
+            - self._displacement.after(2.0 * duration)
             - (closing + 0.5 * acceleration * duration) * duration
         )
         return min(gap / (closing + 1.5 * acceleration * duration), duration)

@@ -427,8 +427,8 @@ class TurnPrediction:
 
         The turn is over once the vehicle recedes and the turn makes it recede faster: by going on
         until it heads straight away, and straight on then, it recedes for good. From a disc that
-        closes in faster than the vehicle flies it turns no farther than that, is followed for as
-        long as a turn takes, and does not fall behind.
+        closes in faster than the vehicle flies it turns no farther than that, and is followed for
+        as long as a turn takes; ``ends`` says that the disc does not fall behind then.
 
         Parameters
         ----------

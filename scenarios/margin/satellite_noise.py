@@ -21,6 +21,7 @@ from scipy.linalg import solve_continuous_lyapunov
 
 from common.physics import SECONDS_PER_HOUR
 from gnc.airspeed import SpeedHold
+from gnc.estimation.error_budget import deviations
 from gnc.tracker import TrackingParameters
 from scenarios.margin.report_scatter import GUARDED_PER_HOUR
 from scenarios.margin.steering_gains import STEERED_BY, steering_gains
@@ -43,9 +44,8 @@ def noise_allowance(seen: float, turned: float, *, time_step: float) -> float:
         comes nearest [m]
     time_step : of the guidance [s]
     """
-    looks = SECONDS_PER_HOUR / time_step / GUARDED_PER_HOUR
-    # A normal error exceeds k standard deviations with a probability below exp(-k^2/2).
-    return math.hypot(seen, turned) * math.sqrt(2.0 * math.log(max(1.0, looks)))
+    looks = SECONDS_PER_HOUR / time_step
+    return math.hypot(seen, turned) * deviations(GUARDED_PER_HOUR, draws=looks)
 
 
 def position_scatter(
