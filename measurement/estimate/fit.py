@@ -2,8 +2,8 @@
 
 1. Properties of the instrument are linearised about the stated ones, then about those that the
    record shows, with variances and slope found anew.
-2. Passes that do not stand out of the fitted background are no passes.
-3. A pass whose own slope is far off becomes a fixed column: it may be of another ship.
+2. A pass whose own slope is far off becomes a fixed column: it may be of another ship.
+3. Passes that do not stand out of the fitted background are no passes.
 4. The slopes of the others get a random effect.
 """
 
@@ -157,10 +157,13 @@ class _State:
         likelihood = Likelihood(self.data, self.slope, self.properties)
         return likelihood.inverse(self.variances, fixed, varying)[0]
 
+    def with_known_properties(self) -> "_State":
+        """Return the state as if the instrument was known exactly to be that of ``place``."""
+        return replace(self, data=replace(self.data, columns=0.0 * self.data.columns))
+
     def properties_found(self) -> tuple[Array, Array]:
         """Return mean and covariance of the properties, given the record [units]."""
-        bare = replace(self, data=replace(self.data, columns=0.0 * self.data.columns))
-        inverse = bare.inverse(self.freed)
+        inverse = self.with_known_properties().inverse(self.freed)
         columns = self.distortions
         weighted = inverse @ columns
         priors = np.array([item.prior for item in self.properties])
@@ -296,6 +299,7 @@ def fit_record(record: Record, instrument: SnifferSpec) -> Fit:
     if state is None:
         return Fit(instrument=instrument)
     state = _linearised(record, instrument, state)
+    state, _, _ = _without_foreign(state)
     state, problems = _of_passes_that_stand_out(record, instrument, state)
     state, alike, agreement = _without_foreign(state)
     own = state.data.passes[:, state.own]
@@ -306,8 +310,9 @@ def fit_record(record: Record, instrument: SnifferSpec) -> Fit:
         state = state.with_between(0.0)
     inverse = state.inverse(state.fixed, own)
     found = state.solved(inverse)
-    whole = found.kept
-    if whole < 1.0 - _CORRECTED_MOST:
+    bare = state.with_known_properties()
+    whole = bare.solved(bare.inverse(state.fixed, own)).kept
+    if found.kept < 1.0 - _CORRECTED_MOST:
         found = state.solved(inverse, one_shape=True)
     if not math.isfinite(found.slope):
         return Fit(instrument=instrument, problems=(*problems, _HAZE))
@@ -390,15 +395,18 @@ def _of_passes_that_stand_out(
     rows = operator[peaks]
     deviations = np.sqrt(np.einsum("ij,jk,ik->i", rows, errors, rows))
     high = rows @ data.read > _STANDS_OUT * deviations
+    if not high[state.own].any():
+        return state, (_HAZE,)
+    high[list(state.foreign)] = True
     if high.all():
         return state, ()
-    if not high.any():
-        return state, (_HAZE,)
-    windows = [window for window, kept in zip(data.windows, high, strict=True) if kept]
+    kept = np.flatnonzero(high)
+    windows = [data.windows[i] for i in kept]
     fewer = block_record(record, state.moved(instrument), state.properties, windows)
     if fewer is None:
         return state, ()
-    state = replace(state, data=fewer).refitted()
+    foreign = tuple(int(np.searchsorted(kept, i)) for i in state.foreign)
+    state = replace(state, data=fewer, foreign=foreign).refitted()
     return state.with_slope(state.solved(state.inverse(state.fixed))), ()
 
 

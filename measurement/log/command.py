@@ -125,6 +125,8 @@ def _summary(analysis: Analysis, name: str) -> Iterator[str]:
         yield f"{words}; {needed(chance)}" if is_open else words
         if found.quality != "C":
             yield f"  {rate_words(verdict)}"
+    if found.quality != "C" and any(verdict.verdict == OPEN for verdict in found.verdicts):
+        yield f"open, as {_largest_part(found)}"
     if analysis.decision is not None:
         yield decision_words(analysis.decision)
     step = next_step(
@@ -136,6 +138,22 @@ def _summary(analysis: Analysis, name: str) -> Iterator[str]:
     )
     if step:
         yield step
+
+
+def _largest_part(found: FscEstimate) -> str:
+    """Return which part makes up most of the uncertainty, and how much of it."""
+    so2 = found.instrument.known("so2")
+    squares = {key: size**2 for key, size in found.common_percent.items()}
+    squares["noise"] = found.noise_percent**2
+    words = _ERRORS | {"noise": "noise, background and differences between passes"}
+    unknown = [gas for gas, sd in so2.cross_sd.items() if sd and not so2.cross.get(gas)]
+    if unknown:
+        squares["cross"] = sum(squares.pop(gas, 0.0) for gas in unknown)
+        gases = " and ".join(gas.upper() for gas in unknown)
+        words["cross"] = f"the response of SO2 to {gases} is not stated (`cross`)"
+    largest = max(squares, key=lambda key: squares[key])
+    share = 100.0 * squares[largest] / sum(squares.values())
+    return f"{share:.0f} % of the uncertainty: {words.get(largest, largest)}"
 
 
 def _result(found: FscEstimate) -> Iterator[str]:

@@ -1,5 +1,7 @@
 """Tables of a measured fuel sulphur content."""
 
+from typing import Any
+
 import pandas as pd
 
 from measurement.estimate.passes import SNR_LEAST
@@ -115,6 +117,8 @@ def record_table(record: Record) -> Table:
             "Signal to noise",
             f"CO2 peaks {number(figures['co2_snr'], '{:.0f}')}, SO2 {number(figures['so2_snr'], '{:.1f}')}",
         ],
+        ["Background", _background_words(figures)],
+        ["Passes of another fuel", _excluded_words(found["excluded"])],
         ["Residuals over stated noise", number(found["misfit"], "{:.1f} (mean square)")],
         ["SO2 channel", f"t90 {t90}; {delay} after CO2"],
         [
@@ -127,3 +131,20 @@ def record_table(record: Record) -> Table:
         widths=(1.0, 3.0),
         caption="What the record holds, and the response of SO2 as it was taken.",
     )
+
+
+def _background_words(figures: dict[str, Any]) -> str:
+    """Return how much the background varies, and within which time."""
+    co2 = number(figures["background_ppm"], "{:.2f} ppm")
+    length = number(figures["background_s"], "{:.0f} s")
+    rest = number(figures["background_ppb"], "{:.2f} ppb")
+    return f"CO2 varies by {co2} (1σ) with a correlation length of {length}; SO2 beside the plume by {rest}"
+
+
+def _excluded_words(excluded: list[dict[str, float]]) -> str:
+    """Return the contents of the passes that were left out, with their times."""
+    words = [
+        f"{item['fsc_percent']:.2f} ± {item['noise_percent']:.2f} % at {item['time_s']:.0f} s"
+        for item in excluded
+    ]
+    return ", ".join(words) or "none"

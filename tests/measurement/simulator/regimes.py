@@ -13,7 +13,15 @@ from typing import Literal, Protocol
 import numpy as np
 from scipy import signal
 
-from tests.measurement.simulator.log import GASES, STEP_S, Array, Flight, plume, random_exhaust
+from tests.measurement.simulator.log import (
+    GASES,
+    STEP_S,
+    Array,
+    Exhaust,
+    Flight,
+    plume,
+    random_exhaust,
+)
 
 Requirement = Literal["covered", "rarely wrong", "no verdict"]
 """What an estimate has to hold in a regime; wrong verdicts below 1 % of those given in each:
@@ -169,15 +177,19 @@ class OtherShip:
     plumes : how many; all that there is room for where it is infinite
     place : from a pass, least and most, uniform [intervals between passes]
     contents_percent : of its fuel, log-uniform [% m/m]
+    least_ratio : of the contents of both ships, the larger over the smaller, at least [-]
     """
 
     plumes: float
     place: tuple[float, float]
     contents_percent: tuple[float, float] = CONTENTS_PERCENT
+    least_ratio: float = 1.0
 
     def air(self, flight: Flight, generator: np.random.Generator) -> Array:
         """Return what it adds, shape (n, 4) [ppb, ppm]."""
         exhaust = random_exhaust(generator, *self.contents_percent)
+        while self._alike(exhaust, flight.exhaust):
+            exhaust = random_exhaust(generator, *self.contents_percent)
         inside = (flight.middle > 0.0) & (flight.middle < flight.duration_s - flight.interval_s)
         passes = generator.permutation(flight.middle[inside & (flight.peak > 0.0)])
         typical = float(np.median(flight.peak[flight.peak > 0.0]))
@@ -188,6 +200,11 @@ class OtherShip:
             height = typical * generator.uniform(*OTHER_SHIP_HEIGHT)
             air += plume(flight.time, place, width, height, exhaust)
         return air
+
+    def _alike(self, one: Exhaust, other: Exhaust) -> bool:
+        """Return whether the contents of two ships are nearer to each other than declared."""
+        contents = one.content_percent, other.content_percent
+        return max(contents) < self.least_ratio * min(contents)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -312,9 +329,9 @@ def _regimes() -> tuple[Regime, ...]:
         ),
         Regime(
             name="foreign_every_pass",
-            meaning="another ship's plume over every pass",
+            meaning="another ship's plume over every pass, contents three times apart or more",
             required="no verdict",
-            disturbances=(OtherShip(math.inf, _ON_PASSES),),
+            disturbances=(OtherShip(math.inf, _ON_PASSES, least_ratio=3.0),),
         ),
         Regime(
             name="fuel_change",

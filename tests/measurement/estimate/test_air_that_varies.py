@@ -1,0 +1,71 @@
+"""The estimate in air as it often is, by logs of a simulator that shares no code with it.
+
+The table with 100 logs and more of every regime is in docs/howto/measuring.md; here a few short logs
+of each hold it.
+"""
+
+import math
+
+import pandas as pd
+import pytest
+from scipy.stats import binom
+
+from tests.measurement.simulator.log import simulate
+from tests.measurement.simulator.regimes import REGIMES
+from tests.measurement.simulator.runner import estimated
+
+SEED = 2000
+SHORT_S = 300.0
+"""Longest log that is estimated here: the time of an estimate grows faster than its log [s]."""
+
+COVERED = [name for name, regime in REGIMES.items() if regime.required == "covered"]
+UNANSWERABLE = [name for name, regime in REGIMES.items() if not regime.answerable]
+
+
+def estimates_of(name, logs):
+    """Return estimates of short logs of a regime, of other flights than those of other regimes."""
+    rows, number = [], 100 * list(REGIMES).index(name)
+    while len(rows) < logs:
+        log = simulate(REGIMES[name], SEED, number)
+        number += 1
+        if log.time[-1] <= SHORT_S:
+            rows.append({"row": name} | estimated(log))
+    return rows
+
+
+@pytest.fixture(scope="module")
+def estimates():
+    """Return a table of estimates, four of every regime."""
+    return pd.DataFrame([row for name in REGIMES for row in estimates_of(name, 4)])
+
+
+def test_intervals_hold_the_content_where_the_background_varies(estimates):
+    given = estimates[estimates["given"] & estimates["row"].isin(COVERED)]
+    content = given["true_percent"]
+    held = (given["low_percent"] <= content) & (content <= given["high_percent"])
+    assert len(given) > 0.8 * 4 * len(COVERED)
+    # Of intervals that hold it with 95 % as many do with a probability of 99.9 %.
+    assert held.sum() >= binom.ppf(0.001, len(given), 0.95)
+
+
+def test_intervals_are_no_wider_than_they_need_to_be(estimates):
+    given = estimates[estimates["given"] & estimates["row"].isin(COVERED)]
+    away = (given["fsc_percent"] - given["true_percent"]) / given["total_percent"]
+    # The root mean square of n standard normal numbers is 1 within 4/sqrt(2 n).
+    assert math.sqrt((away**2).mean()) > 1.0 - 4.0 / math.sqrt(2.0 * len(given))
+
+
+def test_no_verdict_is_wrong(estimates):
+    assert estimates["verdicts"].sum() > 100
+    assert list(estimates.loc[estimates["wrong"] > 0, "row"]) == []
+
+
+def test_quiet_air_is_not_refused(estimates):
+    assert estimates.loc[estimates["row"] == "quiet", "given"].all()
+
+
+@pytest.mark.parametrize("name", UNANSWERABLE)
+def test_what_no_log_can_tell_has_no_verdict_and_a_reason(estimates, name):
+    of_row = estimates[estimates["row"] == name]
+    assert of_row["verdicts"].sum() == 0
+    assert of_row["reasons"].map(len).min() > 0
