@@ -22,7 +22,8 @@ drift      |(p^ - p)(t) - (p^ - p)(0)| / ((drift + allowance) t + k ``B.drift_si
            satellite navigation was lost
 
 A turn is predicted as the guard does: lag and delay behind the commands that were given, course still
-to come of earlier ones, V_r commanded, at the speed that was flown. In turbulence it is predicted over
+to come of earlier ones, V_r commanded, at the speed that was flown; full commands for a radian or
+more are a turn. In turbulence it is predicted over
 the wind as it was estimated at the start, since the speed is kept over that, and at a speed within
 the guard's range: what is beyond is displacement. A turn by satellite navigation ends where that is
 lost. Where a part of the aircraft has failed, what the budget has for that is added to c D.
@@ -60,12 +61,16 @@ POSITION_RESOLUTION = 0.05
 SPEED_RESOLUTION = 0.05
 """Difference up to which the guard takes speeds as the same [m/s]."""
 
-_FULL = 0.98
-"""Share of omega_max from which a command counts as that of a turn away [-]."""
+_FULL, _FULL_IN_TURBULENCE = 0.98, 0.8
+"""Share of omega_max from which a command counts as that of a turn away [-]. In turbulence commands
+are seldom full for long without the guard; there nearly full turns count, too."""
 
 _AT_TURN_SPEED = 1.03
 """Commanded airspeed up to which a turn counts as one at V_r, over V_r [-]: a faster turn has
 another response."""
+
+_LEAST_TURN = 1.0
+"""Course that full commands take to count as a turn [rad]: of less there is nothing to see."""
 
 _HALF_TURNS = 1.5
 """Half turns for which a turn is followed [-]: a turn away takes as many at most."""
@@ -314,7 +319,9 @@ def _turn_ratios(flight: _Flight) -> Ratios:
     rates = column("heading_rate_rad_s") * _air_ratio(column("airspeed_mps"), measured)
     commands = _commands(flight, rates, step)
     pending = _pending_rates(guard, commands.acting, rates, step)
-    starts = _turn_starts(commands, max(1, steps // _STARTS))
+    starts = _turn_starts(
+        commands, shortest=_LEAST_TURN / (rate_max * step), spacing=max(1, steps // _STARTS)
+    )
     if not len(starts):
         return flight.nothing()
     sides = np.sign(commands.given[starts])
@@ -364,10 +371,14 @@ def _commands(flight: _Flight, rates: Array, step: float) -> _Commands:
     given = np.diff(course) / step
     at_turn_speed = column("airspeed_command_mps") <= _AT_TURN_SPEED * flight.plan.guidance.speed
     away = (column("guard") > 0.0) | at_turn_speed
+    share = _FULL
+    if flight.budget.turbulence.sigma > 0.0:
+        # There airspeed is commanded for the gust of the moment, and its range is checked instead.
+        share, away = _FULL_IN_TURBULENCE, np.ones(len(time), dtype=np.bool_)
     return _Commands(
         given=np.clip(given, -flyable, flyable),
         acting=np.clip(np.diff(delayed) / step, -flyable, flyable),
-        full=(np.abs(given) >= _FULL * flyable) & away[:-1],
+        full=(np.abs(given) >= share * flyable) & away[:-1],
     )
 
 
@@ -389,14 +400,17 @@ def _pending_rates(guard: GuardParameters, acting: Array, rates: Array, step: fl
     return found
 
 
-def _turn_starts(commands: _Commands, spacing: int) -> Indices:
-    """Return the samples from which turns are predicted: where each begins, and then so far apart."""
+def _turn_starts(commands: _Commands, *, shortest: float, spacing: int) -> Indices:
+    """Return the samples from which turns are predicted: where each begins, and then so far apart.
+
+    Full commands for less than ``shortest`` samples are no turn.
+    """
     sides = np.where(commands.full, np.sign(commands.given), 0.0)
     edges = np.flatnonzero(np.diff(sides, prepend=0.0, append=0.0) != 0.0).tolist()
     turns = [
         np.arange(begin, end, spacing)
         for begin, end in itertools.pairwise(edges)
-        if sides[begin] != 0.0
+        if sides[begin] != 0.0 and end - begin >= shortest
     ]
     return np.concatenate(turns) if turns else np.zeros(0, dtype=np.intp)
 
