@@ -56,7 +56,7 @@ DISAGREE_SMALL, BETWEEN_MOST = 1e-3, 0.2
 CHANGE = 1e-4
 """Probability of a change of slope between two passes, below which there is no verdict."""
 
-KEPT_LEAST = 0.5
+KEPT_LEAST = 0.8
 """Least share of the instrument's energy that the plume must have for a verdict."""
 
 _CORRECTED_MOST, _CORRECTED_SPREAD = 0.05, 0.3
