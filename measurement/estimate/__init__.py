@@ -3,7 +3,8 @@
 from measurement.estimate.estimator import estimate, over_time, time_to_verdict
 from measurement.estimate.repeated import RepeatedVerdict
 from measurement.estimate.result import Figures, FscEstimate
-from measurement.estimate.verdict import RULES, Decision, DecisionRule, Verdict, decide, judged
+from measurement.estimate.verdict import Decision, Verdict, decide, judged
+from measurement.rules import RULES, DecisionRule
 
 __all__ = [
     "RULES",

@@ -12,8 +12,9 @@ from measurement.errors import MeasurementError
 from measurement.estimate.estimator import ELAPSED_S, estimate, over_time, time_to_verdict
 from measurement.estimate.record import BRIDGED, SHORTEST, split_at_gaps
 from measurement.estimate.result import FscEstimate, Method, plain
-from measurement.estimate.verdict import LIMITS_PERCENT, Decision, DecisionRule, decide
+from measurement.estimate.verdict import LIMITS_PERCENT, Decision, decide
 from measurement.gases import CARBON_FRACTION, GASES, UNITS
+from measurement.rules import DecisionRule
 from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec

@@ -11,8 +11,9 @@ from typing import Any
 from measurement.errors import MeasurementError, check_keys, naming
 from measurement.estimate.estimator import check_parameters
 from measurement.estimate.result import Method
-from measurement.estimate.verdict import LIMITS_PERCENT, RULES, DecisionRule
+from measurement.estimate.verdict import LIMITS_PERCENT
 from measurement.gases import CARBON_FRACTION, GASES, UNITS
+from measurement.rules import RULES, DecisionRule
 from measurement.sniffer.spec import SnifferSpec, sensor_of, sensor_preset
 
 COLUMNS = {

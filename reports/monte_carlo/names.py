@@ -11,7 +11,7 @@ from reports.document.tables import minus
 
 _UNITS = {
     "_per_hour": "1/h", "_per_m2": "1/m2", "_per_m_s": "1/(m s)", "_per_m": "1/m", "_per_s": "1/s", "_deg_s": "deg/s",
-    "_rad_s": "rad/s", "_mps2": "m/s2", "_mps": "m/s", "_deg": "deg", "_rad": "rad", "_percent": MASS_PERCENT, "_hz": "Hz",
+    "_rad_s": "rad/s", "_mps2": "m/s2", "_mps": "m/s", "_deg": "deg", "_rad": "rad", "_percent": MASS_PERCENT, "_ppm": "ppm", "_hz": "Hz",
     "_c": "degC", "_m": "m", "_s": "s",
 }  # fmt: skip
 """Units by the suffix of a key that names them, of keys that no parameter documents; the first that

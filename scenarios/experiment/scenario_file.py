@@ -42,7 +42,7 @@ def scenario_file(request: FlightRequest, *, title: str) -> bytes:
         "patrol",
         "report",
     ):
-        document.pop(experiment)
+        document.pop(experiment, None)
     # It is of the experiment, and not of this flight.
     document.pop("description")
     # The random variables have their values, and nothing is sampled again.

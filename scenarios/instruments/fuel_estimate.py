@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from measurement.estimate.repeated import RepeatedVerdict
     from measurement.estimate.result import FscEstimate
-    from measurement.estimate.verdict import DecisionRule
+    from measurement.rules import DecisionRule
 
 _INTERVAL = 60.0
 """About the time between estimates of a flight [s]: the time to a verdict is known to that."""

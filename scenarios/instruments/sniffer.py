@@ -16,8 +16,8 @@ from gnc.errors import InfeasibleError
 from gnc.estimation.navigation import MeasuredMotion
 from measurement.emission import expected_fsc
 from measurement.errors import MeasurementError
-from measurement.estimate.verdict import RULES
 from measurement.gases import GASES, UNITS
+from measurement.rules import RULES
 from measurement.sniffer.sniffer import Readings, Sniffer
 from measurement.sniffer.spec import SnifferSpec, sensor_of, sensor_presets
 from scenarios.instruments.air_samples import (

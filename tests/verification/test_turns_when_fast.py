@@ -6,6 +6,7 @@ import pytest
 
 from aircraft.fdm import TIME_STEP
 from common.physics import METRES_PER_FOOT, STANDARD_GRAVITY, heading_rate_for_bank
+from gnc.estimation.error_budget import Bias, ErrorBudget
 from gnc.estimation.navigation import TrueNavigation
 from gnc.estimation.vessel import Tube
 from gnc.guard.guard import Demand, GuardParameters, GuardStatus, KeepoutGuard, SpeedRange
@@ -51,7 +52,7 @@ def aircraft(heavy_design, tmp_path_factory):
             delay=reversal["delay_s"],
             slow_lag=record["heading_rate_lag_s"],
             time_step=STEP,
-            deviation=reversal["deviation_max_m"],
+            errors=ErrorBudget(response=Bias(size=reversal["deviation_max_m"])),
             turn_speed=STANDARD_GRAVITY * math.tan(envelope.bank_max) / rate,
         )
         speeds = SpeedRange(

@@ -30,7 +30,7 @@ NOT_SCALED = {
     "guidance.airspeed_mps", "following.turn_deviation_m",
     # World and equipment, and what is written for a circle about which the scenario says
     # everything.
-    "vessel.speed_mps", "vessel.gap_max_s", "plume.source_height_m", "keepout.radius_m", "reference.radius_m", "wind.speed_mps",
+    "vessel.speed_mps", "vessel.gap_max_s", "air.background_s", "plume.source_height_m", "keepout.radius_m", "reference.radius_m", "wind.speed_mps",
     "wind.roughness_m", "wind.height_m",
     "turbulence.gust_speed_mps", "turbulence.gust_length_s", "reports.interval_s", "reports.position_sigma_m",
     "wind.stability_per_s", "reports.velocity_sigma_mps",
@@ -168,7 +168,7 @@ def test_keys_without_a_unit_in_their_names_have_no_length_and_no_time():
             r"\[([^\]]+)\]", type(getattr(scenario, section)).model_fields[key].description or ""
         )
         assert (dimension(name) is not None) == (
-            unit is not None and unit[1] not in ("-", "deg", "%", "% m/m", "degC")
+            unit is not None and unit[1] not in ("-", "deg", "%", "% m/m", "ppm", "degC")
         ), name
 
 
