@@ -258,18 +258,20 @@ def _bound_figure(run: RunData, trials: list[Trial]) -> list[Card]:
     return [Card(name, percent(bound[0]))]
 
 
+def _unexplained_cards(flown: pd.DataFrame) -> list[Card]:
+    """Return how many flights violated the area although every premise of its guard held, if any."""
+    wrong = count(unexplained(flown))
+    name = "Violations with every premise of the guard held"
+    return [Card(name, f"{wrong:,}", "0", met=False)] if wrong else []
+
+
 def _premise_cards(flown: pd.DataFrame) -> list[Card]:
-    """Return how many flights had a premise of the keep-out guard exceeded, and how many violated
-    its area without.
-    """
+    """Return in how many flights a premise of the keep-out guard did not hold."""
     flights = premises_exceeded(flown)
     if not flights:
         return []
-    wrong, some = count(unexplained(flown)), sum(bool(terms) for terms in flights)
-    return [
-        Card("Violations with every premise of the guard held", f"{wrong:,}", "0", wrong == 0),
-        Card("Flights with a premise of the guard exceeded", f"{some:,} of {len(flights):,}"),
-    ]
+    some = sum(bool(terms) for terms in flights)
+    return [Card("Flights with a premise of the guard exceeded", f"{some:,} of {len(flights):,}")]
 
 
 def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[Card]:
@@ -299,7 +301,7 @@ def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[Car
             if len(beside)
             else []
         ),
-        *_premise_cards(flown),
+        *_unexplained_cards(flown),
         *([_closest_figure(trials, beside)] if len(beside) else []),
         Card(
             "Missions completed", f"{done:,} of {planned:,}", *(allowed or ("all", done == planned))
@@ -324,6 +326,7 @@ def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[Car
             else []
         ),
         Card("Aircraft lost", f"{gone:,}", *(allowed or ("0", gone == 0))),
+        *_premise_cards(flown),
         *([Card("Plume crossings after settling", f"{crossings:,}")] if crossings else []),
         *(Card(name, worst) for name, worst in switched_off(trials)),
         *_tracking(flown, told=any(of and _tells_of_all(of.name, len(flown)) for of in worst)),

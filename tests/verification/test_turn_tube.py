@@ -169,7 +169,9 @@ def test_search_and_guard_agree_on_the_course_that_is_still_to_come(x8_root, x8_
             )
             lacks.append(lack)
             courses.append([response.lag * each for each in pending])
-        assert guarded.change == pytest.approx(searched.change, rel=0.01)
+        # The guard counts the change within a window of dead time and lag, whenever it looks; the
+        # search counts it at once, and lets it fade meanwhile. So the guard counts at least as much.
+        assert 0.99 * searched.change <= guarded.change <= 1.1 * searched.change
     own, others = np.array(courses).T
     assert np.max(np.abs(lacks)) > 0.05
     # The search takes the dead time to whole steps of the simulation, 4 ms at most, and the course:
