@@ -11,7 +11,6 @@ from scipy.stats import norm, truncnorm
 from measurement.estimate.estimator import estimate, over_time, time_to_verdict
 from measurement.estimate.quality import quality_class
 from measurement.estimate.verdict import (
-    RULES,
     content_words,
     decide,
     interval,
@@ -23,6 +22,7 @@ from measurement.estimate.verdict import (
     verdict_words,
 )
 from measurement.gases import limit_words
+from measurement.rules import RULES
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import sensor_preset
 
