@@ -9,12 +9,16 @@ from typing import Any
 import numpy as np
 
 from aircraft.spec import AircraftError
+from common.columns import Table, described
 from common.intervals import CONFIDENCE
 from common.physics import bank_for_heading_rate
+from common.provenance import without_folders
 from common.run_layout import (
     COMPARISON,
     CROSSINGS,
+    DERIVED,
     DRAWS,
+    FLIGHTS,
     INTERVENTIONS,
     SULPHUR,
     SULPHUR_TABLE,
@@ -24,21 +28,23 @@ from common.run_layout import (
 from gnc.mission.mission import Mode
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
-from scenarios.engine.runner import Fly, Progress, StudySummary, write_tables
+from scenarios.engine.runner import Fly, Progress, StudySummary, write_columns, write_tables
 from scenarios.engine.task import Task
 from scenarios.errors import InputError
 from scenarios.experiment.random_sample import flights_per_sample, is_random_sample
 from scenarios.experiment.requests import Experiment
-from scenarios.flight import FlightWork
-from scenarios.instruments.instrument import evaluated_instruments, figures_of, tables_of
+from scenarios.flight import FlightWork, history_columns
+from scenarios.instruments.instrument import declarations
 from scenarios.metrics.columns import (
+    ANY_KEY,
     CROSSING_COLUMNS,
+    DERIVED_COLUMNS,
+    FINDING_COLUMNS,
     FLIGHT_COLUMNS,
     INPUT_COLUMNS,
     INTERVENTION_COLUMNS,
     SUMMARY_COLUMNS,
 )
-from scenarios.metrics.finding import FINDING_FIGURES
 from scenarios.planning.limits import omega_max
 from scenarios.planning.scaling import scaled, scaled_keys
 from scenarios.planning.spreads import predicted_spreads
@@ -137,25 +143,20 @@ class FlightStudy:
             for experiment in self.experiments.values()
             for point in experiment.points
         ]
-        instruments = evaluated_instruments(points)
-        figures = (
-            *SUMMARY_COLUMNS,
-            *dict.fromkeys(name for instrument in instruments for name in figures_of(instrument)),
-        )
+        declared = declarations(points)
+        figures = SUMMARY_COLUMNS | declared.figures
         if any(point.finds for point in points):
-            figures += FINDING_FIGURES
+            figures |= FINDING_COLUMNS
         self.tables = {
             SUMMARY: figures,
             CROSSINGS: CROSSING_COLUMNS,
             INTERVENTIONS: INTERVENTION_COLUMNS,
-            DRAWS: (*INPUT_COLUMNS, *keys),
+            DRAWS: INPUT_COLUMNS | described(dict.fromkeys(keys, ANY_KEY)),
         }
-        for instrument in instruments:
-            self.tables |= {
-                file: (*FLIGHT_COLUMNS, *columns) for file, columns in tables_of(instrument).items()
-            }
+        self.tables |= {file: FLIGHT_COLUMNS | columns for file, columns in declared.tables.items()}
         if self._numbers > self.planned:
             self.tables[COMPARISON] = figures
+        self._known = set(figures)
         self.plugins = plugins(points)
         self.vessel_files = vessel_files(points)
         self.config_hash = config_hash(
@@ -329,8 +330,24 @@ class FlightStudy:
             run.write_json(run.path / SULPHUR, sulphur_statistics(rows, confidence=CONFIDENCE))
 
     def export(self, run: RunDirectory, journal: Journal) -> None:
-        """Write its tables."""
+        """Write its tables, and what their columns are."""
         write_tables(run, journal, self.tables)
+        others = {DERIVED: DERIVED_COLUMNS, FLIGHTS: history_columns(self.experiments.values())}
+        write_columns(run, self._with_study(self.tables) | others)
+
+    def _with_study(self, tables: Mapping[str, Table]) -> dict[str, Table]:
+        """Return tables in which figures that a study of its own adds bear the study's name."""
+        part = without_folders(str(self._manifest["study"]))
+        added = {
+            name: described({name: column}, part=part)[name]
+            for file in (SUMMARY, COMPARISON)
+            for name, column in tables.get(file, {}).items()
+            if name not in self._known
+        }
+        return {
+            file: {name: added.get(name, column) for name, column in columns.items()}
+            for file, columns in tables.items()
+        }
 
     def bound_line(self, counts: FlightCounts, samples: int, _journal: Journal) -> str:
         """Return the line on keep-out violations and the bound on their probability, of flights

@@ -9,6 +9,8 @@ from reference_pages.commands import commands_page
 from reference_pages.frames import frames_svg
 from reference_pages.keys import keys_page
 from reference_pages.markdown import literal, plain, table
+from scenarios.metrics.meanings import CONVERGENCE_MEANINGS, MEANINGS
+from scenarios.studies.patrol.meanings import MEANINGS as PATROL_MEANINGS
 
 from common import run_layout
 from measurement.estimate.estimator import estimate
@@ -16,10 +18,8 @@ from measurement.log.config import LogConfig
 from measurement.log.read import read_flight
 from measurement.log.run_files import SAMPLE_MEANINGS, samples
 from scenarios.console.main import commands
-from scenarios.metrics.meanings import CONVERGENCE_MEANINGS, MEANINGS
 from scenarios.schema.documented import documented_keys
 from scenarios.simulation.time_history import INSTRUMENT_MEANINGS
-from scenarios.studies.patrol.meanings import MEANINGS as PATROL_MEANINGS
 
 
 def test_every_key_of_a_scenario_is_on_its_page_with_its_meaning():

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 import pytest
+from scenarios.metrics.meanings import MEANINGS
 
 from scenarios.instruments.plume_passes import INSIDE, PASS_FIGURES, pass_figures
-from scenarios.metrics.meanings import MEANINGS
 
 TIME = 0.05 + 0.1 * np.arange(600)
 
