@@ -25,7 +25,9 @@ def monte_carlo_sections(run: RunData) -> list[Section]:
     if statistics is None:
         return []
     if statistics.get("method") == "subset":
-        return subset_sections(run, statistics, documented_units(run.manifest))
+        return subset_sections(
+            statistics, documented_units(run.manifest), run.column("clearance_m")
+        )
     return [
         Section(
             anchor="study",

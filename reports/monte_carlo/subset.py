@@ -4,13 +4,13 @@ the inputs near it.
 
 from typing import Any
 
+from common.columns import Column
 from common.intervals import percent
 from reports.document.blocks import Block, Heading, Section, Table, Text
 from reports.document.tables import number
 from reports.monte_carlo.names import Units, input_name, input_unit
 from reports.monte_carlo.subset_charts import curve_chart, distance_chart, input_charts
 from reports.monte_carlo.tables import Record, ending_table
-from reports.run.run_data import RunData
 
 FEW_RENEWALS = 0.05
 """Fraction of accepted renewals below which the seed decides: intervals were too narrow in tests
@@ -18,7 +18,7 @@ from there on.
 """
 
 
-def subset_sections(run: RunData, statistics: Record, units: Units) -> list[Section]:
+def subset_sections(statistics: Record, units: Units, clearance: Column) -> list[Section]:
     """Return the sections of a study by subset simulation."""
     return [
         Section(
@@ -28,7 +28,7 @@ def subset_sections(run: RunData, statistics: Record, units: Units) -> list[Sect
             blocks=[
                 Text(probability_in_words(statistics)),
                 _probability_table(statistics),
-                *curve_chart(statistics, run.column("clearance_m")),
+                *curve_chart(statistics, clearance),
                 Heading("How the flights ended"),
                 ending_table(statistics),
             ],

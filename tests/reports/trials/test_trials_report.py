@@ -292,14 +292,10 @@ def test_a_criterion_that_is_just_failed_is_not_written_as_its_limit(run):
 
 def test_a_criterion_that_does_not_apply_is_no_limit(run):
     trial = read_trials(with_criterion(run, "steady", "tracking_error_rms_m", False))[0]
-    panel = PanelsOver(trial, "nu", by_violation(trial)).figure(
-        "tracking_error_rms_m", "Tracking error, rms [m]"
-    )
+    panel = PanelsOver(trial, "nu", by_violation(trial)).figure("tracking_error_rms_m")
     assert "criterion" not in {line.label for line in panel.lines}
     trial = read_trials(with_criterion(run, "steady", "tracking_error_rms_m", 2.0))[0]
-    panel = PanelsOver(trial, "nu", by_violation(trial)).figure(
-        "tracking_error_rms_m", "Tracking error, rms [m]"
-    )
+    panel = PanelsOver(trial, "nu", by_violation(trial)).figure("tracking_error_rms_m")
     (level,) = (line for line in panel.lines if line.label == "criterion")
     assert set(level.y) == {2.0}
 
