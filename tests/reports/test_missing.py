@@ -92,6 +92,7 @@ def test_what_is_missing_is_made_again_by_the_command_that_made_it(copy, study, 
 def test_of_a_whole_run_nothing_is_missing(whole):
     assert named(whole) == []
     assert manifest_of(whole)["files"] == [
+        "columns.json",
         "crossings.csv",
         "draws.csv",
         "flights/short_00000.parquet",

@@ -74,7 +74,7 @@ def test_several_numbers_have_a_column_each_in_two_figures_and_words_have_one_of
             "Keep-out radius [m]",
         ] * 2
     assert [panel.y_label for panel in charts[1].panels[::2]] == [
-        "Tracking error, rms [m]",
+        "Tracking error, rms after settling [m]",
         "Settling time [s]",
     ]
 

@@ -27,6 +27,7 @@ from reports.run.trials import Kind, Trial, read_trials
 from scenarios.schema.load import OPERATIONAL, bases, load_study
 from scenarios.schema.overrides import given_keys
 from scenarios.studies.manifest import parameters
+from tests.reports.run_columns import RUN_COLUMNS
 from tests.run_tables import manifest_of, write_manifest
 
 BRIEF = pytest.mark.usefixtures("without_single_flights")
@@ -306,7 +307,7 @@ def test_altitudes_that_have_to_be_kept_are_a_criterion_on_the_time_outside(run)
     rows = changed.summary.assign(
         altitude_outside_s=[0.0 if trial != "turns" else 1.5 for trial in changed.summary["trial"]]
     )
-    shown = rows_of(content(replace(changed, summary=rows)), "Turns")
+    shown = rows_of(content(replace(changed, summary=rows, columns=RUN_COLUMNS)), "Turns")
     assert ["Time outside the altitudes of the scenario", "≤ 0 s", "1.5 s", "2"] in shown
 
 
