@@ -178,11 +178,11 @@ class Flight:
     def row(self) -> "pd.Series[Any]":
         """Return its row of the summary; units are in ``attrs["units"]``."""
         data = self.run._data
-        for rows, table in ((data.summary, SUMMARY), (data.comparison, COMPARISON)):
+        for rows, name in ((data.summary, SUMMARY), (data.comparison, COMPARISON)):
             found = rows[rows["flight_id"] == self.flight_id]
             if len(found):
                 row = found.iloc[0].rename(self.flight_id)
-                row.attrs = dict(self.run._explained(found, table).attrs)
+                row.attrs = dict(self.run._explained(found, name).attrs)
                 return row
         raise InputError(
             f"the run in '{self.run.directory}' has no flight '{self.flight_id}'; its summary lists them"

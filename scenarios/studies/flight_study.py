@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from aircraft.spec import AircraftError
-from common.columns import Table, described
+from common.columns import Declared, described
 from common.intervals import CONFIDENCE
 from common.physics import bank_for_heading_rate
 from common.provenance import without_folders
@@ -89,6 +89,12 @@ class FlightStudy:
 
     what = "flights"
 
+    FIGURES: Declared = ()
+    """Columns of the summary that a study of a user's own adds; its work fills them."""
+
+    TABLES: Mapping[str, Declared] = {}
+    """Columns of tables that it adds, by file, beside those that name the flight."""
+
     chooses_flights = False
     """Whether what is flown depends on what was flown before, so that no flight can be flown
     without the others.
@@ -144,19 +150,22 @@ class FlightStudy:
             for point in experiment.points
         ]
         declared = declarations(points)
-        figures = SUMMARY_COLUMNS | declared.figures
+        part = without_folders(scenario.study)
+        figures = SUMMARY_COLUMNS | declared.figures | described(self.FIGURES, part=part)
         if any(point.finds for point in points):
             figures |= FINDING_COLUMNS
         self.tables = {
             SUMMARY: figures,
-            CROSSINGS: CROSSING_COLUMNS,
-            INTERVENTIONS: INTERVENTION_COLUMNS,
+            CROSSINGS: dict(CROSSING_COLUMNS),
+            INTERVENTIONS: dict(INTERVENTION_COLUMNS),
             DRAWS: INPUT_COLUMNS | described(dict.fromkeys(keys, ANY_KEY)),
         }
-        self.tables |= {file: FLIGHT_COLUMNS | columns for file, columns in declared.tables.items()}
+        added = {file: described(columns, part=part) for file, columns in self.TABLES.items()}
+        self.tables |= {
+            file: FLIGHT_COLUMNS | columns for file, columns in (declared.tables | added).items()
+        }
         if self._numbers > self.planned:
             self.tables[COMPARISON] = figures
-        self._known = set(figures)
         self.plugins = plugins(points)
         self.vessel_files = vessel_files(points)
         self.config_hash = config_hash(
@@ -333,21 +342,7 @@ class FlightStudy:
         """Write its tables, and what their columns are."""
         write_tables(run, journal, self.tables)
         others = {DERIVED: DERIVED_COLUMNS, FLIGHTS: history_columns(self.experiments.values())}
-        write_columns(run, self._with_study(self.tables) | others)
-
-    def _with_study(self, tables: Mapping[str, Table]) -> dict[str, Table]:
-        """Return tables in which figures that a study of its own adds bear the study's name."""
-        part = without_folders(str(self._manifest["study"]))
-        added = {
-            name: described({name: column}, part=part)[name]
-            for file in (SUMMARY, COMPARISON)
-            for name, column in tables.get(file, {}).items()
-            if name not in self._known
-        }
-        return {
-            file: {name: added.get(name, column) for name, column in columns.items()}
-            for file, columns in tables.items()
-        }
+        write_columns(run, self.tables | others)
 
     def bound_line(self, counts: FlightCounts, samples: int, _journal: Journal) -> str:
         """Return the line on keep-out violations and the bound on their probability, of flights

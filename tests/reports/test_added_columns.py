@@ -173,3 +173,44 @@ def test_python_has_its_unit_and_meaning(paths):
     flight = next(iter(run.flights.values()))
     assert flight.history.attrs["units"]["glow_ppb"] == "ppb"
     assert isinstance(run.columns["summary.csv"]["glow_word"], Column)
+
+
+STUDY = """
+from common.columns import Column
+from scenarios.flight import FlightWork
+from scenarios.studies.flight_study import FlightStudy
+from dataclasses import fields
+
+class Spare(FlightStudy):
+    FIGURES = {"spare_m": Column("what is left of the radius", title="Spare distance", worse="lower")}
+
+    def work(self, run):
+        of = super().work(run)
+        return SpareWork(**{field.name: getattr(of, field.name) for field in fields(of)})
+
+class SpareWork(FlightWork):
+    def more_tables(self, request, plan, record, row):
+        row["spare_m"] = row["min_distance_m"] - row["keepout_radius_m"]
+        return {}
+"""
+
+
+def test_a_study_declares_its_figures_in_the_same_way(tmp_path):
+    (tmp_path / "mystudy.py").write_text(STUDY, encoding="utf-8")
+    given = [*SWEEP, "sweep.nu=[0.5]", f"study={tmp_path / 'mystudy.py'}:Spare"]
+    run_study(
+        load_study("sweep_nu", given),
+        "sweep_nu",
+        tmp_path / "run",
+        executor_factory=InProcessExecutor,
+        overrides=given,
+    )
+    run = read_run(tmp_path / "run")
+    (spare,) = run.summary["min_distance_m"] - run.summary["keepout_radius_m"]
+    (over,) = (
+        table
+        for table in blocks_of(content(run), Table)
+        if table.caption.startswith("The figures over all")
+    )
+    assert over.rows[0][0] == "Spare distance [m]"
+    assert over.rows[0][3] == f"{spare:.2f}"
