@@ -56,11 +56,16 @@ class _Failed(TypedDict):
     flown_failed: int
 
 
+_TRACKING = "tracking_error_rms_m"
+
+_AFTER_SETTLING = (_TRACKING, "airspeed_error_rms_mps", "altitude_error_max_m")
+"""Criteria on what is measured after settling: they are judged where ``criteria.settles`` is true,
+and nowhere else.
+"""
+
 MEASURED = (
     "crossing_interval_error",
-    "tracking_error_rms_m",
-    "airspeed_error_rms_mps",
-    "altitude_error_max_m",
+    *_AFTER_SETTLING,
     "tracking_error_end_m",
     "resumes_within_periods",
     "time_to_find_s",
@@ -74,11 +79,6 @@ _FIGURES = {
     "within_altitudes": "altitude_outside_s",
 }
 """Figures that criteria are about, where they have another name."""
-
-_AFTER_SETTLING = MEASURED[1:4]
-"""Criteria on what is measured after settling: they are judged where ``criteria.settles`` is true,
-and nowhere else.
-"""
 
 _BETWEEN = ("crossing_interval_s", "crossing_distance_m")
 """Criteria that a figure lies between two limits."""
@@ -122,7 +122,7 @@ def switched_off(trials: Sequence[Trial]) -> list[tuple[str, str]]:
     Without the tracking error, which is a figure of its own whether or not it is limited.
     """
     told = {
-        MEASURED[1],
+        _TRACKING,
         *(criterion.key for trial in trials for criterion in criteria_of(trial)),
     }
     by_default = {
