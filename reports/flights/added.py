@@ -1,6 +1,7 @@
 """Figures that users' instruments and studies add: tables, and panels over what was swept or counted."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from reports.document.panels import histogram
 from reports.document.tables import number
 from reports.flights.names import swept_words
 from reports.flights.trials.panels_over import PanelsOver, by_violation
-from reports.run.columns import column, is_figure, worst
+from reports.run.columns import column, is_figure, judged, worst
 from reports.run.run_data import RunData
 from reports.run.trials import Name, Trial
 
@@ -54,11 +55,12 @@ def _blocks(
 ) -> list[Block]:
     meanings = "; ".join(f"{of.title}: {of.meaning}" for of in columns.values() if of.meaning)
     numbers = {key: of for key, of in columns.items() if is_figure(run.summary, key)}
+    several = len(trials) > 1
     panels = [
-        panel
+        replace(panel, title=trial.title if several else panel.title)
         for trial in trials
-        for key in numbers
-        for panel in _panels(trial, key, trial.run.column(key))
+        for key, of in numbers.items()
+        for panel in _panels(trial, key, of)
     ]
     chart = Chart(
         name=f"{anchor}figures",
@@ -79,9 +81,10 @@ def _panels(trial: Trial, key: str, of: Column) -> list[Panel]:
     """Return a figure over each number that was swept; where there is none, the flights counted."""
     if not is_figure(trial.flown, key):
         return []
-    swept = [of_sweep for of_sweep in trial.swept if of_sweep not in swept_words(trial)]
+    words = swept_words(trial)
+    swept = [name for name in trial.swept if name not in words]
     if swept:
-        over = [PanelsOver(trial, key_of, by_violation(trial)).figure(key) for key_of in swept]
+        over = [PanelsOver(trial, name, by_violation(trial)).figure(key) for name in swept]
         return [panel for panel in over if panel is not None]
     values = of.scale * column(trial.flown, key)
     counted = histogram([(values, "flights", Meaning.FLOWN)], of.label)
@@ -94,12 +97,12 @@ def _over_flights(rows: pd.DataFrame, columns: dict[str, Column]) -> Table:
     """
     cells = []
     for key, of in columns.items():
-        values = column(rows, key)
+        values, sizes = column(rows, key), judged(rows, key, of)
         known = values[np.isfinite(values)]
-        judged = np.abs(known) if of.worse == "off zero" else known
-        at = worst(judged, of) if of.worse else np.nan
-        size = np.abs(values) if of.worse == "off zero" else values
-        flight = str(rows["flight_id"].iloc[int(np.flatnonzero(size == at)[0])]) if of.worse else ""
+        flight = ""
+        if of.worse:
+            at = sizes == worst(sizes[np.isfinite(sizes)], of)
+            flight = str(rows["flight_id"][at].iloc[0])
         cells.append(
             [
                 of.row,
