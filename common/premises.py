@@ -5,6 +5,8 @@ them.
 
 from collections.abc import Mapping
 
+from common.columns import Column, described
+
 TERMS: Mapping[str, str] = {
     "position": "own position",
     "wind": "wind and own velocity",
@@ -39,11 +41,32 @@ def time_column(term: str) -> str:
     return f"{ratio_column(term)}_s"
 
 
-PREMISE_COLUMNS = (
-    EXCEEDED,
-    *(column for term in TERMS for column in (ratio_column(term), time_column(term))),
+def _columns_of(term: str) -> dict[str, Column]:
+    return {
+        ratio_column(term): Column(
+            f"largest error over what the guard reckons with: {TERMS[term]}",
+            title=f"Error over what the guard reckons with: {TERMS[term]}",
+            worse="higher",
+        ),
+        time_column(term): Column(
+            "time of that ratio; of turns, at which the turn began",
+            title=f"Time of that ratio: {TERMS[term]}",
+            digits=1,
+        ),
+    }
+
+
+PREMISE_COLUMNS = described(
+    {
+        EXCEEDED: Column(
+            "premises of the guard's theorem that did not hold: terms with a ratio above 1,"
+            " or none",
+            kind="text",
+        ),
+        **{name: column for term in TERMS for name, column in _columns_of(term).items()},
+    }
 )
-"""Columns of a flight's row."""
+"""Columns of a flight's row: how the premises of the guard's theorem held."""
 
 
 def exceeded_terms(row: Mapping[str, object]) -> list[str]:

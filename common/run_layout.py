@@ -38,6 +38,12 @@ ESTIMATE = "estimate.json"
 SAMPLES = "samples.csv"
 """Readings and signals of a measured flight."""
 
+COLUMNS = "columns.json"
+"""What the columns of its tables are: titles, units, meanings (``common.columns``)."""
+
+DERIVED = "derived"
+"""Entry of ``columns.json`` with figures that follow from the summary and are in no table."""
+
 DESIGN_RECORD = "innerloop.json"
 """The design record of the autopilot."""
 
@@ -91,7 +97,7 @@ MODEL = "model"
 """Directory of the aircraft's model with the autopilot."""
 
 FLIGHTS = "flights"
-"""Directory of the time histories of flights."""
+"""Directory of the time histories of flights, and entry of ``columns.json`` on their columns."""
 
 TRAJECTORIES = "trajectories"
 """Directory of the time histories of a convergence study."""

@@ -6,7 +6,7 @@ import bisect
 import itertools
 import json
 import time
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from datetime import datetime
 from functools import cached_property
@@ -16,11 +16,17 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from common.columns import Column, Table
 from common.run_layout import CROSSINGS, DRAWS, INTERVENTIONS
 from scenarios.engine.task import Result, Row, Task
 from scenarios.experiment.requests import Experiment, FlightRequest, table_of
 from scenarios.instruments.fuel_estimate import repeated_figures, with_verdict
-from scenarios.instruments.instrument import EvaluatedInstrument, GasReader, Instrument
+from scenarios.instruments.instrument import (
+    EvaluatedInstrument,
+    GasReader,
+    Instrument,
+    declarations,
+)
 from scenarios.metrics.criteria import failed_criteria, kept_out
 from scenarios.metrics.crossings import crossing_rows
 from scenarios.metrics.figures import flight_figures, plan_row
@@ -34,8 +40,10 @@ from scenarios.schema.extension_points import PAYLOADS
 from scenarios.schema.sections.experiment import STUDY
 from scenarios.simulation.closed_loop import fly
 from scenarios.simulation.failure import failure, unflown
+from scenarios.simulation.guard_belief import GuardBelief
 from scenarios.simulation.outcome import Outcome
-from scenarios.simulation.record import FlightRecord
+from scenarios.simulation.plume_readings import BELIEF_COLUMNS
+from scenarios.simulation.record import HISTORY_COLUMNS, FlightRecord
 from scenarios.simulation.release import release
 from scenarios.simulation.time_history import history_files
 from scenarios.vehicles.vehicle_setup import VehicleSetup, kinematic_setup
@@ -68,6 +76,11 @@ class FlightWork:
     spreads: PredictedSpreads
     refusal: str = ""
     viewer: tuple[str, int] | None = None
+
+    @cached_property
+    def columns(self) -> Table:
+        """What the columns of time histories are."""
+        return history_columns(self.experiments)
 
     @property
     def model(self) -> Path | None:
@@ -239,9 +252,22 @@ class FlightWork:
             items=int(row["variant"] == STUDY),
             tables={table: [row], **(tables or {})},
             files=history_files(
-                task, history, document, planned=self._ends[-1], kept=self.histories, row=row
+                task,
+                history,
+                document,
+                columns={} if history is None else self.columns,
+                planned=self._ends[-1],
+                kept=self.histories,
+                row=row,
             ),
         )
+
+
+def history_columns(experiments: Iterable[Experiment]) -> dict[str, Column]:
+    """Return the columns that time histories of some experiments may have."""
+    points = (point.scenario for of in experiments for point in of.points)
+    beliefs = BELIEF_COLUMNS | GuardBelief.COLUMNS
+    return HISTORY_COLUMNS | beliefs | declarations(points).histories
 
 
 def _request_row(request: FlightRequest) -> Row:

@@ -4,19 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from reports.compare.figures import Difference
+from reports.compare.figures import JUDGED, Difference
 from reports.compare.pairs import Pairs
 from reports.document.chart import Chart, Line, Panel
 from reports.document.palette import Meaning
 from reports.document.panels import Group, around, points
 from reports.monte_carlo.names import input_label
 from reports.run.columns import Array, met
+from reports.run.run_data import WITH_SECTIONS
 
-_SHOWN = (
-    "clearance_m", "crossing_interval_error", "tracking_error_rms_m", "settling_time_s", "guard_time_s", "fsc_percent",
-    "fsc_error_percent", "fsc_uncertainty_percent",
-)  # fmt: skip
-"""Figures that have panels."""
+_SHOWN = (*JUDGED, "guard_time_s", "fsc_percent", "fsc_error_percent", "fsc_uncertainty_percent")
+"""Figures of the flight itself that have panels; those of users' parts follow."""
 
 _PAIRS_MIN = 3
 """Pairs that make a picture: of fewer the table says it all."""
@@ -29,7 +27,8 @@ def pair_charts(pairs: Pairs, found: dict[str, Difference]) -> list[Chart]:
     """Return, figure by figure, one run over the first, and beside it the differences; nothing
     where no figure differs.
     """
-    known = [found[name] for name in _SHOWN if name in found and not found[name].is_none]
+    added = [name for name, of in found.items() if of.figure.part not in ("", *WITH_SECTIONS)]
+    known = [found[name] for name in (*_SHOWN, *added) if name in found and not found[name].is_none]
     shown = [difference for difference in known if len(difference.known) >= _PAIRS_MIN]
     groups, over = _groups(pairs), _inputs(pairs)
     panels = [
@@ -63,7 +62,7 @@ def pair_charts(pairs: Pairs, found: dict[str, Difference]) -> list[Chart]:
 
 
 def _listed(shown: list[Difference]) -> str:
-    return " and ".join(difference.figure.name.split(",")[0].lower() for difference in shown)
+    return " and ".join(difference.figure.title.split(",")[0].lower() for difference in shown)
 
 
 def _groups(pairs: Pairs) -> list[Group]:
@@ -93,9 +92,9 @@ def _scatter(difference: Difference, groups: list[Group], pairs: Pairs) -> Panel
     ends = np.array(limits or (0.0, 1.0))
     equal = Line(x=ends, y=ends, label="no difference", colour="black", style="dash")
     return Panel(
-        title=difference.figure.name,
-        x_label=f"In {pairs.first.letter} [{difference.figure.unit}]",
-        y_label=f"In {pairs.other.letter} [{difference.figure.unit}]",
+        title=difference.figure.title,
+        x_label=f"In {pairs.first.letter}{difference.figure.bracket}",
+        y_label=f"In {pairs.other.letter}{difference.figure.bracket}",
         lines=[equal, *_marks(difference.before, difference.after, groups)],
         x_range=limits,
         y_range=limits,
@@ -128,7 +127,7 @@ def _changes(difference: Difference, x: Array, x_label: str, groups: list[Group]
     return Panel(
         title="Difference",
         x_label=x_label,
-        y_label=f"Difference [{difference.figure.unit}]",
+        y_label=f"Difference{difference.figure.bracket}",
         lines=[zero, *_marks(x, difference.change, groups)],
         x_range=around(x),
     )
@@ -147,7 +146,7 @@ def _ranked(difference: Difference, groups: list[Group]) -> Panel:
     )
     return Panel(
         title="Difference",
-        x_label=f"Difference [{difference.figure.unit}]",
+        x_label=f"Difference{difference.figure.bracket}",
         y_label="Pairs below [%]",
         lines=[zero, *_marks(change, share, groups)],
         x_range=around(np.append(difference.known, 0.0)),

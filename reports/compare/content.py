@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from reports.compare.charts import pair_charts
 from reports.compare.configuration import configuration_table, software_table, trials_apart
-from reports.compare.figures import PAIRS_MIN, Difference, differences
+from reports.compare.figures import JUDGED, PAIRS_MIN, Difference, differences
 from reports.compare.pairs import SPEED_RATIO, Pairs, paired
 from reports.compare.runs import Run
 from reports.compare.tables import (
@@ -26,13 +26,7 @@ from reports.run.letterhead import letterhead
 TIME_OF_COMPUTING = "wall_time_s"
 """The column of a summary that differs between any two runs."""
 
-_CARDS = (
-    "fsc_percent",
-    "clearance_m",
-    "tracking_error_rms_m",
-    "crossing_interval_error",
-    "settling_time_s",
-)
+_CARDS = ("fsc_percent", *JUDGED)
 _CARDS_MAX = 3
 """Figures at the head of the report on two runs: the first of those that the flights have."""
 
@@ -219,7 +213,7 @@ def _difference_sentences(compared: Compared) -> str:
         else " These flights are no random sample: it says how far they agree, not what others would show."
     )
     same = [
-        of.figure.name.lower()
+        of.figure.title.lower()
         for name, of in compared.found.items()
         if of.is_none and name != "keepout_violations"
     ]
@@ -345,6 +339,6 @@ def _cards(compared: Compared, *, alone: bool) -> list[Card]:
         :_CARDS_MAX
     ]:
         figure = difference.figure
-        value = f"{signed(difference.median, figure.digits)} {figure.unit}"
-        cards.append(Card(f"{figure.name}: median of {other} − {first}", value))
+        value = f"{signed(difference.median, figure.digits)}{figure.after}"
+        cards.append(Card(f"{figure.title}: median of {other} − {first}", value))
     return cards

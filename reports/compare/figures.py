@@ -1,17 +1,17 @@
 """Figures of flights that are compared, and how far they differ between the flights of a pair."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 import pandas as pd
 
+from common.columns import Column
 from common.intervals import CONFIDENCE, quantile_interval
-from measurement.gases import MASS_PERCENT
+from common.run_layout import SUMMARY
 from reports.compare.pairs import Pairs
-from reports.monte_carlo.names import FIGURES, Figure
-from reports.run.columns import Array, clearance, column, interval_error
+from reports.run.columns import Array, is_figure, judged
+from reports.run.run_data import RunData
 
 PAIRS_MIN = 6
 """Pairs from which on a median has an interval: of fewer, all lie on one side of it more often than
@@ -19,76 +19,47 @@ in 5 %.
 """
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Measure:
-    """A figure of a flight.
+JUDGED = ("clearance_m", "tracking_error_rms_m", "crossing_interval_error", "settling_time_s")
+"""Figures that most reports judge: by them a flight differs much or little."""
 
-    Attributes
-    ----------
-    figure : its name and unit, and how it is written
-    values : of each row of a summary; not a number where a flight does not have it
+COMPARED = (
+    "min_distance_m",
+    "clearance_m",
+    "keepout_violations",
+    "crossing_interval_mean_s",
+    "crossing_interval_error",
+    "crossing_distance_mean_m",
+    "crossing_count",
+    "tracking_error_rms_m",
+    "settling_time_s",
+    "airspeed_error_rms_mps",
+    "altitude_error_max_m",
+    "bank_max_deg",
+    "guard_interventions",
+    "guard_time_s",
+    "duration_s",
+    "fsc_percent",
+    "fsc_error_percent",
+    "fsc_uncertainty_percent",
+)
+"""Figures of the flight itself that are compared, in the order they are shown."""
+
+
+def measures(runs: Iterable[RunData]) -> dict[str, Column]:
+    """Return the figures that are compared, by the names of the columns of ``differences.csv``: the
+    flight's own, and those of users' instruments and studies that hold numbers in every run that
+    has them.
     """
-
-    figure: Figure
-    values: Callable[[pd.DataFrame], Array]
-
-
-def _off_interval(rows: pd.DataFrame) -> Array:
-    off: Array = np.abs(interval_error(rows))
-    return off
-
-
-def _off_fuel(rows: pd.DataFrame) -> Array:
-    off: Array = np.abs(column(rows, "fsc_percent") - column(rows, "fsc_expected_percent"))
-    return off
-
-
-def _of(name: str, words: str, unit: str, digits: int) -> Measure:
-    return Measure(
-        figure=Figure(name=words, unit=unit, digits=digits), values=partial(column, name=name)
-    )
-
-
-MEASURES: Mapping[str, Measure] = {
-    "min_distance_m": Measure(
-        figure=FIGURES["min_distance_m"], values=partial(column, name="min_distance_m")
-    ),
-    "clearance_m": Measure(figure=FIGURES["clearance_m"], values=clearance),
-    "keepout_violations": _of("keepout_violations", "Keep-out violations", "-", 0),
-    "crossing_interval_mean_s": _of("crossing_interval_mean_s", "Mean crossing interval", "s", 3),
-    "crossing_interval_error": Measure(
-        figure=FIGURES["crossing_interval_error"], values=_off_interval
-    ),
-    "crossing_distance_mean_m": _of(
-        "crossing_distance_mean_m", "Mean distance of the crossings", "m", 1
-    ),
-    "crossing_count": _of("crossing_count", "Plume crossings after settling", "-", 0),
-    "tracking_error_rms_m": Measure(
-        figure=FIGURES["tracking_error_rms_m"], values=partial(column, name="tracking_error_rms_m")
-    ),
-    "settling_time_s": Measure(
-        figure=FIGURES["settling_time_s"], values=partial(column, name="settling_time_s")
-    ),
-    "airspeed_error_rms_mps": _of(
-        "airspeed_error_rms_mps", "Airspeed error, rms after settling", "m/s", 3
-    ),
-    "altitude_error_max_m": _of(
-        "altitude_error_max_m", "Altitude error, largest after settling", "m", 2
-    ),
-    "bank_max_deg": _of("bank_max_deg", "Largest bank", "deg", 1),
-    "guard_interventions": _of("guard_interventions", "Interventions of the guard", "-", 0),
-    "guard_time_s": _of("guard_time_s", "Time guarded", "s", 1),
-    "duration_s": _of("duration_s", "Flight time", "s", 1),
-    "fsc_percent": _of("fsc_percent", "Sulphur content found", MASS_PERCENT, 4),
-    "fsc_error_percent": Measure(
-        figure=Figure(name="Error of the sulphur content", unit=MASS_PERCENT, digits=4),
-        values=_off_fuel,
-    ),
-    "fsc_uncertainty_percent": _of(
-        "fsc_uncertainty_percent", "Uncertainty of the sulphur content, 1σ", MASS_PERCENT, 4
-    ),
-}
-"""By the names of the columns of ``differences.csv``, in the order they are shown."""
+    runs = list(runs)
+    added = {name: of for run in reversed(runs) for name, of in run.added(SUMMARY).items()}
+    numbers = [
+        name
+        for name in added
+        if all(is_figure(run.summary, name) for run in runs if name in run.summary)
+    ]
+    return {name: runs[0].column(name) for name in COMPARED} | {
+        name: added[name] for name in numbers
+    }
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -104,7 +75,7 @@ class Difference:
         of a sweep, count as one, with the mean of their differences
     """
 
-    figure: Figure
+    figure: Column
     before: Array
     after: Array
     median: float
@@ -139,9 +110,9 @@ def differences(pairs: Pairs) -> dict[str, Difference]:
     of them.
     """
     found = {}
-    for name, measure in MEASURES.items():
+    for name, figure in measures((pairs.first.data, pairs.other.data)).items():
         before, after = (
-            measure.figure.scale * measure.values(rows) for rows in (pairs.before, pairs.after)
+            figure.scale * judged(rows, name, figure) for rows in (pairs.before, pairs.after)
         )
         change = after - before
         known = np.isfinite(change)
@@ -154,7 +125,7 @@ def differences(pairs: Pairs) -> dict[str, Difference]:
             # many ties.
             interval = quantile_interval(samples, 0.5, CONFIDENCE)
             found[name] = Difference(
-                figure=measure.figure,
+                figure=figure,
                 before=before,
                 after=after,
                 median=float(np.median(samples)),

@@ -27,7 +27,7 @@ _ENTRIES = (
 )  # fmt: skip
 _COLUMNS = (
     "flight_id", "trial", "seed", "outcome", "message", "criteria_met", "kept_out", "keepout_violations", "keepout_radius_m",
-    "min_distance_m", "settling_time_s", "tracking_error_rms_m", "duration_s",
+    "min_distance_m", "settling_time_s", "duration_s",
 )  # fmt: skip
 """What a comparison needs of a manifest, and of a summary."""
 

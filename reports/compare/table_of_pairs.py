@@ -7,7 +7,7 @@ from pathlib import Path
 
 from common.text import cell
 from reports.compare.content import Compared
-from reports.compare.figures import MEASURES
+from reports.compare.figures import measures
 from reports.run.columns import met
 
 _NAMES = ("run", "directory", "flight_id", "trial", "seed", "criteria_met_first", "criteria_met")
@@ -17,7 +17,9 @@ def write_differences(compared: Sequence[Compared], path: Path) -> None:
     """Write a row per pair: names, and each figure in the first run, in the other, and its
     difference, empty where it has none.
     """
-    names = [name for name in MEASURES if any(name in of.found for of in compared)]
+    runs = [compared[0].pairs.first, *(of.pairs.other for of in compared)]
+    every = measures(run.data for run in runs)
+    names = [name for name in every if any(name in of.found for of in compared)]
     columns = [column for name in names for column in (f"{name}_first", name, f"{name}_difference")]
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")

@@ -4,28 +4,29 @@ changed.
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 
-from reports.compare.figures import MEASURES, Difference
+from common.columns import Column
+from reports.compare.figures import Difference, measures
 from reports.compare.pairs import Pairs
 from reports.compare.runs import Run
 from reports.document.axes import mark_text
 from reports.document.blocks import Table
 from reports.document.tables import ending, number
-from reports.monte_carlo.names import Figure
 from reports.run.columns import (
     Array,
     Mask,
     column,
     completed,
     count,
+    judged,
     kept_out,
     lost,
     met,
     was_flown,
+    worst,
 )
 
 LISTED_MAX = 40
@@ -45,32 +46,17 @@ _COUNTS: dict[str, Callable[[pd.DataFrame], Mask]] = {
 """What is counted of each run."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Whole:
-    """A figure of a whole run: its words, the measure that it is of, and what is taken of the
-    flights' figures.
+def _over_flights(figure: Column) -> dict[str, Callable[[Array], float]]:
+    """Return what is taken of a figure over all flights, by the words for it: the sum, where that
+    means something, else the median and, where there is a worse side, the worst.
     """
-
-    words: str
-    measure: str
-    taken: Callable[[Array], np.floating]
-
-
-_WHOLE = (
-    _Whole("Keep-out violations, all flights", "keepout_violations", np.sum),
-    _Whole("Closest approach of any flight", "min_distance_m", np.min),
-    _Whole("Distance kept beyond r_min, least", "clearance_m", np.min),
-    _Whole("Mean crossing interval off π/ω₀, worst", "crossing_interval_error", np.max),
-    _Whole("Tracking error, rms after settling, median", "tracking_error_rms_m", np.median),
-    _Whole("Tracking error, rms after settling, worst", "tracking_error_rms_m", np.max),
-    _Whole("Settling time, median", "settling_time_s", np.median),
-    _Whole("Settling time, longest", "settling_time_s", np.max),
-    _Whole("Plume crossings after settling, all flights", "crossing_count", np.sum),
-    _Whole("Time guarded, all flights", "guard_time_s", np.sum),
-    _Whole("Flight time, all flights", "duration_s", np.sum),
-    _Whole("Error of the sulphur content, median", "fsc_error_percent", np.median),
-    _Whole("Uncertainty of the sulphur content, 1σ, median", "fsc_uncertainty_percent", np.median),
-)
+    if figure.adds_up:
+        return {"all flights": lambda values: float(values.sum())}
+    taken: dict[str, Callable[[Array], float]] = {"median": lambda values: float(np.median(values))}
+    if figure.worse:
+        end = "least" if figure.worse == "lower" else "worst"
+        taken[end] = lambda values: worst(values, figure)
+    return taken
 
 
 def side_by_side(runs: Sequence[Run]) -> Table:
@@ -100,12 +86,12 @@ def side_by_side(runs: Sequence[Run]) -> Table:
                 *changes,
             ]
         )
-    for whole in _WHOLE:
-        figure = MEASURES[whole.measure].figure
-        known = [_known(whole, table) for table in tables]
-        values = [float(whole.taken(of)) if len(of) else None for of in known]
-        if any(value is not None for value in values):
-            unit = "" if figure.unit == "-" else f" [{figure.unit}]"
+    for name, figure in measures(run.data for run in runs).items():
+        known = [_known(table, name, figure) for table in tables]
+        for words, taken in _over_flights(figure).items():
+            values = [taken(of) if len(of) else None for of in known]
+            if all(value is None for value in values):
+                continue
             digits = _digits(figure, values)
             changes = [
                 _change(value, values[0], digits) if same and len(of) == len(known[0]) else "–"
@@ -113,7 +99,7 @@ def side_by_side(runs: Sequence[Run]) -> Table:
             ]
             rows.append(
                 [
-                    f"{whole.words}{unit}",
+                    f"{figure.title}, {words}{figure.bracket}",
                     *(number(value, _pattern(digits)) for value in values),
                     *changes,
                 ]
@@ -127,10 +113,9 @@ def side_by_side(runs: Sequence[Run]) -> Table:
     )
 
 
-def _known(whole: _Whole, rows: pd.DataFrame) -> Array:
-    """Return the figure of the flights that have it."""
-    measure = MEASURES[whole.measure]
-    values: Array = measure.figure.scale * measure.values(rows)
+def _known(rows: pd.DataFrame, name: str, figure: Column) -> Array:
+    """Return the figure of the flights that have it, in its unit."""
+    values: Array = figure.scale * judged(rows, name, figure)
     return values[np.isfinite(values)]
 
 
@@ -138,7 +123,7 @@ def _change(value: float | None, first: float | None, digits: int) -> str:
     return "–" if value is None or first is None else signed(value - first, digits)
 
 
-def _digits(figure: Figure, values: Sequence[float | None]) -> int:
+def _digits(figure: Column, values: Sequence[float | None]) -> int:
     """Return how many digits after the point show two of the least value: of 0.003 and 0.006, not
     0.00 and 0.01.
     """
@@ -186,7 +171,7 @@ def difference_table(pairs: Pairs, found: dict[str, Difference]) -> Table:
             else "–"
         )
         rows.append([
-            figure.name if figure.unit == "-" else f"{figure.name} [{figure.unit}]",
+            figure.row,
             f"{len(known):,}",
             *(number(median, _pattern(digits)) for median in medians),
             signed(difference.median, digits),

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from reports.compare.figures import Difference
+from reports.compare.figures import JUDGED, Difference
 from reports.compare.pairs import Pairs
 from reports.compare.runs import Run
 from reports.document.axes import cut_words, in_kilometres
@@ -26,9 +26,6 @@ from reports.run.time_history import (
     thinned,
     tracking_error,
 )
-
-_JUDGED = ("clearance_m", "crossing_interval_error", "tracking_error_rms_m", "settling_time_s")
-"""Figures by which a flight differs much or little."""
 
 _FAR = 1.6
 """Least end of the distances that are shown, over r_min [-]."""
@@ -51,7 +48,7 @@ def most_changed(pairs: Pairs, found: dict[str, Difference]) -> Chart | None:
         pairs.first.data.has_history(before) and pairs.other.data.has_history(after)
         for before, after in zip(pairs.names, map(str, pairs.after["flight_id"]), strict=True)
     ]
-    changes = {name: _relative(found[name]) for name in _JUDGED if name in found}
+    changes = {name: _relative(found[name]) for name in JUDGED if name in found}
     if not changes or not any(recorded):
         return None
     table = np.array(list(changes.values()))
@@ -87,10 +84,10 @@ def _state(pairs: Pairs, place: int) -> str:
 def _change(pairs: Pairs, place: int, difference: Difference) -> str:
     figure = difference.figure
     before, after = (
-        f"{values[place]:.{figure.digits}f} {figure.unit}"
+        f"{values[place]:.{figure.digits}f}{figure.after}"
         for values in (difference.before, difference.after)
     )
-    return f"{figure.name}: {before} in {pairs.first.letter}, {after} in {pairs.other.letter}"
+    return f"{figure.title}: {before} in {pairs.first.letter}, {after} in {pairs.other.letter}"
 
 
 def _chart(pairs: Pairs, place: int, why: str) -> Chart | None:

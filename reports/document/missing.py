@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 from common.run_layout import (
     BOUNDS,
+    COLUMNS,
     COMPARISON,
     COUNTEREXAMPLES,
     CROSSINGS,
@@ -29,6 +30,7 @@ _SHOWN: Mapping[str, str] = {
     SAMPLES: "figures over time, along the track, and of the regression",
     DESIGN_RECORD: "the autopilot: trims, margins, responses",
     BOUNDS: "bounds of the commands",
+    COLUMNS: "titles and units of figures, and those that users' parts add",
     COMPARISON: "comparisons",
     CROSSINGS: "crossings in the figures of single flights",
     INTERVENTIONS: "nothing: the report counts interventions by flight",

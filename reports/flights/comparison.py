@@ -47,6 +47,8 @@ one.
 _FLIGHTS_MAX = 4
 """Flights that have a panel with their comparisons."""
 
+_TRACKING = "tracking_error_rms_m"
+
 _ROWS_MAX = 60
 """Flights that are listed one by one; of more there is a row for each variant."""
 
@@ -222,11 +224,13 @@ def _table(trial: Trial, pairs: pd.DataFrame) -> Table:
             for base, row in trial.rows.set_index("flight_id", drop=False).iterrows()
         }
         return flight_table(
+            trial.run,
             pairs,
             "Variant, flight",
             lambda row: f"{row['variant']}, {names.get(row['base'], row['base'])}",
             caption="The same flights with parts changed, a row each, with their outcome.",
         )
+    beyond, tracking = trial.run.column("clearance_m"), trial.run.column(_TRACKING)
     rows = []
     for variant, flights in pairs.groupby("variant", sort=False):
         flown = flights_flown(flights)
@@ -235,12 +239,13 @@ def _table(trial: Trial, pairs: pd.DataFrame) -> Table:
             f"{len(flights)}",
             f"{total(flown, 'keepout_violations')}",
             number(least(clearance(flown)), "{:+.1f}"),
-            number(flown["tracking_error_rms_m"].median(), "{:.2f}"),
-            number(largest(column(flown, "tracking_error_rms_m")), "{:.2f}"),
+            tracking.text(flown[_TRACKING].median()),
+            tracking.text(largest(column(flown, _TRACKING))),
             f"{int(np.count_nonzero(met(flights)))}",
         ])  # fmt: skip
     head = [
-        "Variant", "Flights", "Keep-out violations", "Closest beyond r_min [m]", "Tracking rms, median [m]", "largest [m]", "Met",
+        "Variant", "Flights", "Keep-out violations", beyond.head,
+        f"{tracking.title}, median{tracking.bracket}", f"largest{tracking.bracket}", "Met",
     ]  # fmt: skip
     return Table(
         caption="Flights beside the same flights with some keys set otherwise.",

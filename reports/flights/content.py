@@ -9,6 +9,7 @@ from reports.design.section import innerloop_section
 from reports.document.blocks import Block, Findings, Section, Text
 from reports.document.chart import Chart
 from reports.finding.flights import finding_sections
+from reports.flights.added import added_sections
 from reports.flights.comparison import comparison_section
 from reports.flights.first_page import closest_and_typical, flights_in_words
 from reports.flights.names import flight_name, flown_elsewhere, swept_column, told_name
@@ -52,6 +53,7 @@ def flights_content(run: RunData) -> Findings:
         *sulphur_sections(run, name),
         _overview(trials),
         *(_trial(trial, only=len(trials) == 1) for trial in trials if len(trial.rows)),
+        *added_sections(run, trials, name),
         comparison_section(run, trials),
         Section(
             anchor="failed",
@@ -111,7 +113,12 @@ def _trial(trial: Trial, *, only: bool) -> Section:
         )
         table.append(
             flight_table(
-                trial.rows, head, name, caption=caption, flown_ratio=flown_elsewhere(trial)
+                trial.run,
+                trial.rows,
+                head,
+                name,
+                caption=caption,
+                flown_ratio=flown_elsewhere(trial),
             )
         )
     # The head of the report says what an only trial is.

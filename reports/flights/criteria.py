@@ -1,13 +1,14 @@
 """The criteria of a trial beside the keep-out area, and the worst that was measured."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypedDict
 
 import numpy as np
 import pandas as pd
 
+from common.columns import Column
 from reports.document.tables import beside_limit, limit
 from reports.run.columns import (
     Array,
@@ -15,7 +16,7 @@ from reports.run.columns import (
     column,
     completed,
     count,
-    interval_error,
+    judged,
     largest,
     was_flown,
 )
@@ -48,16 +49,6 @@ class Criterion:
     flown_failed: int = 0
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Measure:
-    """How a criterion on a figure is measured and written: by ``scale`` in ``unit``."""
-
-    what: str
-    values: Callable[[pd.DataFrame], Array]
-    unit: str
-    scale: float = 1.0
-
-
 class _Failed(TypedDict):
     """Flights that failed a criterion, or have no such figure; and those of them that were flown."""
 
@@ -65,48 +56,31 @@ class _Failed(TypedDict):
     flown_failed: int
 
 
-def _column(name: str) -> Callable[[pd.DataFrame], Array]:
-    return lambda rows: column(rows, name)
+_TRACKING = "tracking_error_rms_m"
 
-
-_MEASURES = {
-    "crossing_interval_error": _Measure(
-        what="Mean crossing interval off π/ω₀", values=lambda rows: np.abs(interval_error(rows)), unit="%", scale=100.0
-    ),
-    "tracking_error_rms_m": _Measure(
-        what="Tracking error, rms after settling", values=_column("tracking_error_rms_m"), unit="m"
-    ),
-    "airspeed_error_rms_mps": _Measure(
-        what="Airspeed error, rms after settling", values=_column("airspeed_error_rms_mps"), unit="m/s"
-    ),
-    "altitude_error_max_m": _Measure(
-        what="Altitude error, largest after settling", values=_column("altitude_error_max_m"), unit="m"
-    ),
-    "tracking_error_end_m": _Measure(
-        what="Tracking error at the end", values=_column("tracking_error_end_m"), unit="m"
-    ),
-    "resumes_within_periods": _Measure(
-        what="Next crossing after the last manoeuvre", values=_column("resume_periods"), unit="periods"
-    ),
-    "time_to_find_s": _Measure(what="Time to find the plume", values=_column("time_to_find_s"), unit="s"),
-}  # fmt: skip
-"""Criteria that are limits of a figure, in the order of the verdict's tiles."""
-
-MEASURED = tuple(_MEASURES)
-
-_AFTER_SETTLING = ("tracking_error_rms_m", "airspeed_error_rms_mps", "altitude_error_max_m")
+_AFTER_SETTLING = (_TRACKING, "airspeed_error_rms_mps", "altitude_error_max_m")
 """Criteria on what is measured after settling: they are judged where ``criteria.settles`` is true,
 and nowhere else.
 """
 
-_BETWEEN = {
-    "crossing_interval_s": _Measure(
-        what="Mean crossing interval", values=_column("crossing_interval_mean_s"), unit="s"
-    ),
-    "crossing_distance_m": _Measure(
-        what="Mean crossing distance", values=_column("crossing_distance_mean_m"), unit="m"
-    ),
+MEASURED = (
+    "crossing_interval_error",
+    *_AFTER_SETTLING,
+    "tracking_error_end_m",
+    "resumes_within_periods",
+    "time_to_find_s",
+)
+"""Criteria that are limits of a figure, in the order of the verdict's tiles."""
+
+_FIGURES = {
+    "resumes_within_periods": "resume_periods",
+    "crossing_interval_s": "crossing_interval_mean_s",
+    "crossing_distance_m": "crossing_distance_mean_m",
+    "within_altitudes": "altitude_outside_s",
 }
+"""Figures that criteria are about, where they have another name."""
+
+_BETWEEN = ("crossing_interval_s", "crossing_distance_m")
 """Criteria that a figure lies between two limits."""
 
 _DEMAND = {"law_within_heading_rate_max": "≤ ω_max", "law_beyond_heading_rate_max": "> ω_max"}
@@ -122,13 +96,6 @@ _BESIDE_VESSEL = (
 
 _SCALED = ", scaled to the aircraft"
 """What is said of a limit that is not the default, and that the scenario does not set."""
-
-_OUTSIDE = _Measure(
-    what="Time outside the altitudes of the scenario",
-    values=_column("altitude_outside_s"),
-    unit="s",
-)
-"""Of the criterion that altitudes are kept: it has no limit of its own."""
 
 
 def criteria_of(trial: Trial) -> list[Criterion]:
@@ -154,38 +121,47 @@ def switched_off(trials: Sequence[Trial]) -> list[tuple[str, str]]:
 
     Without the tracking error, which is a figure of its own whether or not it is limited.
     """
-    judged = {
-        "tracking_error_rms_m",
+    told = {
+        _TRACKING,
         *(criterion.key for trial in trials for criterion in criteria_of(trial)),
     }
     by_default = {
         str(of["key"]) for trial in trials for of in trial.parameters() if of.get("default")
     }
     figures = []
-    for key, measure in _MEASURES.items():
-        worst = largest(np.concatenate([measure.values(trial.rows) for trial in trials]))
-        if key not in judged and f"criteria.{key}" in by_default and worst is not None:
-            figures.append(
-                (f"{measure.what}, worst", f"{limit(measure.scale * worst)} {measure.unit}")
-            )
+    for key in MEASURED:
+        of = _column(trials[0], key) if trials else Column()
+        worst = largest(np.concatenate([_values(trial, trial.rows, key) for trial in trials]))
+        if key not in told and f"criteria.{key}" in by_default and worst is not None:
+            figures.append((f"{of.title}, worst", f"{limit(of.scale * worst)}{of.after}"))
     return figures
 
 
 def _criterion(trial: Trial, key: str, value: Any) -> Criterion:
-    if key in _MEASURES:
-        found = _figure(_judged(trial.rows, key), key, float(value), _MEASURES[key])
+    if key in MEASURED:
+        found = _figure(trial, _judged(trial.rows, key), key, float(value))
         return (
             replace(found, limit=f"{found.limit}{_SCALED}")
             if trial.is_scaled(f"criteria.{key}")
             else found
         )
     if key in _BETWEEN:
-        return _between(trial, key, value, _BETWEEN[key])
+        return _between(trial, key, value)
     if key == "modes_at_end":
         return _modes(trial, [str(mode) for mode in value])
     if key == "within_altitudes":
-        return _figure(trial.rows, key, 0.0, _OUTSIDE)
+        return _figure(trial, trial.rows, key, 0.0)
     return _demand(trial, key)
+
+
+def _column(trial: Trial, key: str) -> Column:
+    """Return the figure that a criterion is about."""
+    return trial.run.column(_FIGURES.get(key, key))
+
+
+def _values(trial: Trial, rows: pd.DataFrame, key: str) -> Array:
+    """Return it of some flights, as it is judged."""
+    return judged(rows, _FIGURES.get(key, key), _column(trial, key))
 
 
 def _judged(rows: pd.DataFrame, key: str) -> pd.DataFrame:
@@ -199,14 +175,14 @@ def _judged(rows: pd.DataFrame, key: str) -> pd.DataFrame:
     )
 
 
-def _between(trial: Trial, key: str, limits: Sequence[float], measure: _Measure) -> Criterion:
+def _between(trial: Trial, key: str, limits: Sequence[float]) -> Criterion:
     low, high = (float(bound) for bound in limits)
-    measured = measure.values(trial.rows)
+    of, measured = _column(trial, key), _values(trial, trial.rows, key)
     return Criterion(
         key=key,
-        what=measure.what,
-        limit=f"{low:g} to {high:g} {measure.unit}",
-        worst=f"{_ends(measured, low, high)} {measure.unit}"
+        what=of.title,
+        limit=f"{low:g} to {high:g}{of.after}",
+        worst=f"{_ends(measured, low, high)}{of.after}"
         if np.isfinite(measured).any()
         else "none measured",
         **_failed(~((low <= measured) & (measured <= high)), trial.rows),
@@ -242,22 +218,22 @@ def _demand(trial: Trial, key: str) -> Criterion:
     )
 
 
-def _figure(rows: pd.DataFrame, key: str, value: float, measure: _Measure) -> Criterion:
-    measured = measure.values(rows)
+def _figure(trial: Trial, rows: pd.DataFrame, key: str, value: float) -> Criterion:
+    of, measured = _column(trial, key), _values(trial, rows, key)
     known = measured[np.isfinite(measured)]
     worst = float(known.max()) if len(known) else float("nan")
-    bound = measure.scale * value
-    shown = _rounded(measure.scale * worst, bound) if len(known) else worst
+    bound = of.scale * value
+    shown = _rounded(of.scale * worst, bound) if len(known) else worst
     # What is met may be written as the limit; what is not may not.
     words = (
-        f"{beside_limit(shown, bound) if shown > bound else limit(shown)} {measure.unit}"
+        f"{beside_limit(shown, bound) if shown > bound else limit(shown)}{of.after}"
         if len(known)
         else "none measured"
     )
     return Criterion(
         key=key,
-        what=measure.what,
-        limit=f"≤ {limit(measure.scale * value)} {measure.unit}",
+        what=of.title,
+        limit=f"≤ {limit(of.scale * value)}{of.after}",
         worst=words,
         **_failed(~(measured <= value), rows),
         fraction=worst / value if value else float("nan"),

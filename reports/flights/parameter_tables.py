@@ -31,11 +31,12 @@ def parameter_blocks(run: RunData, trials: list[Trial]) -> list[Block]:
     if len(trials) == 1 and trials[0].swept and len(trials[0].flown):
         blocks += [
             flight_table(
+                run,
                 trials[0].flown,
                 *swept_column(trials[0]),
                 OSCILLATION_COLUMNS,
                 flown_ratio=flown_elsewhere(trials[0]),
-                caption="The reference's oscillation in each flight; equation numbers are the paper's.",
+                caption="The reference's oscillation in each flight; by equations (6), (8) and (10) of the paper.",
             ),
         ]
     if len(trials) == 1:

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from common.run_layout import FLIGHTS
 from reports.document.axes import in_kilometres
 from reports.document.chart import Chart, Line, Panel, Style
 from reports.document.palette import Meaning
@@ -12,7 +13,7 @@ from reports.flights.flight_view import FlightView
 from reports.flights.names import flight_name
 from reports.flights.tracks import track_chart
 from reports.flights.trials.crossing_gaps import crossing_gap, gap_words
-from reports.run.columns import NOTICEABLE, Array, column
+from reports.run.columns import NOTICEABLE, Array, column, is_figure
 from reports.run.flight_config import keepout_shape, source_height
 from reports.run.time_history import (
     ERROR_MIN,
@@ -60,9 +61,10 @@ class _Histories:
             self._bank_panel, self._airspeed_panel, self._altitude_panel, self._mode_panel,
         ]  # fmt: skip
         trial, bands = self._view.trial, self._view.bands()
+        own = (make() for make in makers)
         panels = [
             replace(in_kilometres(panel), bands=bands)
-            for panel in (make() for make in makers)
+            for panel in (*own, *self._added_panels())
             if panel is not None
         ]
         columns = 2 if len(panels) <= _TWO_COLUMNS else 3
@@ -270,6 +272,24 @@ class _Histories:
             lines=[*lines, self._line(altitude)],
             y_range=y_range,
         )
+
+    def _added_panels(self) -> list[Panel]:
+        """Return what users' instruments read, a panel each, of columns with any number."""
+        run, samples = self._view.trial.run, self._view.samples
+        declared = run.columns.get(FLIGHTS, samples)
+        # Of an instrument whose objects alone have columns, the run says nothing before it flies.
+        undeclared = {
+            name: run.column(name, FLIGHTS) for name in map(str, samples) if name not in declared
+        }
+        return [
+            Panel(
+                x_label=_TIME,
+                y_label=of.label,
+                lines=[self._line(of.scale * column(samples, name))],
+            )
+            for name, of in (run.added(FLIGHTS) | undeclared).items()
+            if is_figure(samples, name)
+        ]
 
     def _mode_panel(self) -> Panel | None:
         """Return the modes that occur, a row each, by name if the run has names; None for a flight

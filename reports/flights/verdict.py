@@ -56,8 +56,7 @@ _COMMAND, _DEMAND = (
 )
 """Names of figures."""
 
-_ERROR = "Tracking error, rms after settling"
-"""Name of a figure, which goes on where it is of several flights."""
+_TRACKING = "tracking_error_rms_m"
 
 _QUANTILE, _QUANTILE_OF = 0.99, 100
 """Fraction of flights whose tracking error is no larger than the one that is shown, and flights of
@@ -295,6 +294,8 @@ def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[Car
         _worst([criterion for trial in trials for criterion in criteria_of(trial)], key)
         for key in MEASURED
     ]
+    error = trials[0].run.column(_TRACKING).title
+    told = any(of and _tells_of_all(of.name, error, len(flown)) for of in worst)
     figures = [
         *(
             [Card("Keep-out violations", f"{violations:,}", "0", violations == 0)]
@@ -329,7 +330,7 @@ def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[Car
         *_premise_cards(flown),
         *([Card("Plume crossings after settling", f"{crossings:,}")] if crossings else []),
         *(Card(name, worst) for name, worst in switched_off(trials)),
-        *_tracking(flown, told=any(of and _tells_of_all(of.name, len(flown)) for of in worst)),
+        *_tracking(flown, error, told=told),
         Card(_COMMAND, "none")
         if command is None
         else Card(_COMMAND, f"{command:.3f}", "≤ 1", command <= 1.0 + ROUNDING),
@@ -372,27 +373,27 @@ def _closest_figure(trials: list[Trial], beside: pd.DataFrame) -> Card:
     return Card(name, f"{approach(distance, radius)} m", f"≥ {radius:g} m", distance >= radius)
 
 
-def _tells_of_all(name: str, flights: int) -> bool:
+def _tells_of_all(name: str, error: str, flights: int) -> bool:
     """Return whether the figure of a criterion is the tracking error of all flights."""
-    return name.startswith(_ERROR) and (flights == 1 or _LIMITED not in name)
+    return name.startswith(error) and (flights == 1 or _LIMITED not in name)
 
 
-def _tracking(flown: pd.DataFrame, *, told: bool) -> list[Card]:
+def _tracking(flown: pd.DataFrame, error: str, *, told: bool) -> list[Card]:
     """Return the tracking error of nearly all flights that settled, whether or not a criterion asks
     for it.
 
     Of few flights there is no such quantile, and the largest alone is shown, unless that has been
     told.
     """
-    errors = column(flown, "tracking_error_rms_m")
+    errors = column(flown, _TRACKING)
     known = errors[np.isfinite(errors)]
     if not len(known):
         return []
     if len(known) < _QUANTILE_OF:
-        name = f"{_ERROR}, largest of the flights" if len(known) > 1 else _ERROR
+        name = f"{error}, largest of the flights" if len(known) > 1 else error
         return [] if told else [Card(name, f"{known.max():.3g} m")]
     high = float(np.quantile(known, _QUANTILE))
-    name = f"{_ERROR}: {percent(_QUANTILE)} quantile of the flights, and their largest"
+    name = f"{error}: {percent(_QUANTILE)} quantile of the flights, and their largest"
     return [Card(name, f"{high:.3g} m, largest {known.max():.3g} m")]
 
 

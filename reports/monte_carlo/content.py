@@ -25,7 +25,9 @@ def monte_carlo_sections(run: RunData) -> list[Section]:
     if statistics is None:
         return []
     if statistics.get("method") == "subset":
-        return subset_sections(statistics, documented_units(run.manifest))
+        return subset_sections(
+            statistics, documented_units(run.manifest), run.column("clearance_m")
+        )
     return [
         Section(
             anchor="study",
@@ -107,7 +109,7 @@ def _spread(run: RunData, statistics: dict[str, Any]) -> list[Block]:
     )
     return [
         Text(text),
-        quantile_table(statistics, several_radii=several),
+        quantile_table(run, statistics, several_radii=several),
         *spread_charts(run, statistics),
     ]
 
@@ -128,7 +130,7 @@ def _drivers(run: RunData, statistics: dict[str, Any]) -> list[Block]:
             if any(found["inputs"] for found in statistics["sensitivity"].values())
             else []
         ),
-        *(Text(line) for line in left_out_rows(statistics["sensitivity"])),
-        *driver_charts(statistics),
+        *(Text(line) for line in left_out_rows(run, statistics["sensitivity"])),
+        *driver_charts(run, statistics),
         *scatter_charts(run, statistics),
     ]

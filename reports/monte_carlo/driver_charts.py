@@ -13,8 +13,6 @@ from reports.document.chart import Chart, Line, Panel
 from reports.document.palette import Meaning
 from reports.document.panels import Group, beyond_label, capped, level, strips
 from reports.monte_carlo.names import (
-    CLEARANCE,
-    FIGURES,
     Units,
     documented_units,
     input_label,
@@ -36,10 +34,12 @@ SCATTERED = 4
 """Inputs that the clearance is shown over."""
 
 
-def driver_charts(statistics: dict[str, Any]) -> list[Chart]:
+def driver_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
     """Return bars of the sensitivity indices of each figure that has any, the largest delta first."""
     return [
-        _bars(key, found) for key, found in statistics["sensitivity"].items() if found["inputs"]
+        _bars(key, run.column(key).title, found)
+        for key, found in statistics["sensitivity"].items()
+        if found["inputs"]
     ]
 
 
@@ -54,18 +54,16 @@ def not_shown(more: int, measure: str) -> str:
     )
 
 
-def _bars(key: str, found: dict[str, Any]) -> Chart:
+def _bars(key: str, title: str, found: dict[str, Any]) -> Chart:
     inputs = found["inputs"][:INPUTS_MAX]
     more = len(found["inputs"]) - len(inputs)
     of = f" of {found['known']:,}" if found["known"] > found["flights"] else ""
     names = [input_name(index["key"]) for index in inputs]
     return Chart(
         name=f"drivers-{key.replace('_', '')}",
-        caption=f"{FIGURES[key].name}: {found['flights']:,} flights{of}." + not_shown(more, "δ"),
+        caption=f"{title}: {found['flights']:,} flights{of}." + not_shown(more, "δ"),
         panels=[
-            _index_panel(
-                inputs, "delta", found["delta_floor"], "Borgonovo's δ [-]", names, FIGURES[key].name
-            ),
+            _index_panel(inputs, "delta", found["delta_floor"], "Borgonovo's δ [-]", names, title),
             _index_panel(
                 inputs,
                 "first_order",
@@ -143,15 +141,15 @@ def scatter_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
     caption = "Closest approach of each flight beyond r_min, over the inputs with the largest δ."
     if len(shown) < len(measured):
         caption += f" {len(shown):,} of {len(measured):,} flights are shown, the {NEAREST} nearest among them."
-    units = documented_units(run.manifest)
+    units, label = documented_units(run.manifest), run.column("clearance_m").label
     figures = [
-        _scatter(sampled[key], near, groups, units)
+        _scatter(sampled[key], near, groups, units, label)
         for key in keys
         if pd.api.types.is_numeric_dtype(sampled[key])
     ]
     # Words beside an axis are wide: below each other, not beside, these panels have room for them.
     words = [
-        _strips(sampled[key], near, groups)
+        _strips(sampled[key], near, groups, label)
         for key in keys
         if not pd.api.types.is_numeric_dtype(sampled[key])
     ]
@@ -168,7 +166,9 @@ def scatter_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
     return [chart for chart in charts if chart.panels]
 
 
-def _scatter(values: "pd.Series[Any]", near: Array, groups: Sequence[Group], units: Units) -> Panel:
+def _scatter(
+    values: "pd.Series[Any]", near: Array, groups: Sequence[Group], units: Units, y_label: str
+) -> Panel:
     x = values.to_numpy(dtype=np.float64)
     lines, top = capped(x, near, groups, float("nan"), unit="m")
     bottom = min(0.0, float(near.min()))
@@ -176,13 +176,13 @@ def _scatter(values: "pd.Series[Any]", near: Array, groups: Sequence[Group], uni
     y_range = (bottom - 0.05 * (top - bottom), top)
     return Panel(
         x_label=input_label(str(values.name), units),
-        y_label=CLEARANCE,
+        y_label=y_label,
         lines=lines,
         y_range=y_range,
     )
 
 
-def _strips(values: "pd.Series[Any]", near: Array, groups: Sequence[Group]) -> Panel:
+def _strips(values: "pd.Series[Any]", near: Array, groups: Sequence[Group], x_label: str) -> Panel:
     """Return a row of flights for each word, those far above all others at the edge."""
     _, top = capped(near, near, groups, float("nan"))
     beyond = near > top
@@ -191,9 +191,7 @@ def _strips(values: "pd.Series[Any]", near: Array, groups: Sequence[Group]) -> P
         *([(beyond, beyond_label(near[beyond], "m"), "black")] if beyond.any() else []),
     ]
     words, label = [str(value).replace("_", " ") for value in values], input_name(str(values.name))
-    return strips(
-        np.minimum(near, top), words, CLEARANCE, label, shown, [(0.0, "r_min")], named=True
-    )
+    return strips(np.minimum(near, top), words, x_label, label, shown, [(0.0, "r_min")], named=True)
 
 
 def thinned(near: Array) -> npt.NDArray[np.int64]:

@@ -5,15 +5,15 @@ hundred points.
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
+from common.columns import Column
 from common.intervals import percent
 from reports.document.chart import Chart, Line, Panel
 from reports.document.palette import Meaning
 from reports.document.panels import histogram
 from reports.document.tables import number
-from reports.monte_carlo.names import CLEARANCE, FIGURES
-from reports.run.columns import Array, clearance, column, interval_error, radii_differ
+from reports.monte_carlo.names import FROM_THE_CENTRE
+from reports.run.columns import Array, clearance, figure, radii_differ
 from reports.run.run_data import RunData
 
 CURVE_POINTS = 400
@@ -31,7 +31,9 @@ def spread_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
     rows = run.summary
     near = clearance(rows)
     counted_near = histogram(
-        [(_within(near, lowest=0.0), "flights", Meaning.FLOWN)], CLEARANCE, [(0.0, "r_min")]
+        [(_within(near, lowest=0.0), "flights", Meaning.FLOWN)],
+        run.column("clearance_m").label,
+        [(0.0, "r_min")],
     )
     if counted_near is None:
         return []
@@ -41,19 +43,15 @@ def spread_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
         " and the fraction of flights that came as near or nearer, with the intervals of its quantiles. The latter's ordinate is"
         f" logarithmic to show the few nearest, and its abscissa ends at the nearest {percent(_NEARER)} of the flights:"
         f" the farthest came to {number(np.nanmax(near), '{:.0f} m')}.",
-        panels=[counted_near, _tail(near, statistics)],
+        panels=[counted_near, _tail(near, statistics, run.column("clearance_m"))],
         columns=2,
         panel_height=0.4,
     )
-    values = {
-        "crossing_interval_error": interval_error(rows),
-        "tracking_error_rms_m": column(rows, "tracking_error_rms_m"),
-        **_crossing(rows),
-        "settling_time_s": column(rows, "settling_time_s"),
-    }
+    without = FROM_THE_CENTRE if radii_differ(rows) else ("min_distance_m", "crossing_clearance_m")
     counted = [
-        _counted(key, figure, statistics["figures"][key]["quantiles"])
-        for key, figure in values.items()
+        _counted(run.column(name), figure(rows, name), found["quantiles"])
+        for name, found in statistics["figures"].items()
+        if name not in (*without, "clearance_m")
     ]
     panels = [panel for panel in counted if panel is not None]
     others = Chart(
@@ -67,13 +65,6 @@ def spread_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
     return [kept, *([others] if panels else [])]
 
 
-def _crossing(rows: pd.DataFrame) -> dict[str, Array]:
-    """Return each flight's nearest crossing, beyond its own r_min where these differ."""
-    if radii_differ(rows):
-        return {"crossing_clearance_m": column(rows, "crossing_clearance_min_m")}
-    return {"crossing_distance_min_m": column(rows, "crossing_distance_min_m")}
-
-
 def _within(values: Array, lowest: float = _SHOWN) -> Array:
     """Return known values, a fraction of the ``lowest`` and ``_SHOWN`` of the highest moved to
     where the others end.
@@ -82,23 +73,22 @@ def _within(values: Array, lowest: float = _SHOWN) -> Array:
     return np.clip(known, *np.quantile(known, [lowest, 1.0 - _SHOWN])) if len(known) else known
 
 
-def _counted(key: str, values: Array, quantiles: list[dict[str, Any]]) -> Panel | None:
-    figure = FIGURES[key]
+def _counted(of: Column, values: Array, quantiles: list[dict[str, Any]]) -> Panel | None:
     label = "quantiles 5 %, 50 %, 95 %"
     marks = [
-        (figure.scale * q["value"], label)
+        (of.scale * q["value"], label)
         for q in quantiles
         if q["probability"] in (0.05, 0.5, 0.95) and q["value"] is not None
     ]
     return histogram(
-        [(figure.scale * _within(values), "flights", Meaning.FLOWN)],
-        figure.label,
+        [(of.scale * _within(values), "flights", Meaning.FLOWN)],
+        of.label,
         marks,
         upright_colour="black",
     )
 
 
-def _tail(near: Array, statistics: dict[str, Any]) -> Panel:
+def _tail(near: Array, statistics: dict[str, Any], of: Column) -> Panel:
     x, fraction = cumulative(near)
     every = statistics["figures"]["clearance_m"]["quantiles"]
     quantiles = [q for q in every if q["probability"] <= 0.5 and None not in (q["low"], q["high"])]
@@ -115,7 +105,7 @@ def _tail(near: Array, statistics: dict[str, Any]) -> Panel:
     far = float(np.quantile(near[np.isfinite(near)], _NEARER))
     nearest = min(0.0, float(x[0]))
     return Panel(
-        x_label=CLEARANCE,
+        x_label=of.label,
         y_label="Flights as near or nearer [%]",
         lines=[
             Line(x=x, y=100.0 * fraction, label="flights", colour=Meaning.FLOWN),

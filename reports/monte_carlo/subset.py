@@ -4,6 +4,7 @@ the inputs near it.
 
 from typing import Any
 
+from common.columns import Column
 from common.intervals import percent
 from reports.document.blocks import Block, Heading, Section, Table, Text
 from reports.document.tables import number
@@ -17,7 +18,7 @@ from there on.
 """
 
 
-def subset_sections(statistics: Record, units: Units) -> list[Section]:
+def subset_sections(statistics: Record, units: Units, clearance: Column) -> list[Section]:
     """Return the sections of a study by subset simulation."""
     return [
         Section(
@@ -27,7 +28,7 @@ def subset_sections(statistics: Record, units: Units) -> list[Section]:
             blocks=[
                 Text(probability_in_words(statistics)),
                 _probability_table(statistics),
-                *curve_chart(statistics),
+                *curve_chart(statistics, clearance),
                 Heading("How the flights ended"),
                 ending_table(statistics),
             ],

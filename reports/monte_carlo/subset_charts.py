@@ -6,17 +6,18 @@ from typing import Any
 
 import numpy as np
 
+from common.columns import Column
 from reports.document.chart import Chart, Line, Panel
 from reports.document.palette import Meaning
 from reports.monte_carlo.driver_charts import INPUTS_MAX, bar_line, not_shown
-from reports.monte_carlo.names import FIGURES, Units, input_label, input_name
+from reports.monte_carlo.names import Units, input_label, input_name
 from reports.run.columns import Array
 
 SHOWN = 4
 """Inputs whose distributions are shown."""
 
 
-def curve_chart(statistics: dict[str, Any]) -> list[Chart]:
+def curve_chart(statistics: dict[str, Any], clearance: Column) -> list[Chart]:
     """Return the probability of coming closer than a distance, over that distance; none if no
     distance was reached by all.
     """
@@ -28,7 +29,7 @@ def curve_chart(statistics: dict[str, Any]) -> list[Chart]:
     )
     floor = 0.5 * float(low.min())
     panel = Panel(
-        x_label=FIGURES["clearance_m"].label,
+        x_label=clearance.label,
         y_label="Probability of a flight that comes closer [-]",
         lines=[
             Line(

@@ -2,11 +2,13 @@
 
 from typing import Any
 
+from common.columns import Column
 from common.intervals import percent
 from common.run_layout import SUMMARY
 from reports.document.blocks import Table
 from reports.document.tables import pairs_table
-from reports.monte_carlo.names import FIGURES, FROM_THE_CENTRE, Figure, input_name
+from reports.monte_carlo.names import FROM_THE_CENTRE, input_name
+from reports.run.run_data import RunData
 
 Record = dict[str, Any]
 
@@ -72,13 +74,15 @@ def _flights(found: Record) -> str:
     )
 
 
-def quantile_table(statistics: Record, *, several_radii: bool) -> Table:
+def quantile_table(run: RunData, statistics: Record, *, several_radii: bool) -> Table:
     """Return quantiles of each figure, each with its interval; distances are beyond r_min where the
     flights have several.
     """
     without = FROM_THE_CENTRE if several_radii else ("crossing_clearance_m",)
     figures = {
-        figure: statistics["figures"][key] for key, figure in FIGURES.items() if key not in without
+        run.column(name): found
+        for name, found in statistics["figures"].items()
+        if name not in without
     }
     every = sorted(
         {quantile["probability"] for figure in figures.values() for quantile in figure["quantiles"]}
@@ -99,14 +103,14 @@ def quantile_table(statistics: Record, *, several_radii: bool) -> Table:
     )
 
 
-def _quantile(figure: Figure, quantile: Record | None) -> str:
+def _quantile(figure: Column, quantile: Record | None) -> str:
     if quantile is None or quantile["value"] is None:
         return "–"
     # The interval stands below its quantile: beside it there is no room for most.
     return f"{figure.text(quantile['value'])}\n({figure.text(quantile['low'])} to {figure.text(quantile['high'])})"
 
 
-def left_out_rows(sensitivity: Record) -> list[str]:
+def left_out_rows(run: RunData, sensitivity: Record) -> list[str]:
     """Return, in sentences, which figures have no indices and which inputs have none."""
     without: dict[str, list[str]] = {}
     for key, found in sensitivity.items():
@@ -115,7 +119,7 @@ def left_out_rows(sensitivity: Record) -> list[str]:
             # the same.
             reason = str(found["message"]).rpartition("; ")[2]
             flights = f"{found['flights']:,} flight{'s' * (found['flights'] != 1)}"
-            without.setdefault(reason, []).append(f"{FIGURES[key].name} ({flights})")
+            without.setdefault(reason, []).append(f"{run.column(key).title} ({flights})")
     lines = [
         f"No sensitivity indices of {'; '.join(names)}: {reason}."
         for reason, names in without.items()

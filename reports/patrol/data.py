@@ -80,7 +80,10 @@ class Patrols:
 
 def read_patrols(run: RunData) -> Patrols:
     """Return the patrols of a run."""
-    ships, phases = (read_table(run.path / name, columns=["patrol"]) for name in (SHIPS, PHASES))
+    ships, phases = (
+        read_table(run.path / name, run.columns.get(name), empty=("patrol",))
+        for name in (SHIPS, PHASES)
+    )
     return Patrols(
         run=run,
         patrols=[

@@ -1,9 +1,12 @@
 """Columns of a run's tables, as figures and truth values."""
 
+from collections.abc import Callable, Mapping
+
 import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
+from common.columns import Column
 from common.premises import EXCEEDED, UNEXPLAINED_VIOLATION, exceeded_terms
 
 Array = npt.NDArray[np.float64]
@@ -169,3 +172,37 @@ def interval_error(rows: pd.DataFrame) -> Array:
         - 1.0
     )
     return ratio
+
+
+_DERIVED: Mapping[str, Callable[[pd.DataFrame], Array]] = {
+    "clearance_m": clearance,
+    "crossing_interval_error": interval_error,
+    "crossing_clearance_m": lambda rows: column(rows, "crossing_clearance_min_m"),
+    "fsc_error_percent": lambda rows: (
+        column(rows, "fsc_percent") - column(rows, "fsc_expected_percent")
+    ),
+}
+"""Figures that follow from the summary, as the run's ``columns.json`` has them under ``derived``."""
+
+
+def figure(rows: pd.DataFrame, name: str) -> Array:
+    """Return a figure of each flight, as recorded: a column of the summary or one that follows."""
+    return _DERIVED[name](rows) if name in _DERIVED else column(rows, name)
+
+
+def judged(rows: pd.DataFrame, name: str, of: Column) -> Array:
+    """Return a figure as it is judged: of an error with a sign its size."""
+    values = figure(rows, name)
+    return np.abs(values) if of.worse == "off zero" else values
+
+
+def worst(values: Array, of: Column) -> float:
+    """Return the worst of known values, as they are judged."""
+    return float(values.min() if of.worse == "lower" else values.max())
+
+
+def is_figure(rows: pd.DataFrame, name: str) -> bool:
+    """Return whether a column holds numbers, and any at all."""
+    if name not in rows or pd.api.types.is_bool_dtype(rows[name]):
+        return False
+    return pd.api.types.is_numeric_dtype(rows[name]) and bool(np.isfinite(column(rows, name)).any())

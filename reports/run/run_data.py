@@ -1,6 +1,7 @@
 """A run directory as read from disk."""
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -9,10 +10,13 @@ import numpy as np
 import pandas as pd
 import pyarrow as pa
 
+from common.columns import Column, Table, column_of, from_json
 from common.files import is_file
 from common.run_layout import (
+    COLUMNS,
     COMPARISON,
     CROSSINGS,
+    DERIVED,
     DESIGN_RECORD,
     DRAWS,
     FILES,
@@ -34,6 +38,9 @@ from reports.run.table_file import REMEDY, read_table
 WITHOUT_SUMMARY = ("design", "measurement")
 """Studies that have nothing to count."""
 
+WITH_SECTIONS = ("sniffer",)
+"""Instruments that have sections of their own in reports; the figures of others share one."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunData:
@@ -50,6 +57,7 @@ class RunData:
     innerloop : the autopilot's design record, or none if the run ended before
     statistics : what a Monte Carlo study shows and how sure that is, or none of any other run
     draws : of each flight, what was swept or sampled
+    columns : what the columns of its tables are, by file and name
     unread : files that are there and cannot be read, as found so far
     """
 
@@ -61,7 +69,21 @@ class RunData:
     innerloop: dict[str, Any] | None
     statistics: dict[str, Any] | None
     draws: pd.DataFrame
+    columns: Mapping[str, Table] = field(default_factory=dict)
     unread: set[str] = field(default_factory=set)
+
+    def column(self, name: str, table: str = SUMMARY) -> Column:
+        """Return a column of a table; of the summary also a figure that follows from it."""
+        derived = table == SUMMARY and name not in self.columns.get(SUMMARY, {})
+        return column_of(self.columns, DERIVED if derived else table, name)
+
+    def added(self, table: str) -> dict[str, Column]:
+        """Return the columns of a table that a user's instrument or study fills, by their names."""
+        return {
+            name: column
+            for name, column in self.columns.get(table, {}).items()
+            if column.part not in ("", *WITH_SECTIONS)
+        }
 
     def history(self, flight_id: str) -> pd.DataFrame | None:
         """Return a flight's time history, or None if it has none that can be read."""
@@ -190,15 +212,21 @@ def read_run(path: Path) -> RunData:
             f"'{path}' holds nothing finished (no {SUMMARY}); continue the run with --resume"
         )
     unread: set[str] = set()
+    columns = _columns(path, unread)
     return RunData(
         path=path,
         manifest=manifest,
-        summary=_whole(read_table(path / SUMMARY), path / SUMMARY, manifest),
-        comparison=read_table(path / COMPARISON),
-        crossings=read_table(path / CROSSINGS, columns=["flight_id", "time_s", "distance_m"]),
+        summary=_whole(read_table(path / SUMMARY, columns.get(SUMMARY)), path / SUMMARY, manifest),
+        comparison=read_table(path / COMPARISON, columns.get(COMPARISON)),
+        crossings=read_table(
+            path / CROSSINGS,
+            columns.get(CROSSINGS),
+            empty=("flight_id", "time_s", "distance_m"),
+        ),
         innerloop=_record(path / DESIGN_RECORD, unread),
         statistics=_record(path / STATISTICS, unread),
-        draws=read_table(path / DRAWS),
+        draws=read_table(path / DRAWS, columns.get(DRAWS)),
+        columns=columns,
         unread=unread,
     )
 
@@ -216,6 +244,15 @@ def _whole(summary: pd.DataFrame, path: Path, manifest: dict[str, Any]) -> pd.Da
             f"'{path}' has {len(summary):,} rows; by {MANIFEST} the run ended with {ended:,}: {REMEDY}"
         )
     return summary
+
+
+def _columns(path: Path, unread: set[str]) -> dict[str, dict[str, Column]]:
+    """Return what the columns of a run's tables are; nothing where that cannot be read."""
+    try:
+        return from_json(_record(path / COLUMNS, unread) or {})
+    except (ValueError, TypeError, AttributeError):
+        unread.add(COLUMNS)
+        return {}
 
 
 def _record(path: Path, unread: set[str]) -> dict[str, Any] | None:

@@ -2,10 +2,12 @@
 
 import csv
 import os
+from collections.abc import Sequence
 from pathlib import Path
 
 import pandas as pd
 
+from common.columns import Table
 from common.text import MARK, from_cell
 from measurement.tables import other_separator
 from reports.errors import ReportError
@@ -14,7 +16,7 @@ REMEDY = "repeat the run's command with --resume, which writes the tables anew"
 """What is done about tables that were changed."""
 
 _NAMES = ("flight_id", "trial", "variant", "beside", "confirms")
-"""Columns of names, which stay text where they are all digits."""
+"""Columns of names, which stay text where they are all digits, in a run that does not say so."""
 
 _TRUTH = ("True", "False", "", "nan", "None")
 """What a column of truth values may hold; of a flight without one it is empty."""
@@ -23,22 +25,31 @@ _LINE_MOST = 1_000_000
 """Bytes of a row at most."""
 
 
-def read_table(path: Path, columns: list[str] | None = None) -> pd.DataFrame:
-    """Return a table of a run; one without rows, with ``columns``, if the run has none.
+def read_table(
+    path: Path, columns: Table | None = None, *, empty: Sequence[str] = ("flight_id",)
+) -> pd.DataFrame:
+    """Return a table of a run; one without rows if the run has none.
+
+    Parameters
+    ----------
+    path : of the file
+    columns : by the run; those of text stay text where they are all digits
+    empty : columns of a table that the run does not have
 
     Raises
     ------
     ReportError : it cannot be read, is not separated by commas, or its last line is cut off
     """
     if not path.is_file():
-        return pd.DataFrame(columns=columns or ["flight_id"])
+        return pd.DataFrame(columns=list(empty))
     try:
         with path.open(encoding="utf-8") as file:
             head = file.readline()
         if words := other_separator(head):
             raise ReportError(f"'{path}' {words}; or {REMEDY}")
+        text = [name for name, column in (columns or {}).items() if column.kind == "text"]
         frame = pd.read_csv(
-            path, keep_default_na=False, na_values=[""], dtype=dict.fromkeys(_NAMES, str)
+            path, keep_default_na=False, na_values=[""], dtype=dict.fromkeys(text or _NAMES, str)
         )
     except ReportError:
         raise

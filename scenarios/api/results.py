@@ -9,7 +9,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from common.run_layout import REPORT_HTML
+from common.columns import DIMENSIONLESS, Table
+from common.run_layout import COMPARISON, CROSSINGS, DRAWS, FLIGHTS, REPORT_HTML, SUMMARY
 from scenarios.api.html import picture, table
 from scenarios.api.statistics import Statistics, statistics_of
 from scenarios.errors import InputError
@@ -34,8 +35,8 @@ class Run:
     """The results of a study. Made by ``run``.
 
     Tables are data frames with the units of their columns in ``attrs["units"]``, as
-    ``summary.attrs["units"]["min_distance_m"]``. What is changed in them changes no flight and no
-    report.
+    ``summary.attrs["units"]["min_distance_m"]``, and what they are in ``attrs["meanings"]``. What is
+    changed in them changes no flight and no report.
 
     Parameters
     ----------
@@ -66,22 +67,37 @@ class Run:
         """Return a row per flight of the study, or per trajectory and law of a study of
         convergence.
         """
-        return _with_units(self._data.summary.copy())
+        return self._explained(self._data.summary.copy(), SUMMARY)
 
     @functools.cached_property
     def comparison(self) -> "pd.DataFrame":
         """Return a row per flight of the comparisons, possibly none."""
-        return _with_units(self._data.comparison.copy())
+        return self._explained(self._data.comparison.copy(), COMPARISON)
 
     @functools.cached_property
     def crossings(self) -> "pd.DataFrame":
         """Return a row per crossing of the plume."""
-        return _with_units(self._data.crossings.copy())
+        return self._explained(self._data.crossings.copy(), CROSSINGS)
 
     @functools.cached_property
     def draws(self) -> "pd.DataFrame":
         """Return a row per flight: the keys that were swept or sampled at random."""
-        return _with_units(self._data.draws.copy())
+        return self._explained(self._data.draws.copy(), DRAWS)
+
+    @property
+    def columns(self) -> Mapping[str, Table]:
+        """Return what the columns are, by file and name: ``common.columns.Column`` has the title,
+        symbol, unit, digits, meaning, and which side is worse.
+        """
+        return self._data.columns
+
+    def _explained(self, frame: "pd.DataFrame", table: str) -> "pd.DataFrame":
+        """Return a table with units and meanings of its columns in its attributes."""
+        columns = {str(name): self._data.column(str(name), table) for name in frame}
+        numbers = frame.select_dtypes(include="number").columns
+        frame.attrs["units"] = {str(name): columns[str(name)].unit for name in numbers}
+        frame.attrs["meanings"] = {name: of.meaning for name, of in columns.items() if of.meaning}
+        return frame
 
     @property
     def flights(self) -> Mapping[str, "Flight"]:
@@ -161,11 +177,12 @@ class Flight:
     @functools.cached_property
     def row(self) -> "pd.Series[Any]":
         """Return its row of the summary; units are in ``attrs["units"]``."""
-        for rows in (self.run._data.summary, self.run._data.comparison):
+        data = self.run._data
+        for rows, name in ((data.summary, SUMMARY), (data.comparison, COMPARISON)):
             found = rows[rows["flight_id"] == self.flight_id]
             if len(found):
                 row = found.iloc[0].rename(self.flight_id)
-                row.attrs = dict(_with_units(found).attrs)
+                row.attrs = dict(self.run._explained(found, name).attrs)
                 return row
         raise InputError(
             f"the run in '{self.run.directory}' has no flight '{self.flight_id}'; its summary lists them"
@@ -180,22 +197,18 @@ class Flight:
         ------
         InputError : the run kept none of this flight
         """
-        from scenarios.simulation.record import MEANINGS
-        from scenarios.simulation.time_history import INSTRUMENT_MEANINGS
-
         history = self.run._data.history(self.flight_id)
         if history is None:
             raise InputError(
                 f"flight '{self.flight_id}' has no time history; raise histories, or fly it alone, with fly"
             )
-        meanings = MEANINGS | INSTRUMENT_MEANINGS
-        history.attrs["meanings"] = {name: meanings[name] for name in history if name in meanings}
-        return _with_units(history)
+        return self.run._explained(history, FLIGHTS)
 
     @functools.cached_property
     def crossings(self) -> "pd.DataFrame":
         """Return a row per crossing of the plume after settling."""
-        return _with_units(self.run._data.crossings_of(self.flight_id).reset_index(drop=True))
+        crossings = self.run._data.crossings_of(self.flight_id).reset_index(drop=True)
+        return self.run._explained(crossings, CROSSINGS)
 
     @property
     def met(self) -> bool:
@@ -266,7 +279,7 @@ class Flight:
             "tracking_error_rms_m",
         )
         rows = [
-            (name, _cell(self.row[name], units.get(name, "1")))
+            (name, _cell(self.row[name], units.get(name, DIMENSIONLESS)))
             for name in shown
             if name in self.row
         ]
@@ -282,16 +295,11 @@ class Flight:
 
 def _cell(value: object, unit: str) -> object:
     """Return a value as a notebook shows it: four digits, and the unit if there is one."""
-    return f"{value:.4g}{'' if unit == '1' else f' {unit}'}" if isinstance(value, float) else value
-
-
-def _with_units(frame: "pd.DataFrame") -> "pd.DataFrame":
-    """Return a table with the units of its columns of numbers in its attributes."""
-    from scenarios.simulation.record import unit_of
-
-    numbers = frame.select_dtypes(include="number").columns
-    frame.attrs["units"] = {str(name): unit_of(str(name).rpartition(".")[2]) for name in numbers}
-    return frame
+    return (
+        f"{value:.4g}{'' if unit == DIMENSIONLESS else f' {unit}'}"
+        if isinstance(value, float)
+        else value
+    )
 
 
 @contextmanager

@@ -9,8 +9,9 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Protocol
 
+from common.columns import Table, to_json
 from common.files import remove_reports, write_whole
-from common.run_layout import FILES
+from common.run_layout import COLUMNS, FILES
 from scenarios.engine.executor import Executor
 from scenarios.engine.journal import CONTINUE, Journal, is_full, unusable
 from scenarios.engine.memory import peak_memory
@@ -344,19 +345,22 @@ class _Execution:
         return fly
 
 
-def write_tables(
-    run: RunDirectory, journal: Journal, tables: Mapping[str, tuple[str, ...]]
-) -> None:
+def write_tables(run: RunDirectory, journal: Journal, tables: Mapping[str, Table]) -> None:
     """Write tables from the journal into the run directory; ``tables`` gives the columns of each
     file.
     """
     for name, columns in tables.items():
 
-        def write(path: Path, name: str = name, columns: tuple[str, ...] = columns) -> None:
+        def write(path: Path, name: str = name, columns: Table = columns) -> None:
             with path.open("w", encoding="utf-8", newline="") as file:
-                journal.export(name, columns, file)
+                journal.export(name, tuple(columns), file)
 
         write_whole(run.path / name, write)
+
+
+def write_columns(run: RunDirectory, tables: Mapping[str, Table]) -> None:
+    """Write what the columns of a run's tables are."""
+    run.write_json(run.path / COLUMNS, to_json(tables))
 
 
 def _explained(error: OSError | sqlite3.DatabaseError, run: RunDirectory) -> InputError:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from common.columns import Column, described
 from common.run_layout import SULPHUR_TABLE
 from measurement.errors import MeasurementError
 from measurement.sniffer.sniffer import Readings
@@ -24,20 +25,88 @@ if TYPE_CHECKING:
 _INTERVAL = 60.0
 """About the time between estimates of a flight [s]: the time to a verdict is known to that."""
 
-_SHOWN = ("fsc_percent", "noise_percent", "total_percent", "low_percent", "high_percent")
-
-FIGURES = (
-    "sensor", "fsc_fuel_percent", "fsc_expected_percent", "sulphur_limit_percent", "fsc_percent", "fsc_uncertainty_percent",
-    "fsc_noise_percent", "fsc_common_percent", "fsc_low_percent", "fsc_high_percent", "areas_fsc_percent",
-    "areas_fsc_uncertainty_percent", "areas_fsc_separate_percent",
-    "areas_fsc_noise_percent", "areas_fsc_low_percent", "areas_fsc_high_percent",
-    "sulphur_quality", "sulphur_reason", "sulphur_verdict", "probability_above", "verdict_2min", "verdict_time_s",
-    "co2_signal_to_noise", "so2_signal_to_noise", "sulphur_suspect", "suspect_false_alarm", "suspect_miss",
-)  # fmt: skip
+FIGURES = described(
+    {
+        "sensor": Column("preset of the sniffer, or the title of one's own", kind="text"),
+        "fsc_fuel_percent": Column(
+            "sulphur in the fuel, by mass", title="Sulphur in the fuel", digits=4
+        ),
+        "fsc_expected_percent": Column(
+            "fuel sulphur content that a perfect instrument measures",
+            title="Sulphur content that a perfect instrument finds",
+            digits=4,
+        ),
+        "sulphur_limit_percent": "limit of the sulphur content on which the verdict is given",
+        "fsc_percent": Column(
+            "fuel sulphur content by regression", title="Sulphur content found", digits=4
+        ),
+        "fsc_uncertainty_percent": Column(
+            "standard uncertainty of the fuel sulphur content",
+            title="Uncertainty of the sulphur content, 1σ",
+            digits=4,
+            worse="higher",
+        ),
+        "fsc_noise_percent": Column(
+            "part of the uncertainty that a longer measurement reduces",
+            title="Part of it by noise",
+            digits=4,
+            worse="higher",
+        ),
+        "fsc_common_percent": "part of the uncertainty that a longer measurement does not reduce",
+        "fsc_low_percent": "lower end of the 95 % interval",
+        "fsc_high_percent": "upper end of the 95 % interval",
+        "areas_fsc_percent": "fuel sulphur content by areas",
+        "areas_fsc_uncertainty_percent": "standard uncertainty of the fuel sulphur content by areas",
+        "areas_fsc_separate_percent": "fuel sulphur content by areas if passes did not overlap",
+        "areas_fsc_noise_percent": "part of that uncertainty that a longer measurement reduces",
+        "areas_fsc_low_percent": "lower end of the 95 % interval",
+        "areas_fsc_high_percent": "upper end of the 95 % interval",
+        "sulphur_quality": Column("class A, B or C of the result", kind="text"),
+        "sulphur_reason": Column("reason for a class other than A", kind="text"),
+        "sulphur_verdict": Column("above, below or open", kind="text"),
+        "probability_above": "probability that the fuel is above the limit",
+        "verdict_2min": Column("verdict after two minutes", kind="text"),
+        "verdict_time_s": "time from which on the verdict does not change any more",
+        "co2_signal_to_noise": "signal-to-noise ratio of the CO2 readings",
+        "so2_signal_to_noise": "signal-to-noise ratio of the SO2 readings",
+        "sulphur_suspect": Column(
+            "whether payload.rule reports the ship as suspect; empty without a rule, or of quality C",
+            title="Reported as suspect",
+            kind="truth",
+        ),
+        "suspect_false_alarm": Column(
+            "share of fuels at the rule's limit that it reports, with this uncertainty",
+            title="False alarms of the rule",
+            digits=3,
+        ),
+        "suspect_miss": Column(
+            "share of fuels of twice that limit that it does not report, with this uncertainty",
+            title="Misses of the rule",
+            digits=3,
+        ),
+    }
+)
 """Columns of the summary."""
 
 TABLES = {
-    SULPHUR_TABLE: ("elapsed_s", *_SHOWN, "quality", "passes", "verdict", "probability_above")
+    SULPHUR_TABLE: described(
+        {
+            "elapsed_s": "time since settling",
+            "fsc_percent": Column(
+                "fuel sulphur content from the readings up to then",
+                title="Sulphur content found",
+                digits=4,
+            ),
+            "noise_percent": "standard uncertainty by noise",
+            "total_percent": "standard uncertainty",
+            "low_percent": "lower end of the 95 % interval",
+            "high_percent": "upper end of the 95 % interval",
+            "quality": Column("class A, B or C", kind="text"),
+            "passes": "peaks of CO2 in the readings up to then, each of 5 times its noise or more",
+            "verdict": Column("above, below or open", kind="text"),
+            "probability_above": "probability that the fuel is above the limit",
+        }
+    )
 }
 """Columns of the table over time."""
 

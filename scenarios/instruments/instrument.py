@@ -1,12 +1,14 @@
 """Instruments on board: what they read goes into the time history."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 import numpy.typing as npt
 
+from common.columns import Column, Declared, described
+from common.provenance import without_folders
 from gnc.estimation.navigation import MeasuredMotion
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
@@ -26,10 +28,14 @@ class Instrument(Protocol):
 
     Attributes
     ----------
-    COLUMNS : of the time history that it fills; their names end in their units, as in ``so2_ppb``
+    COLUMNS : of the time history that it fills: a mapping from their names to ``Column`` of
+        ``common.columns``, or to their meanings, or their names alone, which end in their units, as
+        in ``so2_ppb``. Reports of a flight have a panel for each
     """
 
-    COLUMNS: tuple[str, ...]
+    @property
+    def COLUMNS(self) -> Collection[str]:  # noqa: N802 - of the class, in capitals
+        """Return the columns that it fills."""
 
     def read(
         self, time: float, motion: MeasuredMotion, sample: tuple[float, ...], /
@@ -69,15 +75,18 @@ class EvaluatedInstrument(Protocol):
     ``Instrument``.
 
     It may have ``FIGURES``, the columns of the summary that it fills, and ``TABLES``, the columns
-    of the tables that it fills, by file, beside those that name the flight. A figure that it does
-    not return is empty.
+    of the tables that it fills, by file, beside those that name the flight. Both are declared as
+    ``COLUMNS`` are; reports and comparisons show the figures. A figure that it does not return is
+    empty.
 
     Attributes
     ----------
-    COLUMNS : as of ``Instrument``
+    COLUMNS : same as ``Instrument``
     """
 
-    COLUMNS: tuple[str, ...]
+    @property
+    def COLUMNS(self) -> Collection[str]:  # noqa: N802 - of the class, in capitals
+        """Return the columns that it fills."""
 
     def evaluate(self, column: Callable[[str], Array], since: float, /) -> Evaluation:
         """Return what it makes of the flight.
@@ -119,29 +128,55 @@ class GasReader(Protocol):
         """Return what has been read since a time [s]."""
 
 
-def figures_of(instrument: Any) -> tuple[str, ...]:
-    """Return the columns of the summary that an instrument, or a class of instruments, fills."""
-    figures: tuple[str, ...] = getattr(instrument, "FIGURES", ())
+def figures_of(instrument: Any) -> Declared:
+    """Return the columns of the summary that an instrument, or a class of instruments, declares."""
+    figures: Declared = getattr(instrument, "FIGURES", ())
     return figures
 
 
-def tables_of(instrument: Any) -> Mapping[str, tuple[str, ...]]:
-    """Return the columns of the tables that an instrument, or a class of instruments, fills, by
+def tables_of(instrument: Any) -> Mapping[str, Declared]:
+    """Return the columns of the tables that an instrument, or a class of instruments, declares, by
     file.
     """
-    tables: Mapping[str, tuple[str, ...]] = getattr(instrument, "TABLES", {})
+    tables: Mapping[str, Declared] = getattr(instrument, "TABLES", {})
     return tables
 
 
-def evaluated_instruments(scenarios: Iterable[Scenario]) -> list[Any]:
-    """Return the instruments of scenarios that are evaluated after their flights, as classes, each
-    once.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Declarations:
+    """What the instruments of some scenarios fill: columns that bear the instrument's name.
+
+    Attributes
+    ----------
+    histories : of time histories, but those that objects alone have
+    figures : of the summary
+    tables : by file
+    """
+
+    histories: dict[str, Column] = field(default_factory=dict)
+    figures: dict[str, Column] = field(default_factory=dict)
+    tables: dict[str, dict[str, Column]] = field(default_factory=dict)
+
+
+def declarations(scenarios: Iterable[Scenario]) -> Declarations:
+    """Return what the instruments of scenarios fill, each instrument once.
 
     Raises
     ------
     PluginError : there is no such instrument
     """
-    found = {
+    named = {
         name: part for scenario in scenarios for name, part in scenario.payload.parts().items()
     }
-    return [part for part in found.values() if hasattr(part, "evaluate")]
+    found = Declarations()
+    for name, instrument in named.items():
+        part = without_folders(name)
+        # Objects may have columns of their own: a property of a class says nothing yet.
+        columns = getattr(instrument, "COLUMNS", ())
+        if isinstance(columns, Collection):
+            found.histories.update(described(columns, part=part))
+        if hasattr(instrument, "evaluate"):
+            found.figures.update(described(figures_of(instrument), part=part))
+            for file, declared in tables_of(instrument).items():
+                found.tables[file] = described(declared, part=part)
+    return found

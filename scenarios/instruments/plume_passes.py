@@ -5,6 +5,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from common.columns import Column, described
 from measurement.plume.fluctuating_plume import HIT, PlumeSample, passes
 
 Array = npt.NDArray[np.float64]
@@ -15,10 +16,20 @@ spreads from the axis.
 """
 
 
-PASS_FIGURES = (
-    "plume_axis_crossings", "smoke_passes", "hit_rate", "seconds_in_plume_s", "dose_per_pass_ppm_s", "axis_height_error_mean_m",
-    "axis_height_error_rms_m",
-)  # fmt: skip
+PASS_FIGURES = described(
+    {
+        "plume_axis_crossings": "crossings of the smoke's mean axis seen from above, in the time evaluated, with smoke or without",
+        "smoke_passes": "of those crossings the ones with smoke: once above exp(-2) of the concentration in the plume's centre",
+        "hit_rate": Column(
+            "of those crossings the share whose peak is above 0.6 of the concentration in the centre of the plume",
+            title="Hit rate",
+        ),
+        "seconds_in_plume_s": "time in which the concentration is above exp(-2) of that on the axis",
+        "dose_per_pass_ppm_s": "mean over plume_axis_crossings, with smoke or without, of the integral of CO2 above clean air",
+        "axis_height_error_mean_m": "mean height of plume_axis_crossings above the plume's own axis",
+        "axis_height_error_rms_m": "root mean square height of plume_axis_crossings above the plume's own axis",
+    }
+)
 """Columns of the summary."""
 
 

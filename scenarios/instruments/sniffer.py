@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from pydantic import BeforeValidator
 
+from common.columns import described
 from common.run_layout import SULPHUR_TABLE
 from common.text import did_you_mean
 from gnc.errors import InfeasibleError
@@ -139,15 +140,17 @@ class SnifferOnBoard:
     """Reads the exhaust along the flight."""
 
     SETTINGS = SnifferSettings
-    COLUMNS = (
-        *(f"{gas}_{UNITS[gas]}" for gas in GASES),
-        *(f"{gas}_reading_{UNITS[gas]}" for gas in GASES),
-        "co2_background_ppm",
-        "plume_across_m",
-        "plume_above_m",
-        "plume_fraction",
+    COLUMNS = described(
+        {f"{gas}_{UNITS[gas]}": "true concentration along the path" for gas in GASES}
+        | {f"{gas}_reading_{UNITS[gas]}": "reading, held until the next one" for gas in GASES}
+        | {
+            "co2_background_ppm": "true CO2 of the air without the exhaust",
+            "plume_across_m": "place across the plume's mean axis",
+            "plume_above_m": "height above the plume's mean axis",
+            "plume_fraction": "concentration over that in the centre of the plume",
+        }
     )
-    FIGURES = (*FIGURES, *PASS_FIGURES)
+    FIGURES = FIGURES | PASS_FIGURES
     TABLES = TABLES
 
     def __init__(self, scenario: Scenario, world: World, generator: np.random.Generator) -> None:

@@ -13,15 +13,6 @@ from scenarios.schema.sections.flight import FlightConfig
 
 Array = npt.NDArray[np.float64]
 
-FINDING_FIGURES = (
-    "orbit_at_s", "time_to_find_s", "found", "axis_height_3min_m", "axis_height_error_3min_m", "axis_height_deviation_3min_m",
-    "hit_rate_found", "axis_height_end_m", "axis_deviation_end_m", "axis_measurable_end", "altitude_outside_s", "enough",
-    "verdict_looks", "verdict_guard",
-)  # fmt: skip
-"""Columns of the summary of flights that search for the plume, are given its true axis, or end with
-a verdict.
-"""
-
 SIGNAL_TO_NOISE = 5.0
 """Of a reading, from which the plume counts as detected [-] (Kattner 2015, of CO2)."""
 

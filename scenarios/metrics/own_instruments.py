@@ -9,15 +9,15 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from common.columns import described
 from common.registry import PluginError
 from common.run_layout import TABLES, is_file_name
 from scenarios.errors import InputError
 from scenarios.instruments.instrument import EvaluatedInstrument, Evaluation, figures_of, tables_of
-from scenarios.metrics.columns import FLIGHT_COLUMNS, SUMMARY_COLUMNS
-from scenarios.metrics.finding import FINDING_FIGURES
+from scenarios.metrics.columns import FINDING_COLUMNS, FLIGHT_COLUMNS, SUMMARY_COLUMNS
 from scenarios.simulation.guard_belief import GuardBelief
 from scenarios.simulation.plume_readings import PlumeBelief
-from scenarios.simulation.record import MEANINGS
+from scenarios.simulation.record import HISTORY_COLUMNS
 from scenarios.world.own_part import asked, refuse_answer
 
 Array = npt.NDArray[np.float64]
@@ -41,8 +41,8 @@ def check_instruments(named: Iterable[tuple[str, Any]]) -> None:
     InputError : one fills a column, a figure or a table that is filled already, or declares what
         are no names
     """
-    columns = dict.fromkeys((*MEANINGS, *PlumeBelief.COLUMNS, *GuardBelief.COLUMNS), _FLIGHT)
-    figures = dict.fromkeys((*SUMMARY_COLUMNS, *FINDING_FIGURES), _FLIGHT)
+    columns = dict.fromkeys((*HISTORY_COLUMNS, *PlumeBelief.COLUMNS, *GuardBelief.COLUMNS), _FLIGHT)
+    figures = dict.fromkeys((*SUMMARY_COLUMNS, *FINDING_COLUMNS), _FLIGHT)
     tables = dict.fromkeys(TABLES, _RUN)
     for name, instrument in named:
         who = f"instrument '{name}'"
@@ -83,15 +83,19 @@ def _is_of_each_object(kind: type) -> bool:
     return "COLUMNS" in named or isinstance(getattr(kind, "COLUMNS", None), property)
 
 
-def _names(who: str, what: str, given: Any) -> tuple[str, ...]:
-    """Return names that an instrument declares."""
-    if isinstance(given, str):
+def _names(who: str, what: str, declared: Any) -> tuple[str, ...]:
+    """Return names of columns, or of tables, that an instrument declares."""
+    if isinstance(declared, str):
         raise InputError(
-            f"payload: {what} of {who} is the text {given!r}; give a tuple of names, as in ({given!r},)"
+            f"payload: {what} of {who} is the text {declared!r}; give a tuple of names, as in ({declared!r},)"
         )
-    given = tuple(given) if isinstance(given, Collection) else given
+    given = tuple(declared) if isinstance(declared, Collection) else declared
     if not isinstance(given, tuple) or not all(isinstance(name, str) and name for name in given):
         raise InputError(f"payload: {what} of {who} is {given!r}; give a tuple of names")
+    try:
+        described(declared if isinstance(declared, Mapping) else given)
+    except ValueError as error:
+        raise InputError(f"payload: {what} of {who}: {error}") from None
     return given
 
 

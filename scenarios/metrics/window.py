@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from common.columns import Column, described
 from scenarios.engine.task import Row
 from scenarios.metrics.figures import crossings_of, in_vessel_frame
 from scenarios.metrics.sample import rms
@@ -13,13 +14,36 @@ from scenarios.planning.flight_plan import FlightPlan
 from scenarios.simulation.outcome import Outcome
 from scenarios.simulation.record import FlightRecord
 
-WINDOW_COLUMNS = (
-    "window_s", "error_rms_m", "error_mean_m", "error_max_m", "effort_rms_rad_s", "excess_rms_rad_s", "saturated_share",
-    "guard_share", "crossings_per_minute", "crossing_distance_mean_m", "window_distance_min_m", "speed_ratio_mean",
-)  # fmt: skip
+WINDOW_COLUMNS = described(
+    {
+        "window_s": "time before the end of the flight over which it is evaluated",
+        "error_rms_m": "root mean square distance to the reference",
+        "error_mean_m": "mean distance to the reference",
+        "error_max_m": "largest distance to the reference",
+        "effort_rms_rad_s": "root mean square commanded heading rate",
+        "excess_rms_rad_s": "root mean square of the commanded heading rate less that of the reference",
+        "saturated_share": "share of the time in which the demand was limited to omega_max",
+        "guard_share": "share of the time in which the keep-out guard changed commands",
+        "crossings_per_minute": "crossings of the plume's axis in a minute",
+        "crossing_distance_mean_m": Column(
+            "mean distance of the crossings from the funnel",
+            title="Mean crossing distance",
+            digits=1,
+        ),
+        "window_distance_min_m": "closest approach, at the recorded samples",
+        "speed_ratio_mean": "mean speed ratio through the air",
+    }
+)
 """Of ``window_figures``, in order."""
 
-MEASURED_COLUMNS = ("plume_s_per_minute", "sulphur_information_per_minute")
+MEASURED_COLUMNS = described(
+    {
+        "plume_s_per_minute": "seconds in the plume in a minute",
+        "sulphur_information_per_minute": Column(
+            "1/sigma^2 of the sulphur content by noise, in a minute", unit="1/((% m/m)² min)"
+        ),
+    }
+)
 """Of ``measured_figures``, in order."""
 
 _SECONDS_PER_MINUTE = 60.0

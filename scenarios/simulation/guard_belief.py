@@ -4,31 +4,12 @@ are measured against it after the flight (``scenarios.metrics.premises``).
 
 import math
 
+from common.columns import described
 from gnc.estimation.error_budget import STILL, WindErrorByGusts
 from gnc.estimation.navigation import MeasuredMotion
 from gnc.guard.guard import KeepoutGuard
 from gnc.guidance import Guidance
 from scenarios.world.vessel import VesselTruth
-
-BELIEF_MEANINGS = {
-    "own_seen_north_m": "place of the UAV over the ground, as the guidance estimates it",
-    "own_seen_east_m": "place of the UAV over the ground, as the guidance estimates it",
-    "own_seen_course_rad": "course of the UAV through the mean air, as the guidance estimates it",
-    "own_seen_speed_mps": "speed of the UAV through the mean air, as the guidance estimates it",
-    "satellites_lost_s": "time since satellite navigation was lost, 0 while it works",
-    "wind_allowance_mps": "error of the wind allowed for while few measurements are in it",
-    "gust_in_wind_mps": "standard deviation of the estimated wind by gusts",
-    "gust_in_wind_covariance_m2_s2": "covariance of that error with the gust of the moment",
-    "gust_in_wind_gain_per_s": "share of that error that a second of measurements corrects",
-    "disc_north_m": "centre of the disc in which the vessel has least room, of those of the guard",
-    "disc_east_m": "centre of the disc in which the vessel has least room, of those of the guard",
-    "disc_radius_m": "radius of that disc",
-    "speed_fastest_mps": "fastest speed through the mean air that the guard predicts with",
-    "speed_slowest_mps": "slowest speed through the mean air that the guard predicts with",
-    "command_change": "largest recent change of command over a full reversal, as the guard has it",
-    "course_commanded_rad": "integral of the commanded heading rate over the mean air",
-}
-"""Columns of ``GuardBelief``, and what each is."""
 
 _EXACT_WIND = WindErrorByGusts(STILL)
 
@@ -43,7 +24,26 @@ class GuardBelief:
     time_step : of the guidance [s]
     """
 
-    COLUMNS = tuple(BELIEF_MEANINGS)
+    COLUMNS = described(
+        {
+            "own_seen_north_m": "place of the UAV over the ground, as the guidance estimates it",
+            "own_seen_east_m": "place of the UAV over the ground, as the guidance estimates it",
+            "own_seen_course_rad": "course of the UAV through the mean air, as the guidance estimates it",
+            "own_seen_speed_mps": "speed of the UAV through the mean air, as the guidance estimates it",
+            "satellites_lost_s": "time since satellite navigation was lost, 0 while it works",
+            "wind_allowance_mps": "error of the wind allowed for while few measurements are in it",
+            "gust_in_wind_mps": "standard deviation of the estimated wind by gusts",
+            "gust_in_wind_covariance_m2_s2": "covariance of that error with the gust of the moment",
+            "gust_in_wind_gain_per_s": "share of that error that a second of measurements corrects",
+            "disc_north_m": "centre of the disc in which the vessel has least room, of those of the guard",
+            "disc_east_m": "centre of the disc in which the vessel has least room, of those of the guard",
+            "disc_radius_m": "radius of that disc",
+            "speed_fastest_mps": "fastest speed through the mean air that the guard predicts with",
+            "speed_slowest_mps": "slowest speed through the mean air that the guard predicts with",
+            "command_change": "largest recent change of command over a full reversal, as the guard has it",
+            "course_commanded_rad": "integral of the commanded heading rate over the mean air",
+        }
+    )
 
     def __init__(
         self, guidance: Guidance, guard: KeepoutGuard, vessel: VesselTruth, time_step: float

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from common.columns import described
 from gnc.estimation.navigation import MeasuredMotion
 from gnc.guidance import Guidance
 from gnc.mission.axis import ExpectedAxis, PredictedAxis, SearchedAxis
@@ -73,6 +74,21 @@ class PlumeReadings:
             self._axis.set_true_axis(above, bearing - math.atan2(across, distance))
 
 
+BELIEF_COLUMNS = described(
+    {
+        "axis_height_estimated_m": "estimated height of the plume's axis",
+        "axis_height_deviation_m": "standard deviation of the estimated height",
+        "axis_offset_estimated_m": "estimated offset of the axis across the predicted one",
+        "axis_offset_deviation_m": "standard deviation of the estimated offset",
+        "axis_spread_estimated_m": "estimated vertical spread of the plume",
+        "axis_spread_across_estimated_m": "estimated horizontal spread of the plume",
+        "axis_measurable": "estimated probability that the plume can be crossed within the limits of the altitude",
+        "axis_innovation": "mean normalised innovation squared of the passes, 1 where the filter is consistent",
+    }
+)
+"""Of a time history, of flights that search for the plume."""
+
+
 class PlumeBelief:
     """What the guidance believes of the plume, as columns of the time history.
 
@@ -81,10 +97,7 @@ class PlumeBelief:
     axis : of the plume, as the guidance has it
     """
 
-    COLUMNS = (
-        "axis_height_estimated_m", "axis_height_deviation_m", "axis_offset_estimated_m", "axis_offset_deviation_m",
-        "axis_spread_estimated_m", "axis_spread_across_estimated_m", "axis_measurable", "axis_innovation",
-    )  # fmt: skip
+    COLUMNS = tuple(BELIEF_COLUMNS)
 
     def __init__(self, axis: SearchedAxis) -> None:
         self._axis = axis

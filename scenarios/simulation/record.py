@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from common.columns import described
 from common.text import did_you_mean
 from scenarios.simulation.interventions import Intervention
 from scenarios.simulation.outcome import Outcome
@@ -15,60 +16,62 @@ if TYPE_CHECKING:
 
 Array = npt.NDArray[np.float64]
 
-MEANINGS = {
-    "time_s": "time since the start",
-    "north_m": "place of the UAV over the ground, true",
-    "east_m": "place of the UAV over the ground, true",
-    "velocity_north_mps": "velocity over the ground, true",
-    "velocity_east_mps": "velocity over the ground, true",
-    "heading_rate_rad_s": "rate of the course through the air",
-    "course_rad": "course over the ground, from -pi to pi",
-    "vessel_north_m": "place of the vessel, true",
-    "vessel_east_m": "place of the vessel, true",
-    "vessel_velocity_north_mps": "velocity of the vessel over the ground, true",
-    "vessel_velocity_east_mps": "velocity of the vessel over the ground, true",
-    "plume_axis_rad": "course along which the plume trails, true",
-    "reference_north_m": "place of the reference over the ground",
-    "reference_east_m": "place of the reference over the ground",
-    "reference_course_rad": "course of the reference through the air",
-    "reference_heading_rate_rad_s": "rate of the reference's course",
-    "centre_north_m": "centre of oscillation, as the guidance estimates it",
-    "centre_east_m": "centre of oscillation, as the guidance estimates it",
-    "centre_error_m": "distance of the orbit's centre from the centre of oscillation",
-    "wind_north_mps": "velocity of the air mass, as estimated",
-    "wind_east_mps": "velocity of the air mass, as estimated",
-    "vessel_seen_north_m": "place of the vessel, as the guidance estimates it",
-    "vessel_seen_east_m": "place of the vessel, as the guidance estimates it",
-    "speed_ratio": "nu, as the guidance estimates it",
-    "mode": "mode of the guidance, as an index into the manifest's modes",
-    "heading_rate_demand_rad_s": "heading rate that the law demands, before any limit",
-    "heading_rate_command_rad_s": "commanded heading rate",
-    "airspeed_command_mps": "commanded airspeed",
-    "altitude_command_m": "commanded altitude; far below the sea while a vehicle with a fault glides",
-    "command_saturated": "1 while the demand is limited to omega_max",
-    "guard": "1 while the keep-out guard changes commands, 2 while it cannot hold its radius",
-    "altitude_m": "altitude above the sea",
-    "airspeed_mps": "true airspeed, with gusts",
-    "roll_rad": "roll",
-    "climb_rate_mps": "climb rate",
-    "heading_rad": "heading, from 0 to 2 pi",
-    "pitch_rad": "pitch",
-    "alpha_rad": "angle of attack",
-    "sideslip_rad": "sideslip",
-    "elevator": "elevator command, or its effect if it is commanded by that",
-    "aileron": "aileron command, or its effect if it is commanded by that",
-    "throttle": "throttle command",
-    "rudder": "rudder command, or its effect if it is commanded by that",
-    "delta_m": "look-ahead of the reference, equation (15)",
-    "rho_m": "length of z, equation (16)",
-    "phi_r_rad": "course of the reference against that of z, equation (19)",
-    "phi_rad": "course through the air against that of z, equation (19)",
-    "true_wind_north_mps": "velocity of the mean wind at the place and height of the UAV, true",
-    "true_wind_east_mps": "velocity of the mean wind at the place and height of the UAV, true",
-    "latitude_deg": "latitude of the UAV, true",
-    "longitude_deg": "longitude of the UAV, true",
-    "time_utc": "time in UTC",
-}
+HISTORY_COLUMNS = described(
+    {
+        "time_s": "time since the start",
+        "north_m": "place of the UAV over the ground, true",
+        "east_m": "place of the UAV over the ground, true",
+        "velocity_north_mps": "velocity over the ground, true",
+        "velocity_east_mps": "velocity over the ground, true",
+        "heading_rate_rad_s": "rate of the course through the air",
+        "course_rad": "course over the ground, from -pi to pi",
+        "vessel_north_m": "place of the vessel, true",
+        "vessel_east_m": "place of the vessel, true",
+        "vessel_velocity_north_mps": "velocity of the vessel over the ground, true",
+        "vessel_velocity_east_mps": "velocity of the vessel over the ground, true",
+        "plume_axis_rad": "course along which the plume trails, true",
+        "reference_north_m": "place of the reference over the ground",
+        "reference_east_m": "place of the reference over the ground",
+        "reference_course_rad": "course of the reference through the air",
+        "reference_heading_rate_rad_s": "rate of the reference's course",
+        "centre_north_m": "centre of oscillation, as the guidance estimates it",
+        "centre_east_m": "centre of oscillation, as the guidance estimates it",
+        "centre_error_m": "distance of the orbit's centre from the centre of oscillation",
+        "wind_north_mps": "velocity of the air mass, as estimated",
+        "wind_east_mps": "velocity of the air mass, as estimated",
+        "vessel_seen_north_m": "place of the vessel, as the guidance estimates it",
+        "vessel_seen_east_m": "place of the vessel, as the guidance estimates it",
+        "speed_ratio": "nu, as the guidance estimates it",
+        "mode": "mode of the guidance, as an index into the manifest's modes",
+        "heading_rate_demand_rad_s": "heading rate that the law demands, before any limit",
+        "heading_rate_command_rad_s": "commanded heading rate",
+        "airspeed_command_mps": "commanded airspeed",
+        "altitude_command_m": "commanded altitude; far below the sea while a vehicle with a fault glides",
+        "command_saturated": "1 while the demand is limited to omega_max",
+        "guard": "1 while the keep-out guard changes commands, 2 while it cannot hold its radius",
+        "altitude_m": "altitude above the sea",
+        "airspeed_mps": "true airspeed, with gusts",
+        "roll_rad": "roll",
+        "climb_rate_mps": "climb rate",
+        "heading_rad": "heading, from 0 to 2 pi",
+        "pitch_rad": "pitch",
+        "alpha_rad": "angle of attack",
+        "sideslip_rad": "sideslip",
+        "elevator": "elevator command, or its effect if it is commanded by that",
+        "aileron": "aileron command, or its effect if it is commanded by that",
+        "throttle": "throttle command",
+        "rudder": "rudder command, or its effect if it is commanded by that",
+        "delta_m": "look-ahead of the reference, equation (15)",
+        "rho_m": "length of z, equation (16)",
+        "phi_r_rad": "course of the reference against that of z, equation (19)",
+        "phi_rad": "course through the air against that of z, equation (19)",
+        "true_wind_north_mps": "velocity of the mean wind at the place and height of the UAV, true",
+        "true_wind_east_mps": "velocity of the mean wind at the place and height of the UAV, true",
+        "latitude_deg": "latitude of the UAV, true",
+        "longitude_deg": "longitude of the UAV, true",
+        "time_utc": "time in UTC",
+    }
+)
 """Columns of a time history, in order, and what each is. A vehicle's own, from ``altitude_m`` on,
 may be not a number.
 """
@@ -84,7 +87,7 @@ PLACE_COLUMNS = ("latitude_deg", "longitude_deg", "time_utc")
 
 COLUMNS = tuple(
     column
-    for column in MEANINGS
+    for column in HISTORY_COLUMNS
     if column not in (*RELATIVE_COLUMNS, *WIND_COLUMNS, *PLACE_COLUMNS)
 )
 """Columns of a flight's record."""
@@ -138,19 +141,3 @@ class FlightRecord:
                 f"the flight's record has no column '{name}'{did_you_mean(name, self.columns)}"
             )
         return self.history[:, self.columns.index(name)]
-
-
-_UNITS = (
-    ("_m2_s2", "m2/s2"), ("_per_m", "1/m"), ("_per_s", "1/s"), ("_percent", "%"), ("_rad_s", "rad/s"), ("_mps", "m/s"), ("_rad", "rad"), ("_m", "m"),
-    ("_ppm_s", "ppm s"), ("_s", "s"), ("_deg", "deg"), ("_utc", "UTC"), ("_ppb", "ppb"), ("_ppm", "ppm"), ("_per_hour", "1/h"),
-    ("_s_per_minute", "s/min"), ("crossings_per_minute", "1/min"),
-)  # fmt: skip
-"""Ends of columns' names, and the units that they stand for."""
-
-
-def unit_of(column: str) -> str:
-    """Return the unit that a column's name ends in, or 1."""
-    for suffix, unit in _UNITS:
-        if column.endswith(suffix):
-            return unit
-    return "1"

@@ -9,36 +9,10 @@ import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from common.run_layout import evaluation_path, time_history_path
+from common.columns import Table, column_of
+from common.run_layout import FLIGHTS, evaluation_path, time_history_path
 from scenarios.engine.task import Row, Task
-from scenarios.simulation.guard_belief import BELIEF_MEANINGS
 from scenarios.simulation.outcome import Outcome
-from scenarios.simulation.record import MEANINGS, unit_of
-
-INSTRUMENT_MEANINGS = {
-    **{
-        name: text
-        for gas in ("so2_ppb", "co2_ppm", "no_ppb", "no2_ppb")
-        for name, text in (
-            (gas, "true concentration along the path"),
-            (gas.replace("_", "_reading_"), "reading, held until the next one"),
-        )
-    },
-    "co2_background_ppm": "true CO2 of the air without the exhaust",
-    "plume_across_m": "place across the plume's mean axis",
-    "plume_above_m": "height above the plume's mean axis",
-    "plume_fraction": "concentration over that in the centre of the plume",
-    "axis_height_estimated_m": "estimated height of the plume's axis",
-    "axis_height_deviation_m": "standard deviation of the estimated height",
-    "axis_offset_estimated_m": "estimated offset of the axis across the predicted one",
-    "axis_offset_deviation_m": "standard deviation of the estimated offset",
-    "axis_spread_estimated_m": "estimated vertical spread of the plume",
-    "axis_spread_across_estimated_m": "estimated horizontal spread of the plume",
-    "axis_measurable": "estimated probability that the plume can be crossed within the limits of the altitude",
-    **BELIEF_MEANINGS,
-    "axis_innovation": "mean normalised innovation squared of the passes, 1 where the filter is consistent",
-}
-"""Of time histories, of a sniffer, of a search for the plume and of the keep-out guard."""
 
 UNFINISHED = (Outcome.NOT_SETTLED.value, Outcome.INCOMPLETE.value)
 """Outcomes of missions that were not completed though the aircraft came through."""
@@ -70,6 +44,7 @@ def history_files(
     history: pd.DataFrame | None,
     document: Mapping[str, Any] | None,
     *,
+    columns: Table,
     planned: int,
     kept: int,
     row: Row,
@@ -81,29 +56,29 @@ def history_files(
     ----------
     history : of the flight, if it has one
     document : what an instrument made of the flight, if any did
-    task, planned, kept, row : as of ``keeps_history``
+    columns : what the columns of time histories are
+    task, planned, kept, row : same as ``keeps_history``
     """
     if history is None or not keeps_history(task, planned=planned, kept=kept, row=row):
         return {}
-    files = {time_history_path(row["flight_id"]): as_parquet(history)}
+    files = {time_history_path(row["flight_id"]): as_parquet(history, columns)}
     if document is not None:
         files[evaluation_path(row["flight_id"])] = json.dumps(document).encode()
     return files
 
 
-def as_parquet(history: pd.DataFrame) -> bytes:
+def as_parquet(history: pd.DataFrame, columns: Table) -> bytes:
     """Return a time history as a Parquet file; unit and meaning of each column are in the metadata
     of its field.
     """
     # In this thread: to begin others takes longer than to convert so few columns, and other flights
     # have the other cores.
-    table, meanings = (
-        pa.Table.from_pandas(history, preserve_index=False, nthreads=1),
-        MEANINGS | INSTRUMENT_MEANINGS,
-    )
+    table = pa.Table.from_pandas(history, preserve_index=False, nthreads=1)
+    told = {FLIGHTS: columns}
     described = [
-        field.with_metadata({"unit": unit_of(field.name), "meaning": meanings.get(field.name, "")})
+        field.with_metadata({"unit": column.unit, "meaning": column.meaning})
         for field in table.schema
+        for column in [column_of(told, FLIGHTS, field.name)]
     ]
     buffer = io.BytesIO()
     pq.write_table(table.cast(pa.schema(described, metadata=table.schema.metadata)), buffer)

@@ -5,33 +5,24 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
+from common.columns import Column, described
 from common.physics import SECONDS_PER_HOUR
 from common.premises import TERMS, ratio_column
 
-TABLE_COLUMNS = (
-    "case",
-    "term",
-    "flights",
-    "ratio_median",
-    "ratio_max",
-    "flight_id",
-    "flights_above",
-    "flights_above_expected",
+TABLE_COLUMNS = described(
+    {
+        "case": Column("case of the flights", kind="text"),
+        "term": Column("term of the error budget", kind="text"),
+        "flights": Column("flights in which the term has a ratio", digits=0),
+        "ratio_median": "median over flights of the largest ratio of a flight",
+        "ratio_max": "largest ratio of all flights",
+        "flight_id": Column("flight of the largest ratio", title="Flight", kind="text"),
+        "flights_above": Column("flights with a ratio above 1", digits=0),
+        "flights_above_expected": "flights above 1 that the rate of the budget lets expect at most:"
+        " of processes in turbulence; none of a term that is a bound",
+    }
 )
-"""Columns of ``premises.csv``."""
-
-TABLE_MEANINGS = {
-    "case": "case of the flights",
-    "term": "term of the error budget",
-    "flights": "flights in which the term has a ratio",
-    "ratio_median": "median over flights of the largest ratio of a flight",
-    "ratio_max": "largest ratio of all flights",
-    "flight_id": "flight of the largest ratio",
-    "flights_above": "flights with a ratio above 1",
-    "flights_above_expected": "flights above 1 that the rate of the budget lets expect at most:"
-    " of processes in turbulence; none of a term that is a bound",
-}
-"""What they mean."""
+"""Of ``premises.csv``: a row per case and term."""
 
 _PROCESSES = ("wind", "turning", "drift")
 """Terms that are processes in turbulence: each exceeds its budget at the budget's rate."""

@@ -9,12 +9,16 @@ from typing import Any
 import numpy as np
 
 from aircraft.spec import AircraftError
+from common.columns import Declared, Table, described
 from common.intervals import CONFIDENCE
 from common.physics import bank_for_heading_rate
+from common.provenance import without_folders
 from common.run_layout import (
     COMPARISON,
     CROSSINGS,
+    DERIVED,
     DRAWS,
+    FLIGHTS,
     INTERVENTIONS,
     SULPHUR,
     SULPHUR_TABLE,
@@ -24,7 +28,7 @@ from common.run_layout import (
 from gnc.mission.mission import Mode
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
-from scenarios.engine.runner import Fly, Progress, StudySummary, write_tables
+from scenarios.engine.runner import Fly, Progress, StudySummary, write_columns, write_tables
 from scenarios.engine.task import Task
 from scenarios.errors import InputError
 from scenarios.experiment.random_sample import (
@@ -33,16 +37,18 @@ from scenarios.experiment.random_sample import (
     random_numbers_of_points,
 )
 from scenarios.experiment.requests import Experiment
-from scenarios.flight import FlightWork
-from scenarios.instruments.instrument import evaluated_instruments, figures_of, tables_of
+from scenarios.flight import FlightWork, history_columns
+from scenarios.instruments.instrument import declarations
 from scenarios.metrics.columns import (
+    ANY_KEY,
     CROSSING_COLUMNS,
+    DERIVED_COLUMNS,
+    FINDING_COLUMNS,
     FLIGHT_COLUMNS,
     INPUT_COLUMNS,
     INTERVENTION_COLUMNS,
     SUMMARY_COLUMNS,
 )
-from scenarios.metrics.finding import FINDING_FIGURES
 from scenarios.planning.limits import omega_max
 from scenarios.planning.scaling import scaled, scaled_keys
 from scenarios.planning.spreads import predicted_spreads
@@ -86,6 +92,12 @@ class FlightStudy:
     """
 
     what = "flights"
+
+    FIGURES: Declared = ()
+    """Columns of the summary that a study of a user's own adds; its work fills them."""
+
+    TABLES: Mapping[str, Declared] = {}
+    """Columns of tables that it adds, by file, beside those that name the flight."""
 
     chooses_flights = False
     """Whether what is flown depends on what was flown before, so that no flight can be flown
@@ -141,23 +153,21 @@ class FlightStudy:
             for experiment in self.experiments.values()
             for point in experiment.points
         ]
-        instruments = evaluated_instruments(points)
-        figures = (
-            *SUMMARY_COLUMNS,
-            *dict.fromkeys(name for instrument in instruments for name in figures_of(instrument)),
-        )
+        declared = declarations(points)
+        part = without_folders(scenario.study)
+        figures = SUMMARY_COLUMNS | declared.figures | described(self.FIGURES, part=part)
         if any(point.finds for point in points):
-            figures += FINDING_FIGURES
+            figures |= FINDING_COLUMNS
         self.tables = {
             SUMMARY: figures,
-            CROSSINGS: CROSSING_COLUMNS,
-            INTERVENTIONS: INTERVENTION_COLUMNS,
-            DRAWS: (*INPUT_COLUMNS, *keys),
+            CROSSINGS: dict(CROSSING_COLUMNS),
+            INTERVENTIONS: dict(INTERVENTION_COLUMNS),
+            DRAWS: INPUT_COLUMNS | described(dict.fromkeys(keys, ANY_KEY)),
         }
-        for instrument in instruments:
-            self.tables |= {
-                file: (*FLIGHT_COLUMNS, *columns) for file, columns in tables_of(instrument).items()
-            }
+        added = {file: described(columns, part=part) for file, columns in self.TABLES.items()}
+        self.tables |= {
+            file: FLIGHT_COLUMNS | columns for file, columns in (declared.tables | added).items()
+        }
         if self._numbers > self.planned:
             self.tables[COMPARISON] = figures
         self.plugins = plugins(points)
@@ -336,8 +346,14 @@ class FlightStudy:
             run.write_json(run.path / SULPHUR, sulphur_statistics(rows, confidence=CONFIDENCE))
 
     def export(self, run: RunDirectory, journal: Journal) -> None:
-        """Write its tables."""
+        """Write its tables, and what their columns are."""
         write_tables(run, journal, self.tables)
+        write_columns(run, self.columns())
+
+    def columns(self) -> Mapping[str, Table]:
+        """Return what the columns of its tables are, by file."""
+        others = {DERIVED: DERIVED_COLUMNS, FLIGHTS: history_columns(self.experiments.values())}
+        return {**self.tables, **others}
 
     def bound_line(self, counts: FlightCounts, samples: int, _journal: Journal) -> str:
         """Return the line on keep-out violations and the bound on their probability, of flights

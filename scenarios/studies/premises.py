@@ -1,16 +1,18 @@
 """The premises of the keep-out guard in the corners of what may be declared, as a study."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import pandas as pd
 
+from common.columns import Table
 from common.premises import PREMISE_COLUMNS
 from common.run_layout import PREMISES, SUMMARY
 from gnc.estimation.error_budget import EXCEEDED_PER_HOUR
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import StudySummary
-from scenarios.statistics.premises import premise_lines, premise_table
+from scenarios.statistics.premises import TABLE_COLUMNS, premise_lines, premise_table
 from scenarios.studies.flight_study import FlightStudy
 from scenarios.studies.rows import frame
 from scenarios.studies.study import study
@@ -29,6 +31,10 @@ class PremisesStudy(FlightStudy):
         """Write its tables."""
         super().export(run, journal)
         run.write_frame(PREMISES, self._table(journal))
+
+    def columns(self) -> Mapping[str, Table]:
+        """Return what the columns of its tables are, by file."""
+        return {**super().columns(), PREMISES: TABLE_COLUMNS}
 
     def summary(self, journal: Journal) -> StudySummary:
         """Return the result so far, with the table."""

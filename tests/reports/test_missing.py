@@ -92,6 +92,7 @@ def test_what_is_missing_is_made_again_by_the_command_that_made_it(copy, study, 
 def test_of_a_whole_run_nothing_is_missing(whole):
     assert named(whole) == []
     assert manifest_of(whole)["files"] == [
+        "columns.json",
         "crossings.csv",
         "draws.csv",
         "flights/short_00000.parquet",
@@ -105,6 +106,7 @@ def test_of_a_whole_run_nothing_is_missing(whole):
     ("name", "shows"),
     [
         ("flights/short_00000.parquet", "figures of this flight over time"),
+        ("columns.json", "titles and units of figures, and those that users' parts add"),
         ("crossings.csv", "crossings in the figures of single flights"),
         ("statistics.json", "probability of a keep-out violation, distributions, sensitivity"),
         ("innerloop.json", "the autopilot: trims, margins, responses"),
@@ -118,6 +120,24 @@ def test_a_file_that_is_gone_is_named_with_what_is_not_shown_for_it(copy, name, 
     else:
         had(copy, name)
     assert named(copy) == [(name, "is gone", shows)]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "{",
+        '{"summary.csv": 3}',
+        '{"summary.csv": {"min_distance_m": {"digits": "one"}}}',
+        '{"summary.csv": {"min_distance_m": ["title"]}}',
+    ],
+)
+def test_columns_that_cannot_be_read_are_named_and_figures_bear_the_names_of_their_columns(
+    copy, text
+):
+    (copy / "columns.json").write_text(text, encoding="utf-8")
+    shown = "titles and units of figures, and those that users' parts add"
+    assert named(copy) == [("columns.json", "cannot be read", shown)]
+    assert read_run(copy).column("min_distance_m").label == "Min distance [m]"
 
 
 @pytest.mark.parametrize(

@@ -20,14 +20,13 @@ from reports.document.panels import (
 )
 from reports.flights.names import changes_flights, fault_name, manoeuvres_flown, swept_words
 from reports.flights.trials.panels_over import (
-    CLEARANCE,
     LIMIT_LABEL,
     PanelsOver,
     by_violation,
     by_words,
 )
 from reports.monte_carlo.names import input_name
-from reports.run.columns import NOTICEABLE, Array, clearance, column, total
+from reports.run.columns import NOTICEABLE, Array, clearance, column, figure, total
 from reports.run.ship import hull_of
 from reports.run.trials import Kind, Trial
 
@@ -54,7 +53,7 @@ another shape.
 """
 
 _R_MIN = (0.0, "r_min")
-_TRACKING = ("tracking_error_rms_m", "Tracking error, rms [m]")
+_TRACKING = "tracking_error_rms_m"
 
 
 def trial_charts(trial: Trial) -> list[Chart]:
@@ -124,11 +123,17 @@ def _sweep(trial: Trial) -> list[Chart]:
     ]
 
 
+def _figure(trial: Trial, name: str, *marks: tuple[float, str]) -> _Figure:
+    """Return a figure of the flights that were flown, with what its axis says and its marks."""
+    of = trial.run.column(name)
+    return of.scale * figure(trial.flown, name), of.label, list(marks)
+
+
 def _by_word(trial: Trial, key: str, words: list[str], name: str) -> Chart:
     """Return figures by a key that is no number."""
     figures: list[_Figure] = [
-        (clearance(trial.flown), CLEARANCE, [_R_MIN]),
-        (column(trial.flown, _TRACKING[0]), _TRACKING[1], []),
+        _figure(trial, "clearance_m", _R_MIN),
+        _figure(trial, _TRACKING),
     ]
     caption = "Closest approach of the whole flight, and tracking error after settling."
     return _strips(trial, name, caption, words, input_name(key), figures)
@@ -150,8 +155,8 @@ def _over_keys(trial: Trial, keys: Sequence[str], name: str) -> list[Chart]:
             [over.distances() for over in every],
         ],
         ("errors", errors): [
-            [over.figure(*_TRACKING) for over in every],
-            [over.figure("settling_time_s", "Settling time [s]") for over in every],
+            [over.figure(_TRACKING) for over in every],
+            [over.figure("settling_time_s") for over in every],
         ],
     }
     return [
@@ -171,7 +176,7 @@ def _over_key(trial: Trial, key: str, name: str) -> list[Chart]:
     """Return four figures over one key."""
     over = PanelsOver(trial, key, by_words(trial), by_words=True)
     interval = over.interval()
-    settling = over.figure("settling_time_s", "Settling time [s]")
+    settling = over.figure("settling_time_s")
     bank = f"Largest commanded heading rate against ω_max, {'largest bank, and settling time' if settling else 'and largest bank'}."
     if trial.setting("fidelity") == "kinematic":
         bank += " The kinematic vehicle has no bank: shown is that of a coordinated turn."
@@ -192,9 +197,9 @@ def _over_key(trial: Trial, key: str, name: str) -> list[Chart]:
             trial, f"{name}-errors",
             "Errors after settling: tracking error, the distance to the reference; airspeed and altitude off their commands.",
             [
-                over.figure(*_TRACKING),
-                over.figure("airspeed_error_rms_mps", "Airspeed error, rms [m/s]"),
-                over.figure("altitude_error_max_m", "Altitude error, max [m]"),
+                over.figure(_TRACKING),
+                over.figure("airspeed_error_rms_mps"),
+                over.figure("altitude_error_max_m"),
             ],
             0.32, columns=3,
         ),
@@ -202,7 +207,7 @@ def _over_key(trial: Trial, key: str, name: str) -> list[Chart]:
             trial, f"{name}-command", bank,
             [
                 over.command(),
-                over.figure("bank_max_deg", "Largest bank [deg]"),
+                over.figure("bank_max_deg"),
                 settling,
             ],
             0.32, columns=3,
@@ -234,11 +239,14 @@ def _distances(trial: Trial) -> list[Chart]:
     if counted_there and trial.kind is Kind.APPROACH:
         return []
     all_flights = [(clearance(trial.flown), "all flights", Meaning.FLOWN)]
-    counted = None if counted_there else histogram(all_flights, CLEARANCE, [_R_MIN])
+    counted = (
+        None
+        if counted_there
+        else histogram(all_flights, trial.run.column("clearance_m").label, [_R_MIN])
+    )
     if trial.kind is Kind.APPROACH:
-        other = histogram(
-            [(column(trial.flown, "settling_time_s"), "", Meaning.FLOWN)], "Settling time [s]"
-        )
+        settling, label, _ = _figure(trial, "settling_time_s")
+        other = histogram([(settling, "", Meaning.FLOWN)], label)
         shown = f"beyond r_min{', and settling time, of those that settled' if other else ''}."
     else:
         other = PanelsOver(trial, "nu", by_violation(trial)).margin()
@@ -263,16 +271,14 @@ def _errors(trial: Trial) -> list[Chart]:
         "mean crossing interval": over.interval_error()
         if trial.criteria.get("crossing_interval_error")
         else None,
-        "tracking error": over.figure(*_TRACKING),
+        "tracking error": over.figure(_TRACKING),
         "its part towards the vessel, from all causes, over the one predicted from turbulence alone": _spread(
             trial
         ),
-        "error of the wind estimate": over.figure(
-            "wind_error_rms_mps", "Error of the wind estimate, rms [m/s]"
-        ),
+        "error of the wind estimate": over.figure("wind_error_rms_mps"),
         "error of the vessel's position, counted": vessel,
         "how long the keep-out guard changed commands": (
-            over.figure("guard_time_s", "Time guarded [s]") if total(rows, "guard_time_s") else None
+            over.figure("guard_time_s") if total(rows, "guard_time_s") else None
         ),
     }
     shown = [(words, panel) for words, panel in panels.items() if panel is not None]
@@ -338,12 +344,8 @@ def _manoeuvres(trial: Trial) -> list[Chart]:
         return []
     limit = trial.criteria.get("resumes_within_periods")
     criterion = [(float(limit), "criterion")] if limit else []
-    resumed = (
-        column(trial.flown, "resume_periods"),
-        "Next crossing after the manoeuvre [periods]",
-        criterion,
-    )
-    kept = (clearance(trial.flown), CLEARANCE, [_R_MIN])
+    resumed = _figure(trial, "resume_periods", *criterion)
+    kept = _figure(trial, "clearance_m", _R_MIN)
     caption = (
         "By what the vessel did: time from the end of its last manoeuvre to the next crossing, in periods of the oscillation, and"
         " closest approach of the whole flight."
@@ -352,12 +354,8 @@ def _manoeuvres(trial: Trial) -> list[Chart]:
 
 
 def _faults(trial: Trial) -> list[Chart]:
-    kept = (clearance(trial.flown), CLEARANCE, [_R_MIN])
-    end = (
-        column(trial.flown, "end_distance_m"),
-        "Distance at the end [m]",
-        [(trial.radius, "r_min")],
-    )
+    kept = _figure(trial, "clearance_m", _R_MIN)
+    end = _figure(trial, "end_distance_m", (trial.radius, "r_min"))
     caption = "By the fault: closest approach of the whole flight, and distance from the vessel at the end."
     return [
         _strips(

@@ -14,8 +14,6 @@ from reports.monte_carlo.names import input_label
 from reports.run.columns import clearance, column, interval_error, violated
 from reports.run.trials import Trial
 
-CLEARANCE = "Distance kept beyond r_min [m]"
-
 _OSCILLATIONS: tuple[tuple[str, str, str, Style], ...] = (
     ("sinusoid", "sinusoid", "grey", "dash"),
     ("fastest", "fastest oscillation", "black", "dash"),
@@ -87,15 +85,19 @@ class PanelsOver:
         ratio = "Speed ratio ν as flown [-]" if flown_elsewhere(trial) else "Speed ratio ν [-]"
         self._label = ratio if key == "nu" else input_label(key)
 
-    def figure(self, name: str, y_label: str) -> Panel | None:
+    def figure(self, name: str) -> Panel | None:
         """Return a panel of any figure, its criterion if it has one, and those far above all others
         at its edge.
         """
-        y, limit = column(self._rows, name), self.limit(name)
-        words, _, unit = y_label.removesuffix("]").partition(" [")
-        lines, top = capped(self._x, y, self._groups, limit, unit, words.partition(",")[0].lower())
+        of = self._trial.run.column(name)
+        limit = of.scale * self.limit(name)
+        y = of.scale * column(self._rows, name)
+        words = of.title.partition(",")[0].lower()
+        lines, top = capped(self._x, y, self._groups, limit, of.after.strip(), words)
         criterion = [] if math.isnan(limit) else [level(self._span, limit, "criterion")]
-        return self._panel(y_label, [*lines, *criterion], y_range=(-0.03 * top, top))
+        least = float(np.nanmin(y, initial=0.0))
+        y_range = (least - 0.03 * (top - least), top)
+        return self._panel(of.label, [*lines, *criterion], y_range=y_range)
 
     def interval_error(self) -> Panel | None:
         """Return the mean crossing interval against its prediction."""
@@ -176,20 +178,21 @@ class PanelsOver:
         much.
         """
         planned, kept = column(self._rows, "keepout_margin_m"), clearance(self._rows)
+        beyond = self._trial.run.column("clearance_m").label
         if not np.isfinite(planned).any():
             return self._panel(
-                CLEARANCE, [*points(self._x, kept, self._groups), level(self._span, 0.0, "r_min")]
+                beyond, [*points(self._x, kept, self._groups), level(self._span, 0.0, "r_min")]
             )
         if float(np.ptp(planned)) <= _MARGINS_APART * float(np.max(planned)):
             margin = level(self._span, float(np.mean(planned)), "planned margin", Meaning.ASKED)
             levels = [level(self._span, 0.0, "r_min"), margin]
-            return self._panel(CLEARANCE, [*points(self._x, kept, self._groups), *levels])
+            return self._panel(beyond, [*points(self._x, kept, self._groups), *levels])
         ends = np.array([float(planned.min()), float(planned.max())])
         same = Line(x=ends, y=ends, label="planned margin", colour=Meaning.ASKED, style="dash")
         levels = [level(planned, 0.0, "r_min"), same]
         return Panel(
-            x_label="Planned margin [m]",
-            y_label=CLEARANCE,
+            x_label=self._trial.run.column("keepout_margin_m").label,
+            y_label=beyond,
             lines=[*points(planned, kept, self._groups), *levels],
         )
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from common.columns import Column
 from common.intervals import CONFIDENCE, percent
 from common.run_layout import SUMMARY
 from reports.document.blocks import Block, Table, Text
@@ -27,6 +28,7 @@ from reports.run.columns import (
     violated,
     was_flown,
 )
+from reports.run.run_data import RunData
 from reports.run.time_history import keepout_distance
 from reports.run.trials import Trial
 
@@ -38,26 +40,19 @@ _NOTHING = "–"
 _BEYOND = "beyond r_min [m]"
 """Head of the column beside that of the closest approach where flights have different r_min."""
 
-Columns = tuple[tuple[str, str, str], ...]
-
 _FLIGHT_COLUMNS = (
-    ("Keep-out violations", "keepout_violations", "{:.0f}"),
-    ("Closest [m]", "min_distance_m", "{:.1f}"),
-    ("Crossings", "crossing_count", "{:.0f}"),
-    ("Interval [s]", "crossing_interval_mean_s", "{:.2f}"),
-    ("π/ω₀ [s]", "crossing_interval_predicted_s", "{:.2f}"),
-    ("Crossing, min [m]", "crossing_distance_min_m", "{:.1f}"),
-    ("Settled [s]", "settling_time_s", "{:.0f}"),
-    ("Tracking rms [m]", "tracking_error_rms_m", "{:.2f}"),
+    "keepout_violations",
+    "min_distance_m",
+    "crossing_count",
+    "crossing_interval_mean_s",
+    "crossing_interval_predicted_s",
+    "crossing_distance_min_m",
+    "settling_time_s",
+    "tracking_error_rms_m",
 )
 
 
-OSCILLATION_COLUMNS = (
-    ("η = J₀⁻¹(ν) (6) [rad]", "eta", "{:.4f}"),
-    ("ω₀ (8) [rad/s]", "omega_0_rad_s", "{:.4f}"),
-    ("π/ω₀ [s]", "crossing_interval_predicted_s", "{:.3f}"),
-    ("r_CO [m]", "r_co_m", "{:.2f}"),
-)
+OSCILLATION_COLUMNS = ("eta", "omega_0_rad_s", "crossing_interval_predicted_s", "r_co_m")
 
 
 _APART = 1.25
@@ -72,10 +67,11 @@ heading and of a name [-].
 
 
 def flight_table(
+    run: RunData,
     rows: pd.DataFrame,
     head: str,
     name: Callable[["pd.Series[Any]"], str],
-    columns: Columns = _FLIGHT_COLUMNS,
+    columns: Sequence[str] = _FLIGHT_COLUMNS,
     caption: str = "The flights, a row each, with their outcome.",
     *,
     flown_ratio: bool = False,
@@ -84,22 +80,25 @@ def flight_table(
 
     Parameters
     ----------
-    rows : of the flights
+    run, rows : the run, and the rows of some of its flights
     head, name : of the first column, and what it says of a flight
-    columns : title, name and pattern of the columns after the outcome
+    columns : of the summary, after the outcome
     caption : what the table shows
     flown_ratio : whether a column says the speed ratio that was flown, where that is not the one
         that was swept
     """
+    shown = {column: (run.column(column).head, run.column(column)) for column in columns}
     if columns is _FLIGHT_COLUMNS and radii_differ(rows):
         rows = rows.assign(clearance_m=clearance(rows))
-        columns = (*columns[:2], (_BEYOND, "clearance_m", "{:+.1f}"), *columns[2:])
+        beyond = {"clearance_m": (_BEYOND, run.column("clearance_m"))}
+        first = list(shown.items())
+        shown = dict(first[:2]) | beyond | dict(first[2:])
     if flown_ratio:
         rows = rows.assign(flown_ratio=rows["nu"].where(was_flown(rows)))
-        columns = (("ν flown [-]", "flown_ratio", "{:.2f}"), *columns)
+        shown = {"flown_ratio": ("ν flown [-]", run.column("nu"))} | shown
         caption += " ν is swept as the ratio of the speeds over the ground; as flown, in wind, it is that through the air."
     cells = [
-        [name(row), outcome(row), *(_cell(row, key, pattern) for _, key, pattern in columns)]
+        [name(row), outcome(row), *(_cell(row, key, of) for key, (_, of) in shown.items())]
         for _, row in rows.iterrows()
     ]
     words = [
@@ -114,12 +113,12 @@ def flight_table(
         *words,
         *(
             max(_APART if title == _BEYOND else _NUMBER, _LETTER * max(map(len, title.split())))
-            for title, _, _ in columns
+            for title, _ in shown.values()
         ),
     ]
     return Table(
         caption=caption,
-        head=[head, "Outcome", *(title for title, _, _ in columns)],
+        head=[head, "Outcome", *(title for title, _ in shown.values())],
         rows=cells,
         widths=widths,
         left_columns=2,
@@ -127,7 +126,7 @@ def flight_table(
     )
 
 
-def _cell(row: "pd.Series[Any]", key: str, pattern: str) -> str:
+def _cell(row: "pd.Series[Any]", key: str, of: Column) -> str:
     """Return a figure of a flight; a distance on the side of r_min on which it lies."""
     value = row.get(key)
     if key == "min_distance_m" and not pd.isna(value):
@@ -135,7 +134,7 @@ def _cell(row: "pd.Series[Any]", key: str, pattern: str) -> str:
     return (
         approach(float(value), 0.0, "+")
         if key == "clearance_m" and not pd.isna(value)
-        else number(value, pattern)
+        else of.text(None if pd.isna(value) else float(value))
     )
 
 
@@ -173,9 +172,10 @@ def trial_table(trials: list[Trial]) -> Table:
             f"{count(column(flown, 'guard_interventions') > 0.0)}",
             counted(flown["mode_at_end"]) if "mode_at_end" in flown else _NOTHING,
         ])  # fmt: skip
+    closest = trials[0].run.column("min_distance_m").head
     head = [
         "Trial", "Planned", "Flown", "Completed", "Met", "Aircraft lost", "Kept out", f"Violate, at most ({percent(CONFIDENCE)})",
-        "Keep-out violations", "Closest [m]", _BEYOND, "With guard", "Mode at the end",
+        "Keep-out violations", closest, _BEYOND, "With guard", "Mode at the end",
     ]  # fmt: skip
     return Table(
         caption="The trials: flights as planned, flown, completed and met, and how they ended.",
@@ -248,8 +248,9 @@ def fault_table(trial: Trial) -> Table:
             span(column(members, "end_distance_m"), "{:.0f}"),
             counted(members["mode_at_end"]),
         ])  # fmt: skip
+    approach_head = trial.run.column("min_distance_m").head
     head = [
-        "Fault", "Flights", "Kept out", "Completed", "Aircraft lost", "Keep-out violations", "Closest [m]",
+        "Fault", "Flights", "Kept out", "Completed", "Aircraft lost", "Keep-out violations", approach_head,
         *([_BEYOND, f"after the fault, {_BEYOND}"] if differ else ["Closest after the fault [m]"]),
         "At the end [m]", "Mode at the end",
     ]  # fmt: skip
@@ -280,6 +281,7 @@ def failed_blocks(trials: Sequence[Trial]) -> list[Block]:
     """Return the flights that failed a criterion, keep-out violations first, ``FAILED_MAX`` at
     most, each with its reason.
     """
+    run = trials[0].run
     by_key, summary = (
         {trial.key: trial for trial in trials},
         pd.concat([trial.rows for trial in trials]),
@@ -300,15 +302,22 @@ def failed_blocks(trials: Sequence[Trial]) -> list[Block]:
             told_name(by_key[row["trial"]], row),
             number(row["nu"] if pd.notna(row.get("duration_s")) else None, "{:.2f}"),
             number(row["keepout_violations"], "{:.0f}"),
-            _cell(row, "min_distance_m", ""),
-            *([_cell(row, "clearance_m", "")] if differ else []),
+            _cell(row, "min_distance_m", run.column("min_distance_m")),
+            *([_cell(row, "clearance_m", run.column("clearance_m"))] if differ else []),
             ending(row),
         ]
         for _, row in failed.iloc[order[:FAILED_MAX]].iterrows()
     ]
     margin = [_BEYOND] if differ else []
     ended = "How it ended, and the criteria that it failed"
-    head = ["Flight", "ν flown [-]", "Keep-out violations", "Closest [m]", *margin, ended]
+    head = [
+        "Flight",
+        "ν flown [-]",
+        "Keep-out violations",
+        run.column("min_distance_m").head,
+        *margin,
+        ended,
+    ]
     first = count(violated(failed)) > 0
     table = Table(
         caption=f"Flights that failed a criterion, {'keep-out violations first, ' * first}each with its reason.",

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, fields, replace
 from typing import Any
 
+from common.columns import Column, described
 from common.run_layout import ARENA, DRAWS, TUNING_TABLE, WINDOW_TABLE
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
@@ -13,6 +14,7 @@ from scenarios.engine.runner import Fly, Progress, StudySummary
 from scenarios.engine.task import Row, Task
 from scenarios.errors import InputError
 from scenarios.flight import FlightWork
+from scenarios.metrics.columns import ANY_KEY, FLIGHT_COLUMNS
 from scenarios.metrics.window import MEASURED_COLUMNS, WINDOW_COLUMNS
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.experiment import CaseConfig
@@ -23,16 +25,19 @@ from scenarios.studies.arena.work import ArenaWork
 from scenarios.studies.flight_study import FlightStudy
 from scenarios.studies.study import study
 
-TUNING_COLUMNS = (
-    "entrant",
-    "evaluation",
-    "cost_m",
-    "error_m",
-    "excess_rad_s",
-    "parameters",
-    "message",
-    "wall_time_s",
+TUNING_COLUMNS = described(
+    {
+        "entrant": Column("steering law and task", kind="text"),
+        "evaluation": "number of the setting that was tried, from 0",
+        "cost_m": "cost of the setting: its error, and its excess times a weight",
+        "error_m": "mean over its flights of the rms distance to the reference",
+        "excess_rad_s": "mean over its flights of the rms of the commanded heading rate less that of the reference",
+        "parameters": Column("parameters of the law, as JSON", kind="text"),
+        "message": Column("why the setting could not be flown", kind="text"),
+        "wall_time_s": Column("computing time", title="Computing time", adds_up=True),
+    }
 )
+"""Of ``tuning.csv``: a row per setting that the tuner of an arena tried."""
 
 
 @study("arena")
@@ -67,10 +72,12 @@ class ArenaStudy(FlightStudy):
             f"guidance.{key}" for entrant in self.entrants for key in entrant.defaults
         )
         self.tables |= {
-            WINDOW_TABLE: ("flight_id", "trial", *WINDOW_COLUMNS, *MEASURED_COLUMNS),
+            WINDOW_TABLE: {name: FLIGHT_COLUMNS[name] for name in ("flight_id", "trial")}
+            | WINDOW_COLUMNS
+            | MEASURED_COLUMNS,
             TUNING_TABLE: TUNING_COLUMNS,
         }
-        self.tables[DRAWS] = (*self.tables[DRAWS], *keys)
+        self.tables[DRAWS] |= described(dict.fromkeys(keys, ANY_KEY))
         self._chosen: dict[str, Mapping[str, float]] = {}
 
     def expanded(self, trials: Mapping[str, Scenario]) -> dict[str, Scenario]:

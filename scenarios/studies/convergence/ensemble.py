@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
+from common.columns import Column, described
 from gnc.analysis.ensemble import (
     DISTANCE_CONVERGED,
     EnsembleResult,
@@ -40,12 +41,41 @@ TIME_FACTOR_STRAIGHT = 10.0
 turning.
 """
 
-COLUMNS = (
-    "trajectory", "law", "reference", "reference_heading_rate_max_rad_s", "start_north_m", "start_east_m", "start_distance_m",
-    "start_course_rad", "reference_course_rad", "start_phi_rad", "outcome", "message", "settling_time_s",
-    "settling_time_predicted_s", "distance_final_m", "phi_final_rad", "duration_s", "distance_max_m", "heading_rate_max_rad_s",
-    "reference_terms",
-)  # fmt: skip
+COLUMNS = described(
+    {
+        "trajectory": "number of the start",
+        "law": Column("steering law", kind="text"),
+        "reference": Column("kind of the reference", kind="text"),
+        "reference_heading_rate_max_rad_s": "largest heading rate of the reference",
+        "start_north_m": "position of the start relative to the reference",
+        "start_east_m": "position of the start relative to the reference",
+        "start_distance_m": "distance of the start from the reference",
+        "start_course_rad": "course at the start",
+        "reference_course_rad": "course of the reference at the start",
+        "start_phi_rad": "phi at the start, equation (19)",
+        "outcome": Column("whether it settled", kind="text"),
+        "message": Column("the reason if it did not", kind="text"),
+        "settling_time_s": Column(
+            "time from which it stayed within the settling band",
+            title="Settling time",
+            digits=1,
+            worse="higher",
+            missing="not settled",
+        ),
+        "settling_time_predicted_s": "settling time predicted by the averaged motion",
+        "distance_final_m": "distance to the reference at the end",
+        "phi_final_rad": "phi at the end",
+        "duration_s": Column(
+            "time over which the motion was integrated", title="Flight time", digits=1, adds_up=True
+        ),
+        "distance_max_m": "largest distance to the reference",
+        "heading_rate_max_rad_s": "largest heading rate",
+        "reference_terms": Column(
+            "heading rate of the reference as JSON: its mean, and amplitude, frequency and phase of each oscillation",
+            kind="text",
+        ),
+    }
+)
 """Columns of the table, in order; a trajectory that did not settle has no settling time."""
 
 Array = npt.NDArray[np.float64]

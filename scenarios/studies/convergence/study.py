@@ -15,11 +15,12 @@ from gnc.errors import InfeasibleError
 from gnc.paper import look_ahead
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
-from scenarios.engine.runner import Fly, Progress, StudySummary
+from scenarios.engine.runner import Fly, Progress, StudySummary, write_columns
 from scenarios.engine.task import Result, Row, Task
 from scenarios.errors import InputError
 from scenarios.schema.sections.convergence import ConvergenceScenario
 from scenarios.studies.convergence.ensemble import (
+    COLUMNS,
     Block,
     convergence_blocks,
     convergence_table,
@@ -167,6 +168,7 @@ class ConvergenceStudy:
         frame = self._frame(journal)
         run.write_frame(SUMMARY, frame)
         run.write_frame(COUNTEREXAMPLES, counterexamples(frame))
+        write_columns(run, {SUMMARY: COLUMNS, COUNTEREXAMPLES: COLUMNS})
 
     def _frame(self, journal: Journal) -> pd.DataFrame:
         return convergence_table(journal.rows(SUMMARY), self._scenario.guidance.laws)

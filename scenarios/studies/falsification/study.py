@@ -62,8 +62,7 @@ class FalsificationStudy(ChosenFlightsStudy):
         self._space = search_space(self._scenario)
         # Of the numbers most stand for no flight, of which no time history is kept.
         self.histories *= 1 + self._search.confirmations
-        keys = [key for key in self.tables[DRAWS] if key not in INPUT_COLUMNS]
-        self.tables[DRAWS] = (*INPUT_COLUMNS, *SEARCH_COLUMNS, *keys)
+        self.tables[DRAWS] = INPUT_COLUMNS | SEARCH_COLUMNS | self.tables[DRAWS]
         self._proposed = 0
         self._plan(self._search.flights_max if self._search.time_s is None else 0)
 

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from common.columns import Column, described
 from common.physics import SECONDS_PER_HOUR
 from scenarios.engine.task import Row
 from scenarios.experiment.draws import speed_ratios
@@ -14,31 +15,161 @@ from scenarios.studies.patrol.ships import Patrol
 LOST = (Outcome.AIRCRAFT_LOST.value, Outcome.DIVERGED.value)
 """Outcomes of flights whose aircraft does not come back."""
 
-PATROL_COLUMNS = (
-    "flight_id", "seed", "wind_speed_mps", "wind_from_deg", "ships", "served", "verdicts", "correct", "wrong", "open",
-    "oracle_verdicts", "told_verdicts", "served_per_hour", "duration_s", "transit_s", "beside_s", "unused_s",
-    "keepout_violations", "min_distance_m", "others_distance_min_m", "kept_out", "aircraft_lost", "outcome", "message",
-    "criteria_met", "wall_time_s",
-)  # fmt: skip
+PATROL_COLUMNS = described(
+    {
+        "flight_id": Column(
+            "name of the patrol, or of the flight beside a ship", title="Flight", kind="text"
+        ),
+        "seed": Column("seed of the patrol", digits=0),
+        "wind_speed_mps": Column("mean wind", title="Wind speed", digits=1),
+        "wind_from_deg": Column(
+            "direction that the wind comes from, clockwise from north", title="Wind from", digits=0
+        ),
+        "ships": "number of ships",
+        "served": "ships that the UAV flew beside",
+        "verdicts": "served ships with a verdict",
+        "correct": Column("verdicts that agree with the fuel", kind="any"),
+        "wrong": "verdicts that do not agree with the fuel",
+        "open": "served ships without a verdict",
+        "oracle_verdicts": "correct verdicts of an oracle, which knows how long each ship takes",
+        "told_verdicts": "ships with a correct verdict if each is served alone and the UAV is given the plume's true axis",
+        "served_per_hour": "ships served in an hour",
+        "duration_s": Column("duration of the patrol", title="Flight time", digits=1, adds_up=True),
+        "transit_s": "time on the way between ships",
+        "beside_s": "time beside ships",
+        "unused_s": "endurance left at the end",
+        "keepout_violations": Column(
+            "number of times that it entered the keep-out area of the ship served, and number of ships beside which, or on the way to which, it came nearer than r_min to another ship",
+            title="Keep-out violations",
+            digits=0,
+            worse="higher",
+            adds_up=True,
+        ),
+        "min_distance_m": Column(
+            "closest approach to the ship that is served",
+            title="Closest approach",
+            digits=1,
+            worse="lower",
+        ),
+        "others_distance_min_m": "closest approach to any other ship, including on the way",
+        "kept_out": Column(
+            "whether the UAV kept out of the keep-out areas and was observed to the end",
+            kind="truth",
+        ),
+        "aircraft_lost": Column("whether the aircraft was lost", kind="truth"),
+        "outcome": Column("completed or aircraft_lost", kind="text"),
+        "message": Column(
+            "why no ship was served, or which keep-out area was entered, or how the aircraft was lost",
+            kind="text",
+        ),
+        "criteria_met": Column(
+            "whether it kept out everywhere and the aircraft was not lost", kind="truth"
+        ),
+        "wall_time_s": Column("computing time", title="Computing time", adds_up=True),
+    }
+)
 """Of ``summary.csv``: a row per patrol. Distances are those beside the ship that is served, and to
 every other ship.
 """
 
-SHIP_COLUMNS = (
-    "flight_id", "patrol", "ship", "position", "north_m", "east_m", "vessel_speed_mps", "vessel_course_deg",
-    "plume_source_height_m", "emission_load", "nu", "fsc_fuel_percent", "truth", "verdict", "correct", "fsc_percent",
-    "leaves_s", "reached_s", "orbit_at_s", "time_to_find_s", "settling_time_s", "ended_s", "enough", "outcome", "message",
-    "keepout_violations", "min_distance_m", "kept_out", "others_distance_min_m", "altitude_outside_s", "told_service_s",
-    "told_verdict",
-    "oracle_position", "oracle_ended_s",
-)  # fmt: skip
+SHIP_COLUMNS = described(
+    {
+        "flight_id": Column(
+            "name of the patrol, or of the flight beside a ship", title="Flight", kind="text"
+        ),
+        "patrol": Column("name of the patrol", kind="text"),
+        "ship": "number of the ship, from 0",
+        "position": "place in the order in which ships were served, from 0; empty for a ship that was not",
+        "north_m": "place of the ship at the start of the patrol",
+        "east_m": "place of the ship at the start of the patrol",
+        "vessel_speed_mps": "its speed",
+        "vessel_course_deg": "its course",
+        "plume_source_height_m": "height of its funnel",
+        "emission_load": "load of its engine",
+        "nu": Column(
+            "speed ratio through the air: its speed over the UAV's", title="Speed ratio", symbol="ν"
+        ),
+        "fsc_fuel_percent": Column(
+            "sulphur in its fuel, by mass", title="Sulphur in the fuel", digits=4
+        ),
+        "truth": Column("above or below the limit", kind="text"),
+        "verdict": Column("above, below or open", kind="text"),
+        "correct": Column("whether the verdict agrees with the fuel", kind="any"),
+        "fsc_percent": Column(
+            "fuel sulphur content that was measured", title="Sulphur content found", digits=4
+        ),
+        "leaves_s": "time of the patrol at which the UAV set out for it",
+        "reached_s": "time of the patrol at which the flight beside it began",
+        "orbit_at_s": "time of that flight at which the UAV reached the orbit",
+        "time_to_find_s": Column(
+            "time on the orbit until the plume was first detected",
+            title="Time to find the plume",
+            digits=1,
+            worse="higher",
+            missing="not found",
+        ),
+        "settling_time_s": Column(
+            "time of that flight from which it had settled",
+            title="Settling time",
+            digits=1,
+            worse="higher",
+            missing="not settled",
+        ),
+        "ended_s": "time of the patrol at which the UAV left it",
+        "enough": Column("why the flight beside it ended early, or empty", kind="text"),
+        "outcome": Column("outcome of the flight beside it, as in other studies", kind="text"),
+        "message": Column("the reason of an outcome other than completed", kind="text"),
+        "keepout_violations": Column(
+            "number of times that it entered the keep-out area of the ship that it served",
+            title="Keep-out violations",
+            digits=0,
+            worse="higher",
+            adds_up=True,
+        ),
+        "min_distance_m": Column(
+            "closest approach to the ship that is served",
+            title="Closest approach",
+            digits=1,
+            worse="lower",
+        ),
+        "kept_out": Column(
+            "whether the UAV kept out of the keep-out areas and was observed to the end",
+            kind="truth",
+        ),
+        "others_distance_min_m": "closest approach to any other ship, including on the way",
+        "altitude_outside_s": Column(
+            "time outside the limits of the altitude",
+            title="Time outside the altitudes of the scenario",
+            digits=1,
+            worse="higher",
+            adds_up=True,
+        ),
+        "told_service_s": "duration of the flight beside it if the UAV is given the plume's true axis",
+        "told_verdict": Column("verdict of that flight", kind="text"),
+        "oracle_position": "place in the order of the oracle, from 0; empty for a ship that it leaves out",
+        "oracle_ended_s": "time of the patrol at which the oracle leaves it",
+    }
+)
 """Of ``ships.csv``: a row per ship. Times of the patrol are counted from its start, those of a
 flight from that of the flight.
 """
 
-PHASE_COLUMNS = (
-    "flight_id", "patrol", "ship", "phase", "begins_s", "ends_s", "from_north_m", "from_east_m", "to_north_m", "to_east_m",
-)  # fmt: skip
+PHASE_COLUMNS = described(
+    {
+        "flight_id": Column(
+            "name of the patrol, or of the flight beside a ship", title="Flight", kind="text"
+        ),
+        "patrol": Column("name of the patrol", kind="text"),
+        "ship": "number of the ship, from 0",
+        "phase": Column("transit, approach, searching, measuring or leaving", kind="text"),
+        "begins_s": "time of the patrol at which it begins",
+        "ends_s": "time of the patrol at which it ends",
+        "from_north_m": "place at its beginning",
+        "from_east_m": "place at its beginning",
+        "to_north_m": "place at its end",
+        "to_east_m": "place at its end",
+    }
+)
 """Of ``phases.csv``: a row per stretch of a patrol, in its order."""
 
 TRANSIT, APPROACH, SEARCHING, MEASURING, LEAVING = (

@@ -11,6 +11,7 @@ from reports.run.run_data import RunData
 from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
+from tests.reports.run_columns import RUN_COLUMNS
 
 SWEEP = (
     "fidelity=kinematic",
@@ -47,6 +48,7 @@ def made_run(letter, rows, draws=None):
         crossings=pd.DataFrame(),
         innerloop=None,
         statistics=None,
+        columns=RUN_COLUMNS,
         draws=pd.DataFrame(draws if draws is not None else {"flight_id": []}),
     )
     return Run(letter=letter, data=data, trials=[])

@@ -48,9 +48,7 @@ def test_figures_of_whole_runs_are_those_of_their_summaries(report, first, large
     nearest = [
         pd.read_csv(path / "summary.csv")["min_distance_m"].min() for path in (first, larger)
     ]
-    assert cells["Closest approach of any flight [m]"][:2] == [
-        f"{distance:.1f}" for distance in nearest
-    ]
+    assert cells["Closest approach, least [m]"][:2] == [f"{distance:.1f}" for distance in nearest]
     assert cells["Flights that met every criterion"] == ["3 of 3", "0 of 3", "−3"]
     # Three crossings of three flights each, as the scenario asks for.
     assert cells["Plume crossings after settling, all flights"] == ["9", "9", "0"]

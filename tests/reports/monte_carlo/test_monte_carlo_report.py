@@ -26,6 +26,7 @@ from scenarios.schema.documented import documented_keys
 from scenarios.schema.load import load_study
 from scenarios.statistics.estimates import study_statistics
 from scenarios.studies.manifest import initial_manifest, parameters
+from tests.reports.run_columns import RUN_COLUMNS
 from tests.run_tables import write_manifest
 from tests.scenarios.study_rows import RADIUS, few_indices, study_rows
 
@@ -54,6 +55,7 @@ def run_of(rows, inputs, **changes):
         crossings=pd.DataFrame(),
         innerloop=None,
         statistics=study_statistics(rows, inputs, **{"confidence": 0.95, "seed": 1, **changes}),
+        columns=RUN_COLUMNS,
         draws=inputs,
     )
 

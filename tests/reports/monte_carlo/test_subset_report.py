@@ -17,12 +17,15 @@ from reports.monte_carlo.subset import (
 )
 from reports.monte_carlo.tables import percent
 from reports.render import matplotlib_charts, plotly_charts
+from scenarios.metrics.columns import DERIVED_COLUMNS
 from scenarios.statistics.subset_estimates import input_shifts, near_event
 from scenarios.statistics.subset_statistics import subset_statistics
 from tests.scenarios.statistics.rare_events import DIMENSION, linear, noisy, simulated
 from tests.scenarios.study_rows import study_rows
 
 REPEATS = 3
+
+CLEARANCE = DERIVED_COLUMNS["clearance_m"]
 
 
 def statistics_of(value, **settings):
@@ -56,7 +59,7 @@ def unreached():
 def blocks_of(statistics, kind):
     return [
         block
-        for section in subset_sections(statistics, {})
+        for section in subset_sections(statistics, {}, CLEARANCE)
         for block in section.blocks
         if isinstance(block, kind)
     ]
@@ -99,7 +102,7 @@ def test_where_nothing_was_reached_only_an_upper_bound_is_claimed(unreached):
     assert f"at most {percent(unreached['violation']['upper'])}" in words
     assert "m beyond r_min" in words
     assert "Inputs of the nearest flights" in [
-        section.title for section in subset_sections(unreached, {})
+        section.title for section in subset_sections(unreached, {}, CLEARANCE)
     ]
 
 

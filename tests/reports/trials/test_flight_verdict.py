@@ -387,11 +387,12 @@ def test_what_no_criterion_asks_for_is_on_the_first_page_too(run):
 
 def test_the_quantile_of_tracking_errors_is_told_of_a_hundred_flights_at_least_and_of_fewer_the_largest_once():
     rows = pd.DataFrame({"tracking_error_rms_m": np.arange(1.0, 101.0)})
+    error = "Tracking error, rms after settling"
     # Of 100 values 1 to 100: between the 99th and the 100th.
-    assert verdict._tracking(rows, told=True)[0].value == "99 m, largest 100 m"
-    (few,) = verdict._tracking(rows[:99], told=False)
+    assert verdict._tracking(rows, error, told=True)[0].value == "99 m, largest 100 m"
+    (few,) = verdict._tracking(rows[:99], error, told=False)
     assert few == Card("Tracking error, rms after settling, largest of the flights", "99 m")
-    assert verdict._tracking(rows[:99], told=True) == []
+    assert verdict._tracking(rows[:99], error, told=True) == []
 
 
 def test_the_shape_of_the_keep_out_area_is_said_where_a_distance_is_printed(run):

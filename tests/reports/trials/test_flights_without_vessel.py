@@ -49,7 +49,10 @@ def test_their_tables_are_filled_and_judge_what_needs_no_vessel(report):
     assert worst["Keeps its aircraft"].startswith("settled after ")
     assert "Mean crossing interval off π/ω₀" not in worst
     (flights,) = blocks_of(report, Table, "trial1")
-    settled, error = (flights.head.index(title) for title in ("Settled [s]", "Tracking rms [m]"))
+    settled, error = (
+        flights.head.index(title)
+        for title in ("Settling time [s]", "Tracking error, rms after settling [m]")
+    )
     # Below the criterion's 1.5 m, since both flights are met.
     assert all(
         0.0 < float(row[settled]) < 300.0 and 0.0 < float(row[error]) < 1.5 for row in flights.rows

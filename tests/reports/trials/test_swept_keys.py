@@ -74,7 +74,7 @@ def test_several_numbers_have_a_column_each_in_two_figures_and_words_have_one_of
             "Keep-out radius [m]",
         ] * 2
     assert [panel.y_label for panel in charts[1].panels[::2]] == [
-        "Tracking error, rms [m]",
+        "Tracking error, rms after settling [m]",
         "Settling time [s]",
     ]
 
@@ -382,7 +382,7 @@ def test_the_name_of_a_flight_does_not_reach_into_its_outcome_in_print(trial, na
     rows = trial.rows.assign(
         message="it came down on the sea, after the fault 'engine'", outcome="aircraft_lost"
     )
-    table = flight_table(rows, "Flight", lambda _: name)
+    table = flight_table(trial.run, rows, "Flight", lambda _: name)
     # A4 leaves some 500 pt for a table, in which a letter of a name takes 3.9 pt; names may go on
     # after a stroke.
     room = 500.0 * table.widths[0] / sum(table.widths)

@@ -27,6 +27,7 @@ from reports.run.trials import Kind, Trial, read_trials
 from scenarios.schema.load import OPERATIONAL, bases, load_study
 from scenarios.schema.overrides import given_keys
 from scenarios.studies.manifest import parameters
+from tests.reports.run_columns import RUN_COLUMNS
 from tests.run_tables import manifest_of, write_manifest
 
 BRIEF = pytest.mark.usefixtures("without_single_flights")
@@ -292,14 +293,10 @@ def test_a_criterion_that_is_just_failed_is_not_written_as_its_limit(run):
 
 def test_a_criterion_that_does_not_apply_is_no_limit(run):
     trial = read_trials(with_criterion(run, "steady", "tracking_error_rms_m", False))[0]
-    panel = PanelsOver(trial, "nu", by_violation(trial)).figure(
-        "tracking_error_rms_m", "Tracking error, rms [m]"
-    )
+    panel = PanelsOver(trial, "nu", by_violation(trial)).figure("tracking_error_rms_m")
     assert "criterion" not in {line.label for line in panel.lines}
     trial = read_trials(with_criterion(run, "steady", "tracking_error_rms_m", 2.0))[0]
-    panel = PanelsOver(trial, "nu", by_violation(trial)).figure(
-        "tracking_error_rms_m", "Tracking error, rms [m]"
-    )
+    panel = PanelsOver(trial, "nu", by_violation(trial)).figure("tracking_error_rms_m")
     (level,) = (line for line in panel.lines if line.label == "criterion")
     assert set(level.y) == {2.0}
 
@@ -310,7 +307,7 @@ def test_altitudes_that_have_to_be_kept_are_a_criterion_on_the_time_outside(run)
     rows = changed.summary.assign(
         altitude_outside_s=[0.0 if trial != "turns" else 1.5 for trial in changed.summary["trial"]]
     )
-    shown = rows_of(content(replace(changed, summary=rows)), "Turns")
+    shown = rows_of(content(replace(changed, summary=rows, columns=RUN_COLUMNS)), "Turns")
     assert ["Time outside the altitudes of the scenario", "≤ 0 s", "1.5 s", "2"] in shown
 
 

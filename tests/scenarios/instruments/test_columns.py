@@ -61,6 +61,7 @@ def test_instruments_with_columns_of_their_own_fly_together(tmp_path):
 EVALUATED = """
 import numpy as np
 from dataclasses import dataclass
+from common.columns import Column
 from scenarios.instruments.instrument import Evaluation
 
 class Bare:
@@ -124,6 +125,11 @@ class Text(Bare):
 class Also(Bare):
     COLUMNS = ("z_ppb",)
     FIGURES = ("y_peak_ppb",)
+class Numbered(Bare):
+    FIGURES = {"y_peak_ppb": 3}
+class Described(Bare):
+    COLUMNS = {"y_ppb": Column("of y", title="Y")}
+    FIGURES = {"y_peak_ppb": "largest y"}
 class Nameless:
     def read(self, *_): return ()
 class OfItsOwn(Bare):
@@ -163,6 +169,10 @@ def evaluated(folder, *names):
         ),
         (("Text",), "Text' is the text 'y_peak_ppb'; give a tuple of names, as in ('y_peak_ppb',)"),
         (
+            ("Numbered",),
+            "Numbered': column 'y_peak_ppb' is declared by 3; give a common.columns.Column, or text",
+        ),
+        (
             ("Nameless",),
             "Nameless' has no COLUMNS, the names of the columns of the time history that it fills; give it a tuple",
         ),
@@ -191,6 +201,19 @@ def test_an_instrument_that_is_evaluated_needs_no_figures_and_no_tables(tmp_path
         "own",
     )
     assert "y.csv" not in study.tables
+
+
+def test_columns_that_are_declared_with_what_they_are_are_written_with_it(tmp_path):
+    assert evaluated(tmp_path, "Described").history["y_ppb"].unique().tolist() == [1.0]
+    study = study_of(
+        load_study(
+            "sweep_nu", ["fidelity=kinematic", f'payload=["{tmp_path / "own.py"}:Described"]']
+        ),
+        "own",
+    )
+    figure = study.tables["summary.csv"]["y_peak_ppb"]
+    assert (figure.title, figure.unit, figure.meaning) == ("Y peak", "ppb", "largest y")
+    assert figure.part == "own.py:Described"
 
 
 def test_an_object_may_have_columns_of_its_own(tmp_path):
@@ -231,10 +254,10 @@ def test_a_figure_that_is_declared_and_not_returned_is_empty_and_a_row_of_a_tabl
         ),
         ("Words", "it has to return columns of numbers"),
         ("Plain", ": evaluate() returned [1.0]; it has to return an Evaluation"),
-        ("Late", " failed in evaluate(): ValueError: late (own.py:27)"),
+        ("Late", " failed in evaluate(): ValueError: late (own.py:28)"),
         (
             "Misspelt",
-            " the flight's record has no column 'times_s'; did you mean 'time_s'? (own.py:29)",
+            " the flight's record has no column 'times_s'; did you mean 'time_s'? (own.py:30)",
         ),
     ],
 )

@@ -7,7 +7,8 @@ import pandas as pd
 import pytest
 
 from gnc.mission.mission import Mode
-from scenarios.metrics.finding import FINDING_FIGURES, finding_figures
+from scenarios.metrics.columns import FINDING_COLUMNS
+from scenarios.metrics.finding import finding_figures
 from scenarios.schema.sections.flight import FlightConfig
 
 STEP, INTERVAL, ORBIT = 0.1, 10.0, 40.0
@@ -103,4 +104,4 @@ def test_time_outside_of_the_limits_counts_but_not_that_of_a_vehicle_that_glides
 
 
 def test_every_figure_is_a_column():
-    assert set(figures(history())) <= set(FINDING_FIGURES)
+    assert set(figures(history())) <= set(FINDING_COLUMNS)

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from flight_cases import ASTERN, SPEED, fly, plan, scenario
 
+from common.columns import unit_of
 from scenarios.instruments.instrument import payload
 from scenarios.schema.scenario import Scenario
 from scenarios.simulation import closed_loop
 from scenarios.simulation.guard_belief import GuardBelief
-from scenarios.simulation.record import COLUMNS, MEANINGS, unit_of
+from scenarios.simulation.record import COLUMNS, HISTORY_COLUMNS
 from scenarios.simulation.release import release
 from scenarios.vehicles.kinematic import KinematicVehicle
 from scenarios.vehicles.vehicle_setup import kinematic_setup
@@ -92,7 +93,7 @@ def test_to_record_every_step_changes_nothing_of_a_flight(given):
 
 
 def test_every_column_has_a_meaning_and_a_unit():
-    assert all(MEANINGS.values())
+    assert all(column.meaning for column in HISTORY_COLUMNS.values())
     assert [unit_of(name) for name in ("time_s", "north_m", "heading_rate_rad_s", "airspeed_mps", "guard")] == [
         "s", "m", "rad/s", "m/s", "1",
     ]  # fmt: skip

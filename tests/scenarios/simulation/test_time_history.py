@@ -9,6 +9,9 @@ import pyarrow.parquet as pq
 import pytest
 
 from scenarios.engine.task import Result, Task
+from scenarios.instruments.sniffer import SnifferOnBoard
+from scenarios.simulation.plume_readings import BELIEF_COLUMNS
+from scenarios.simulation.record import HISTORY_COLUMNS
 from scenarios.simulation.time_history import as_parquet, history_files, keeps_history
 from tests.run_tables import history_in
 
@@ -63,7 +66,13 @@ def test_a_history_comes_back_from_its_file_exactly():
         task=Task(number=0),
         tables={},
         files=history_files(
-            Task(number=0), history, {"fsc": 0.1}, planned=1, kept=1, row=MET | {"flight_id": "a"}
+            Task(number=0),
+            history,
+            {"fsc": 0.1},
+            columns={},
+            planned=1,
+            kept=1,
+            row=MET | {"flight_id": "a"},
         ),
     )
     assert list(result.files) == ["flights/a.parquet", "flights/a.json"]
@@ -73,7 +82,9 @@ def test_a_history_comes_back_from_its_file_exactly():
 
 def test_columns_of_the_instruments_are_written_with_their_meanings():
     columns = ["time_s", "so2_ppb", "co2_reading_ppm", "axis_height_estimated_m"]
-    schema = pq.read_schema(io.BytesIO(as_parquet(pd.DataFrame({name: [0.0] for name in columns}))))
+    known = HISTORY_COLUMNS | BELIEF_COLUMNS | SnifferOnBoard.COLUMNS
+    written = as_parquet(pd.DataFrame({name: [0.0] for name in columns}), known)
+    schema = pq.read_schema(io.BytesIO(written))
     assert [schema.field(name).metadata[b"meaning"].decode() for name in columns] == [
         "time since the start",
         "true concentration along the path",

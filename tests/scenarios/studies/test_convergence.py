@@ -82,7 +82,7 @@ def test_every_trajectory_of_a_small_study_converges(small):
 
 
 def test_rows_are_in_order_and_have_the_columns_of_the_table(small):
-    assert tuple(small.columns) == COLUMNS
+    assert tuple(small.columns) == tuple(COLUMNS)
     assert small["trajectory"].tolist() == [i for i in range(SMALL) for _ in range(2)]
     assert small["law"].tolist() == ["lyapunov", "cascade"] * SMALL
     assert small["reference"].tolist() == [

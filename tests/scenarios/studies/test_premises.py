@@ -1,14 +1,17 @@
 """The study of the premises, and how a run ends that contradicts what is proved."""
 
+import json
 from dataclasses import replace
 
 import pandas as pd
 
 from common.premises import TERMS
+from common.run_layout import COLUMNS, FLIGHTS
 from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.metrics import figures
 from scenarios.run import exit_status
 from scenarios.schema.load import load_study
+from scenarios.simulation.guard_belief import GuardBelief
 from scenarios.studies.registry import run_study
 
 QUICK = [
@@ -30,6 +33,9 @@ def test_the_study_has_a_row_for_each_case_and_term(tmp_path):
     assert (table["ratio_max"] >= table["ratio_median"]).all()
     assert any("median / largest" in line for line in result.summary.lines)
     assert result.summary.unexplained == 0
+    told = json.loads((tmp_path / "run" / COLUMNS).read_text())
+    assert list(told["premises.csv"]) == list(table)
+    assert set(GuardBelief.COLUMNS) <= set(told[FLIGHTS])
 
 
 def test_a_violation_with_every_premise_held_has_an_exit_status_of_its_own(tmp_path, monkeypatch):

@@ -1,0 +1,216 @@
+"""What a user's instrument declares in its one file stands in every report, without another line."""
+
+import json
+import re
+from html import unescape
+
+import numpy as np
+import pandas as pd
+import pypdfium2
+import pytest
+
+from common.columns import Column
+from common.run_layout import COLUMNS
+from reports.compare.content import compare, comparison_content
+from reports.compare.runs import read_runs
+from reports.compare.table_of_pairs import write_differences
+from reports.document.blocks import FlightPicker, Table
+from reports.document.chart import Chart
+from reports.output import write_report
+from reports.registry import content
+from reports.run.run_data import read_run
+from scenarios.api.results import Run
+from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.schema.load import load_study
+from scenarios.studies.registry import run_study
+
+METER = """
+import numpy as np
+from common.columns import Column
+from scenarios.instruments.instrument import Evaluation
+
+class Meter:
+    COLUMNS = {"glow_ppb": Column("brightness of the exhaust", title="Glow of the exhaust")}
+    FIGURES = {
+        "glow_peak_ppb": Column("largest brightness", title="Peak of the glow", digits=3, worse="higher"),
+        "glow_word": Column("brightness in a word", title="Kind of glow", kind="text"),
+    }
+
+    def __init__(self, scenario, world, generator):
+        self._gain = scenario.keepout.radius_m
+
+    def evaluate(self, column, since):
+        glow = self._gain * np.hypot(column("north_m"), column("east_m")) * 1e-3
+        figures = {"glow_peak_ppb": float(glow.max()), "glow_word": "dim"}
+        return Evaluation(columns=glow[:, None], figures=figures)
+"""
+
+SWEEP = (
+    "fidelity=kinematic",
+    "sweep.nu=[0.4,0.5]",
+    "flight.crossings=3",
+    "guidance.rate_hz=10",
+    "comparison.nu=[]",
+    "criteria.crossing_interval_error=0.1",
+)
+
+
+@pytest.fixture(scope="module")
+def paths(tmp_path_factory):
+    """Fly the same short sweep with two keep-out radii, which scale what the instrument reads."""
+    folder = tmp_path_factory.mktemp("added")
+    (folder / "meter.py").write_text(METER, encoding="utf-8")
+    for name, radius in (("first", 200.0), ("other", 210.0)):
+        given = [
+            *SWEEP,
+            f'payload=["{folder / "meter.py"}:Meter"]',
+            f"keepout.radius_m={radius}",
+        ]
+        run_study(
+            load_study("sweep_nu", given),
+            "sweep_nu",
+            folder / name,
+            executor_factory=InProcessExecutor,
+            overrides=given,
+        )
+    return folder / "first", folder / "other"
+
+
+@pytest.fixture(scope="module")
+def run(paths):
+    return read_run(paths[0])
+
+
+def blocks_of(page, kind):
+    return [
+        block for section in page.sections for block in section.blocks if isinstance(block, kind)
+    ]
+
+
+def test_the_run_says_what_its_columns_are(paths):
+    told = json.loads((paths[0] / COLUMNS).read_text(encoding="utf-8"))
+    header = (paths[0] / "summary.csv").read_text(encoding="utf-8").splitlines()[0].split(",")
+    assert list(told["summary.csv"]) == header
+    assert told["summary.csv"]["glow_peak_ppb"] == {
+        "title": "Peak of the glow",
+        "symbol": "",
+        "unit": "ppb",
+        "digits": 3,
+        "meaning": "largest brightness",
+        "worse": "higher",
+        "part": "meter.py:Meter",
+    }
+    assert told["flights"]["glow_ppb"]["title"] == "Glow of the exhaust"
+
+
+def test_a_figure_stands_in_a_table_over_the_flights_and_in_one_of_each_flight(run):
+    page = content(run)
+    peaks = run.summary["glow_peak_ppb"]
+    over, each = (
+        next(table for table in blocks_of(page, Table) if table.caption.startswith(words))
+        for words in ("The figures over all", "The same figures")
+    )
+    row = next(row for row in over.rows if row[0] == "Peak of the glow [ppb]")
+    assert row[1:5] == [
+        "2 of 2",
+        *(f"{of:.3f}" for of in (peaks.min(), peaks.median(), peaks.max())),
+    ]
+    assert row[6] == run.summary["flight_id"][int(peaks.argmax())]
+    assert each.head == ["Flight", "Peak of the glow [ppb]", "Kind of glow"]
+    assert [of[1:] for of in each.rows] == [[f"{peak:.3f}", "dim"] for peak in peaks]
+
+
+def test_a_figure_has_a_panel_over_what_was_swept_with_its_name_and_unit(run):
+    panels = [panel for chart in blocks_of(content(run), Chart) for panel in chart.panels]
+    (panel,) = (of for of in panels if of.y_label == "Peak of the glow [ppb]")
+    drawn = np.concatenate([line.y for line in panel.lines])
+    assert sorted(drawn) == pytest.approx(sorted(run.summary["glow_peak_ppb"]))
+    assert "ν" in panel.x_label
+
+
+def test_what_is_read_has_a_panel_among_the_time_histories_of_a_flight(run):
+    (picker,) = blocks_of(content(run), FlightPicker)
+    charts = [chart for flight in picker.flights for chart in flight.charts]
+    labels = [panel.y_label for chart in charts for panel in chart.panels]
+    assert labels.count("Glow of the exhaust [ppb]") == 2
+
+
+@pytest.mark.parametrize("suffix", [".html", ".pdf"])
+def test_the_report_that_is_read_has_both(run, suffix, tmp_path):
+    path = tmp_path / f"report{suffix}"
+    write_report(run, path)
+    if suffix == ".pdf":
+        document = pypdfium2.PdfDocument(path)
+        text = " ".join(page.get_textpage().get_text_bounded() for page in document)
+    else:
+        text = unescape(path.read_text(encoding="utf-8"))
+    text = re.sub(r"\s+", " ", text)
+    assert "Figures of meter.py:Meter" in text
+    assert "Peak of the glow [ppb]" in text
+    assert f"{run.summary['glow_peak_ppb'].max():.3f}" in text
+
+
+def test_a_figure_is_compared_between_runs(paths, tmp_path):
+    runs = read_runs(paths)
+    compared = compare(runs)
+    found = compared[0].found["glow_peak_ppb"]
+    # What is read scales with the radius; the flights themselves differ, too.
+    assert found.change == pytest.approx(found.after - found.before)
+    assert (found.change != 0.0).all()
+    page = comparison_content(runs, compared)
+    titles = [row[0] for table in blocks_of(page, Table) for row in table.rows]
+    assert "Peak of the glow, worst [ppb]" in titles
+    assert "Peak of the glow [ppb]" in titles
+    write_differences(compared, tmp_path / "differences.csv")
+    written = pd.read_csv(tmp_path / "differences.csv")
+    assert written["glow_peak_ppb_difference"].to_numpy() == pytest.approx(found.change)
+
+
+def test_python_has_its_unit_and_meaning(paths):
+    run = Run(paths[0], met=True, lines=())
+    assert run.summary.attrs["units"]["glow_peak_ppb"] == "ppb"
+    assert run.summary.attrs["meanings"]["glow_peak_ppb"] == "largest brightness"
+    flight = next(iter(run.flights.values()))
+    assert flight.history.attrs["units"]["glow_ppb"] == "ppb"
+    assert isinstance(run.columns["summary.csv"]["glow_word"], Column)
+
+
+STUDY = """
+from common.columns import Column
+from scenarios.flight import FlightWork
+from scenarios.studies.flight_study import FlightStudy
+from dataclasses import fields
+
+class Spare(FlightStudy):
+    FIGURES = {"spare_m": Column("what is left of the radius", title="Spare distance", worse="lower")}
+
+    def work(self, run):
+        of = super().work(run)
+        return SpareWork(**{field.name: getattr(of, field.name) for field in fields(of)})
+
+class SpareWork(FlightWork):
+    def more_tables(self, request, plan, record, row):
+        row["spare_m"] = row["min_distance_m"] - row["keepout_radius_m"]
+        return {}
+"""
+
+
+def test_a_study_declares_its_figures_in_the_same_way(tmp_path):
+    (tmp_path / "mystudy.py").write_text(STUDY, encoding="utf-8")
+    given = [*SWEEP, "sweep.nu=[0.5]", f"study={tmp_path / 'mystudy.py'}:Spare"]
+    run_study(
+        load_study("sweep_nu", given),
+        "sweep_nu",
+        tmp_path / "run",
+        executor_factory=InProcessExecutor,
+        overrides=given,
+    )
+    run = read_run(tmp_path / "run")
+    (spare,) = run.summary["min_distance_m"] - run.summary["keepout_radius_m"]
+    (over,) = (
+        table
+        for table in blocks_of(content(run), Table)
+        if table.caption.startswith("The figures over all")
+    )
+    assert over.rows[0][0] == "Spare distance [m]"
+    assert over.rows[0][3] == f"{spare:.2f}"
