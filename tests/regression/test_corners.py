@@ -59,14 +59,14 @@ def test_corners_that_a_search_has_found_are_kept_out_of(settings, tmp_path):
 @pytest.mark.parametrize(("place", "fails"), [(421.05, 0.749), (463.85, 1.3425)])
 def test_an_aircraft_whose_engine_fails_before_it_turns_away_keeps_out(place, fails, tmp_path):
     # As long as the turn was predicted at the airspeed of the moment these two came in, by 0.7 and
-    # 0.5 m. The guard acts for a step, then the lost thrust is known, and the aircraft retreats.
+    # 0.5 m. Now the lost thrust is known after 0.7 s and the aircraft retreats, before it needs the
+    # guard.
     keys = {
         "reference.standoff_radius_m": 9000,
         "vessel.speed_mps": 15, "start.range_m": place, "start.aspect_deg": 180, "start.course_deg": 180, "fault.kind": "engine",
         "fault.at_s": [fails, fails], "flight.duration_max_s": 15, "flight.crossings": 0,
     }  # fmt: skip
     row = flown_once(tmp_path / "run", "sea_wind", keys, *AT_THE_SHIP)
-    assert row["guard_interventions"] > 0
     assert row["min_distance_m"] > row["keepout_radius_m"] + 0.5
     assert row["guard_lost_s"] == 0.0
 
@@ -80,7 +80,6 @@ def test_an_aircraft_whose_engine_fails_in_a_climb_keeps_out(tmp_path):
         "keepout.shape": "cylinder", "flight_seed": 3003838512,
     }  # fmt: skip
     row = flown_once(tmp_path / "run", "sea_wind", keys, *AT_THE_SHIP)
-    assert row["guard_interventions"] > 0
     assert row["min_distance_m"] > row["keepout_radius_m"]
 
 

@@ -208,6 +208,7 @@ def fly_in_turbulence(root, start, flight, hold, seed):
             vehicle.sample()[1],
             math.atan2(v_east, v_north),
         )
+        reference = tracker.reference
         to_north, to_east = reference.north - north, reference.east - east
         cos, sin = math.cos(reference.course), math.sin(reference.course)
         along, across = to_north * cos + to_east * sin, to_east * cos - to_north * sin
