@@ -15,6 +15,8 @@ import numpy as np
 from scipy.special import chdtrc
 
 from measurement.estimate.model import (
+    ALIKE,
+    SLOPE_LEAST,
     BlockedRecord,
     Likelihood,
     Property,
@@ -39,10 +41,6 @@ FOREIGN_SIGMA = 4.5
 
 FOREIGN_MOST = 0.25
 """Largest share of the passes that may be left out."""
-
-_ALIKE = 0.05
-"""Standard deviation by which slopes of passes of one fuel differ, relative to the slope [-]: other
-gases come with another response, and the response is not quite what a lag is."""
 
 _COMPARED_LEAST = 4
 """Fewest passes among which one can be seen to be of another fuel."""
@@ -315,9 +313,9 @@ def fit_record(record: Record, instrument: SnifferSpec) -> Fit:
     if found.kept < 1.0 - _CORRECTED_MOST:
         found = state.solved(inverse, one_shape=True)
     if not math.isfinite(found.slope):
-        return Fit(instrument=instrument, problems=(*problems, _HAZE))
-    if whole < KEPT_LEAST:
-        problems = (*problems, _HAZE)
+        return Fit(instrument=instrument, problems=(_HAZE,))
+    if whole < KEPT_LEAST and not problems:
+        problems = (_HAZE,)
     state = state.with_slope(found)
     corrected = _CORRECTED_SPREAD * state.slope * max(0.0, 1.0 / found.kept - 1.0)
     problems += _disagreement(state, alike, agreement)
@@ -336,12 +334,8 @@ def _begun(record: Record, instrument: SnifferSpec) -> _State | None:
     start = Variances(noise=1.0, background=0.0, length=25.0)
     place = np.zeros(len(properties))
     state = _State(data=data, properties=properties, place=place, variances=start, slope=0.0)
-    slope = max(_SLOPE_LEAST, state.unweighted_slope())
+    slope = max(SLOPE_LEAST, state.unweighted_slope())
     return replace(state, slope=slope, variances=replace(start, background=0.3 * slope))
-
-
-_SLOPE_LEAST = 0.1
-"""Least slope by which the first variances are found [ppb/ppm]."""
 
 
 def _linearised(record: Record, instrument: SnifferSpec, state: _State) -> _State:
@@ -350,7 +344,7 @@ def _linearised(record: Record, instrument: SnifferSpec, state: _State) -> _Stat
     stated = priors == 1.0
     rounds = _ROUNDS if stated.all() else _ROUNDS_FREE
     for number in range(rounds):
-        slope = max(_SLOPE_LEAST, state.unweighted_slope())
+        slope = max(SLOPE_LEAST, state.unweighted_slope())
         state = replace(state, slope=slope).refitted()
         inverse = state.inverse(state.fixed)
         state = state.with_slope(state.solved(inverse))
@@ -413,11 +407,11 @@ def _of_passes_that_stand_out(
 def _without_foreign(state: _State) -> tuple[_State, Array, float]:
     """Return the state without passes whose slope is far off, P, and how well the others agree.
 
-    Passes of one fuel may differ by ``_ALIKE``.
+    Passes of one fuel may differ by ``ALIKE``.
     """
     most = int(FOREIGN_MOST * len(state.data.windows))
     while True:
-        state = state.with_between(_ALIKE * abs(state.slope))
+        state = state.with_between(ALIKE * abs(state.slope))
         own = state.data.passes[:, state.own]
         inverse = state.inverse(state.fixed, own)
         state = state.with_slope(state.solved(inverse))

@@ -540,6 +540,13 @@ class Variances:
     between: float = 0.0
 
 
+ALIKE = 0.05
+"""Standard deviation by which slopes of passes of one fuel differ, relative to the slope [-]: other
+gases come with another response, and the response is not quite what a lag is.
+
+It is the scale of the half-Cauchy prior of c, by which few passes do not take their noise for
+differences (Gelman, Bayesian Analysis 1:515)."""
+
 _COARSE_MOST = 200
 """Most blocks by which variances are fitted: backgrounds are slower than these."""
 
@@ -567,6 +574,7 @@ class Likelihood:
         record, co2 = data.signals.record, data.signals.instrument.known("co2")
         least = max(_INEXACT, SAMPLING_SD * record.step / co2.constants[0])
         inexact = max(least * plume, 1e-9)
+        self._usual_between = max(ALIKE * abs(slope), 1e-6)
         self._noise = self.averaged(self.averaged(noise).T)
         priors = np.array([item.prior for item in properties])
         columns = self.averaged(data.columns * data.slopes(properties, slope) * priors)
@@ -659,7 +667,7 @@ class Likelihood:
                 ]
             )
             value = float(residual @ weighted) + logdet
-            penalty, slopes = _prior(logs)
+            penalty, slopes = _prior(logs, self._usual_between)
             return value + penalty, gradient + slopes
 
         best = minimize(
@@ -678,8 +686,13 @@ def _named(logs: Array) -> dict[str, float]:
     return {name: math.exp(value) for name, value in zip(names, logs, strict=False)}
 
 
-def _prior(logs: Array) -> tuple[float, Array]:
-    """Return -2 log of the prior densities of the variances, and its derivative by their logs."""
+def _prior(logs: Array, between: float) -> tuple[float, Array]:
+    """Return -2 log of the prior densities of the variances, and its derivative by their logs.
+
+    Parameters
+    ----------
+    between : scale of the half-Cauchy distribution of c [ppb/ppm]
+    """
     slopes = np.zeros(len(logs))
     scale = _NOISE_FREEDOM * _NOISE_SPREAD**2
     value = (_NOISE_FREEDOM + 1.0) * math.log1p(logs[0] ** 2 / scale)
@@ -690,6 +703,10 @@ def _prior(logs: Array) -> tuple[float, Array]:
     away = (logs[2] - math.log(_LENGTH_USUAL)) / _LENGTH_SPREAD
     value += away**2
     slopes[2] = 2.0 * away / _LENGTH_SPREAD
+    if len(logs) > 3:
+        ratio = math.exp(2.0 * logs[3]) / between**2
+        value += 2.0 * math.log1p(ratio)
+        slopes[3] = 4.0 * ratio / (1.0 + ratio)
     return value, slopes
 
 
@@ -713,13 +730,17 @@ class Slope:
     kept: float
 
 
+SLOPE_LEAST = 0.1
+"""Slope below which residuals say nothing of CO2 [ppb/ppm], and from which the fit begins."""
+
+
 def background_of_co2(data: BlockedRecord, found: Variances, slope: float) -> float:
     """Return the standard deviation of the background of CO2 [ppm].
 
     It is the smaller of what residuals and troughs between passes show: the background of SO2 is in
     the residuals too, and the tail of a pass may be in a trough.
     """
-    by_residuals = found.background / max(abs(slope), 1e-9)
+    by_residuals = found.background / max(abs(slope), SLOPE_LEAST)
     outside = np.ones(len(data.read), dtype=bool)
     for window in data.windows:
         outside[window.inside] = False
