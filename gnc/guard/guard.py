@@ -54,6 +54,7 @@ from gnc.guard.turn import (
     CHANGE_DECAY,
     LEAST_CHANGE,
     PENDING_DECAY,
+    SPEED_SWITCH_ERROR,
     RelativeMotion,
     TurnAway,
     TurnPrediction,
@@ -683,7 +684,9 @@ class HeadingRateFilter:
         turn_time = self._turn_time * max(1.0, motion.fastest / self._turn_speed)
         # Of the growth, that of the disc is in all predictions.
         error = self._speed_error + motion.wind_error
-        return self._explained + error * turn_time
+        # What is kept for a change of speed along the turn depends on where it slows down.
+        switching = SPEED_SWITCH_ERROR * (motion.fastest - motion.slowest) / self._rate
+        return self._explained + error * turn_time + switching
 
     def _turn_command(self, side: float, motion: RelativeMotion) -> float:
         """Return the command of a turn away [rad/s]: straight away from the disc and no farther."""

@@ -55,7 +55,7 @@ _ROLLING_TIMES = 3.0
 """The 3 of docs/keepout_guard.md, "Evaluating less often": commands may go on for this many times
 the shortest time in which they can use up the slack by the course that they take [-]."""
 
-_SPEED_SWITCH_ERROR = 0.05
+SPEED_SWITCH_ERROR = 0.05
 """Share of the difference between the turn radii when fast and slow by which a vehicle that slows
 down at any moment may come nearer than predicted [-]."""
 
@@ -605,7 +605,7 @@ class _TurnPath:
         """Fly a slower leg while the vehicle flies away; the radii differ by so much [m]."""
         self._other_leg = slow_leg
         self._radii_difference = radii_difference
-        self._kept += _SPEED_SWITCH_ERROR * radii_difference
+        self._kept += SPEED_SWITCH_ERROR * radii_difference
 
     def advance(self) -> None:
         """Go on to the next point."""

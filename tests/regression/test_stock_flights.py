@@ -70,7 +70,7 @@ def test_an_aircraft_that_pushes_over_to_a_glide_in_its_turn_away_keeps_out(desi
     designs("T37")
     keys = {
         "aircraft": "T37", "vessel.speed_mps": 55, "start.distance_m": [7500, 9500], "start.aspect_deg": 180,
-        "start.course_deg": 180, "reference.standoff_radius_m": 90000, "fault.kind": "engine", "fault.at_s": [5, 50],
+        "start.course_deg": 180, "reference.standoff_radius_m": 90000, "fault.kind": "engine", "fault.at_s": [52, 52],
         "flight.duration_max_s": 120, "flight.crossings": 0, "flight_seed": 1871587661,
     }  # fmt: skip
     row = flown_once(tmp_path / "run", "sea_wind", keys, *AT_THE_SHIP)

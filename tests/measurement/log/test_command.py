@@ -159,7 +159,19 @@ def test_places_without_a_fix_are_printed_and_recorded(logged, capsys):
 
 
 @BRIEFLY
-@pytest.mark.parametrize("level", [420.0, None])
+@pytest.mark.parametrize(
+    "level",
+    [
+        420.0,
+        pytest.param(
+            None,
+            marks=pytest.mark.xfail(
+                strict=True,
+                reason="refused as passes of two ratios, with a content that is printed (issue 60)",
+            ),
+        ),
+    ],
+)
 def test_a_record_without_a_verdict_prints_no_nan(logged, capsys, level):
     table = pd.read_csv(logged)
     # No reading of it is too low for a cell of which nothing is known.

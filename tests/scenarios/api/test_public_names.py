@@ -29,7 +29,7 @@ SIGNATURES = {
 
 ATTRIBUTES = {
     "Scenario": {"changes", "config", "name", "parts", "set", "source", "title"},
-    "Run": {"comparison", "crossings", "draws", "flights", "manifest", "report", "statistics", "summary"},
+    "Run": {"columns", "comparison", "crossings", "draws", "flights", "manifest", "report", "statistics", "summary"},
     "Flight": {"crossings", "export", "history", "kept_out", "met", "plot", "reasons", "row"},
     "Statistics": {
         "confidence", "content", "flights", "measured", "outcomes", "quantile", "quantiles", "violation", "violation_at_most",
