@@ -214,6 +214,10 @@ def in_steps(readings, gas, step):
     return with_column(readings, gas, np.round(readings.values[:, gas] / step) * step)
 
 
+@pytest.mark.xfail(
+    strict=True,
+    reason="windows of passes are chosen from noisy CO2: the content is 2.0 % low (issue 60)",
+)
 def test_co2_in_steps_larger_than_its_noise_has_no_lower_content():
     # Rounding to 20 ppm is noise of 5.8 ppm; taken for the 1 ppm that are stated it lowered the
     # content by 5 % in the mean of six.
