@@ -448,12 +448,11 @@ class TurnPrediction:
         leg = self._leg(side, motion.fastest)
         path = _TurnPath(side, start, heading_rate, motion, self._spacing, time, deviation, leg)
         if motion.slowest != motion.fastest:
-            radii_difference = (motion.fastest - motion.slowest) * leg.stretch / rate
-            path.slow_down_while_receding(self._leg(side, motion.slowest), radii_difference)
+            self._let_slow_down(path, side, motion, leg)
         loss_rate = 2.0 * motion.fastest * rate * against / _ROLLING_TIMES
         # Commands before the turn displace the vehicle by the course that they take from it, times
         # a lever; and they use up slack by rolling, which makes the turn deviate more.
-        rolling = max(0.0, self._deviation * max(change, against) - deviation) / (
+        rolling = self._rolling_deviation(change, against, counted) / (
             loss_rate * max(lag, time_step)
         )
         acting = time - self._delay
@@ -461,13 +460,16 @@ class TurnPrediction:
         # At the start itself the vehicle has not deviated yet.
         least = path.slack + deviation
         outward = self._outward(side, start)
-        slack_per_lever, rise, least_rate, over = -1.0, 0.0, math.inf, False
+        least_rate = math.inf
+        slack_per_lever, rise = -1.0, 0.0
+        over = False
         for point in range(math.ceil(self._points_max * leg.stretch)):
             if least < floor:
                 break
             last_slack, last_rise, last_outward = path.slack, rise, outward
             path.advance()
-            outward, rise = path.outward, path.slack - last_slack
+            outward = path.outward
+            rise = path.slack - last_slack
             acting += duration
             fade *= decay
             lever = acting - lag * (1.0 - fade) + rolling
@@ -496,9 +498,25 @@ class TurnPrediction:
                     break
         free_rate = max(slack_per_lever, 0.0)
         free_time = min(free_rate / loss_rate, self.time_until_once_round(side, start, motion))
-        # A disc may gain on the vehicle for as long as a turn takes, and longer.
-        ends = over or rise + path.displaced_by >= 0.0
-        return TurnAway(least, free_time, free_rate / motion.fastest, counted, ends)
+        return TurnAway(
+            least,
+            free_time,
+            free_rate / motion.fastest,
+            counted,
+            # A disc may gain on the vehicle for as long as a turn takes, and longer.
+            ends=over or rise + path.displaced_by >= 0.0,
+        )
+
+    def _let_slow_down(
+        self, path: "_TurnPath", side: float, motion: RelativeMotion, leg: _Leg
+    ) -> None:
+        """Let the vehicle fly at its slowest airspeed along a path while it flies away."""
+        radii_difference = (motion.fastest - motion.slowest) * leg.stretch / self._rate
+        path.slow_down_while_receding(self._leg(side, motion.slowest), radii_difference)
+
+    def _rolling_deviation(self, change: float, against: float, counted: float) -> float:
+        """Return by how much commands against a turn may make it deviate more [m]."""
+        return max(0.0, self._deviation * max(change, against) - self._deviation * counted)
 
     def _leg(self, side: float, speed: float) -> _Leg:
         """Return what is flown between two points of a full turn at an airspeed [m/s]."""

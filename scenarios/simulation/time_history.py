@@ -74,11 +74,11 @@ def as_parquet(history: pd.DataFrame, columns: Table) -> bytes:
     # In this thread: to begin others takes longer than to convert so few columns, and other flights
     # have the other cores.
     table = pa.Table.from_pandas(history, preserve_index=False, nthreads=1)
-    told = {FLIGHTS: columns}
+    by_table = {FLIGHTS: columns}
     described = [
         field.with_metadata({"unit": column.unit, "meaning": column.meaning})
         for field in table.schema
-        for column in [column_of(told, FLIGHTS, field.name)]
+        for column in [column_of(by_table, FLIGHTS, field.name)]
     ]
     buffer = io.BytesIO()
     pq.write_table(table.cast(pa.schema(described, metadata=table.schema.metadata)), buffer)

@@ -56,30 +56,39 @@ def test_corners_that_a_search_has_found_are_kept_out_of(settings, tmp_path):
     assert rows["guard_lost_s"].sum() == 0.0
 
 
-@pytest.mark.parametrize(("place", "fails"), [(421.05, 0.749), (463.85, 1.3425)])
-def test_an_aircraft_whose_engine_fails_before_it_turns_away_keeps_out(place, fails, tmp_path):
-    # As long as the turn was predicted at the airspeed of the moment these two came in, by 0.7 and
-    # 0.5 m. Now the lost thrust is known after 0.7 s and the aircraft retreats, before it needs the
-    # guard.
+@pytest.mark.parametrize(
+    ("place", "fails", "guarded"),
+    [(421.05, 0.749, False), (463.85, 1.3425, False), (421.05, 4.5, True), (463.85, 5.5, True)],
+)
+def test_an_aircraft_whose_engine_fails_before_it_turns_away_keeps_out(
+    place, fails, guarded, tmp_path
+):
+    # As long as the turn was predicted at the airspeed of the moment the first two came in, by 0.7
+    # and 0.5 m. Now lost thrust is known after 0.7 s, and they retreat before they need the guard.
+    # Later failures are met by a guard that has to reckon with an aircraft that slows down.
     keys = {
         "reference.standoff_radius_m": 9000,
         "vessel.speed_mps": 15, "start.range_m": place, "start.aspect_deg": 180, "start.course_deg": 180, "fault.kind": "engine",
         "fault.at_s": [fails, fails], "flight.duration_max_s": 15, "flight.crossings": 0,
     }  # fmt: skip
     row = flown_once(tmp_path / "run", "sea_wind", keys, *AT_THE_SHIP)
+    assert row["airspeed_min_mps"] < 17.5
+    assert (row["guard_time_s"] > 1.0) == guarded
     assert row["min_distance_m"] > row["keepout_radius_m"] + 0.5
     assert row["guard_lost_s"] == 0.0
 
 
 def test_an_aircraft_whose_engine_fails_in_a_climb_keeps_out(tmp_path):
-    # It slows down the faster, and came in by 0.86 m.
+    # It slows down the faster, and came in by 0.86 m when it failed at a time of 0.5 to 8 s that the
+    # seed gave. At 6 s its guard has to act.
     keys = {
         "reference.standoff_radius_m": 9000, "vessel.speed_mps": 15,
         "start.distance_m": [380, 520], "start.aspect_deg": 180, "start.course_deg": 180, "fault.kind": "engine",
-        "fault.at_s": [0.5, 8], "flight.duration_max_s": 40, "flight.crossings": 0, "plume.elevation_deg": 20,
+        "fault.at_s": [6, 6], "flight.duration_max_s": 40, "flight.crossings": 0, "plume.elevation_deg": 20,
         "keepout.shape": "cylinder", "flight_seed": 3003838512,
     }  # fmt: skip
     row = flown_once(tmp_path / "run", "sea_wind", keys, *AT_THE_SHIP)
+    assert row["guard_time_s"] > 1.0
     assert row["min_distance_m"] > row["keepout_radius_m"]
 
 

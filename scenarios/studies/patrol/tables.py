@@ -15,6 +15,13 @@ from scenarios.studies.patrol.ships import Patrol
 LOST = (Outcome.AIRCRAFT_LOST.value, Outcome.DIVERGED.value)
 """Outcomes of flights whose aircraft does not come back."""
 
+_CLOSEST = Column(
+    "closest approach to the ship that is served",
+    title="Closest approach",
+    digits=1,
+    worse="lower",
+)
+
 PATROL_COLUMNS = described(
     {
         "flight_id": Column(
@@ -45,12 +52,7 @@ PATROL_COLUMNS = described(
             worse="higher",
             adds_up=True,
         ),
-        "min_distance_m": Column(
-            "closest approach to the ship that is served",
-            title="Closest approach",
-            digits=1,
-            worse="lower",
-        ),
+        "min_distance_m": _CLOSEST,
         "others_distance_min_m": "closest approach to any other ship, including on the way",
         "kept_out": Column(
             "whether the UAV kept out of the keep-out areas and was observed to the end",
@@ -126,12 +128,7 @@ SHIP_COLUMNS = described(
             worse="higher",
             adds_up=True,
         ),
-        "min_distance_m": Column(
-            "closest approach to the ship that is served",
-            title="Closest approach",
-            digits=1,
-            worse="lower",
-        ),
+        "min_distance_m": _CLOSEST,
         "kept_out": Column(
             "whether the UAV kept out of the keep-out areas and was observed to the end",
             kind="truth",
