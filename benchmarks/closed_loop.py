@@ -23,13 +23,13 @@ from benchmarks.reports import report_reports
 from benchmarks.vehicle import x8_setup
 from gnc.compiled import compiled_modules
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from scenarios.metrics.figures import flight_figures
-from scenarios.metrics.relative_state import flight_history
+from scenarios.flight.closed_loop import fly
+from scenarios.flight.release import release
+from scenarios.measures.figures import flight_figures
+from scenarios.measures.relative_state import flight_history
 from scenarios.planning.planner import plan_flight
-from scenarios.schema.load import checked, load_document
-from scenarios.schema.scenario import Scenario
-from scenarios.simulation.closed_loop import fly
-from scenarios.simulation.release import release
+from scenarios.scenario.load import checked, load_document
+from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 
 ROUNDS, STUDIES = 15, 3

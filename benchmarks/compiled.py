@@ -31,7 +31,7 @@ MODULES = {
         "guard/guard", "guard/turn",
     ),
     "scenarios": (
-        "simulation/closed_loop", "simulation/ending", "simulation/recorder", "simulation/settling",
+        "flight/closed_loop", "flight/ending", "flight/recorder", "flight/settling",
         "vehicles/jsbsim", "vehicles/telemetry",
     ),
 }  # fmt: skip

@@ -28,7 +28,7 @@ from gnc.errors import InfeasibleError
 from gnc.reference.reference import REFERENCE_SHAPES
 from scenarios.planning.limits import omega_max
 from scenarios.planning.theory.speed_ratio import CROSSING_LIMITS
-from scenarios.schema.sections.guidance import GuidanceConfig
+from scenarios.scenario.sections.guidance import GuidanceConfig
 
 if TYPE_CHECKING:
     import casadi as ca

@@ -26,16 +26,16 @@ from gnc.guidance import Guidance
 from gnc.mission.axis import SearchedAxis
 from scenarios.engine.task import Task
 from scenarios.experiment.requests import Experiment
-from scenarios.flight import FlightWork
+from scenarios.flight.onboard import OnboardSensing
+from scenarios.flight.plume_readings import axis_of
+from scenarios.flight_runner import FlightWork
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.planning.spreads import PredictedSpreads
-from scenarios.schema.scenario import Scenario
-from scenarios.schema.sections.equipment import PayloadConfig, VesselReportsConfig
-from scenarios.schema.sections.flight import FlightConfig, StartConfig
-from scenarios.schema.sections.guidance import FollowingConfig
-from scenarios.schema.sections.world import EmissionConfig, PlumeConfig, VesselConfig, WindConfig
-from scenarios.simulation.onboard import OnboardSensing
-from scenarios.simulation.plume_readings import axis_of
+from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.equipment import PayloadConfig, VesselReportsConfig
+from scenarios.scenario.sections.flight import FlightConfig, StartConfig
+from scenarios.scenario.sections.guidance import FollowingConfig
+from scenarios.scenario.sections.world import EmissionConfig, PlumeConfig, VesselConfig, WindConfig
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 
 ROUNDS = 9

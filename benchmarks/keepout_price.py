@@ -13,8 +13,8 @@ from pathlib import Path
 from benchmarks.vehicle import x8_setup
 from scenarios.planning.planner import plan_flight
 from scenarios.planning.spreads import predicted_spreads
-from scenarios.schema.load import load_study
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.load import load_study
+from scenarios.scenario.scenario import Scenario
 
 RATIOS = (0.2, 0.5, 0.8)
 """Speed ratios of the table [-]."""

@@ -9,8 +9,8 @@ import time
 
 import numpy as np
 
-from scenarios.schema.load import load_study
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.load import load_study
+from scenarios.scenario.scenario import Scenario
 from scenarios.studies.patrol.order import Order, Prospect, exact_order, inserted_order
 from scenarios.studies.patrol.ships import Patrol, sampled_patrol
 

@@ -5,7 +5,7 @@ from pathlib import Path
 from aircraft.fleet.x8 import X8
 from innerloop.store import Designed
 from scenarios.engine.run_directory import RunDirectory
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup, aircraft_setup, design_of
 
 

@@ -1,5 +1,5 @@
 """The premises of the keep-out guard's theorem as a run's tables have them: their names, columns,
-and what is said of a violation that none of them explains. ``scenarios.metrics.premises`` measures
+and what is said of a violation that none of them explains. ``scenarios.measures.premises`` measures
 them.
 """
 

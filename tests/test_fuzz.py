@@ -23,8 +23,8 @@ from common.command_line import BAD_INPUT
 from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.engine.memory import data_memory
 from scenarios.errors import InputError
-from scenarios.schema.load import load_study
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.load import load_study
+from scenarios.scenario.scenario import Scenario
 from scenarios.studies.registry import study_of
 from tests.in_process import run_command
 from tests.scenarios.short_trial import short_trial

@@ -33,10 +33,10 @@ q - rho q_0 - (1 - rho) e. The innovations are independent of e, too, so that th
 **A turn under satellite navigation.** The guidance keeps the speed over the estimated mean air, and
 the autopilot turns the motion over the ground by the acceleration across. So a turn in gusts is
 known much better than the gusts: what is left is the deviation of the closed loop, from its linear
-model (``scenarios/margin/turn_spread.py``). A wrong wind by itself moves no turn, since the speed
-is kept over the wrong mean air. A wind estimate that changes during the turn does. With the gain
-g = K/dt of the filter per second it changes by at most g times the integral of q - e, and the
-vehicle follows the change along its path; that is displaced by at most
+model (``scenarios/planning/margin/turn_spread.py``). A wrong wind by itself moves no turn, since
+the speed is kept over the wrong mean air. A wind estimate that changes during the turn does. With
+the gain g = K/dt of the filter per second it changes by at most g times the integral of q - e, and
+the vehicle follows the change along its path; that is displaced by at most
 
     min(1, g t/2)  sqrt(var integral (q - rho q_0) + var (T (1 - rho) q_0 - t e)).
 

@@ -14,7 +14,7 @@ from common.run_layout import COMPARISON, CROSSINGS, DRAWS, FLIGHTS, REPORT_HTML
 from scenarios.api.html import picture, table
 from scenarios.api.statistics import Statistics, statistics_of
 from scenarios.errors import InputError
-from scenarios.simulation.outcome import Outcome
+from scenarios.flight.outcome import Outcome
 
 if TYPE_CHECKING:
     import pandas as pd

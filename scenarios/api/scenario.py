@@ -9,9 +9,9 @@ from typing import Any
 from scenarios.api.html import table
 from scenarios.api.objects import Parts, lent, named
 from scenarios.errors import InputError
-from scenarios.schema.keys import suggestion
-from scenarios.schema.load import AnyStudy, load_document, load_study, sweeps_speed_ratio
-from scenarios.schema.overrides import Document, as_toml
+from scenarios.scenario.keys import suggestion
+from scenarios.scenario.load import AnyStudy, load_document, load_study, sweeps_speed_ratio
+from scenarios.scenario.overrides import Document, as_toml
 
 Given = str | os.PathLike[str] | Mapping[str, Any]
 """What a scenario is loaded from: a name of the catalog, the path of a TOML file, or what such a

@@ -9,10 +9,10 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 
 from scenarios.errors import InputError
-from scenarios.schema.keys import displaced
-from scenarios.schema.load import with_values
-from scenarios.schema.scenario import Scenario
-from scenarios.schema.sections.experiment import DrawConfig
+from scenarios.scenario.keys import displaced
+from scenarios.scenario.load import with_values
+from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.experiment import DrawConfig
 from scenarios.world.noise import Noise
 from scenarios.world.world import apparent_wind, vessel_of
 

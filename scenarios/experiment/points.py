@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 from common.registry import is_file_part
 from scenarios.errors import InputError
-from scenarios.schema.experiment_checks import swept_key
-from scenarios.schema.load import with_values
-from scenarios.schema.scenario import Scenario
-from scenarios.schema.sections.experiment import STUDY, CaseConfig
+from scenarios.scenario.experiment_checks import swept_key
+from scenarios.scenario.load import with_values
+from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.experiment import STUDY, CaseConfig
 
 Values = dict[str, object]
 

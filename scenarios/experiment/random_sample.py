@@ -6,9 +6,9 @@ import math
 from collections.abc import Collection
 
 from scenarios.experiment.points import without_repetitions
-from scenarios.schema.scenario import Scenario
-from scenarios.schema.sections.equipment import SensorsConfig
-from scenarios.schema.sections.experiment import DrawConfig
+from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.equipment import SensorsConfig
+from scenarios.scenario.sections.experiment import DrawConfig
 
 _READ = ("payload.", "emission.")
 """Sections that change what is read in a flight, and its path only where that follows the readings.

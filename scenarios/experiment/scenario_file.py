@@ -1,8 +1,8 @@
 """Flights as scenario files, which anyone can fly, change, and pass on."""
 
 from scenarios.experiment.requests import FlightRequest
-from scenarios.schema.effect import unused
-from scenarios.schema.sections.experiment import SweepConfig
+from scenarios.scenario.effect import unused
+from scenarios.scenario.sections.experiment import SweepConfig
 
 
 def scenario_file(request: FlightRequest, *, title: str) -> bytes:

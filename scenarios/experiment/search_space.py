@@ -3,8 +3,8 @@
 import numpy as np
 
 from scenarios.experiment.declared import beyond_declared
-from scenarios.schema.scenario import Scenario
-from scenarios.schema.sections.experiment import DrawConfig
+from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.experiment import DrawConfig
 from scenarios.search.coordinate import Coordinate
 from scenarios.search.space import Space
 

@@ -8,12 +8,12 @@ from gymnasium import spaces
 from scenarios.engine.task import Task
 from scenarios.errors import InputError
 from scenarios.experiment.draws import value_at
-from scenarios.flight import FlightWork
+from scenarios.flight_runner import FlightWork
 from scenarios.gym.observation import Array
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.planning.limits import omega_max
-from scenarios.schema.load import with_values
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.load import with_values
+from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 
 

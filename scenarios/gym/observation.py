@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from gymnasium import spaces
 
-from scenarios.simulation.closed_loop import ClosedLoop
+from scenarios.flight.closed_loop import ClosedLoop
 
 Array = npt.NDArray[np.float64]
 

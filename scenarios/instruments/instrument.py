@@ -12,8 +12,8 @@ from common.provenance import without_folders
 from gnc.estimation.navigation import MeasuredMotion
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
-from scenarios.schema.extension_points import PAYLOADS
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.extension_points import PAYLOADS
+from scenarios.scenario.scenario import Scenario
 
 Array = npt.NDArray[np.float64]
 

@@ -32,7 +32,7 @@ from scenarios.instruments.air_samples import (
 from scenarios.instruments.fuel_estimate import FIGURES, TABLES, fuel_estimate
 from scenarios.instruments.instrument import Evaluation, payload
 from scenarios.instruments.plume_passes import PASS_FIGURES, fraction_of_axis, pass_figures
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.scenario import Scenario
 from scenarios.world.faults import SNIFFER_DEAD, SNIFFER_SATURATED
 from scenarios.world.world import World
 

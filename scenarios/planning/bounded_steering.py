@@ -11,8 +11,8 @@ from gnc.errors import InfeasibleError
 from gnc.laws import STEERING_LAWS
 from gnc.paper import LookAhead, look_ahead
 from gnc.steering import SteeringLaw
-from scenarios.schema.scenario import Scenario
-from scenarios.schema.sections.guidance import GuidanceConfig
+from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.guidance import GuidanceConfig
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from common.text import utc_text
 from gnc.errors import InfeasibleError
 from gnc.estimation.vessel import KEPT, VesselLimits, VesselReport, radius_after, radius_by_speed
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.scenario import Scenario
 from scenarios.world.ais.track import AisVessel
 from scenarios.world.vessel import (
     ManoeuvringVessel,

@@ -7,11 +7,11 @@ from typing import Any
 from gnc.estimation.vessel import VesselReport
 from gnc.guidance import GuidanceParameters
 from gnc.reference.reference import PeriodicPath
-from scenarios.margin.keepout_margin import KeepoutMargin
 from scenarios.planning.bounded_steering import Steering
 from scenarios.planning.limits import omega_max
-from scenarios.schema.scenario import Scenario
-from scenarios.schema.sections.world import Shape
+from scenarios.planning.margin.keepout_margin import KeepoutMargin
+from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.world import Shape
 from scenarios.vehicles.sensors import SensorErrors
 from scenarios.world.world import ApparentWind, World
 

@@ -15,15 +15,6 @@ from gnc.guidance import GuidanceParameters, ReportedVessel
 from gnc.mission.follow import FollowingParameters
 from gnc.mission.standoff import StandoffParameters
 from gnc.reference.reference import Orbit, PeriodicPath
-from scenarios.margin.keepout_margin import (
-    KeepoutMargin,
-    filter_parameters,
-    tracking_level,
-    vessel_limits,
-    widest_tube,
-)
-from scenarios.margin.orbit_room import circle_distance, orbit_distance
-from scenarios.margin.tracking_spread import SpreadTable
 from scenarios.planning.air.estimated_wind import (
     first_known,
     navigation_parameters,
@@ -46,12 +37,21 @@ from scenarios.planning.guidance import (
     turn_time,
 )
 from scenarios.planning.limits import omega_max, plan_period
+from scenarios.planning.margin.keepout_margin import (
+    KeepoutMargin,
+    filter_parameters,
+    tracking_level,
+    vessel_limits,
+    widest_tube,
+)
+from scenarios.planning.margin.orbit_room import circle_distance, orbit_distance
+from scenarios.planning.margin.tracking_spread import SpreadTable
 from scenarios.planning.plume.axis import axis_height, plume_axis
 from scenarios.planning.plume.distance import additional_distance
 from scenarios.planning.reference import orbits, oscillation_at, swing_of
 from scenarios.planning.standoff import standoff_parameters, vessel_circle
 from scenarios.planning.start import check_start, first_reports, sampled_start
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.sensors import SensorErrors
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 from scenarios.world.ais.track import AisVessel, usual_intervals

@@ -21,15 +21,15 @@ from gnc.reference.reference import Swing
 from gnc.tracker import TrackingParameters
 from innerloop.flight.part_failure import PartFailure, glide_airspeed
 from innerloop.flight.turn_reversal import TurnReversalResponse
-from scenarios.margin.keepout_margin import KeepoutMargin
-from scenarios.margin.satellite_noise import noise_allowance, position_scatter
 from scenarios.planning.air.errors import error_budget
 from scenarios.planning.air.flown_heights import climbs, glides
 from scenarios.planning.bounded_steering import Steering, given_steering, steering_law
 from scenarios.planning.limits import omega_max, plan_interval
+from scenarios.planning.margin.keepout_margin import KeepoutMargin
+from scenarios.planning.margin.satellite_noise import noise_allowance, position_scatter
 from scenarios.planning.reference import shape_of
-from scenarios.schema.scenario import Scenario
-from scenarios.schema.sections.guidance import GuidanceConfig
+from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.guidance import GuidanceConfig
 from scenarios.vehicles.sensors import NAVIGATION_TIME
 from scenarios.vehicles.thrust_expectation import ThrustTest
 from scenarios.vehicles.vehicle_setup import VehicleSetup

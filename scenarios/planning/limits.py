@@ -8,8 +8,8 @@ from aircraft.spec import Envelope
 from common.physics import bank_for_heading_rate, heading_rate_for_bank
 from gnc.errors import InfeasibleError
 from scenarios.errors import InputError
-from scenarios.schema.scenario import Scenario
-from scenarios.schema.sections.guidance import GuidanceConfig
+from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.guidance import GuidanceConfig
 
 PLAN_PERIOD = 0.5
 """Time between plans, and between measurements of the wind, to the nearest step of the guidance

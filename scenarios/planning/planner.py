@@ -6,7 +6,7 @@ from scenarios.planning.flight_plan import FlightPlan
 from scenarios.planning.following_flight import Spreads, following_flight
 from scenarios.planning.limits import check_recorded
 from scenarios.planning.tracking_flight import circling_flight, tracking_flight
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 from scenarios.world.noise import Noise
 from scenarios.world.vessel import check_manoeuvres

@@ -19,9 +19,9 @@ from gnc.reference.reference import (
     Swing,
 )
 from scenarios.planning.limits import omega_max
-from scenarios.schema.scenario import Scenario
-from scenarios.schema.sections.guidance import GuidanceConfig, ReferenceConfig
-from scenarios.schema.sections.world import KeepoutConfig
+from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.guidance import GuidanceConfig, ReferenceConfig
+from scenarios.scenario.sections.world import KeepoutConfig
 from scenarios.world.own_part import asked, is_number, is_own, refuse_answer
 
 STEPS_MIN = 6

@@ -1,7 +1,7 @@
 """A scenario scaled to an aircraft: keys that it does not set follow from the aircraft's airspeed
 and tightest turn.
 
-The defaults of ``scenarios.schema.sections`` are numbers for an aircraft that flies 19.42 m/s and
+The defaults of ``scenarios.scenario.sections`` are numbers for an aircraft that flies 19.42 m/s and
 turns with 45 degrees of bank. One that flies V with omega_max = g tan(bank)/V has a unit of time,
 1/omega_max, and one of length, V/omega_max; in these units every aircraft flies the same study. The
 vessel and its keep-out area keep their sizes.
@@ -14,10 +14,10 @@ from typing import Any
 
 from aircraft.spec import Envelope
 from common.physics import heading_rate_for_bank
-from scenarios.schema.effect_rules import LAW_KEYS
-from scenarios.schema.load import with_values
-from scenarios.schema.scenario import Scenario
-from scenarios.schema.sections.guidance import GuidanceConfig
+from scenarios.scenario.effect_rules import LAW_KEYS
+from scenarios.scenario.load import with_values
+from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.guidance import GuidanceConfig
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

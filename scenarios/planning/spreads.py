@@ -11,13 +11,13 @@ from gnc.errors import InfeasibleError
 from gnc.reference.reference import Orbit
 from innerloop.store import Designed
 from scenarios.errors import InputError
-from scenarios.margin.tracking_spread import SpreadTable, tracking_spreads
 from scenarios.planning.guidance import speed_hold, tracking_parameters
 from scenarios.planning.limits import omega_max
+from scenarios.planning.margin.tracking_spread import SpreadTable, tracking_spreads
 from scenarios.planning.reference import oscillation_at
 from scenarios.planning.scaling import scaled_law_defaults
-from scenarios.schema.load import with_values
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.load import with_values
+from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 
 SPREAD_RATIOS = (0.1, 0.3, 0.5, 0.7, 0.9)
@@ -116,7 +116,7 @@ def _planned_for(scenario: Scenario, defaults: Mapping[str, float]) -> Scenario:
 
 def _spread_table(scenario: Scenario, found: Designed, setup: VehicleSetup) -> SpreadTable:
     # It needs python-control, which a flight in calm air does without.
-    from scenarios.margin.turn_spread import turn_deviation
+    from scenarios.planning.margin.turn_spread import turn_deviation
 
     schedule = found.design.schedule
     air = low_altitude_turbulence(

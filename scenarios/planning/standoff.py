@@ -15,7 +15,7 @@ from innerloop.flight.part_failure import glide_airspeed
 from scenarios.planning.limits import omega_max, plan_interval
 from scenarios.planning.plume.axis import PREDICTED_TIME
 from scenarios.planning.reference import RATIO_STEPS
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 
 Array = npt.NDArray[np.float64]

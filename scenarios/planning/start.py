@@ -10,7 +10,7 @@ from gnc.estimation.navigation import AirMotion
 from gnc.estimation.vessel import Tube, VesselReport
 from gnc.guard.guard import GuardParameters, HeadingRateFilter
 from scenarios.planning.flight_plan import Start
-from scenarios.schema.sections.flight import StartConfig
+from scenarios.scenario.sections.flight import StartConfig
 from scenarios.world.vessel import VesselTruth
 
 

@@ -11,14 +11,14 @@ from gnc.guidance import GuidanceParameters
 from gnc.mission.mission import Centre
 from gnc.mission.track import DirectParameters, Joining
 from gnc.paper import PlumeAxis, centre_of_oscillation
-from scenarios.margin.orbit_room import orbit_distance
 from scenarios.planning.bounded_steering import Steering, plan_steering
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.planning.guidance import approach_parameters, guard_parameters, tracking_parameters
 from scenarios.planning.limits import omega_max, plan_interval
+from scenarios.planning.margin.orbit_room import orbit_distance
 from scenarios.planning.reference import circle, distance_kept, joined_orbit, oscillation_at
 from scenarios.planning.start import check_start, placed, sampled_start
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 from scenarios.world.faults import NO_FAULT
 from scenarios.world.noise import Noise, start_generator

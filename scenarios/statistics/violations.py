@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from scenarios.simulation.outcome import Outcome
+from scenarios.flight.outcome import Outcome
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

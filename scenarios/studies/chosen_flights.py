@@ -7,7 +7,7 @@ from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Progress
 from scenarios.engine.task import Row, Task
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.scenario import Scenario
 from scenarios.studies.flight_study import FlightStudy
 
 

@@ -37,9 +37,10 @@ from scenarios.experiment.random_sample import (
     random_numbers_of_points,
 )
 from scenarios.experiment.requests import Experiment
-from scenarios.flight import FlightWork, history_columns
+from scenarios.flight.time_history import UNFINISHED
+from scenarios.flight_runner import FlightWork, history_columns
 from scenarios.instruments.instrument import declarations
-from scenarios.metrics.columns import (
+from scenarios.measures.columns import (
     ANY_KEY,
     CROSSING_COLUMNS,
     DERIVED_COLUMNS,
@@ -53,9 +54,8 @@ from scenarios.planning.limits import omega_max
 from scenarios.planning.scaling import scaled, scaled_keys
 from scenarios.planning.spreads import predicted_spreads
 from scenarios.planning.theory.speed_ratio import theory_over_speed_ratio
-from scenarios.schema.scenario import Scenario
-from scenarios.schema.sections.experiment import STUDY, TrialList
-from scenarios.simulation.time_history import UNFINISHED
+from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.experiment import STUDY, TrialList
 from scenarios.statistics.sulphur import COLUMNS as SULPHUR_COLUMNS
 from scenarios.statistics.sulphur import sulphur_statistics
 from scenarios.studies.checks import check_flights, check_without_design, plugins_explained

@@ -21,20 +21,20 @@ from measurement.sniffer.spec import SnifferSpec
 from scenarios.engine.fingerprint import fingerprint
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
-from scenarios.schema.documented_parts import (
+from scenarios.scenario.documented_parts import (
     DIMENSIONLESS,
     DocumentedKey,
     described_fields,
     documented_part_keys,
 )
-from scenarios.schema.effect import differing, unused
-from scenarios.schema.keys import line, split_unit
-from scenarios.schema.load import AnyStudy
-from scenarios.schema.parts import names_file, names_folder, part_names
-from scenarios.schema.scenario import Scenario
-from scenarios.schema.sections.guidance import GuidanceConfig
-from scenarios.schema.sections.part_section import PartSection
-from scenarios.schema.sections.report import ReportConfig, read_logo, report_entry
+from scenarios.scenario.effect import differing, unused
+from scenarios.scenario.keys import line, split_unit
+from scenarios.scenario.load import AnyStudy
+from scenarios.scenario.parts import names_file, names_folder, part_names
+from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.guidance import GuidanceConfig
+from scenarios.scenario.sections.part_section import PartSection
+from scenarios.scenario.sections.report import ReportConfig, read_logo, report_entry
 from scenarios.world.ais.reports import AisReports
 from scenarios.world.ais.track import AisVessel
 from scenarios.world.world import vessel_of

@@ -11,10 +11,10 @@ from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Launch, Progress, RunResult, Study, fly_study
 from scenarios.engine.task import Work
 from scenarios.errors import InputError
-from scenarios.schema.load import AnyStudy
-from scenarios.schema.scenario import Scenario
-from scenarios.schema.sections.convergence import ConvergenceScenario
-from scenarios.schema.sections.experiment import TrialList
+from scenarios.scenario.load import AnyStudy
+from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.convergence import ConvergenceScenario
+from scenarios.scenario.sections.experiment import TrialList
 from scenarios.studies.checks import plugins_explained
 from scenarios.studies.study import STUDIES
 

@@ -13,11 +13,11 @@ from scenarios.engine.runner import Study, StudySummary
 from scenarios.engine.task import Row, Task, Work
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
-from scenarios.flight import FlightWork
-from scenarios.schema.aircraft_folder import folder_of
-from scenarios.schema.load import checked
-from scenarios.schema.parts import names_folder
-from scenarios.schema.scenario import Scenario
+from scenarios.flight_runner import FlightWork
+from scenarios.scenario.aircraft_folder import folder_of
+from scenarios.scenario.load import checked
+from scenarios.scenario.parts import names_folder
+from scenarios.scenario.scenario import Scenario
 from scenarios.studies.flight_study import FlightStudy
 from scenarios.studies.manifest import plugins, refuse_changed
 from scenarios.studies.registry import study_of

@@ -10,7 +10,7 @@ from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, Study, StudySummary
 from scenarios.engine.task import Task, Work
 from scenarios.experiment.requests import table_of
-from scenarios.flight import FlightWork
+from scenarios.flight_runner import FlightWork
 from scenarios.studies.flight_study import FlightStudy
 from scenarios.studies.summary import FlightCounts
 

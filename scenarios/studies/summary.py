@@ -18,7 +18,7 @@ from measurement.estimate.verdict import (
     verdict_words,
 )
 from scenarios.engine.task import Row
-from scenarios.simulation.outcome import Outcome
+from scenarios.flight.outcome import Outcome
 from scenarios.world.faults import OF_SNIFFER
 
 NOT_MET_SHOWN = 20

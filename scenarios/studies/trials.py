@@ -5,11 +5,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from scenarios.errors import InputError
-from scenarios.schema.effect import unused
-from scenarios.schema.load import load_study
-from scenarios.schema.overrides import parse_override
-from scenarios.schema.scenario import Scenario
-from scenarios.schema.sections.experiment import TrialList
+from scenarios.scenario.effect import unused
+from scenarios.scenario.load import load_study
+from scenarios.scenario.overrides import parse_override
+from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.experiment import TrialList
 from scenarios.studies.flight_study import FlightStudy
 
 _ROUNDING = 1e-12

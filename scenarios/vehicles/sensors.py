@@ -8,7 +8,7 @@ from itertools import accumulate
 import numpy as np
 
 from gnc.estimation.navigation import MeasuredMotion, SatelliteFix
-from scenarios.schema.sections.equipment import SensorsConfig
+from scenarios.scenario.sections.equipment import SensorsConfig
 
 NAVIGATION_TIME = 60.0
 """Time constant with which the error of satellite navigation wanders [s]."""

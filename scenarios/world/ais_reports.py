@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from gnc.estimation.vessel import VesselReport
-from scenarios.schema.sections.equipment import VesselReportsConfig
+from scenarios.scenario.sections.equipment import VesselReportsConfig
 from scenarios.world.ais.track import AisVessel
 from scenarios.world.vessel import VesselTruth
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from scenarios.schema.sections.world import AirConfig
+from scenarios.scenario.sections.world import AirConfig
 
 Array = npt.NDArray[np.float64]
 

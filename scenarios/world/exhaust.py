@@ -14,7 +14,7 @@ from measurement.emission import Emission, Fuel, emission_of, fuel_preset, ship_
 from measurement.gases import GASES, PARTS
 from measurement.plume.fluctuating_plume import PlumeSample
 from measurement.plume.spread import MarineAir
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.scenario import Scenario
 from scenarios.world.plume import Plume
 from scenarios.world.vessel import VesselTruth
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scenarios.schema.sections.equipment import FaultConfig
+from scenarios.scenario.sections.equipment import FaultConfig
 
 VESSEL_DATA, SATELLITES = "vessel_data", "satellite_navigation"
 """Losses of what is received."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from common.geodesy import LocalFrame
-from scenarios.schema.sections.world import PlaceConfig
+from scenarios.scenario.sections.world import PlaceConfig
 
 
 @dataclass(frozen=True, kw_only=True)

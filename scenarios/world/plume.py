@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from aircraft.wind import WindField
-from scenarios.schema.extension_points import PLUME_MODELS
-from scenarios.schema.sections.world import PlumeConfig
+from scenarios.scenario.extension_points import PLUME_MODELS
+from scenarios.scenario.sections.world import PlumeConfig
 from scenarios.world.vessel import TRACK_STEP, SteadyVessel, VesselTruth, sampled, track_times
 
 _AT_REST = 1e-9

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from gnc.errors import InfeasibleError
-from scenarios.schema.extension_points import VESSEL_TRACKS
-from scenarios.schema.sections.world import VesselConfig
+from scenarios.scenario.extension_points import VESSEL_TRACKS
+from scenarios.scenario.sections.world import VesselConfig
 
 TRACK_STEP = 0.05
 """Time step of a tabled track [s]; between its points the track is a parabola to 1e-5 m."""

@@ -8,8 +8,8 @@ from aircraft.fdm import TIME_STEP
 from aircraft.weather import STEPS_BETWEEN_GUSTS, TURBULENCE, Gust, Weather
 from aircraft.wind import CALM, WindField, constant_wind, over_the_sea
 from common.physics import wind_velocity
-from scenarios.schema.scenario import Scenario
-from scenarios.schema.sections.world import WindConfig
+from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.world import WindConfig
 from scenarios.world.place import Place
 from scenarios.world.wind_table import tabled_wind
 

@@ -15,7 +15,7 @@ from common.physics import wind_velocity
 from common.text import other_units, utc_text
 from measurement.tables import decimal_commas, other_separator
 from scenarios.errors import InputError
-from scenarios.schema.sections.world import WindConfig
+from scenarios.scenario.sections.world import WindConfig
 from scenarios.world.ais.rows import number_of, seconds_of
 from scenarios.world.place import Place
 from scenarios.world.wind_netcdf import read_netcdf

@@ -10,8 +10,8 @@ import numpy.typing as npt
 from aircraft.weather import Weather
 from aircraft.wind import WindField
 from common.registry import PluginError
-from scenarios.schema.extension_points import PLUME_MODELS, VESSEL_TRACKS
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.extension_points import PLUME_MODELS, VESSEL_TRACKS
+from scenarios.scenario.scenario import Scenario
 from scenarios.world.ais.track import AisVessel, ais_vessel
 from scenarios.world.background import UNIFORM, Background
 from scenarios.world.exhaust import Exhaust

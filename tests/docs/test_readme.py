@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from common.command_line import run_command
-from scenarios.console.main import commands
-from scenarios.schema.load import load_study
+from scenarios.cli.main import commands
+from scenarios.scenario.load import load_study
 
 ROOT = Path(__file__).parents[2]
 PAGES = ("README.md", "CONTRIBUTING.md")

@@ -65,7 +65,7 @@ def test_what_was_compiled_is_run_unless_sources_are_asked_for(packages):
         "gnc/estimation/health.py",
         "gnc/guidance.py",
         "common/physics.py",
-        "scenarios/simulation/record.py",
+        "scenarios/flight/record.py",
     ],
 )
 def test_once_a_source_is_edited_the_sources_are_run(packages, edited):

@@ -325,7 +325,7 @@ def test_from_ahead_of_the_vessel_only_the_guard_keeps_the_vehicle_out(nu):
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("nu", [0.0, 0.1, 0.5])
 def test_from_astern_a_guarded_vehicle_settles_and_keeps_out(nu, seed):
-    # Starts as in scenarios/schema/sections/flight.py: 400 to 800 m away, within 30 degrees of
+    # Starts as in scenarios/scenario/sections/flight.py: 400 to 800 m away, within 30 degrees of
     # astern, on any course.
     generator = np.random.default_rng(seed)
     distance = generator.uniform(400.0, 800.0)

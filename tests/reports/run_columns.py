@@ -2,7 +2,7 @@
 
 from common.run_layout import DERIVED, SUMMARY
 from scenarios.instruments.sniffer import SnifferOnBoard
-from scenarios.metrics.columns import DERIVED_COLUMNS, FINDING_COLUMNS, SUMMARY_COLUMNS
+from scenarios.measures.columns import DERIVED_COLUMNS, FINDING_COLUMNS, SUMMARY_COLUMNS
 
 RUN_COLUMNS = {
     SUMMARY: SUMMARY_COLUMNS | SnifferOnBoard.FIGURES | FINDING_COLUMNS,

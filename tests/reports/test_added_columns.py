@@ -21,7 +21,7 @@ from reports.registry import content
 from reports.run.run_data import read_run
 from scenarios.api.results import Run
 from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.schema.load import load_study
+from scenarios.scenario.load import load_study
 from scenarios.studies.registry import run_study
 
 METER = """
@@ -177,7 +177,7 @@ def test_python_has_its_unit_and_meaning(paths):
 
 STUDY = """
 from common.columns import Column
-from scenarios.flight import FlightWork
+from scenarios.flight_runner import FlightWork
 from scenarios.studies.flight_study import FlightStudy
 from dataclasses import fields
 

@@ -10,12 +10,12 @@ import numpy as np
 from gnc.mission.mission import Mode
 from scenarios.engine.task import Task
 from scenarios.experiment.requests import Experiment
-from scenarios.flight import FlightWork
+from scenarios.flight_runner import FlightWork
 from scenarios.planning.planner import plan_flight
 from scenarios.planning.spreads import PredictedSpreads
-from scenarios.schema.load import OPERATIONAL, bases
-from scenarios.schema.overrides import merged
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.load import OPERATIONAL, bases
+from scenarios.scenario.overrides import merged
+from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 from tests.run_tables import history_in
 

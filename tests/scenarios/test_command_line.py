@@ -76,7 +76,7 @@ for fidelity in ("kinematic", "six_dof"):
 STEPS = {
     "import scenarios.run, innerloop.design, reports.build": HEAVY
     | {"numpy", "jsbsim", "plotly", "pydantic"},
-    "from scenarios.console.describe import described; described('payload.sensor')": HEAVY,
+    "from scenarios.cli.describe import described; described('payload.sensor')": HEAVY,
     FLIGHTS: DESIGNING,
 }
 """What help needs, what is said of a key, and flights: one after the other, with what none of them

@@ -7,7 +7,7 @@ import pytest
 from flight_cases import ASTERN, SPEED, fly, work
 
 from scenarios.engine.task import Task
-from scenarios.metrics.columns import INPUT_COLUMNS, SUMMARY_COLUMNS
+from scenarios.measures.columns import INPUT_COLUMNS, SUMMARY_COLUMNS
 
 
 @pytest.mark.parametrize(
@@ -146,7 +146,7 @@ def broken(monkeypatch):
         def fly(*_, **__):
             raise error
 
-        monkeypatch.setattr("scenarios.flight.fly", fly)
+        monkeypatch.setattr("scenarios.flight_runner.fly", fly)
 
     return broken
 

@@ -5,8 +5,11 @@ from measurement.log.run_files import SAMPLE_MEANINGS
 from reference_pages.markdown import literal, plain, table
 from reports.compare.figures import COMPARED
 from reports.export.tracks_csv import COLUMNS as TRACK_COLUMNS
+from scenarios.flight.guard_belief import GuardBelief
+from scenarios.flight.plume_readings import BELIEF_COLUMNS
+from scenarios.flight.record import HISTORY_COLUMNS
 from scenarios.instruments.sniffer import SnifferOnBoard
-from scenarios.metrics.columns import (
+from scenarios.measures.columns import (
     CROSSING_COLUMNS,
     DERIVED_COLUMNS,
     FINDING_COLUMNS,
@@ -16,10 +19,7 @@ from scenarios.metrics.columns import (
     SEARCH_COLUMNS,
     SUMMARY_COLUMNS,
 )
-from scenarios.metrics.window import MEASURED_COLUMNS, WINDOW_COLUMNS
-from scenarios.simulation.guard_belief import GuardBelief
-from scenarios.simulation.plume_readings import BELIEF_COLUMNS
-from scenarios.simulation.record import HISTORY_COLUMNS
+from scenarios.measures.window import MEASURED_COLUMNS, WINDOW_COLUMNS
 from scenarios.statistics.premises import TABLE_COLUMNS as PREMISE_COLUMNS
 from scenarios.studies.arena.study import TUNING_COLUMNS
 from scenarios.studies.convergence.ensemble import COLUMNS as CONVERGENCE_COLUMNS

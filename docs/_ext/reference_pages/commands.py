@@ -7,7 +7,7 @@ import typer
 import typer.main
 
 from reference_pages.markdown import literal, plain, table
-from scenarios.console.main import commands
+from scenarios.cli.main import commands
 
 _INTRODUCTION = """\
 # Command line

@@ -3,17 +3,17 @@
 from collections.abc import Iterator
 
 from reference_pages.markdown import literal, plain, table
-from scenarios.console.describe import value_text
-from scenarios.schema.documented import DocumentedSection, documented_sections
-from scenarios.schema.documented_parts import (
+from scenarios.cli.describe import value_text
+from scenarios.scenario.documented import DocumentedSection, documented_sections
+from scenarios.scenario.documented_parts import (
     DIMENSIONLESS,
     FLIGHT_STUDIES,
     DocumentedKey,
     documented_part_keys,
 )
-from scenarios.schema.scenario import Scenario
-from scenarios.schema.sections.convergence import ConvergenceScenario
-from scenarios.schema.sections.experiment import TrialList
+from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.convergence import ConvergenceScenario
+from scenarios.scenario.sections.experiment import TrialList
 
 _HEAD = ("key", "default", "value", "meaning")
 

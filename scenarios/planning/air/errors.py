@@ -23,7 +23,7 @@ from scenarios.planning.air.estimated_wind import (
     wind_noise,
     wind_noise_left,
 )
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.sensors import NAVIGATION_TIME
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 from scenarios.world.faults import SATELLITES

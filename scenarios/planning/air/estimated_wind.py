@@ -17,7 +17,7 @@ from gnc.estimation.navigation import (
 )
 from scenarios.planning.air.flown_heights import climbs, flown_heights, glides
 from scenarios.planning.limits import plan_interval, plan_period
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 
 _AIRSPEED_SIGMA, _COURSE_SIGMA = 0.5, 0.03

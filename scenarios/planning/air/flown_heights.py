@@ -7,7 +7,7 @@ import numpy as np
 from aircraft.wind import WindField
 from gnc.errors import InfeasibleError
 from scenarios.planning.limits import omega_max
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.scenario import Scenario
 from scenarios.world.faults import NOT_OF_AIRCRAFT
 from scenarios.world.vessel import VesselTruth
 from scenarios.world.world import TRACK_MARGIN, winds_past

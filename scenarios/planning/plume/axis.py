@@ -14,8 +14,8 @@ from measurement.gases import GASES
 from measurement.sniffer.spec import SnifferSpec
 from scenarios.instruments.sniffer import SnifferOnBoard
 from scenarios.planning.air.flown_heights import climbed_along
-from scenarios.schema.scenario import Scenario
-from scenarios.schema.sections.flight import ALTITUDE_MARGIN
+from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.flight import ALTITUDE_MARGIN
 from scenarios.world.exhaust import emission
 from scenarios.world.vessel import VesselTruth
 

@@ -21,7 +21,7 @@ from scenarios.planning.plume.axis import (
     flown_altitudes,
     sniffer_on_board,
 )
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.scenario import Scenario
 from scenarios.world.vessel import VesselTruth
 
 Array = npt.NDArray[np.float64]

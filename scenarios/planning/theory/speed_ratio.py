@@ -13,9 +13,9 @@ from gnc.errors import InfeasibleError
 from gnc.paper import PlumeAxis
 from scenarios.planning.limits import omega_max
 from scenarios.planning.reference import distance_kept, oscillation_at
-from scenarios.schema.scenario import Scenario
-from scenarios.schema.sections.guidance import GuidanceConfig, ReferenceConfig
-from scenarios.schema.sections.world import KeepoutConfig
+from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.guidance import GuidanceConfig, ReferenceConfig
+from scenarios.scenario.sections.world import KeepoutConfig
 
 CROSSING_LIMITS = Path(__file__).parent / "crossing_limits.json"
 """Shortest crossing intervals by optimal control, written by

@@ -7,10 +7,10 @@ from typing import Any
 from common.registry import PluginError, is_file_part
 from gnc.laws import ON_CIRCLE, ON_OSCILLATION, STEERING_LAWS
 from scenarios.errors import InputError
-from scenarios.schema.keys import displaced
-from scenarios.schema.load import with_values
-from scenarios.schema.scenario import Scenario
-from scenarios.schema.sections.guidance import GuidanceConfig, law_refusal
+from scenarios.scenario.keys import displaced
+from scenarios.scenario.load import with_values
+from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.guidance import GuidanceConfig, law_refusal
 
 TRACKING, STANDOFF = "tracking", "standoff"
 """The tasks: to track the oscillating reference, and to circle the vessel."""

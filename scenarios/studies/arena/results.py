@@ -13,10 +13,10 @@ import numpy.typing as npt
 
 from common.intervals import CONFIDENCE
 from scenarios.engine.task import Row
-from scenarios.metrics.window import MEASURED_COLUMNS
+from scenarios.measures.window import MEASURED_COLUMNS
 from scenarios.planning.theory.speed_ratio import crossing_limit
-from scenarios.schema.sections.experiment import ArenaConfig
-from scenarios.schema.sections.guidance import GuidanceConfig
+from scenarios.scenario.sections.experiment import ArenaConfig
+from scenarios.scenario.sections.guidance import GuidanceConfig
 from scenarios.statistics.estimates import without_nan
 from scenarios.statistics.paired_bootstrap import paired_estimates
 from scenarios.studies.arena.entrants import TRACKING, Entrant

@@ -13,11 +13,11 @@ from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary
 from scenarios.engine.task import Row, Task
 from scenarios.errors import InputError
-from scenarios.flight import FlightWork
-from scenarios.metrics.columns import ANY_KEY, FLIGHT_COLUMNS
-from scenarios.metrics.window import MEASURED_COLUMNS, WINDOW_COLUMNS
-from scenarios.schema.scenario import Scenario
-from scenarios.schema.sections.experiment import CaseConfig
+from scenarios.flight_runner import FlightWork
+from scenarios.measures.columns import ANY_KEY, FLIGHT_COLUMNS
+from scenarios.measures.window import MEASURED_COLUMNS, WINDOW_COLUMNS
+from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.experiment import CaseConfig
 from scenarios.studies.arena.entrants import cases_of, conditions_of, entrants_of
 from scenarios.studies.arena.results import estimates, limits, tuned_record
 from scenarios.studies.arena.tuning import Tuner

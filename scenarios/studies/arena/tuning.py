@@ -17,14 +17,14 @@ from scipy.optimize import minimize
 
 from scenarios.engine.task import Row
 from scenarios.experiment.requests import Experiment
-from scenarios.metrics.window import window_figures
+from scenarios.flight.closed_loop import fly
+from scenarios.flight.failure import failure
+from scenarios.flight.release import release
+from scenarios.measures.window import window_figures
 from scenarios.planning.planner import plan_flight
-from scenarios.schema.load import with_values
-from scenarios.schema.scenario import Scenario
-from scenarios.schema.sections.experiment import ArenaConfig
-from scenarios.simulation.closed_loop import fly
-from scenarios.simulation.failure import failure
-from scenarios.simulation.release import release
+from scenarios.scenario.load import with_values
+from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.experiment import ArenaConfig
 from scenarios.studies.arena.entrants import TUNING, Entrant, draws_left
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 

@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 from common.run_layout import TUNING_TABLE, WINDOW_TABLE
 from scenarios.engine.task import Result, Row, Task
 from scenarios.experiment.requests import FlightRequest
-from scenarios.flight import FlightWork
-from scenarios.metrics.window import measured_figures, window_figures
+from scenarios.flight.record import FlightRecord
+from scenarios.flight_runner import FlightWork
+from scenarios.measures.window import measured_figures, window_figures
 from scenarios.planning.flight_plan import FlightPlan
-from scenarios.schema.load import with_values
-from scenarios.simulation.record import FlightRecord
+from scenarios.scenario.load import with_values
 from scenarios.studies.arena.entrants import Entrant
 from scenarios.studies.arena.tuning import Tuner
 

@@ -18,7 +18,7 @@ from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary, write_columns
 from scenarios.engine.task import Result, Row, Task
 from scenarios.errors import InputError
-from scenarios.schema.sections.convergence import ConvergenceScenario
+from scenarios.scenario.sections.convergence import ConvergenceScenario
 from scenarios.studies.convergence.ensemble import (
     COLUMNS,
     Block,

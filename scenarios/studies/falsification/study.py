@@ -15,8 +15,8 @@ from scenarios.engine.task import Task
 from scenarios.errors import InputError
 from scenarios.experiment.scenario_file import scenario_file
 from scenarios.experiment.search_space import search_space
-from scenarios.metrics.columns import INPUT_COLUMNS, SEARCH_COLUMNS
-from scenarios.schema.scenario import Scenario
+from scenarios.measures.columns import INPUT_COLUMNS, SEARCH_COLUMNS
+from scenarios.scenario.scenario import Scenario
 from scenarios.search.method import SearchSettings
 from scenarios.search.space import Array
 from scenarios.search.turns import methods_named, search_in_turns

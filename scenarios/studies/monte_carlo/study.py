@@ -13,7 +13,7 @@ from scenarios.engine.task import Task
 from scenarios.errors import InputError
 from scenarios.experiment.random_sample import flights_per_sample, is_random_sample
 from scenarios.experiment.sampling import Points
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.scenario import Scenario
 from scenarios.statistics.estimates import (
     COLUMNS,
     interval_confidence,

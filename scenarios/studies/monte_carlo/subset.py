@@ -17,8 +17,8 @@ from scenarios.engine.runner import Fly, Progress, StudySummary
 from scenarios.engine.task import Task
 from scenarios.errors import InputError
 from scenarios.experiment.draws import has_speed_ratio, value_at, values_at
-from scenarios.schema.load import with_values
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.load import with_values
+from scenarios.scenario.scenario import Scenario
 from scenarios.statistics.estimates import COLUMNS
 from scenarios.statistics.subset_estimates import (
     RareProbability,

@@ -9,7 +9,7 @@ import numpy as np
 
 from scenarios.errors import InputError
 from scenarios.experiment.draws import sampled_flight
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.scenario import Scenario
 from scenarios.studies.patrol.legs import Air, Mover, least_distance
 from scenarios.world.exhaust import fuel_of
 from scenarios.world.place import given_place

@@ -11,7 +11,7 @@ from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary
 from scenarios.engine.task import Task
 from scenarios.errors import InputError
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.scenario import Scenario
 from scenarios.studies.flight_study import FlightStudy
 from scenarios.studies.patrol.ships import sampled_patrol
 from scenarios.studies.patrol.tables import PATROL_COLUMNS, PHASE_COLUMNS, SHIP_COLUMNS

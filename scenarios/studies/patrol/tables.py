@@ -8,7 +8,7 @@ from common.columns import Column, described
 from common.physics import SECONDS_PER_HOUR
 from scenarios.engine.task import Row
 from scenarios.experiment.draws import speed_ratios
-from scenarios.simulation.outcome import Outcome
+from scenarios.flight.outcome import Outcome
 from scenarios.studies.patrol.legs import Leg
 from scenarios.studies.patrol.ships import Patrol
 

@@ -15,12 +15,12 @@ import pandas as pd
 from common.run_layout import HISTORY_SUFFIX, PHASES, SHIPS, SUMMARY
 from scenarios.engine.task import Result, Row, Task
 from scenarios.experiment.requests import Experiment
-from scenarios.flight import FlightWork
-from scenarios.schema.extension_points import PAYLOADS
-from scenarios.schema.load import with_values
-from scenarios.schema.scenario import Scenario
-from scenarios.simulation.failure import failure
-from scenarios.simulation.outcome import Outcome
+from scenarios.flight.failure import failure
+from scenarios.flight.outcome import Outcome
+from scenarios.flight_runner import FlightWork
+from scenarios.scenario.extension_points import PAYLOADS
+from scenarios.scenario.load import with_values
+from scenarios.scenario.scenario import Scenario
 from scenarios.studies.patrol.beside import phases, start_beside, taken
 from scenarios.studies.patrol.legs import Leg, nearest_on, route
 from scenarios.studies.patrol.order import Prospect, best_order, ends_of

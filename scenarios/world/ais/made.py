@@ -13,7 +13,7 @@ import numpy as np
 
 from common.geodesy import LocalFrame
 from common.physics import METRES_PER_SECOND_PER_KNOT
-from scenarios.schema.sections.world import VesselConfig
+from scenarios.scenario.sections.world import VesselConfig
 from scenarios.world.vessel import ManoeuvringVessel
 
 MADE = {"made_danish.csv": 219999001, "made_marine_cadastre.csv": 366999002}

@@ -12,7 +12,7 @@ from common.geodesy import LocalFrame
 from common.text import utc_text
 from gnc.estimation.vessel import VesselReport
 from scenarios.errors import InputError
-from scenarios.schema.sections.world import VesselConfig
+from scenarios.scenario.sections.world import VesselConfig
 from scenarios.world.ais.reports import AisReports, read_ais
 from scenarios.world.ais.smoothing import smooth_motion
 from scenarios.world.place import Place

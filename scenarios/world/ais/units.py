@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from common.geodesy import cartesian
 from scenarios.errors import InputError
-from scenarios.schema.sections.world import GAP_MAX
+from scenarios.scenario.sections.world import GAP_MAX
 
 Array = npt.NDArray[np.float64]
 

@@ -142,7 +142,7 @@ def test_near_the_reference_the_line_of_sight_turns_arbitrarily_fast_and_z_does_
 
 def test_the_laws_are_known_by_name_and_have_the_defaults_of_a_scenario():
     assert {"cascade", "line_of_sight", "lyapunov"} < set(STEERING_LAWS.names())
-    # scenarios/schema, [guidance].
+    # scenarios/scenario, [guidance].
     assert STEERING_LAWS.get("cascade")() == CascadeLaw(
         epsilon_per_m=0.005, look_ahead_m=60.0, gain_per_s=1.5, steering_max_rad_s=0.4
     )

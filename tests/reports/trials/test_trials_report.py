@@ -24,8 +24,8 @@ from reports.output import write_report
 from reports.registry import content
 from reports.run.run_data import read_run
 from reports.run.trials import Kind, Trial, read_trials
-from scenarios.schema.load import OPERATIONAL, bases, load_study
-from scenarios.schema.overrides import given_keys
+from scenarios.scenario.load import OPERATIONAL, bases, load_study
+from scenarios.scenario.overrides import given_keys
 from scenarios.studies.manifest import parameters
 from tests.reports.run_columns import RUN_COLUMNS
 from tests.run_tables import manifest_of, write_manifest

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from scenarios.errors import InputError
-from scenarios.schema.load import CATALOG
-from scenarios.schema.sections.world import VesselConfig
+from scenarios.scenario.load import CATALOG
+from scenarios.scenario.sections.world import VesselConfig
 from scenarios.world.ais.made import MADE
 from scenarios.world.ais.smoothing import (
     JERK_DENSITY,

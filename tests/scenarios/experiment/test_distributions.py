@@ -7,7 +7,7 @@ import pytest
 from scipy import stats
 
 from scenarios.experiment.draws import value_at
-from scenarios.schema.sections.experiment import DrawConfig
+from scenarios.scenario.sections.experiment import DrawConfig
 
 SHARES = (1e-6, 0.01, 0.2, 0.5, 0.8, 0.99, 1.0 - 1e-6)
 

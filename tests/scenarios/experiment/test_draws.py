@@ -6,8 +6,8 @@ from scipy import stats
 
 from scenarios.errors import InputError
 from scenarios.experiment.draws import check_draws, sampled_flight, speed_ratios
-from scenarios.schema.load import load_study
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.load import load_study
+from scenarios.scenario.scenario import Scenario
 
 SPEED = 19.42
 

@@ -3,7 +3,7 @@
 import pytest
 
 from scenarios.experiment.requests import Experiment
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.scenario import Scenario
 
 SPEEDS = {"wind.speed_mps": [0.0, 5.0], "vessel.speed_mps": [3.0, 6.0]}
 MANOEUVRES = [{"at_s": 100.0, "turn_deg": 20.0}, {"at_s": 200.0, "turn_deg": -20.0}]

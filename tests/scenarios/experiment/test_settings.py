@@ -4,7 +4,7 @@ import pytest
 
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.scenario import Scenario
 
 
 @pytest.mark.parametrize(

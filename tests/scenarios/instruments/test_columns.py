@@ -5,9 +5,9 @@ the flight's own.
 import pytest
 from flight_cases import fly
 
-from scenarios import flight
+from scenarios import flight_runner
 from scenarios.errors import InputError
-from scenarios.schema.load import load_study
+from scenarios.scenario.load import load_study
 from scenarios.studies.checks import check_without_design
 from scenarios.studies.registry import study_of
 
@@ -273,13 +273,13 @@ def test_what_fails_after_the_flight_leaves_what_is_known_of_it(name, words, tmp
 def test_an_aircraft_that_is_gone_is_gone_whatever_fails_after_it(
     outcome, kept_out, tmp_path, monkeypatch
 ):
-    figures_of = flight.flight_figures
+    figures_of = flight_runner.flight_figures
 
     def gone(plan, record):
         figures, found = figures_of(plan, record)
         return figures | {"outcome": outcome}, found
 
-    monkeypatch.setattr(flight, "flight_figures", gone)
+    monkeypatch.setattr(flight_runner, "flight_figures", gone)
     row = evaluated(tmp_path, "Late").row
     assert (row["outcome"], row["kept_out"], row["criteria_met"]) == (outcome, kept_out, False)
     assert "failed in evaluate(): ValueError: late" in row["message"]

@@ -7,8 +7,8 @@ import pytest
 
 from gnc.paper import PlumeAxis, distance_by_paper, distance_exact
 from scenarios.planning.reference import distance_kept, oscillation_at
-from scenarios.schema.sections.guidance import GuidanceConfig, ReferenceConfig
-from scenarios.schema.sections.world import KeepoutConfig
+from scenarios.scenario.sections.guidance import GuidanceConfig, ReferenceConfig
+from scenarios.scenario.sections.world import KeepoutConfig
 
 GUIDANCE = GuidanceConfig()
 KEEPOUT = KeepoutConfig(radius_m=200.0)

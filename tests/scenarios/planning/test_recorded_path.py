@@ -7,9 +7,9 @@ import pytest
 
 from gnc.errors import InfeasibleError
 from scenarios.errors import InputError
-from scenarios.metrics.bezier import bezier_points
+from scenarios.measures.bezier import bezier_points
 from scenarios.planning.limits import check_recorded, path_error_max
-from scenarios.schema.load import load_study
+from scenarios.scenario.load import load_study
 from scenarios.studies.checks import check_without_design
 
 RAM = ("fidelity=kinematic", "guidance.approach=false", "guidance.heading_rate_max_rad_s=6")

@@ -11,8 +11,8 @@ from scenarios.planning.theory.speed_ratio import (
     crossing_limit,
     theory_over_speed_ratio,
 )
-from scenarios.schema.load import load_study
-from scenarios.schema.sections.guidance import GuidanceConfig
+from scenarios.scenario.load import load_study
+from scenarios.scenario.sections.guidance import GuidanceConfig
 
 GUIDANCE = GuidanceConfig()
 SOLVED = json.loads(CROSSING_LIMITS.read_text(encoding="utf-8"))

@@ -11,8 +11,8 @@ from reports.run.run_data import read_run
 from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.errors import InputError
-from scenarios.schema.load import load_study
-from scenarios.schema.sections.convergence import ConvergenceScenario
+from scenarios.scenario.load import load_study
+from scenarios.scenario.sections.convergence import ConvergenceScenario
 from scenarios.studies.registry import run_study
 from tests.run_tables import manifest_of
 

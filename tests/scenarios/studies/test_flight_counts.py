@@ -2,7 +2,7 @@
 
 import pytest
 
-from scenarios.simulation.outcome import Outcome
+from scenarios.flight.outcome import Outcome
 from scenarios.studies.summary import FlightCounts, comparison_lines
 
 

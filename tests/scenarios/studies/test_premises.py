@@ -8,10 +8,10 @@ import pandas as pd
 from common.premises import TERMS
 from common.run_layout import COLUMNS, FLIGHTS
 from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.metrics import figures
+from scenarios.flight.guard_belief import GuardBelief
+from scenarios.measures import figures
 from scenarios.run import exit_status
-from scenarios.schema.load import load_study
-from scenarios.simulation.guard_belief import GuardBelief
+from scenarios.scenario.load import load_study
 from scenarios.studies.registry import run_study
 
 QUICK = [

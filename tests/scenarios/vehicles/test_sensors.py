@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gnc.estimation.navigation import MeasuredMotion
-from scenarios.schema.sections.equipment import SensorsConfig
+from scenarios.scenario.sections.equipment import SensorsConfig
 from scenarios.vehicles.sensors import SensorErrors
 
 TIME_STEP = 0.05

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from scenarios.schema.sections.equipment import VesselReportsConfig
+from scenarios.scenario.sections.equipment import VesselReportsConfig
 from scenarios.world.ais_reports import no_outage, received_reports
 from scenarios.world.vessel import SteadyVessel
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from scenarios.schema.sections.world import AirConfig
+from scenarios.scenario.sections.world import AirConfig
 from scenarios.world.background import sampled_background
 
 LONG = 40_000.0

@@ -7,7 +7,7 @@ import pytest
 from aircraft.faults import ENGINE
 from aircraft.fleet.x8 import X8
 from aircraft.spec import Actuator, AircraftError, check_spec
-from scenarios.schema.sections.equipment import FaultConfig
+from scenarios.scenario.sections.equipment import FaultConfig
 from scenarios.world.faults import NO_FAULT, NOT_OF_AIRCRAFT, SATELLITES, VESSEL_DATA, sampled_fault
 
 

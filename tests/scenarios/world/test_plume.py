@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from aircraft.wind import constant_wind
-from scenarios.schema.sections.world import PlumeConfig, VesselConfig
+from scenarios.scenario.sections.world import PlumeConfig, VesselConfig
 from scenarios.world.plume import StraightPlume
 from scenarios.world.vessel import ManoeuvringVessel, SteadyVessel
 

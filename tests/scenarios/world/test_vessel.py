@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gnc.errors import InfeasibleError
-from scenarios.schema.sections.world import VesselConfig
+from scenarios.scenario.sections.world import VesselConfig
 from scenarios.world.vessel import (
     TRACK_STEP,
     ManoeuvringVessel,

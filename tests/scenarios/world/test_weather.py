@@ -7,7 +7,7 @@ from pydantic import ValidationError
 
 from aircraft.fdm import TIME_STEP
 from aircraft.weather import ordered_gusts
-from scenarios.schema.sections.world import WindConfig
+from scenarios.scenario.sections.world import WindConfig
 from scenarios.world.place import given_place
 from scenarios.world.weather import sampled_weather, wind_ned, wind_of
 

@@ -8,8 +8,8 @@ import pytest
 from flight_cases import fly, scenario
 
 from scenarios.errors import InputError
-from scenarios.schema.load import load_study
-from scenarios.schema.sections.world import WindConfig
+from scenarios.scenario.load import load_study
+from scenarios.scenario.sections.world import WindConfig
 from scenarios.studies.flight_study import FlightStudy
 from scenarios.world.place import Place
 from scenarios.world.wind_netcdf import read_netcdf

@@ -5,7 +5,7 @@ import math
 import pytest
 from flight_cases import scenario
 
-from scenarios.schema.scenario import Scenario
+from scenarios.scenario.scenario import Scenario
 from scenarios.world.vessel import ManoeuvringVessel, SteadyVessel
 from scenarios.world.world import apparent_wind, plume_of, vessel_of
 

@@ -1,0 +1,149 @@
+"""What ``plume-flight describe`` says of keys and sections, in lines of text."""
+
+import re
+import textwrap
+from collections.abc import Iterator
+from itertools import groupby
+
+from scenarios.errors import InputError
+from scenarios.scenario.documented import (
+    DocumentedSection,
+    documented_keys,
+    documented_sections,
+    similar_key,
+)
+from scenarios.scenario.documented_parts import PART_SECTIONS, DocumentedKey, documented_part_keys
+from scenarios.scenario.overrides import as_toml
+from scenarios.scenario.sections.convergence import ConvergenceScenario
+
+_WIDTH = 100
+_INDENT = 10
+_TOP = "(top)"
+"""What the section of the keys outside of any section is called."""
+_EXTENDS = """\
+extends
+  The scenario that this one is based on: a name of the catalog, the path of a file, or false for
+  none. It stands at the top of a scenario file alone, and cannot be set, swept or sampled."""
+
+
+def described(name: str | None = None) -> list[str]:
+    """Return what is known of a key or a section; of nothing given, the sections.
+
+    Parameters
+    ----------
+    name : a dotted key, as wind.speed_mps, or a section, as wind, or (top); the index of an entry
+        of a list may be left out
+
+    Raises
+    ------
+    InputError : there is neither
+    """
+    if name is None:
+        return list(_all_sections())
+    if name == "extends":
+        return _EXTENDS.splitlines()
+    if name in (_TOP, _TOP.strip("()")):
+        return list(_section(documented_sections()[0]))
+    plain = re.sub(r"\.\d+(?=\.|$)", "", name)
+    # What is swept is a key of its own, and nu is one of sweep alone.
+    plain = plain.removeprefix("sweep.")
+    tables = (key.key for key in documented_keys() if key.range.endswith(" a table"))
+    if table := next((table for table in tables if plain.startswith(f"{table}.")), None):
+        note = f"{name} is a key of the table that {table} may be; docs/howto/measuring.md lists its keys, with their units."
+        return [*_wrapped("", note), *described(table)]
+    keys = [
+        key
+        for key in documented_keys()
+        if key.key.replace(".0", "") == plain or (plain == "nu" and key.key == "sweep")
+    ]
+    kinds = (documented_sections(), documented_sections(ConvergenceScenario))
+    sections = next(
+        filter(
+            None,
+            (
+                [of for of in each if of.name and of.name.replace(".0", "") == plain]
+                for each in kinds
+            ),
+        ),
+        [],
+    )
+    if not keys and not sections:
+        guess = similar_key(plain)
+        remedy = f"did you mean '{guess}'?" if guess else "plume-flight describe lists the sections"
+        if plain.partition(".")[0] in PART_SECTIONS and "." in plain:
+            remedy += " A key of a part of your own (FILE.py:NAME) is described in its file."
+        raise InputError(f"unknown key '{name}'; {remedy}")
+    lines = [line for section in sections for line in (*_section(section), *_of_parts(section))]
+    return [*lines, *(line for key in keys for line in _key(key))]
+
+
+def value_text(value: object) -> str:
+    """Return a value as a scenario file has it; "not set" for none."""
+    return "not set" if value is None else as_toml(value)
+
+
+def _all_sections() -> Iterator[str]:
+    yield "Sections of a scenario file, and how many keys each has; plume-flight describe SECTION lists them:"
+    for section in documented_sections():
+        yield from _wrapped(
+            f"{section.name.replace('.0', '') or _TOP:<21} {len(section.keys):>3}  ",
+            _meaning(section),
+        )
+
+
+def _meaning(section: DocumentedSection) -> str:
+    return (
+        section.meaning if section.name else "Keys outside of any section, at the top of the file."
+    )
+
+
+def _section(section: DocumentedSection) -> Iterator[str]:
+    entries = "A list, each entry with these keys. " if section.listed else ""
+    name = f"[{section.name.replace('.0', '')}]" if section.name else _TOP
+    yield from _wrapped("", f"{name} {entries}{_meaning(section)}")
+    yield from (line for key in section.keys for line in _entry(key))
+
+
+def _entry(key: DocumentedKey) -> list[str]:
+    default = "required" if key.required else value_text(key.default)
+    # A criterion that is off has no number that a unit could follow.
+    unit = (
+        f" {key.unit}"
+        if key.unit not in ("", "-") and not (key.default is None or key.default is False)
+        else ""
+    )
+    return _wrapped(f"  {key.key.rpartition('.')[2]:<28} {default}{unit}  ", key.meaning)
+
+
+def _of_parts(section: DocumentedSection) -> Iterator[str]:
+    """Yield the keys that the parts bring which a section names."""
+    for part, keys in groupby(documented_part_keys(), key=lambda key: key.conditions):
+        listed = [key for key in keys if key.key.partition(".")[0] == section.name]
+        if listed:
+            yield from _wrapped("", f"With {' or '.join(part)} also:")
+            yield from (line for key in listed for line in _entry(key))
+
+
+def _key(key: DocumentedKey) -> Iterator[str]:
+    yield key.key
+    about = {
+        "": key.meaning,
+        "value": key.range,
+        "unit": key.unit,
+        "default": "none: it has to be given" if key.required else value_text(key.default),
+        "studies": ", ".join(key.studies),
+    }
+    for name, text in about.items():
+        if text:
+            yield from _wrapped(f"  {name:<{_INDENT}}" if name else "  ", text)
+    for condition in key.conditions:
+        yield from _wrapped(f"  {'acts with':<{_INDENT}}", condition)
+
+
+def _wrapped(before: str, text: str) -> list[str]:
+    return textwrap.wrap(
+        f"{before}{text}",
+        _WIDTH,
+        subsequent_indent=" " * min(len(before), 32),
+        drop_whitespace=True,
+    ) or [before]

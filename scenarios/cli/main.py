@@ -1,0 +1,162 @@
+"""Console command: ``plume-flight run|design|estimate|report|export|compare|describe|new``. Each
+hands on to what does the work.
+"""
+
+import importlib
+import importlib.metadata
+import importlib.util
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from common.command_line import PROGRAM, refuse, run_command
+
+
+def export(
+    directory: Annotated[
+        Path, typer.Argument(metavar="RUN_DIR", help="A directory that plume-flight run wrote.")
+    ],
+    to: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME,...",
+            help="Formats: kmz, acmi, czml, mcap, netcdf, tlog, geojson, tracks_csv, or FILE.py:NAME.",
+        ),
+    ] = None,
+    flight: Annotated[
+        str | None, typer.Option(metavar="ID", help="Export or stream this flight alone.")
+    ] = None,
+    stream: Annotated[
+        str | None,
+        typer.Option(
+            metavar="udp://HOST:PORT",
+            help="Send a flight to a ground station in real time, as MAVLink.",
+        ),
+    ] = None,
+) -> None:
+    """Write the flights of a run in other formats, into RUN_DIR/export, or send one in real time."""
+    from reports.build import command
+
+    if not (to or stream):
+        raise typer.Exit(
+            refuse(
+                "nothing to export; give --to NAME,..., as in --to kmz, or --stream udp://HOST:PORT"
+            )
+        )
+    command(directory, export=to, flight=flight, stream=stream)
+
+
+def estimate(
+    flight: Annotated[
+        Path,
+        typer.Argument(
+            metavar="FLIGHT.csv", help="Log with time_s, so2_ppb, co2_ppm, and optional columns."
+        ),
+    ],
+    config: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE.toml", help="Instrument, columns, limits; default an unknown instrument."
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="DIR",
+            help="Directory of files and report.",
+            show_default="runs/measurement_FLIGHT",
+        ),
+    ] = None,
+    no_report: Annotated[
+        bool, typer.Option("--no-report", help="Do not write report.html and report.pdf.")
+    ] = False,
+) -> None:
+    """Estimate the sulphur content of a ship's fuel from the log of a flight through her plume, and
+    judge it.
+    """
+    from measurement.log.command import main as estimate_logged
+
+    options = [("--config", config), ("--out", out)]
+    given = [word for name, value in options if value is not None for word in (name, str(value))]
+    # A name that begins with a dash is no option.
+    raise typer.Exit(
+        estimate_logged([*given, *(["--no-report"] if no_report else []), "--", str(flight)])
+    )
+
+
+def describe(
+    key: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="KEY|SECTION",
+            help="Such as wind.speed_mps or wind; lists the sections if left out.",
+        ),
+    ] = None,
+) -> None:
+    """Say what a key of the scenario file means, its unit, range and default, and the studies that
+    take it.
+    """
+    from scenarios.cli.describe import described
+    from scenarios.errors import InputError
+
+    try:
+        for line in described(key):
+            print(line)
+    except InputError as error:
+        raise typer.Exit(refuse(error)) from None
+
+
+def new(
+    file: Annotated[
+        Path,
+        typer.Argument(
+            metavar="FILE.toml", help="The file to write; an existing file is not overwritten."
+        ),
+    ],
+    source: Annotated[
+        str,
+        typer.Option("--from", metavar="NAME|FILE.toml", help="The scenario that it is made from."),
+    ] = "sweep_nu",
+) -> None:
+    """Write a scenario file with every key, its meaning, unit, range and default, and with the
+    values of another scenario.
+
+    Its flights have other seeds, which follow from the name of the file, unless nu is swept or the
+    file is called as the scenario.
+    """
+    from scenarios.cli.template import write_template
+    from scenarios.errors import InputError
+
+    try:
+        write_template(file, source)
+    except InputError as error:
+        raise typer.Exit(refuse(error)) from None
+    print(f"scenario: {file}")
+
+
+def commands() -> dict[str, Callable[..., None]]:
+    """Return the commands by their words."""
+    from innerloop.design import command as design
+    from reports.build import command as report
+    from scenarios.run import command as run
+
+    found: dict[str, Callable[..., None]] = {
+        "run": run,
+        "design": design,
+        "estimate": estimate,
+        "report": report,
+        "export": export,
+    }
+    if importlib.util.find_spec("reports.compare"):
+        found["compare"] = importlib.import_module("reports.compare.__main__").command
+    return {**found, "describe": describe, "new": new}
+
+
+def main() -> None:
+    """Entry point."""
+    # As of scenarios.run: small matrices in several processes need no threads of their own.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    run_command(commands(), PROGRAM, importlib.metadata.version("plume-flight-study"))

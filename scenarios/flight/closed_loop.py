@@ -1,0 +1,228 @@
+"""The closed loop: a vehicle, what is sensed, the guidance at its own rate, and the record. It is
+closed here only.
+"""
+
+import math
+from collections.abc import Generator, Sequence
+from typing import Any
+
+from gnc.guard.guard import GuardStatus
+from gnc.guidance import Guidance
+from gnc.mission.axis import SearchedAxis
+from gnc.mission.follow import PlumeFollowing
+from scenarios.flight.ending import Ending
+from scenarios.flight.guard_belief import GuardBelief
+from scenarios.flight.interventions import interventions
+from scenarios.flight.judge import Judge
+from scenarios.flight.onboard import OnboardSensing
+from scenarios.flight.plume_readings import PlumeBelief, PlumeReadings, axis_of
+from scenarios.flight.record import FlightRecord
+from scenarios.flight.recorder import Recorder
+from scenarios.flight.settling import Settling
+from scenarios.instruments.instrument import GasReader, Instrument
+from scenarios.planning.flight_plan import FlightPlan
+from scenarios.vehicles.vehicle import Vehicle
+
+Commands = tuple[float, float]
+"""Heading rate [rad/s] and airspeed [m/s]."""
+
+
+class ClosedLoop:
+    """One flight under way: a vehicle that stands at its start, and the guidance of its plan.
+
+    Parameters
+    ----------
+    plan, vehicle : the flight
+    payload : instruments on board
+    reader : sniffer that is read in flight, or none
+    every_step : whether every step of the guidance is recorded, beside the samples; it changes
+        nothing of the flight
+
+    Attributes
+    ----------
+    plan, vehicle, guidance : of the flight
+    settling : says when it has settled, and how often it has crossed since
+    ending : says how it ended
+    """
+
+    def __init__(
+        self,
+        plan: FlightPlan,
+        vehicle: Vehicle,
+        payload: Sequence[Instrument],
+        *,
+        reader: GasReader | None,
+        every_step: bool = False,
+    ) -> None:
+        self.plan, self.vehicle, self._every_step = plan, vehicle, every_step
+        self.guidance = guidance = Guidance(plan.guidance)
+        self.settling = Settling(
+            band=plan.settling_band,
+            period=plan.settling_period,
+            crossings=plan.crossings,
+            after=plan.after_settling,
+        )
+        axis = axis_of(guidance)
+        beliefs: list[Any] = [PlumeBelief(axis)] if isinstance(axis, SearchedAxis) else []
+        self._guard_belief: GuardBelief | None = None
+        if guidance.guard is not None and plan.world is not None:
+            vessel = plan.world.vessel
+            self._guard_belief = GuardBelief(guidance, guidance.guard, vessel, plan.time_step)
+            beliefs.append(self._guard_belief)
+        self._recorder = Recorder(
+            guidance, vehicle, plan.world, (*payload, *beliefs), self.settling
+        )
+        self._sensing = _sensing(plan, vehicle, guidance, reader)
+        self.ending = Ending(
+            plan, vehicle, guidance, self.settling, _judge(plan, guidance, reader, self.settling)
+        )
+
+    def steps(self) -> Generator[Commands, Commands, FlightRecord]:
+        """Fly: yield at each step what the guidance commands, take what is to be flown for it, and
+        return the record at the end.
+
+        The flight ends one sample after the last crossing that it is to fly, so that every crossing
+        lies inside the record; when its time is up; when it has left with a verdict; on the water;
+        or out of control.
+        """
+        # Names of their own: this is the innermost loop of every flight.
+        plan, guidance, sensing, recorder, ending = (
+            self.plan,
+            self.guidance,
+            self._sensing,
+            self._recorder,
+            self.ending,
+        )
+        mission, target, guard = guidance.mission, guidance.target, guidance.guard
+        belief = self._guard_belief
+        guide, motion_of, advance, reference_of = (
+            guidance.step,
+            self.vehicle.motion,
+            self.vehicle.advance,
+            recorder.reference,
+        )
+        time_step, log_interval = plan.time_step, plan.log_interval
+        record_interval = 1 if self._every_step else log_interval
+        demand_max = command_max = airspeed_error = 0.0
+        saturated = step = 0
+        guarding: list[tuple[int, float, bool]] = []
+        for step in range(round(plan.duration_max / time_step) + 1):
+            time, motion = step * time_step, motion_of()
+            recorded = step % record_interval == 0
+            # The guidance moves the reference on as it computes its commands.
+            reference = reference_of() if recorded else None
+            if sensing is None:
+                guide(time, motion)
+            else:
+                guide(time, sensing.read(step, time, motion))
+                sensing.act(step, time, motion)
+                airspeed_error = sensing.airspeed_error
+            tracker = mission.tracker
+            demand, command = tracker.heading_rate_demand, guidance.heading_rate_command
+            if demand > demand_max or -demand > demand_max:
+                demand_max = abs(demand)
+            commanded = abs(command)
+            if commanded > plan.heading_rate_max:
+                # In a gust, omega_max over the mean air may take more through the air.
+                commanded = min(commanded, abs(tracker.heading_rate_command))
+            command_max = max(command_max, commanded)
+            saturated += tracker.saturated
+            if guidance.guarding and guard is not None:
+                guarding.append(
+                    (
+                        step,
+                        math.hypot(motion.north - target.north, motion.east - target.east),
+                        guard.status is GuardStatus.LOST,
+                    )
+                )
+            if recorded:
+                sampled = step % log_interval == 0
+                sample, complete = recorder.record(
+                    time, motion, reference or reference_of() or (math.nan,) * 4, judged=sampled
+                )
+                if sampled and ending.reached(time, motion, sample, complete=complete):
+                    break
+            command, airspeed = yield command, guidance.airspeed_command
+            if belief is not None:
+                belief.command(tracker.heading_rate_command)
+            advance(command, airspeed - airspeed_error)
+        ending.guarded, ending.saturated = bool(guarding), saturated / (step + 1)
+        rows = recorder.rows()
+        return FlightRecord(
+            outcome=ending.outcome,
+            message=ending.message,
+            mode=ending.mode,
+            enough=ending.enough,
+            verdict=ending.verdict,
+            settled_at=self.settling.at,
+            interventions=interventions(guarding, time_step),
+            columns=recorder.columns,
+            history=rows[::log_interval] if self._every_step else rows,
+            every_step=rows,
+            saturation_fraction=ending.saturated,
+            heading_rate_demand_max=demand_max,
+            heading_rate_command_max=command_max,
+            guard_time=len(guarding) * time_step,
+        )
+
+
+def fly(
+    plan: FlightPlan,
+    vehicle: Vehicle,
+    payload: Sequence[Instrument] = (),
+    *,
+    reader: GasReader | None = None,
+    every_step: bool = False,
+) -> FlightRecord:
+    """Fly ``plan`` with a vehicle that stands at its start as its guidance commands; parameters as
+    of ``ClosedLoop``.
+    """
+    steps = ClosedLoop(plan, vehicle, payload, reader=reader, every_step=every_step).steps()
+    follow = steps.send
+    try:
+        commands = next(steps)
+        while True:
+            commands = follow(commands)
+    except StopIteration as over:
+        return record_of(over)
+
+
+def record_of(over: StopIteration) -> FlightRecord:
+    """Return the record of a flight whose steps are over.
+
+    Raises
+    ------
+    RuntimeError : a part of the user's has ended them. Python itself says so (PEP 479), but not of
+        compiled steps
+    """
+    record = over.value
+    if not isinstance(record, FlightRecord):
+        raise RuntimeError("generator raised StopIteration") from over
+    return record
+
+
+def _sensing(
+    plan: FlightPlan, vehicle: Vehicle, guidance: Guidance, reader: GasReader | None
+) -> OnboardSensing | None:
+    """Return the sensing of a flight; none where everything is known exactly."""
+    sensing, world, axis = plan.sensing, plan.world, axis_of(guidance)
+    if sensing is None or world is None:
+        return None
+    readings = None
+    if axis is not None and (reader is not None or sensing.knows_axis):
+        readings = PlumeReadings(
+            reader, world, vehicle, axis, interval=plan.log_interval, knows_axis=sensing.knows_axis
+        )
+    return OnboardSensing(
+        sensing, world, vehicle, guidance, altitude=plan.altitude, readings=readings
+    )
+
+
+def _judge(
+    plan: FlightPlan, guidance: Guidance, reader: GasReader | None, settling: Settling
+) -> Judge | None:
+    """Return what ends a flight when it has enough, of one that is to."""
+    mission = guidance.mission
+    if not plan.until_verdict or reader is None or not isinstance(mission, PlumeFollowing):
+        return None
+    return Judge(reader, mission, settling)

@@ -1,0 +1,283 @@
+"""Changes to a scenario document: ``--set key=value`` with dotted keys, and which keys a document
+sets.
+"""
+
+import json
+import re
+import tomllib
+from collections.abc import Callable, Mapping
+from datetime import datetime
+from typing import Any
+
+from pydantic import BaseModel
+
+from scenarios.errors import InputError
+from scenarios.scenario.experiment_checks import swept_key
+from scenarios.scenario.keys import displaced, entry_model, example_value, key_parts
+
+Document = dict[str, Any]
+"""A scenario as read from TOML, before it is checked."""
+
+_RATIO, _SPEED = "vessel.speed_ratio", "vessel.speed_mps"
+
+
+def parse_override(override: str) -> tuple[str, object]:
+    """Return key and value of ``key=value``, the value in TOML; a bare word is a string.
+
+    Raises
+    ------
+    InputError : no equals sign, or a list or table that is not valid TOML
+    """
+    key, equals, text = override.partition("=")
+    if not equals or not key.strip():
+        raise InputError(
+            f"--set '{override}' is not of the form key=value, e.g. --set guidance.preview=false"
+        )
+    try:
+        document = tomllib.loads(f"value = {text}")
+    except tomllib.TOMLDecodeError as error:
+        if text.strip().startswith(("[", "{")):
+            raise InputError(
+                f"--set '{override}' is not valid TOML: {error}; words in a list are quoted: 'key=[\"word\"]'"
+            ) from None
+        value = text
+    except RecursionError:
+        raise InputError(
+            f"--set {key.strip()}: value {text.strip()[:20]}... has too many brackets within each other"
+        ) from None
+    except ValueError:
+        # Python reads no whole number of more than some thousand digits.
+        raise InputError(
+            f"--set {key.strip()}: value {text.strip()[:20]}... has too many digits; give a number with fewer"
+        ) from None
+    else:
+        value = document.pop("value")
+        if document:
+            raise InputError(
+                f"--set {key.strip()}: a line break, and {next(iter(document))!r} after it; give each key a --set of its own"
+            )
+    if key.strip() == "extends":
+        raise InputError(
+            f"--set '{override}': extends stands in a scenario file; name the scenario to fly instead"
+        )
+    return key.strip(), value
+
+
+def apply_override(document: Document, key: str, value: object, kind: type[BaseModel]) -> None:
+    """Set a key for every flight of a document: no case, no sweep and no random variable sets it,
+    or what is below it, otherwise.
+
+    A speed of the vessel beside a sweep of the speed ratio is left to ``effect``, which refuses it.
+
+    Parameters
+    ----------
+    document : changed in place
+    key, value : the dotted key and its new value
+    kind : schema of the document
+
+    Raises
+    ------
+    InputError : as of ``set_value``
+    """
+    given = document.get("cases")
+    cases = [case for case in given if isinstance(case, dict)] if isinstance(given, list) else []
+    tables = [
+        case[name]
+        for case in cases
+        for name in ("set", "set_kinematic")
+        if isinstance(case.get(name), dict)
+    ]
+    setting = [values for values in tables if key in values]
+    if setting and key.startswith("sweep."):
+        # Cases have a speed ratio each, and no sweep beside them.
+        for values in setting:
+            values[key] = value
+        return
+    set_value(document, key, value, kind)
+    for values in tables:
+        for name in [
+            name for name in values if displaced(swept_key(name.removeprefix("sweep.")), [key])
+        ]:
+            del values[name]
+    if isinstance(swept := document.get("sweep"), dict):
+        document["sweep"] = _without(swept, lambda name: _ends_sweep(key, swept_key(name)))
+    if key != "draws":
+        _take_out_of_draws(document, _set_or_swept(key, value))
+
+
+def _take_out_of_draws(document: Document, keys: list[str]) -> None:
+    """Remove the draws of keys, and of those below them, from a document, in place."""
+    draws = document.get("draws")
+    if isinstance(draws, list):
+        document["draws"] = [
+            draw
+            for draw in draws
+            if not (isinstance(draw, dict) and displaced(str(draw.get("key")), keys))
+        ]
+
+
+def _ends_sweep(key: str, swept: str) -> bool:
+    return displaced(swept, [key]) and (key, swept) != (_SPEED, _RATIO)
+
+
+def _set_or_swept(key: str, value: object) -> list[str]:
+    """Return the keys of flights that an override sets, those among them that it sweeps."""
+    section, _, rest = key.partition(".")
+    if section != "sweep":
+        return [key]
+    tables = {rest.strip('"'): value} if rest else value
+    return [swept_key(name) for name in given_keys(tables)] if isinstance(tables, dict) else []
+
+
+def _without(values: Document, left_out: Callable[[str], bool], before: str = "") -> Document:
+    """Return the values of a sweep without those of dotted keys that are left out, which may stand
+    in tables of their own.
+    """
+    rest: Document = {}
+    for name, value in values.items():
+        if isinstance(value, dict):
+            if below := _without(value, left_out, f"{before}{name}."):
+                rest[name] = below
+        elif not left_out(f"{before}{name}"):
+            rest[name] = value
+    return rest
+
+
+def tabled(document: Document) -> Document:
+    """Put the short form of the payload, a list of instruments, into a table, in place, so that
+    other keys find room beside it.
+    """
+    if isinstance(names := document.get("payload"), list | tuple):
+        document["payload"] = {"instruments": names}
+    return document
+
+
+def set_value(document: Document, dotted: str, value: object, kind: type[BaseModel]) -> None:
+    """Set a dotted key of a document in place; numbers in it are indices of lists.
+
+    Raises
+    ------
+    InputError : the key goes through a value that is not a table, or to an entry that a list does
+        not have
+    """
+    parts = key_parts(kind, dotted)
+    section: Any = tabled(document)
+    for depth, name in enumerate(parts[:-1]):
+        if isinstance(section, list):
+            key: Any = _index(section, parts, depth, value, kind)
+            child = section[key]
+        else:
+            key = name
+            if (
+                parts[depth + 1].isdecimal()
+                and not section.get(name)
+                and entry_model(kind, parts[: depth + 1])
+            ):
+                section[name] = []
+            child = section.setdefault(name, {})
+        if isinstance(child, tuple):
+            section[key] = child = list(child)
+        if not isinstance(child, dict | list):
+            raise InputError(f"unknown key '{dotted}'; '{name}' is a value, not a section")
+        section = child
+    last: Any = (
+        _index(section, parts, len(parts) - 1, value, kind)
+        if isinstance(section, list)
+        else parts[-1]
+    )
+    section[last] = value
+
+
+def _index(
+    entries: list[Any], parts: list[str], depth: int, value: object, kind: type[BaseModel]
+) -> int:
+    """Return the index that a part of a dotted key names.
+
+    Raises
+    ------
+    InputError : the list has no such entry; the message says how to add one to an empty list
+    """
+    name, parents = parts[depth], parts[:depth]
+    if name.isdecimal() and int(name) < len(entries):
+        return int(name)
+    message = f"unknown key '{'.'.join(parts)}'; {'.'.join(parents)} "
+    model = entry_model(kind, parents)
+    if entries or model is None:
+        entry = "entry" if len(entries) == 1 else "entries"
+        raise InputError(
+            f"{message}has {len(entries)} {entry}, numbered from 0, and '{name}' is not one of them"
+        )
+    given = {".".join(parts[depth + 1 :]): value} if depth + 1 < len(parts) else {}
+    needed = {
+        key: example_value(field)
+        for key, field in model.model_fields.items()
+        if field.is_required() and key not in given
+    }
+    items = ", ".join(f"{key}={as_toml(item)}" for key, item in (needed | given).items())
+    raise InputError(
+        f"{message}has no entries; add one with --set '{'.'.join(parents)}=[{{{items}}}]'"
+    )
+
+
+def as_toml(value: object) -> str:
+    """Return a value as ``key=value`` has it: on one line.
+
+    Raises
+    ------
+    InputError : a value that TOML has no word for
+    """
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, int | float):
+        return repr(value)
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, datetime):
+        return value.isoformat()
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(as_toml, value))}]"
+    if isinstance(value, Mapping):
+        return f"{{{', '.join(f'{_toml_key(str(key))}={as_toml(item)}' for key, item in value.items())}}}"
+    raise InputError(
+        f"value is {value!r}; a scenario has numbers, words, truth values, times, lists and tables alone"
+    )
+
+
+def _toml_key(key: str) -> str:
+    """Return a key as it stands in a table; one with a dot in quotation marks."""
+    return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else json.dumps(key, ensure_ascii=False)
+
+
+def extended(base: Document, own: Document) -> Document:
+    """Return a document that extends another one, as ``merged``.
+
+    A key that ``own`` sweeps is no longer one that ``base`` samples.
+    """
+    result = merged(base, own)
+    if "draws" not in own and "sweep" in own:
+        _take_out_of_draws(result, _set_or_swept("sweep", own["sweep"]))
+    return result
+
+
+def merged(base: Mapping[str, Any], own: Mapping[str, Any]) -> Document:
+    """Return ``base`` extended by ``own``: tables are merged key by key, other values of ``own``
+    replace those of ``base``.
+    """
+    result = dict(base)
+    for key, value in own.items():
+        below = result.get(key)
+        result[key] = (
+            merged(below, value) if isinstance(below, dict) and isinstance(value, dict) else value
+        )
+    return result
+
+
+def given_keys(document: Mapping[str, Any]) -> set[str]:
+    """Return the dotted keys that a document itself sets; a list, and an empty table, count as one
+    key.
+    """
+    keys: set[str] = set()
+    for key, value in document.items():
+        below = given_keys(value) if isinstance(value, Mapping) else set()
+        keys |= {f"{key}.{name}" for name in below} or {key}
+    return keys

@@ -1,0 +1,243 @@
+"""Keys of a scenario file: world, equipment, guidance, start, flight and criteria of its flights,
+and the experiment on them.
+"""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from measurement.emission import stack_height_of
+from scenarios.scenario.sections.equipment import (
+    FaultConfig,
+    KinematicConfig,
+    PayloadConfig,
+    SensorsConfig,
+    VesselReportsConfig,
+)
+from scenarios.scenario.sections.experiment import (
+    FLIGHTS_MAX,
+    ArenaConfig,
+    CaseConfig,
+    ComparisonConfig,
+    DrawConfig,
+    Sampling,
+    SearchConfig,
+    StatisticsConfig,
+    SubsetConfig,
+    SweepConfig,
+)
+from scenarios.scenario.sections.flight import CriteriaConfig, FlightConfig, StartConfig
+from scenarios.scenario.sections.guidance import FollowingConfig, GuidanceConfig, ReferenceConfig
+from scenarios.scenario.sections.patrol import PatrolConfig
+from scenarios.scenario.sections.report import ReportConfig
+from scenarios.scenario.sections.section import Range, Section, Seed, Title
+from scenarios.scenario.sections.world import (
+    AirConfig,
+    EmissionConfig,
+    KeepoutConfig,
+    PlaceConfig,
+    PlumeConfig,
+    TurbulenceConfig,
+    VesselConfig,
+    WindConfig,
+)
+
+DEFAULT_AIRCRAFT = "x8"
+
+
+class ScenarioKeys(Section):
+    """The keys of a scenario file, and what follows from them; ``Scenario`` is where they go
+    together.
+    """
+
+    study: str = "flights"
+    """flights; paper, with its bounds on commands; monte_carlo, with statistics; falsify, a search;
+    arena, laws side by side; patrol, several ships one after the other; or FILE.py:NAME."""
+    title: Title
+    """What reports and lists call it."""
+    description: str = ""
+    """One or two sentences at the top of the report."""
+    aircraft: Annotated[str, Field(coerce_numbers_to_str=True)] = DEFAULT_AIRCRAFT
+    """The aircraft, by its name (plume-flight design --list), by the folder of its JSBSim model,
+    DIR/NAME, or FILE.py:NAME.
+    """
+    fidelity: Literal["six_dof", "kinematic", "both"] = "six_dof"
+    """Vehicle: the aircraft in six degrees of freedom, the paper's kinematic vehicle, or both."""
+    seed: Seed = 1
+    """Seed of the study, from which every flight's own seed follows [-]."""
+    flights: Annotated[int, Field(ge=1, le=FLIGHTS_MAX)] = 1
+    """Flights of each point of the experiment, each with a seed and a sample of the random
+    variables of its own [-].
+    """
+    flight_seed: Seed | None = None
+    """Seed of start, air and noise of every flight; if not given, each flight has its own, from
+    seed, name and number [-].
+    """
+    histories: Annotated[int, Field(ge=0, le=100_000)] = 200
+    """Number of time histories to be kept, evenly spaced over the flights [-]. Those of flights
+    that did not meet what is required are kept as well; of missions that were not completed, that
+    of the first of each trial."""
+    speed_ratio: Range = (0.0, 1e9)
+    """Flights whose nu leaves this range, at the start or after a manoeuvre, are sampled again [-].
+    """
+    method: Literal["plain", "subset"] = "plain"
+    """How a Monte Carlo study samples: plain, or by subset simulation, towards rare keep-out
+    violations.
+    """
+    sampling: Sampling = "sobol"
+    """How samples are spread: evenly over all random variables together (sobol), over each of them
+    (latin_hypercube), or not at all (random)."""
+    sweep: SweepConfig = SweepConfig()
+    common_random_numbers: bool | None = None
+    """Whether the points of a sweep have the same starts, noise, sampled instruments and random
+    variables, so that they differ in what is swept alone; if false, each point has its own. If not
+    given: false with instruments on board, else true, but for speed ratios of one flight each.
+    """
+    cases: tuple[CaseConfig, ...] = ()
+    draws: tuple[DrawConfig, ...] = ()
+    comparison: ComparisonConfig = ComparisonConfig()
+    statistics: StatisticsConfig = StatisticsConfig()
+    subset: SubsetConfig = SubsetConfig()
+    search: SearchConfig = SearchConfig()
+    laws: tuple[str, ...] = ()
+    """Laws that take part in an arena in addition to its own, each by its name or FILE.py:NAME."""
+    arena: ArenaConfig = ArenaConfig()
+    patrol: PatrolConfig = PatrolConfig()
+    place: PlaceConfig = PlaceConfig()
+    vessel: VesselConfig = VesselConfig()
+    plume: PlumeConfig = PlumeConfig()
+    keepout: KeepoutConfig = KeepoutConfig()
+    wind: WindConfig = WindConfig()
+    turbulence: TurbulenceConfig = TurbulenceConfig()
+    air: AirConfig = AirConfig()
+    reports: VesselReportsConfig = VesselReportsConfig()
+    sensors: SensorsConfig = SensorsConfig()
+    fault: FaultConfig = FaultConfig()
+    emission: EmissionConfig = EmissionConfig()
+    payload: PayloadConfig = PayloadConfig()
+    kinematic: KinematicConfig = KinematicConfig()
+    reference: ReferenceConfig = ReferenceConfig()
+    guidance: GuidanceConfig = GuidanceConfig()
+    following: FollowingConfig = FollowingConfig()
+    start: StartConfig = StartConfig()
+    flight: FlightConfig = FlightConfig()
+    criteria: CriteriaConfig = CriteriaConfig()
+    report: ReportConfig = ReportConfig()
+
+    @property
+    def own_random_numbers(self) -> bool:
+        """Return whether each point of a sweep has random numbers of its own: what one sample of an
+        instrument reads wrong would be wrong at all of them.
+        """
+        if self.common_random_numbers is not None:
+            return not self.common_random_numbers
+        return bool(self.payload.instruments) or "payload.instruments" in self.sweep.root
+
+    @property
+    def circles(self) -> bool:
+        """Return whether the reference circles, without a vessel."""
+        return self.reference.path == "circle"
+
+    @property
+    def follows(self) -> bool:
+        """Return whether the mission follows what it estimates: where that says so, or air or
+        vessel are not steady and known.
+        """
+        if self.guidance.mission is not None:
+            return self.guidance.mission != "track"
+        return (
+            bool(self.unsteady_keys)
+            or self.plume.model != "straight"
+            or self.plume.direction == "apparent_wind"
+        )
+
+    @property
+    def unsteady_keys(self) -> tuple[str, ...]:
+        """Return the keys by which air or vessel are not steady and known, whatever is swept or
+        sampled beside.
+        """
+        air, sensors = self.turbulence, self.sensors.model_dump()
+        given = {
+            "wind.table": self.wind.table is not None,
+            "wind.speed_mps": self.wind.speed_mps > 0.0,
+            "turbulence.level": air.level != "none",
+            "turbulence.gusts": air.gusts > 0,
+            "emission.ship": self.emission.ship is not None,
+            "vessel.manoeuvres": bool(self.vessel.manoeuvres),
+            "vessel.track": self.vessel.track != "manoeuvres",
+            "reports.interval_s": not self.reports.exact,
+            **{f"sensors.{name}": error > 0.0 for name, error in sensors.items()},
+            "fault.kind": self.fault.kind != "none",
+        }
+        return tuple(key for key, has in given.items() if has)
+
+    @property
+    def vessel_known(self) -> bool:
+        """Return whether the vessel's motion is known at all times, and not from reports."""
+        return self.reports.exact and not self.vessel.from_file
+
+    @property
+    def stands_off(self) -> bool:
+        """Return whether the vessel is circled, without an oscillation."""
+        return self.guidance.mission == "standoff"
+
+    @property
+    def finds(self) -> bool:
+        """Return whether a plume is searched for, given, or measured until there is a verdict."""
+        return self.following.plume != "predicted" or self.flight.until == "verdict"
+
+    @property
+    def source_height(self) -> float:
+        """Return the height of the funnel's mouth above the sea: as it is given, else that of the
+        ship [m].
+        """
+        return stack_height_of(self.plume.source_height_m, self.emission.ship)
+
+    @property
+    def altitude(self) -> float:
+        """Return the altitude at the start, for which the autopilot is designed [m]."""
+        flight, height = self.flight, self.source_height
+        if flight.altitude_m is not None:
+            return flight.altitude_m
+        return (
+            height
+            if self.emission.ship is None
+            else flight.altitude_beside(height, self.turbulence.level)
+        )
+
+    @property
+    def declared_faults(self) -> frozenset[str]:
+        """Return the kinds of faults that its flights may have, and those that they declare beside."""
+        drawn = [
+            value for draw in self.draws if draw.key == "fault.kind" for value in draw.choice or ()
+        ]
+        varied = [*map(str, drawn), *map(str, self.sweep.root.get("fault.kind", ()))]
+        return frozenset({self.fault.kind, *self.fault.declared, *varied} - {"none"})
+
+    @property
+    def plume_by_wind(self) -> bool:
+        """Return whether the plume trails behind the vessel's motion through the air."""
+        return self.plume.direction == "apparent_wind" or (
+            self.plume.direction is None and self.follows
+        )
+
+    @property
+    def vessel_speed(self) -> float:
+        """Return the vessel's speed over the ground before any manoeuvre [m/s]."""
+        ratio = self.vessel.speed_ratio
+        return self.vessel.speed_mps if ratio is None else ratio * self.guidance.airspeed_mps
+
+    @property
+    def nu_over_ground(self) -> float:
+        """Return the vessel's speed over the ground over V_r, which is nu in still air [-]."""
+        ratio = self.vessel.speed_ratio
+        return self.vessel.speed_mps / self.guidance.airspeed_mps if ratio is None else ratio
+
+    @property
+    def several_points(self) -> bool:
+        """Return whether its experiment has points that differ otherwise than at random: by a
+        sweep, cases, a comparison or two vehicles."""
+        return (
+            bool(self.sweep.root or self.cases or self.comparison.variants)
+            or self.fidelity == "both"
+        )

@@ -1,0 +1,126 @@
+"""What a scenario file may say of equipment: the vessel's reports, sensors, faults, payload. What
+is absent is ideal.
+"""
+
+from typing import Annotated, Any, ClassVar
+
+from pydantic import Field, field_validator, model_validator
+
+from scenarios.scenario.extension_points import PAYLOADS
+from scenarios.scenario.sections.part_section import PartSection
+from scenarios.scenario.sections.section import NonNegative, Positive, Section, check_ordered
+
+REPORTS_MAX = 200_000
+"""Most reports in a flight: four times those of the longest flight by AIS, every 2 s at its
+fastest; with 0.4 kB each, 80 MB.
+"""
+
+
+class VesselReportsConfig(Section):
+    """Reports of the vessel's motion, as by AIS."""
+
+    interval_s: tuple[NonNegative, NonNegative] = (0.0, 0.0)
+    """Shortest and longest time between reports; 0 for exact knowledge at all times [s]."""
+    position_sigma_m: NonNegative = 5.0
+    """Error of each coordinate of a report, one sigma [m]."""
+    velocity_sigma_mps: NonNegative = 0.15
+    """Error of each component of the velocity, one sigma [m/s]."""
+    latency_max_s: NonNegative = 0.0
+    """Longest delay between the time that a report states and its reception [s]."""
+    missing: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.0
+    """Fraction of reports that are never received [-]."""
+
+    @model_validator(mode="after")
+    def _ordered(self) -> "VesselReportsConfig":
+        check_ordered("interval_s", self.interval_s)
+        return self
+
+    @property
+    def exact(self) -> bool:
+        """Return whether the vessel's motion is known at all times."""
+        return self.interval_s[1] == 0.0
+
+
+class SensorsConfig(Section):
+    """Errors of the UAV's sensors. Biases are sampled for each flight, within these limits."""
+
+    position_sigma_m: NonNegative = 0.0
+    """Error of each coordinate of satellite navigation, one sigma; it drifts with a time constant
+    of a minute [m].
+    """
+    velocity_sigma_mps: NonNegative = 0.0
+    """Noise of each velocity component of satellite navigation [m/s]."""
+    airspeed_sigma_mps: NonNegative = 0.0
+    """Noise of the airspeed [m/s]."""
+    airspeed_bias_mps: NonNegative = 0.0
+    """Largest bias of the airspeed [m/s]."""
+    heading_sigma_deg: NonNegative = 0.0
+    """Noise of the heading [deg]."""
+    heading_bias_deg: NonNegative = 0.0
+    """Largest bias of the heading [deg]."""
+
+
+class FaultConfig(Section):
+    """A fault in flight."""
+
+    kind: Annotated[str, Field(pattern=r"^[A-Za-z0-9_.\-]+$")] = "none"
+    """Kind of fault: none, vessel_data, satellite_navigation, sniffer_dead, sniffer_saturated,
+    engine, or the name of an actuator of the aircraft (the error message for an unknown name lists
+    them)."""
+    at_s: tuple[NonNegative, NonNegative] = (100.0, 250.0)
+    """Earliest and latest time of the fault, which is sampled in between; or one number, the time
+    itself [s].
+    """
+    vessel_data_s: Positive = 60.0
+    """How long vessel data are lost [s]."""
+    satellite_navigation_s: Positive = 10.0
+    """How long satellite navigation is lost [s]; any other fault lasts to the end of the flight."""
+    declared: tuple[str, ...] = ()
+    """Kinds of fault that the keep-out guard and its margin allow for, besides the flight's own and
+    those swept or sampled.
+    """
+
+    @field_validator("at_s", mode="before")
+    @classmethod
+    def _one_time(cls, given: Any) -> Any:
+        """Take a number for the range that holds it alone, so that a random variable can set the
+        time.
+        """
+        return (
+            (given, given)
+            if isinstance(given, int | float) and not isinstance(given, bool)
+            else given
+        )
+
+    @model_validator(mode="after")
+    def _ordered(self) -> "FaultConfig":
+        check_ordered("at_s", self.at_s)
+        return self
+
+
+class PayloadConfig(PartSection):
+    """The instruments on board; each may add keys of its own."""
+
+    NAMED_IN: ClassVar[str] = "payload.instruments"
+
+    instruments: tuple[str, ...] = ()
+    """Instruments, each by its name, such as sniffer, or FILE.py:NAME; their readings are columns
+    of the time history.
+    """
+
+    @model_validator(mode="before")
+    @classmethod
+    def _names_alone(cls, given: Any) -> Any:
+        """Take a list for the instruments' names, without any settings."""
+        return {"instruments": given} if isinstance(given, list | tuple) else given
+
+    def parts(self) -> dict[str, Any]:
+        """Return the instruments by their names."""
+        return {name: PAYLOADS.get(name) for name in self.instruments}
+
+
+class KinematicConfig(Section):
+    """The paper's vehicle, eq. (1)."""
+
+    heading_rate_lag_s: NonNegative = 0.0
+    """Time constant of the heading rate behind its command; 0 for eq. (1) as it stands [s]."""

@@ -1,0 +1,288 @@
+"""What a scenario file may say of the world: vessel, plume, wind, turbulence, keep-out area. What
+is absent is ideal.
+"""
+
+from datetime import datetime
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import BeforeValidator, Field, field_validator, model_validator
+
+from common.files import is_data_file
+from common.registry import is_file_part
+from measurement.emission import fuel_preset, ship_of, stack_height_of
+from measurement.gases import FUEL_SULPHUR_MOST
+from scenarios.scenario.extension_points import PLUME_MODELS, VESSEL_TRACKS
+from scenarios.scenario.sections.part_section import PartSection
+from scenarios.scenario.sections.section import Angle, NonNegative, Positive, Section
+
+SOURCE_HEIGHT_MIN = 10.0
+"""Least height of a funnel's mouth above the sea [m]."""
+
+GAP_MAX = 180.0
+"""Longest gap between reports of a file that is bridged, unless it is set [s]."""
+
+Shape = Literal["sphere", "cylinder"]
+"""Shapes of the keep-out area."""
+
+
+class ManoeuvreConfig(Section):
+    """A change of the vessel's course or speed, at a steady rate."""
+
+    at_s: NonNegative
+    """Time at which the manoeuvre begins [s]."""
+    turn_deg: Angle = 0.0
+    """Change of course, positive to starboard [deg]."""
+    turn_rate_deg_s: Annotated[float, Field(gt=0.0, le=5.0)] = 0.5
+    """Rate of the turn [deg/s]."""
+    speed_mps: Annotated[float, Field(ge=0.0, le=30.0)] | None = None
+    """Speed over the ground at its end; unchanged if not given [m/s]."""
+    acceleration_mps2: Annotated[float, Field(gt=0.0, le=1.0)] = 0.05
+    """Rate of the change of speed [m/s2]."""
+
+
+class VesselConfig(Section):
+    """The ship."""
+
+    speed_mps: Annotated[float, Field(ge=0.0, le=300.0)] = 8.0
+    """Speed over the ground, before any manoeuvre [m/s]."""
+    speed_ratio: Annotated[float, Field(ge=0.0, le=10.0)] | None = None
+    """Speed over the ground over the UAV's airspeed, nu in calm air [-]; replaces speed_mps if
+    given.
+    """
+    course_deg: Angle = 0.0
+    """Course, clockwise from north [deg]."""
+    track: str = "manoeuvres"
+    """Track of the vessel: by its speed, course and manoeuvres, from a file of AIS reports (.csv,
+    .nmea, .txt), or FILE.py:NAME.
+    """
+    mmsi: Annotated[int, Field(ge=0, le=999_999_999)] | None = None
+    """MMSI of the vessel in a file of AIS reports; not needed if the file has only one vessel [-].
+    """
+    gap_max_s: Positive = GAP_MAX
+    """Longest gap between reports of a file over which the track is interpolated [s]."""
+    manoeuvres: tuple[ManoeuvreConfig, ...] = ()
+    """Manoeuvres of the vessel, in the order of their times."""
+
+    @field_validator("track")
+    @classmethod
+    def _of_data(cls, track: str) -> str:
+        file = Path(track).suffix and not (is_file_part(track) or is_data_file(track))
+        if file and track not in VESSEL_TRACKS:
+            raise ValueError(
+                f"track is '{track}'; the name of a file of AIS reports ends in .csv, .nmea or .txt: rename it"
+            )
+        return track
+
+    @model_validator(mode="after")
+    def _in_turn(self) -> "VesselConfig":
+        times = [m.at_s for m in self.manoeuvres]
+        if times != sorted(times):
+            raise ValueError(f"manoeuvres begin at {times} s; put them in their order")
+        return self
+
+    @property
+    def from_file(self) -> bool:
+        """Whether its track is that of a file of AIS reports."""
+        return is_data_file(self.track)
+
+
+class PlaceConfig(Section):
+    """Where on earth a flight begins, and when; a track from a file has a place of its own."""
+
+    latitude_deg: Annotated[float, Field(ge=-90.0, le=90.0)] | None = None
+    """Geodetic latitude of the vessel at the start [deg]."""
+    longitude_deg: Annotated[float, Field(ge=-180.0, le=180.0)] | None = None
+    """Longitude of the vessel at the start, east of Greenwich [deg]."""
+    utc: datetime | None = None
+    """Time of the start, as in 2026-06-01T12:00:00Z; for a track from a file, that of the first
+    report if not given.
+    """
+
+    @field_validator("utc", mode="before")
+    @classmethod
+    def _no_number(cls, utc: object) -> object:
+        if isinstance(utc, int | float) or (isinstance(utc, str) and utc.strip().isdecimal()):
+            raise ValueError(
+                f"value is {utc}, a number; give date and time, as in 2026-06-01T12:00:00Z"
+            )
+        return utc
+
+    @field_validator("utc")
+    @classmethod
+    def _with_a_zone(cls, utc: datetime | None) -> datetime | None:
+        if utc is not None and not 1970 <= utc.year < 2200:
+            raise ValueError(f"value is {utc.isoformat()}; give a time from 1970 to 2199")
+        if utc is not None and utc.tzinfo is None:
+            raise ValueError(
+                f"value is {utc.isoformat()}, without a zone; give a time in UTC, as in {utc.isoformat()}Z"
+            )
+        return utc
+
+    @model_validator(mode="after")
+    def _whole(self) -> "PlaceConfig":
+        if (self.latitude_deg is None) != (self.longitude_deg is None):
+            raise ValueError(
+                "one of place.latitude_deg and place.longitude_deg is given; give both, or neither"
+            )
+        return self
+
+
+class PlumeConfig(PartSection):
+    """The smoke plume: its axis, a half-line from the funnel, and what its model adds."""
+
+    NAMED_IN: ClassVar[str] = "plume.model"
+
+    model: str = "straight"
+    """straight: an axis without smoke; fluctuating: smoke that disperses, meanders and bends; or
+    FILE.py:NAME.
+    """
+    direction: Literal["apparent_wind", "given"] | None = None
+    """Behind the vessel's motion through the air, or, as in the paper, at heading_deg from the bow.
+
+    If not given: as in the paper in still air where the vessel is steady and known, else by the
+    apparent wind.
+    """
+    heading_deg: Angle = 180.0
+    """Direction chi_P, clockwise from the vessel's bow [deg]; 180 is straight astern."""
+    elevation_deg: Annotated[float, Field(ge=0.0, le=60.0)] = 0.0
+    """Elevation alpha_P above the horizon [deg]."""
+    source_height_m: Annotated[float, Field(ge=SOURCE_HEIGHT_MIN, le=500.0)] | None = None
+    """Height of the funnel's mouth above the sea, where the axis starts; at most 200 for exhaust of
+    the model fluctuating. If not given, that of the funnel of emission.ship, or 60 without a ship
+    [m]."""
+
+    @property
+    def source_height(self) -> float:
+        """Return the height where the axis starts, as the section has it; a plume model is given
+        its flight's own [m].
+        """
+        return stack_height_of(self.source_height_m, None)
+
+    def parts(self) -> dict[str, Any]:
+        """Return the plume model by its name."""
+        return {self.model: PLUME_MODELS.get(self.model)}
+
+
+def _known_ship(given: Any) -> Any:
+    """Refuse a name of no ship, and a table that is of no use."""
+    if not isinstance(given, str | dict | None):
+        raise ValueError(
+            f"value is {given!r}; give the name of a ship, or a table with her engine and funnel"
+        )
+    if given is not None:
+        ship_of(given)
+    return given
+
+
+class EmissionConfig(Section):
+    """What comes out of the funnel."""
+
+    ship: Annotated[str | dict[str, Any] | None, BeforeValidator(_known_ship)] = None
+    """The ship that emits the exhaust, one of measurement/ships.toml, or a table of one's
+    own with the keys of these; no exhaust if not given."""
+    fuel: str = "mgo"
+    """Fuel of the ship, one of measurement/fuels.toml."""
+    sulphur_percent: Annotated[float, Field(ge=0.0, le=FUEL_SULPHUR_MOST)] | None = None
+    """Sulphur content of the fuel by mass; the usual one of that fuel if not given [% m/m]."""
+    load: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
+    """Load of the engine, a fraction as 0.85; if not given, that at the vessel's speed, which the
+    guidance expects [-].
+    """
+
+    @field_validator("fuel")
+    @classmethod
+    def _known_fuel(cls, fuel: str) -> str:
+        fuel_preset(fuel)
+        return fuel
+
+
+class KeepoutConfig(Section):
+    """What the UAV must not enter: a sphere about the funnel's mouth, or an upright cylinder
+    through it.
+    """
+
+    shape: Shape = "sphere"
+    """A sphere, as in the paper, which is narrower above and below; or a cylinder, as wide at every
+    height.
+    """
+    radius_m: Annotated[float, Field(ge=10.0, le=10_000.0)] = 200.0
+    """r_min, radius of the keep-out area [m]."""
+
+
+class WindConfig(Section):
+    """The mean wind: constant, or from a table; the same at every height, or with a profile. And
+    the air in which exhaust rises.
+    """
+
+    speed_mps: Annotated[float, Field(ge=0.0, le=40.0)] = 0.0
+    """Wind speed [m/s]."""
+    from_deg: Angle = 0.0
+    """Direction that the wind comes from, clockwise from north [deg]."""
+    temperature_c: Annotated[float, Field(ge=-40.0, le=50.0)] = 15.0
+    """Temperature of the air in which exhaust rises [degC]."""
+    stability_per_s: Annotated[float, Field(ge=0.0, le=0.1)] = 0.0
+    """Brunt-Vaisala frequency of the air in which exhaust rises; 0 for neutral air [1/s]."""
+    table: str | None = None
+    """A file with the wind over time, height or both: a table (.csv), or netCDF as of ERA5 (.nc).
+    """
+    roughness_m: Annotated[float, Field(ge=1e-8, le=1.0)] | None = None
+    """Roughness length of a logarithmic profile over height, about 0.0002 over the sea; no profile
+    if not given [m].
+    """
+    height_m: Annotated[float, Field(ge=2.0, le=500.0)] = 10.0
+    """Height above the sea of the given wind, for a logarithmic profile [m]."""
+
+    @field_validator("table")
+    @classmethod
+    def _of_data(cls, table: str | None) -> str | None:
+        if table is not None and not is_data_file(table):
+            raise ValueError(f"table is '{table}'; give a file .csv or .nc")
+        return table
+
+    @property
+    def blows(self) -> bool:
+        """Whether there is any."""
+        return self.speed_mps > 0.0 or self.table is not None
+
+
+class AirConfig(Section):
+    """The air that a sniffer reads beside the exhaust: clean, but for a CO2 that may vary."""
+
+    background: Literal["none", "haze", "sine", "steps"] = "none"
+    """How the CO2 of the air varies along a flight: not at all; as an Ornstein-Uhlenbeck process
+    (haze); as a sine of any phase; or by steps at random times.
+    """
+    background_ppm: NonNegative = 2.0
+    """Standard deviation of haze, amplitude of a sine, or standard deviation of a step [ppm]."""
+    background_s: Annotated[float, Field(ge=1.0, le=10_000.0)] = 30.0
+    """Correlation time of haze, period of a sine, or mean time between steps [s]."""
+
+
+class TurbulenceConfig(Section):
+    """Turbulence of MIL-F-8785C, and discrete gusts."""
+
+    level: Literal["none", "light", "moderate", "severe"] = "none"
+    """Severity of the turbulence; light, moderate and severe are 15, 30 and 45 knots of wind at 20
+    feet.
+    """
+    gusts: Annotated[int, Field(ge=0, le=100)] = 0
+    """Number of 1-cosine gusts, at random times and from random directions [-]."""
+    gust_speed_mps: NonNegative = 0.0
+    """Peak speed of the gusts [m/s]."""
+    gust_length_s: Positive = 4.0
+    """Time in which a gust rises, and in which it falls [s]."""
+
+    @model_validator(mode="after")
+    def _gusts(self) -> "TurbulenceConfig":
+        if (self.gusts > 0) != (self.gust_speed_mps > 0.0):
+            raise ValueError(
+                f"gusts is {self.gusts} with a gust_speed_mps of {self.gust_speed_mps:g}; give turbulence.gusts and"
+                " turbulence.gust_speed_mps, or neither"
+            )
+        return self
+
+    @property
+    def calm(self) -> bool:
+        """Whether there is neither turbulence nor a gust."""
+        return self.level == "none" and not self.gusts

@@ -1,0 +1,111 @@
+"""The X8 in the plume of a ship when a part of it fails: it ends outside the keep-out area, in a
+stated mode.
+"""
+
+import numpy as np
+import pandas as pd
+import pytest
+from flight_cases import scenario
+
+from gnc.mission.mission import Mode
+from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.scenario.load import load_study
+from scenarios.scenario.sections.flight import DITCHED
+from scenarios.studies.registry import run_study
+from tests.run_tables import rows_of
+
+KINDS = ("engine", "throttle", "left_elevon", "right_elevon")
+FAILS, ENDS = 55.0, 130.0
+ENDS_IN = {
+    "engine": DITCHED,
+    "throttle": Mode.TRACKING.value,
+    "left_elevon": DITCHED,
+    "right_elevon": DITCHED,
+}
+
+
+@pytest.fixture(scope="module")
+def flown(designs, tmp_path_factory):
+    """A flight for each kind of fault, by its kind: row and time history. At 100 m, to have some
+    way before the sea.
+    """
+    flights = scenario(
+        fidelity="six_dof",
+        flights=len(KINDS),
+        vessel={"speed_mps": 6.0},
+        plume={"source_height_m": 100.0},
+        start={"distance_m": (350.0, 350.0), "spread_deg": 10.0},
+        fault={"at_s": (FAILS, FAILS)},
+        draws=({"key": "fault.kind", "choice": KINDS},),
+        guidance={"reserve": 0.1},
+        flight={"crossings": 0, "duration_max_s": ENDS},
+        criteria={"settles": False},
+    )
+    path = tmp_path_factory.mktemp("faults") / "run"
+    with pytest.MonkeyPatch.context() as patch:
+        # The design of the other tests, for 60 m.
+        patch.setattr("scenarios.studies.flight_study.design_of", lambda *_: (designs("x8"), ""))
+        run_study(flights, "faults", path, executor_factory=InProcessExecutor)
+    return {
+        row["fault"]: (row, pd.read_parquet(path / "flights" / f"{row['flight_id']}.parquet"))
+        for row in rows_of(path)
+    }
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_whatever_fails_the_flight_ends_outside_in_its_mode(flown, kind):
+    row, history = flown[kind]
+    assert row["outcome"] == ("aircraft_lost" if row["mode_at_end"] == DITCHED else "completed"), (
+        row["message"]
+    )
+    assert (row["kept_out"], row["criteria_met"]) == (True, kind == "throttle")
+    assert row["keepout_violations"] == 0
+    assert row["mode_at_end"] == ENDS_IN[kind]
+    # It was in the plume until then: nothing had been found wrong with it.
+    before = history[history["time_s"] < FAILS]
+    assert list(Mode)[int(before["mode"].iloc[-1])] is Mode.TRACKING
+
+
+@pytest.mark.parametrize("kind", ["left_elevon", "right_elevon"])
+def test_a_stuck_elevon_is_found_within_seconds_and_the_flight_leads_away_from_then_on(flown, kind):
+    _, history = flown[kind]
+    since = history[history["mode"] == list(Mode).index(Mode.TERMINATING)]
+    assert (
+        FAILS < since["time_s"].iloc[0] < FAILS + 5.0
+    )  # once it has been told to go elsewhere for as long as it may take
+    north, east = (since[f"{axis}_m"] - since[f"vessel_{axis}_m"] for axis in ("north", "east"))
+    distance = np.hypot(north, east).to_numpy()
+    # Two turn radii V^2/g at 45 degrees of bank: as much nearer as a turn away may come from any
+    # course.
+    assert distance[0] - distance.min() < 2.0 * 19.42**2 / 9.80665
+    assert distance[-1] > distance[0]
+
+
+@pytest.mark.parametrize(("required", "status"), [("criteria", False), ("keep_out", True)])
+def test_an_aircraft_that_is_lost_before_its_last_crossing_is_not_met_and_decides_the_exit_status(
+    tmp_path, required, status
+):
+    # Issue: an engine that fails in sea_wind ended in the sea, with "met every criterion" and exit
+    # status 0.
+    keys = [
+        "flights=1",
+        "fault.kind=engine",
+        "fault.at_s=[20, 20]",
+        f"criteria.required={required}",
+    ]
+    study = load_study("sea_wind", keys)
+    result = run_study(
+        study, "sea_wind", tmp_path / "run", executor_factory=InProcessExecutor, overrides=keys
+    )
+    (row,) = rows_of(tmp_path / "run")
+    assert (row["outcome"], row["criteria_met"], row["kept_out"]) == ("aircraft_lost", False, True)
+    assert row["message"].startswith("it came down on the sea at ")
+    assert result.all_met == status
+    assert result.summary.lines[0].startswith(
+        "flights: 1 planned, 1 flown, 0 completed, 0 met every criterion, 1 lost the aircraft;"
+    )
+    about = "kept out" if required == "keep_out" else "met every criterion"
+    assert (
+        f"exit status {int(not status)}: {int(status)} of 1 flight {about}, which is required of it"
+        in result.summary.lines
+    )

@@ -1,0 +1,107 @@
+"""Figures of searches that are made up, so that every one of them is known."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from gnc.mission.mission import Mode
+from scenarios.measures.columns import FINDING_COLUMNS
+from scenarios.measures.finding import finding_figures
+from scenarios.scenario.sections.flight import FlightConfig
+
+STEP, INTERVAL, ORBIT = 0.1, 10.0, 40.0
+"""Between samples, between crossings, and until the orbit is reached [s]."""
+
+NOISE = 0.5
+
+
+def history(*, first=100.0, above=6.0, believed=80.0, deviation=4.0, duration=300.0, altitude=70.0):
+    """Return a search that crosses the axis every interval, and detects the plume from ``first`` on
+    [s].
+    """
+    time = STEP * np.arange(round(duration / STEP) + 1)
+    across = 50.0 * np.sin(math.pi * time / INTERVAL)
+    inside = (np.abs(across) < 5.0) & (time > first - 1.0)
+    # Every second crossing misses the middle of the plume.
+    fraction = np.where(inside, np.where((time / INTERVAL).round() % 2 == 0, 0.9, 0.3), 0.0)
+    co2 = 420.0 + 100.0 * fraction
+    frame = {
+        "time_s": time,
+        "altitude_m": altitude,
+        "altitude_command_m": altitude,
+        "mode": np.where(time < ORBIT, Mode.APPROACH.number, Mode.SEARCHING.number).astype(float),
+        "plume_across_m": across,
+        "plume_above_m": above,
+        "plume_fraction": fraction,
+        "co2_ppm": co2,
+        "co2_background_ppm": 420.0,
+        "co2_reading_ppm": np.roll(co2, 10),
+    }
+    if believed is not None:
+        frame |= {
+            "axis_height_estimated_m": believed,
+            "axis_height_deviation_m": deviation,
+            "axis_measurable": 0.9,
+        }
+    return pd.DataFrame(frame)
+
+
+def figures(made, **limits):
+    return finding_figures(made, FlightConfig(**limits), noise=NOISE, enough="")
+
+
+def test_the_time_to_find_counts_from_the_orbit_to_the_first_reading_of_the_plume():
+    row = figures(history())
+    assert row["orbit_at_s"] == ORBIT
+    # Detected from 99 s on, where the crossing at 100 s begins; the reading is a second late. A
+    # sample, and the width of the plume.
+    assert row["time_to_find_s"] == pytest.approx(100.0 - ORBIT + 0.8, abs=0.5)
+    assert row["found"]
+
+
+def test_a_plume_that_is_never_detected_is_not_found():
+    row = figures(history(first=1e9))
+    assert row["found"] is False
+    assert "time_to_find_s" not in row
+
+
+def test_a_reading_of_clean_air_is_no_plume_however_large():
+    made = history(first=1e9)
+    made.loc[1500:1520, "co2_reading_ppm"] += 50.0
+    assert figures(made)["found"] is False
+
+
+def test_the_height_is_judged_at_the_crossing_nearest_to_three_minutes():
+    row = figures(history())
+    # Truth: 70 m flown, 6 m above the axis.
+    assert row["axis_height_3min_m"] == 64.0
+    assert (row["axis_height_error_3min_m"], row["axis_height_deviation_3min_m"]) == (16.0, 4.0)
+    assert (row["axis_height_end_m"], row["axis_measurable_end"]) == (80.0, 0.9)
+
+
+def test_a_flight_that_believes_nothing_has_the_truth_alone():
+    row = figures(history(believed=None))
+    assert row["axis_height_3min_m"] == 64.0
+    assert not {"axis_height_error_3min_m", "axis_height_end_m"} & set(row)
+
+
+def test_the_hit_rate_counts_passes_since_the_plume_was_found():
+    # Every second of them is above 0.6 of the axis.
+    assert figures(history())["hit_rate_found"] == pytest.approx(0.5, abs=0.05)
+
+
+def test_time_outside_of_the_limits_counts_but_not_that_of_a_vehicle_that_glides():
+    assert figures(history())["altitude_outside_s"] == 0.0
+    # All 3001 samples of 300 s.
+    assert figures(history(), altitude_max_m=60.0)["altitude_outside_s"] == pytest.approx(
+        300.1, abs=1e-6
+    )
+    gliding = history()
+    gliding["altitude_command_m"] = -1000.0
+    assert figures(gliding, altitude_max_m=60.0)["altitude_outside_s"] == 0.0
+
+
+def test_every_figure_is_a_column():
+    assert set(figures(history())) <= set(FINDING_COLUMNS)

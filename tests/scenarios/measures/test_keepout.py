@@ -1,0 +1,108 @@
+import math
+
+import numpy as np
+import pytest
+
+from scenarios.measures.keepout import closest_approach, keepout_figures
+
+
+def line(offset, speed=19.42, duration=40.0, step=0.1):
+    """A straight path that passes ``offset`` metres beside the centre at half the duration."""
+    time = np.arange(0.0, duration + step / 2, step)
+    position = np.column_stack(
+        [speed * (time - duration / 2), np.full(len(time), offset), 0.0 * time]
+    )
+    return time, position, np.tile([speed, 0.0, 0.0], (len(time), 1))
+
+
+def turn(bearing, *, nearest=200.0, radius=38.6, speed=19.42, step=0.1):
+    """A circle, flown at 45 degrees of bank, that comes as near as ``nearest`` when it has turned
+    by ``bearing`` [rad].
+
+    38.6 m is the radius V^2/g at 19.42 m/s.
+    """
+    time = np.arange(0.0, 10.0, step)
+    angle = speed / radius * time - bearing
+    position = np.column_stack(
+        [nearest + radius * (1.0 - np.cos(angle)), radius * np.sin(angle), 0.0 * time]
+    )
+    velocity = speed * np.column_stack([np.sin(angle), np.cos(angle), 0.0 * time])
+    return time, position, velocity
+
+
+@pytest.mark.parametrize("offset", [0.0, 50.0, 199.0, 199.999])
+def test_time_inside_is_the_chord_over_the_speed(offset):
+    # A chord at distance a of a circle of radius r has the length 2 sqrt(r^2 - a^2). Straight
+    # between samples, so exact.
+    figures = keepout_figures(*line(offset), radius=200.0)
+    assert figures.time_inside == pytest.approx(
+        2.0 * math.sqrt(200.0**2 - offset**2) / 19.42, rel=1e-9
+    )
+    assert figures.violations == 1
+    assert figures.depth == pytest.approx(200.0 - offset, abs=1e-9)
+
+
+def test_a_chord_shorter_than_a_sample_is_seen():
+    # At 199.99995 m the chord is 0.28 m long; samples are 1.9 m apart.
+    figures = keepout_figures(*line(199.99995), radius=200.0)
+    assert figures.violations == 1
+    assert figures.time_inside > 0.0
+
+
+def test_passing_outside_is_no_violation():
+    figures = keepout_figures(*line(200.001), radius=200.0)
+    assert (figures.violations, figures.time_inside, figures.depth) == (0, 0.0, 0.0)
+    assert figures.distance_min == pytest.approx(200.001, abs=1e-9)
+
+
+def test_a_cylinder_is_as_wide_at_every_height():
+    # At 60 degrees of elevation the orbit is 200 m from the funnel, and 100 m beside it: outside
+    # the sphere, inside the cylinder.
+    time, position, velocity = line(100.0)
+    position[:, 2] = 200.0 * math.sin(math.radians(60.0)) + 0.001
+    assert keepout_figures(time, position, velocity, radius=200.0, shape="sphere").violations == 0
+    figures = keepout_figures(time, position, velocity, radius=200.0, shape="cylinder")
+    assert (figures.violations, figures.distance_min) == (1, pytest.approx(100.0, abs=1e-9))
+    assert closest_approach(time, position[:, :2], velocity[:, :2]) == pytest.approx(
+        100.0, abs=1e-9
+    )
+
+
+@pytest.mark.parametrize("bearing", [1.0, 1.0 + 0.5 * 0.1 * 19.42 / 38.6])
+def test_closest_approach_is_exact_between_samples(bearing):
+    # The samples are at multiples of 0.0503 rad, so that the circle is nearest somewhere between
+    # two of them.
+    figures = keepout_figures(*turn(bearing), radius=200.0)
+    # The cubic follows a circle to h^4/384 r w^4 = 6e-7 m; the chord between two samples lies up to
+    # 1.2 cm off.
+    assert figures.distance_min == pytest.approx(200.0, abs=1e-6)
+
+
+def test_a_dip_between_two_samples_outside_is_seen():
+    # Midway between two samples: those are 1.2 cm farther out than the nearest point, and the chord
+    # between them does not curve.
+    bearing = 20.5 * 0.1 * 19.42 / 38.6
+    figures = keepout_figures(*turn(bearing), radius=200.004)
+    assert figures.violations == 1
+    # It is inside for as long as r (1 - cos) stays below 4 mm, but for the curvature of the sphere,
+    # which makes that 8 % shorter.
+    duration = 2.0 * math.sqrt(2.0 * 0.004 / 38.6 / (1.0 + 38.6 / 200.0)) * 38.6 / 19.42
+    assert figures.time_inside == pytest.approx(duration, rel=1e-3)
+
+
+def test_separate_stays_are_counted_apart():
+    time, position, velocity = line(100.0)
+    there_and_back = np.concatenate([time, time[-1] + 0.1 + time])
+    both, rates = (
+        np.concatenate([position, position[::-1]]),
+        np.concatenate([velocity, -velocity[::-1]]),
+    )
+    figures = keepout_figures(there_and_back, both, rates, radius=200.0)
+    assert figures.violations == 2
+
+
+def test_a_path_that_starts_inside_counts_from_its_first_second():
+    inside = slice(len(line(0.0)[0]) // 2, None)
+    figures = keepout_figures(*(values[inside] for values in line(0.0)), radius=200.0)
+    assert figures.violations == 1
+    assert figures.time_inside == pytest.approx(200.0 / 19.42, rel=1e-9)

@@ -1,0 +1,269 @@
+"""Ratios of actual errors to what is reckoned with, of records whose ratios are known, and of flights
+whose premises are made to fail.
+"""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from flight_cases import plan as planned
+from flight_cases import scenario
+
+from common.premises import EXCEEDED, TERMS, ratio_column, time_column
+from gnc.estimation.error_budget import (
+    Bias,
+    ErrorBudget,
+    Growth,
+    Process,
+    TurnDeviation,
+    WindErrorByGusts,
+)
+from scenarios.flight.closed_loop import fly
+from scenarios.flight.guard_belief import GuardBelief
+from scenarios.flight.outcome import Outcome
+from scenarios.flight.record import COLUMNS, FlightRecord
+from scenarios.flight.release import release
+from scenarios.measures.figures import flight_figures
+from scenarios.measures.premises import premise_figures
+from scenarios.vehicles.vehicle_setup import kinematic_setup
+
+STEP = 0.1
+NAMES = (*COLUMNS, *GuardBelief.COLUMNS)
+VESSEL_NORTH = 1e7
+"""So far off that its direction is the same all along [m]."""
+
+
+@pytest.fixture(scope="module")
+def plan():
+    """A flight in still air, all of whose errors are those of its reports and sensors."""
+    return planned(scenario())
+
+
+def with_budget(plan, **terms):
+    guard = replace(plan.guidance.guard, errors=ErrorBudget(**terms))
+    return replace(plan, guidance=replace(plan.guidance, guard=guard))
+
+
+def record(values, outcome=Outcome.COMPLETED, *, duration=60.0):
+    """Return a record of straight flight north at 20 m/s in which nothing is wrong but for
+    ``values``.
+    """
+    time = np.arange(0.0, duration + 0.5 * STEP, STEP)
+    straight = {
+        "time_s": time,
+        "north_m": 20.0 * time,
+        "velocity_north_mps": 20.0,
+        "altitude_m": 100.0,
+        "airspeed_mps": 20.0,
+        "vessel_north_m": VESSEL_NORTH,
+        "own_seen_north_m": 20.0 * time,
+        "own_seen_speed_mps": 20.0,
+        "disc_north_m": VESSEL_NORTH,
+        "speed_fastest_mps": 20.0,
+        "speed_slowest_mps": 20.0,
+        "command_change": 1.0,
+    }
+    history = np.zeros((len(time), len(NAMES)))
+    for name, value in (straight | values).items():
+        history[:, NAMES.index(name)] = value
+    return FlightRecord(
+        outcome=outcome,
+        message="",
+        mode="tracking",
+        settled_at=0.0,
+        interventions=[],
+        columns=NAMES,
+        history=history,
+        every_step=history,
+        saturation_fraction=0.0,
+        heading_rate_demand_max=0.6,
+        heading_rate_command_max=0.5,
+        guard_time=0.0,
+    )
+
+
+def ratio(plan, values, term):
+    return premise_figures(plan, record(values))[ratio_column(term)]
+
+
+def test_what_is_known_exactly_has_no_ratio(plan):
+    row = premise_figures(with_budget(plan), record({}))
+    assert row[EXCEEDED] == "none"
+    assert all(math.isnan(row[ratio_column(term)]) for term in TERMS)
+
+
+def test_an_error_of_which_nothing_is_reckoned_with_is_named(plan):
+    # Above the guard's resolution of 0.05 m, which is then what is reckoned with.
+    row = premise_figures(with_budget(plan), record({"own_seen_east_m": 0.2}))
+    assert row[ratio_column("position")] == pytest.approx(4.0)
+    assert "position" in row[EXCEEDED].split(", ")
+
+
+def test_the_own_position_is_compared_with_k_standard_deviations_of_the_discs(plan):
+    budget = with_budget(plan, own_position=Process(sigma=1.5, correlation_time=60.0))
+    k = plan.guidance.vessel.limits.deviations
+    assert ratio(budget, {"own_seen_east_m": 0.4 * k * 1.5}, "position") == pytest.approx(0.4)
+
+
+def test_wind_and_own_velocity_are_compared_with_all_that_may_make_them_wrong(plan):
+    # b is 0.5 of sensors, 0.3 of gusts and 0.2 that is allowed for at first.
+    budget = with_budget(plan, own_velocity=Bias(size=0.5), gusts=Bias(size=0.3))
+    allowed = {"wind_allowance_mps": 0.2}
+    assert ratio(budget, allowed | {"wind_north_mps": 0.4}, "wind") == pytest.approx(0.4)
+    assert ratio(budget, allowed | {"own_seen_speed_mps": 20.7}, "wind") == pytest.approx(0.7)
+
+
+def test_in_turbulence_the_wind_has_k_standard_deviations_of_gusts_in_it(plan):
+    turbulence = Process(sigma=2.0, correlation_time=10.0)
+    budget = with_budget(plan, turbulence=turbulence)
+    k = ErrorBudget(turbulence=turbulence).k
+    values = {"gust_in_wind_mps": 0.5, "wind_east_mps": 0.25 * k * 0.5}
+    values["velocity_east_mps"] = 0.0
+    row = premise_figures(budget, record(values))
+    assert row[ratio_column("wind")] == pytest.approx(0.25)
+    # In turbulence the speed is a part of turning.
+    assert math.isnan(row[ratio_column("airspeed")])
+
+
+def test_an_error_of_the_own_place_counts_as_one_of_the_vessel(plan):
+    values = {"disc_radius_m": 20.0, "disc_east_m": -8.0, "own_seen_east_m": 2.0}
+    # The vessel is 8 m from the centre, and seems to be 2 m farther.
+    assert ratio(plan, values, "vessel") == pytest.approx(0.5)
+
+
+def test_airspeed_is_compared_with_the_range_and_the_error_of_the_velocity(plan):
+    budget = with_budget(plan, own_velocity=Bias(size=0.5))
+    values = {"speed_slowest_mps": 17.0, "speed_fastest_mps": 21.0}
+    # 1 m/s from the middle at 19; half the range and the error are 2.5.
+    assert ratio(budget, values, "airspeed") == pytest.approx(0.4)
+
+
+def test_dead_reckoning_is_compared_with_its_drift_since_the_loss(plan):
+    budget = with_budget(plan, drift=Growth(rate=0.8))
+    time = np.arange(0.0, 60.05, STEP)
+    lost = np.maximum(0.0, time - 20.0)
+    # The error at the loss, 3 m, is not of dead reckoning.
+    values = {"satellites_lost_s": lost, "own_seen_east_m": 3.0 + 1.0 * lost}
+    row = premise_figures(budget, record(values))
+    assert row[ratio_column("drift")] == pytest.approx(1.25)
+    assert "drift" in row[EXCEEDED]
+    assert 20.0 < row[time_column("drift")] <= 60.0
+
+
+def turn(plan, *, towards_vessel=0.0, at=None, begins=10.0):
+    """Return a half turn at omega_max behind the lag of a vehicle, which jumps towards the vessel by
+    some metres in its course: where it flies across the direction of the vessel, unless ``at`` says
+    otherwise.
+    """
+    guard = plan.guidance.guard
+    at = begins + 0.5 * math.pi / guard.heading_rate_max + guard.lag if at is None else at
+    lag, rate = plan.guidance.guard.lag, plan.guidance.guard.heading_rate_max
+    fine = STEP / 100.0
+    time = np.arange(0.0, 60.0 + 0.5 * fine, fine)
+    command = np.where((time >= begins - 0.5 * fine) & (time < begins + math.pi / rate), rate, 0.0)
+    rates = np.zeros_like(time)
+    kept = math.exp(-fine / lag) if lag > 0.0 else 0.0
+    for i in range(len(time) - 1):
+        rates[i + 1] = command[i] + kept * (rates[i] - command[i])
+    course = np.concatenate([[0.0], np.cumsum(0.5 * fine * (rates[1:] + rates[:-1]))])
+    v_north, v_east = 20.0 * np.cos(course), 20.0 * np.sin(course)
+    north = np.concatenate([[0.0], np.cumsum(0.5 * fine * (v_north[1:] + v_north[:-1]))])
+    east = np.concatenate([[0.0], np.cumsum(0.5 * fine * (v_east[1:] + v_east[:-1]))])
+    commanded = np.concatenate([[0.0], np.cumsum(fine * command[:-1])])
+    sampled = slice(None, None, 100)
+    moved = north[sampled] + np.where(time[sampled] > at - 0.5 * STEP, towards_vessel, 0.0)
+    return {
+        "north_m": moved,
+        "east_m": east[sampled],
+        "own_seen_north_m": moved,
+        "own_seen_east_m": east[sampled],
+        "velocity_north_mps": v_north[sampled],
+        "velocity_east_mps": v_east[sampled],
+        "own_seen_course_rad": course[sampled],
+        "heading_rate_rad_s": rates[sampled],
+        "course_commanded_rad": commanded[sampled],
+        "guard": np.where(command[sampled] > 0.0, 1.0, 0.0),
+    }
+
+
+def test_a_turn_is_compared_with_its_response(plan):
+    budget = with_budget(plan, response=Bias(size=10.0))
+    # As commanded: to the 3 cm that samples at 10 Hz leave of a path of 120 m.
+    assert ratio(budget, turn(budget), "response") == pytest.approx(0.0, abs=0.01)
+    nearer = turn(budget, towards_vessel=5.0)
+    # The jump makes the way of its step 3.4 m longer, which counts as speed, at up to 0.04 rad from
+    # the direction across.
+    assert ratio(budget, nearer, "response") == pytest.approx(0.5, abs=0.1 * 3.4 * 0.04)
+    # What leads away is not counted.
+    assert ratio(budget, turn(budget, towards_vessel=-5.0), "response") < 0.01
+    assert math.isnan(ratio(budget, nearer, "turning"))
+
+
+def test_in_turbulence_a_turn_is_compared_with_its_displacement_too(plan):
+    turbulence = Process(sigma=2.0, correlation_time=10.0)
+    turning = TurnDeviation(interval=1.0, sigmas=(0.0, 1.0, 3.0))
+    terms = {"response": Bias(size=2.0), "turbulence": turbulence, "turning": turning}
+    budget = with_budget(plan, **terms)
+    # The jump is over in the first step of the turn: after it more and more would be kept.
+    values = turn(budget, towards_vessel=5.0, at=10.0 + STEP)
+    kept = 2.0 + ErrorBudget(**terms).displacement(wind=WindErrorByGusts(turbulence)).after(STEP)
+    assert ratio(budget, values, "turning") == pytest.approx(5.0 / kept, rel=0.01)
+    assert math.isnan(ratio(budget, values, "response"))
+
+
+def test_a_violation_is_explained_by_a_premise_or_is_the_error_of_the_theorem(plan):
+    inside = {"north_m": 0.0, "own_seen_north_m": 0.0, "vessel_north_m": 10.0, "disc_north_m": 10.0}
+    inside |= {"altitude_m": plan.source_height, "reference_north_m": 0.0}
+    inside |= {"vessel_velocity_north_mps": 20.0}
+    exact = with_budget(plan)
+    row, _ = flight_figures(exact, record(inside))
+    assert row["keepout_violations"] == 1
+    assert row["outcome"] == Outcome.UNEXPLAINED_VIOLATION.value
+    row, _ = flight_figures(exact, record(inside | {"own_seen_east_m": 1.0}))
+    assert row["outcome"] == Outcome.COMPLETED.value
+    # An error of the own place is one of the vessel in its disc, too.
+    assert row[EXCEEDED] == "position, vessel"
+    # An aircraft that is lost does not fly its commands.
+    row, _ = flight_figures(exact, record(inside, Outcome.AIRCRAFT_LOST))
+    assert row["outcome"] == Outcome.AIRCRAFT_LOST.value
+
+
+OUTAGE = {
+    "fault": {"kind": "satellite_navigation", "at_s": (40.0, 40.0), "satellite_navigation_s": 60.0},
+    "sensors": {"airspeed_bias_mps": 1.0},
+    "flight": {"duration_max_s": 110.0, "crossings": 0},
+    "seed": 3,
+}
+
+
+def flown(setting, plan):
+    return premise_figures(plan, fly(plan, release(plan, kinematic_setup(setting))))
+
+
+def test_a_flight_shows_by_name_that_dead_reckoning_drifted_more_than_declared():
+    setting = scenario(**OUTAGE)
+    honest = planned(setting)
+    row = flown(setting, honest)
+    assert row[EXCEEDED] == "none"
+    assert 0.0 < row[ratio_column("drift")] <= 1.0
+    guard = honest.guidance.guard
+    drift = replace(
+        guard.errors.drift, rate=0.1 * row[ratio_column("drift")] * guard.errors.drift.rate
+    )
+    declared = replace(guard, errors=replace(guard.errors, drift=drift))
+    short = replace(honest, guidance=replace(honest.guidance, guard=declared))
+    row = flown(setting, short)
+    assert row[EXCEEDED] == "drift"
+    assert row[ratio_column("drift")] > 1.0
+    assert 40.0 < row[time_column("drift")] < 101.0
+
+
+def test_in_still_air_a_flight_that_knows_everything_has_next_to_no_ratios():
+    setting = scenario(flight={"duration_max_s": 60.0, "crossings": 0})
+    row = flown(setting, planned(setting))
+    assert row[EXCEEDED] == "none"
+    for term in ("position", "turning", "drift"):
+        assert math.isnan(row[ratio_column(term)])
+    response = row[ratio_column("response")]
+    assert math.isnan(response)

@@ -1,0 +1,179 @@
+"""What is said of keys is complete, and agrees with what the schemas accept."""
+
+import math
+import re
+
+import pytest
+from pydantic import RootModel
+
+from scenarios.scenario.documented import documented_keys, documented_sections, similar_key
+from scenarios.scenario.documented_parts import FLIGHT_STUDIES
+from scenarios.scenario.keys import known_keys
+from scenarios.scenario.load import KINDS
+from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.convergence import ConvergenceScenario
+from scenarios.scenario.sections.experiment import SubsetConfig, TrialList
+
+KEYS = documented_keys()
+BY_KEY = {key.key: key for key in reversed(KEYS)}
+
+
+def test_every_key_of_the_schemas_is_documented():
+    for kind in (Scenario, TrialList, ConvergenceScenario):
+        sections = list(documented_sections(kind))
+        named = {key.key for section in sections for key in section.keys} | {
+            section.name.removesuffix(".0") for section in sections
+        }
+        named |= {section.name for section in sections}
+        free = {key for key in known_keys(kind) if key in kind.model_fields and _is_free(kind, key)}
+        assert set(known_keys(kind)) - named - free == set(), kind
+
+
+def _is_free(kind, key):
+    annotation = kind.model_fields[key].annotation
+    return isinstance(annotation, type) and issubclass(annotation, RootModel)
+
+
+def test_every_key_has_a_meaning():
+    assert [key.key for key in KEYS if len(key.meaning) < 2] == []
+    assert [section.name for section in documented_sections() if not section.meaning] == []
+
+
+def test_every_number_has_a_unit_and_nothing_else_has():
+    for key in KEYS:
+        assert bool(key.unit) == ("number" in key.range), key
+        # A unit is not part of the sentence, nor is a mark of the docstring.
+        assert "``" not in key.meaning
+        assert not re.search(rf"\[{re.escape(key.unit)}\]", key.meaning) or not key.unit
+
+
+UNITS = {
+    "_m": "m",
+    "_s": "s",
+    "_mps": "m/s",
+    "_deg": "deg",
+    "_rad_s": "rad/s",
+    "_hz": "Hz",
+    "_per_s": "1/s",
+}
+
+
+@pytest.mark.parametrize(("suffix", "unit"), UNITS.items())
+def test_units_are_those_of_the_names(suffix, unit):
+    longer = ("_per_m", "_per_s", "_deg_s", "_rad_s", "_per_m_s", "_m_s")
+    found = [
+        key
+        for key in KEYS
+        if key.key.endswith(suffix) and (suffix in longer or not key.key.endswith(longer))
+    ]
+    assert found
+    assert {key.unit for key in found} == {unit}
+
+
+def test_ranges_are_those_that_the_schema_checks():
+    assert BY_KEY["wind.speed_mps"].range == "a number from 0 to 40"
+    assert BY_KEY["keepout.shape"].range == "sphere or cylinder"
+    assert BY_KEY["criteria.tracking_error_rms_m"].range == "a number above 0 or false"
+    assert BY_KEY["guidance.reserve"].range == "a number from 0 below 1"
+    assert BY_KEY["comparison.nu"].range == "a list, each a number from 0 below 1"
+    assert BY_KEY["start.distance_m"].range == "2 values, each a number above 0"
+    assert BY_KEY["flights"].range == "a whole number from 1 to 1,000,000"
+
+
+def test_defaults_are_those_of_an_empty_scenario():
+    values = Scenario(title="own").model_dump(mode="json")
+    for key in KEYS:
+        section, _, name = key.key.rpartition(".")
+        if (
+            key.studies
+            and set(key.studies) <= set(FLIGHT_STUDIES)
+            and section in values
+            and name in values[section]
+        ):
+            assert key.default == values[section][name], key
+
+
+def test_studies_are_those_in_which_a_key_can_act():
+    assert {study for key in KEYS for study in key.studies} == set(KINDS)
+    assert BY_KEY["search.population"].studies == ("falsify",)
+    assert BY_KEY["subset.repeats"].studies == ("monte_carlo",)
+    assert BY_KEY["wind.speed_mps"].studies == FLIGHT_STUDIES
+    # With exhaust and a sniffer, which every study may have.
+    for key in ("plume", "distance", "source_height_m", "load", "search"):
+        assert BY_KEY[f"following.{key}"].studies == FLIGHT_STUDIES
+    assert BY_KEY["flight.until"].studies == FLIGHT_STUDIES
+    assert "patrol" not in BY_KEY["criteria.time_to_find_s"].studies
+    assert "falsify" not in BY_KEY["flights"].studies
+    assert BY_KEY["ensemble.samples"].studies == ("convergence",)
+    # Those of one point refuse several; and beside the cases that a paper study needs there is no
+    # sweep.
+    assert BY_KEY["sweep"].studies == ("flights", "monte_carlo", "premises")
+    assert (
+        BY_KEY["comparison.nu"].studies
+        == BY_KEY["cases.0.name"].studies
+        == ("flights", "paper", "monte_carlo", "premises")
+    )
+    assert BY_KEY["share"].studies == ("trials",)
+
+
+def test_a_level_of_subset_simulation_takes_as_many_flights_as_is_said_with_the_default_probability():
+    subset = {"conditional_probability": SubsetConfig().conditional_probability}
+    assert (
+        "At least 10 have to pass on: with the default subset.conditional_probability that takes 100."
+        in (BY_KEY["subset.flights_per_level"].meaning)
+    )
+    assert SubsetConfig(flights_per_level=100, **subset).passing == 10
+    with pytest.raises(ValueError, match=r"set subset\.flights_per_level to 100 or more"):
+        SubsetConfig(flights_per_level=90, **subset)
+    # And its range is that with any.
+    assert SubsetConfig(flights_per_level=50, conditional_probability=0.2).passing == 10
+
+
+def test_conditions_say_what_uses_a_key():
+    assert (
+        BY_KEY["wind.from_deg"]
+        .conditions[-1]
+        .startswith("the mission that follows the vessel with estimates")
+    )
+    assert all("; here " not in condition for key in KEYS for condition in key.conditions)
+
+
+def test_keys_of_parts_say_which_part_has_them():
+    found = {key.key: key for key in documented_keys()}
+    assert found["guidance.npfg_period_s"].conditions == ("guidance.law 'npfg'",)
+    assert (found["guidance.npfg_period_s"].default, found["guidance.npfg_period_s"].unit) == (
+        10.0,
+        "s",
+    )
+    assert found["payload.limit_percent"].conditions == ("payload.instruments 'sniffer'",)
+    assert found["plume.meander"].range == "true or false"
+    assert found["plume.structure_length"].range == "a number from 0.1 to 3"
+    assert found["plume.structure_length"].conditions == (
+        "plume.model 'fluctuating'",
+        "smoke: set emission.ship",
+        "a realisation of smoke: leave plume.mean out",
+        "fluctuations within smoke: set plume.structure_intensity",
+    )
+    assert all(
+        math.isfinite(key.default) for key in found.values() if isinstance(key.default, float)
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "meant"),
+    [
+        ("wind.sped_mps", "wind.speed_mps"),
+        ("Wind", "wind"),
+        ("previw", "guidance.preview"),
+        ("gravity_of_the_situation", None),
+    ],
+)
+def test_a_name_that_is_no_key_finds_the_one_that_is_meant(name, meant):
+    assert similar_key(name) == meant
+
+
+def test_the_two_standoffs_refer_to_each_other():
+    meanings = {of.key: of.meaning for of in documented_keys()}
+    assert "guidance.mission to standoff" in meanings["following.standoff_m"]
+    assert "reference.standoff_radius_m" in meanings["guidance.mission"]
+    assert "following.standoff_m" in meanings["guidance.mission"]

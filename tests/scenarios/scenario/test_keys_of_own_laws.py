@@ -1,0 +1,95 @@
+"""The keys that a steering law of one's own brings: their names, defaults and types."""
+
+from dataclasses import dataclass
+
+import pytest
+
+from scenarios import load
+from scenarios.errors import InputError
+from scenarios.planning.bounded_steering import steering_law
+from scenarios.scenario.load import load_study
+from scenarios.studies.arena.entrants import entrants_of
+
+
+def loaded(*overrides):
+    # Without its comparison with another law, for which keys count as acting.
+    return load_study("sweep_nu", ["comparison={}", *overrides])
+
+
+def refusal(*overrides):
+    with pytest.raises(InputError) as refused:
+        loaded(*overrides)
+    message = str(refused.value)
+    assert "\n" not in message
+    return message
+
+
+OWN = """
+from dataclasses import dataclass
+
+@dataclass(frozen=True, kw_only=True)
+class Same:
+    gain_per_s: float = 1.5
+    count: int = 2
+    word: "str" = "x"
+    flag: bool = False
+    gain: float = 2
+    def heading_rate(self, *_): return 0.0
+
+@dataclass(frozen=True, kw_only=True)
+class Other(Same):
+    look_ahead_m: float = 25.0
+"""
+
+
+def test_a_field_called_as_a_key_of_guidance_is_that_key_and_has_its_default(tmp_path):
+    (tmp_path / "own.py").write_text(OWN, encoding="utf-8")
+    law = f"guidance.law={tmp_path}/own.py:"
+    assert steering_law(loaded(law + "Same").guidance).gain_per_s == 1.5
+    assert steering_law(loaded(law + "Same", "guidance.gain_per_s=0.4").guidance).gain_per_s == 0.4
+    assert "has no effect" in refusal(law + "Same", "guidance.epsilon_per_m=0.01")
+    words = "look_ahead_m = 25.0, which is a key of [guidance] already, by default 60.0; give the field another name"
+    assert words in refusal(law + "Other")
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ("guidance.count=1.5", "count is 1.5; law"),
+        ("guidance.count=true", "takes a whole number, by default 2"),
+        ("guidance.word=5", "takes a word in quotation marks, by default 'x'"),
+        ("guidance.flag=no", "flag is 'no'; law"),
+        ("guidance.flag=1", "takes true or false, by default False"),
+        ("guidance.gain=much", "gain is 'much'; law"),
+        (f"guidance.gain={10**400}", "takes a finite number, by default 2"),
+    ],
+)
+def test_a_key_of_a_law_is_of_the_type_of_its_field(tmp_path, override, words):
+    (tmp_path / "own.py").write_text(OWN, encoding="utf-8")
+    law = f"guidance.law={tmp_path}/own.py:Same"
+    assert words in refusal(law, override)
+    fitting = ["guidance.count=3", 'guidance.word="y"', "guidance.flag=true", "guidance.gain=0.5"]
+    made = steering_law(loaded(law, *fitting).guidance)
+    assert (made.count, made.word, made.flag, made.gain) == (3, "y", True, 0.5)
+
+
+def test_an_arena_tunes_no_parameter_that_is_a_whole_number(tmp_path):
+    (tmp_path / "own.py").write_text(OWN, encoding="utf-8")
+    scenario = load_study(
+        "arena", [f'arena.tracking=["{tmp_path}/own.py:Same"]', "arena.standoff=[]"]
+    )
+    (entrant,), _ = entrants_of(scenario)
+    assert entrant.defaults == {"gain_per_s": 1.5, "gain": 2.0}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Given:
+    gain_per_s: float = 1.5
+
+    def heading_rate(self, *_):
+        return 0.0
+
+
+def test_an_object_sets_the_keys_of_its_fields_also_those_that_guidance_has():
+    scenario = load("sweep_nu", law=Given(gain_per_s=0.7), **{"comparison.variants": []})
+    assert scenario["guidance.gain_per_s"] == 0.7

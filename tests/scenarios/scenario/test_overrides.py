@@ -1,0 +1,426 @@
+"""Documents: what they extend, which keys they set, and what is said of keys that are not known."""
+
+import re
+
+import pytest
+from pydantic import BaseModel, RootModel
+
+from scenarios.errors import InputError
+from scenarios.experiment.points import points_of
+from scenarios.experiment.requests import Experiment
+from scenarios.scenario.keys import known_keys
+from scenarios.scenario.load import load_document, load_study
+from scenarios.scenario.overrides import given_keys, merged, set_value
+from scenarios.scenario.scenario import Scenario
+
+
+def write(folder, name, text):
+    path = folder / name
+    path.write_text(text, encoding="utf-8")
+    return str(path)
+
+
+def refusal(name, *overrides):
+    with pytest.raises(InputError) as refused:
+        load_study(name, overrides)
+    message = str(refused.value)
+    assert "\n" not in message
+    return message
+
+
+@pytest.mark.parametrize(
+    ("scenario", "override", "key"),
+    [
+        ("sweep_nu", "nu=0.5", "sweep.nu=[0.5]"),
+        ("sweep_nu", "nu=[0.3, 0.5]", "sweep.nu=[0.3, 0.5]"),
+        ("paper", "nu=0.5", "sweep.nu=[0.5]"),
+        ("sea_approach", "nu=0.5", "vessel.speed_ratio=0.5"),
+        ("sea_approach", "nu=[0.3, 0.5]", "sweep.nu=[0.3, 0.5]"),
+    ],
+)
+def test_the_short_word_for_the_speed_ratio_gets_the_key_that_sets_it(scenario, override, key):
+    assert refusal(scenario, override) == f"unknown key 'nu'; did you mean '{key}'?"
+    # And that is taken.
+    load_study(scenario, [key])
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ("wind.form_deg=3", "unknown key 'wind.form_deg'; did you mean 'wind.from_deg'?"),
+        ("wnd.speed_mps=3", "unknown key 'wnd'; did you mean 'wind'?"),
+        (
+            "speed_mps=3",
+            "unknown key 'speed_mps'; did you mean 'vessel.speed_mps' or 'wind.speed_mps'?",
+        ),
+        ("wind.direction=3", "unknown key 'wind.direction'; known in wind are speed_mps, from_deg"),
+        ("vessel.manoeuvres=[{at_s=1, turn_dg=3}]", "did you mean 'vessel.manoeuvres.0.turn_deg'?"),
+        (
+            "turbulence.level=sever",
+            "turbulence.level: value is 'sever'; did you mean 'severe'? it must be 'none', 'light'",
+        ),
+        (
+            "guidance.law=lyapunow",
+            "guidance.law: unknown steering law 'lyapunow'; did you mean 'lyapunov'? known are ardupilot_l1",
+        ),
+        (
+            "guidance.law=mine.py",
+            "steering law 'mine.py' names a file, and no part in it; give mine.py:NAME",
+        ),
+        (
+            "study=monte_karlo",
+            "study is 'monte_karlo'; did you mean 'monte_carlo'? it must be one of",
+        ),
+        ("extends=sim3", "extends stands in a scenario file"),
+        # A digit to Unicode that is no decimal.
+        (
+            "vessel.manoeuvres.².turn_deg=5",
+            "vessel.manoeuvres: value is {'²': {'turn_deg': 5}}; give a list",
+        ),
+    ],
+)
+def test_an_unknown_word_gets_the_nearest_known_one(override, words):
+    assert words in refusal("sea_approach", override)
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        (
+            "sweep_mu",
+            "unknown scenario 'sweep_mu'; did you mean 'sweep_nu'? give the path of a TOML file or one of: arena",
+        ),
+        ("swep_nu.toml", "no scenario file 'swep_nu.toml'; did you mean 'sweep_nu'?"),
+        ("xyz", "unknown scenario 'xyz'; give the path of a TOML file or one of: arena"),
+    ],
+)
+def test_an_unknown_scenario_gets_the_nearest_known_one(name, words):
+    assert words in refusal(name)
+
+
+def test_an_entry_of_an_empty_list_is_refused_with_how_to_add_one():
+    message = refusal("sea_approach", "vessel.manoeuvres.0.turn_deg=90")
+    assert (
+        "vessel.manoeuvres has no entries; add one with --set 'vessel.manoeuvres=[{at_s=100, turn_deg=90}]'"
+        in message
+    )
+    # And that is accepted.
+    (manoeuvre,) = load_study(
+        "sea_approach", ["vessel.manoeuvres=[{at_s=100, turn_deg=90}]"]
+    ).vessel.manoeuvres
+    assert (manoeuvre.at_s, manoeuvre.turn_deg) == (100.0, 90.0)
+
+
+def test_an_entry_of_a_list_that_does_not_exist_is_an_unknown_key():
+    assert refusal("sea_approach", "vessel.manouvres.0.turn_deg=90") == (
+        "unknown key 'vessel.manouvres'; did you mean 'vessel.manoeuvres'?"
+    )
+
+
+def test_a_file_with_a_byte_order_mark_is_read(tmp_path):
+    path = write(tmp_path, "marked.toml", '\ufeffstudy = "flights"\ntitle = "marked"\n')
+    assert load_study(path).title == "marked"
+
+
+def test_known_keys_go_through_sections_and_lists_of_sections():
+    keys = known_keys(Scenario)
+    assert {
+        "wind",
+        "wind.speed_mps",
+        "vessel.manoeuvres",
+        "vessel.manoeuvres.0.at_s",
+        "draws.0.key",
+    } <= set(keys)
+    assert len(keys) == len(set(keys))
+
+
+def test_a_file_extends_a_scenario_of_the_catalog(tmp_path):
+    path = write(
+        tmp_path, "own.toml", 'extends = "sea_wind"\ntitle = "own"\n[wind]\nspeed_mps = 3.0\n'
+    )
+    own, base = load_study(path), load_study("sea_wind")
+    assert (own.title, own.wind.speed_mps) == ("own", 3.0)
+    same = {"title", "description", "wind"}
+    assert own.model_dump(exclude=same) == base.model_dump(exclude=same)
+
+
+def test_a_chain_of_files_is_resolved_relative_to_each_file(tmp_path):
+    (tmp_path / "bases").mkdir()
+    write(
+        tmp_path / "bases",
+        "first.toml",
+        'study = "flights"\ntitle = "first"\n[wind]\nspeed_mps = 3.0\nfrom_deg = 10.0\n',
+    )
+    write(tmp_path / "bases", "second.toml", 'extends = "first.toml"\n[wind]\nspeed_mps = 4.0\n')
+    path = write(
+        tmp_path,
+        "third.toml",
+        'extends = "bases/second.toml"\ntitle = "third"\n[vessel]\nspeed_mps = 5.0\n',
+    )
+    third = load_study(path)
+    assert third.title == "third"
+    assert (third.wind.speed_mps, third.wind.from_deg, third.vessel.speed_mps) == (4.0, 10.0, 5.0)
+
+
+def test_a_description_is_of_the_scenario_that_gives_it_and_not_of_those_that_extend_it(tmp_path):
+    assert load_study("sea_wind").description
+    second = write(
+        tmp_path, "second.toml", 'extends = "sea_wind"\ntitle = "second"\ndescription = "Own."\n'
+    )
+    third = write(tmp_path, "third.toml", 'extends = "second.toml"\ntitle = "third"\n')
+    assert [load_study(path).description for path in (second, third)] == ["Own.", ""]
+    assert load_study({"extends": "sea_wind", "title": "of a program"}).description == ""
+    # With a key set for it, it is still the scenario that is described.
+    assert load_study("sea_wind", ["flights=2"]).description == load_study("sea_wind").description
+
+
+@pytest.mark.parametrize(
+    ("document", "words"),
+    [({1: 2}, "the scenario has the key 1"), ({"wind": {3: 4}}, "'wind' has the key 3")],
+)
+def test_a_mapping_whose_keys_are_no_text_is_refused(document, words):
+    with pytest.raises(InputError, match=f"{words}, a value of int; keys are words in text"):
+        load_study({"extends": "sea_wind", **document})
+
+
+def test_overrides_come_after_what_a_file_extends(tmp_path):
+    write(
+        tmp_path,
+        "base.toml",
+        'study = "flights"\ntitle = "base"\n[[draws]]\nkey = "wind.speed_mps"\nuniform = [0.0, 5.0]\n',
+    )
+    path = write(tmp_path, "own.toml", 'extends = "base.toml"\n')
+    assert len(load_study(path).draws) == 1
+    own = load_study(path, ["wind.speed_mps=2"])
+    assert (own.wind.speed_mps, own.draws) == (2.0, ())
+
+
+SWEPT = """
+title = "swept"
+fidelity = "kinematic"
+[sweep]
+nu = [0.3, 0.5]
+"wind.speed_mps" = [2, 5]
+wind.from_deg = [0, 90]
+"""
+
+
+@pytest.mark.parametrize(
+    ("override", "left"),
+    [
+        ("wind.speed_mps=9", {"nu", "wind.from_deg"}),
+        ("wind.from_deg=45", {"nu", "wind.speed_mps"}),
+        ("vessel.speed_ratio=0.4", {"wind.speed_mps", "wind.from_deg"}),
+        ("keepout.radius_m=150", {"nu", "wind.speed_mps", "wind.from_deg"}),
+    ],
+)
+def test_an_override_of_a_swept_key_ends_its_sweep(tmp_path, override, left):
+    path = write(tmp_path, "swept.toml", SWEPT)
+    points = points_of(load_study(path, [override]))
+    section, key, value = re.fullmatch(r"(\w+)\.(\w+)=(.+)", override).groups()
+    assert {getattr(getattr(point.scenario, section), key) for point in points} == {float(value)}
+    # Two values of each key that is still swept.
+    assert len(points) == 2 ** len(left)
+    assert {*load_study(path, [override]).sweep.root} == left
+
+
+@pytest.mark.parametrize(
+    ("override", "gone", "value_of", "expected"),
+    [
+        (
+            "vessel.manoeuvres=[{at_s=100,turn_deg=90}]",
+            "vessel.manoeuvres.",
+            lambda s: s.vessel.manoeuvres[0].turn_deg,
+            90.0,
+        ),
+        (
+            "wind={speed_mps=5,from_deg=20}",
+            "wind.",
+            lambda s: (s.wind.speed_mps, s.wind.from_deg),
+            (5.0, 20.0),
+        ),
+        ("start.range_m=500", "start.range_m", lambda s: s.start.range_m, 500.0),
+        ("vessel.speed_ratio=0.4", "vessel.speed_mps", lambda s: s.vessel.speed_ratio, 0.4),
+        ("sweep.nu=[0.4]", "vessel.speed_mps", lambda s: s.vessel.speed_ratio, 0.4),
+    ],
+)
+def test_an_override_ends_what_is_sampled_of_its_key_and_below_it(
+    override, gone, value_of, expected
+):
+    study = load_study("monte_carlo", [override])
+    every = [draw.key for draw in load_study("monte_carlo").draws]
+    assert [draw.key for draw in study.draws] == [key for key in every if not key.startswith(gone)]
+    experiment = Experiment("t", study)
+    assert {value_of(experiment.request(number).scenario) for number in range(3)} == {expected}
+
+
+@pytest.mark.parametrize(
+    "override",
+    [
+        "sweep.wind.from_deg=[0,90]",
+        'sweep={"wind.from_deg"=[0,90]}',
+        "sweep={wind={from_deg=[0,90]}}",
+        "sweep.wind={from_deg=[0,90]}",
+    ],
+)
+def test_a_key_that_a_base_samples_is_swept_in_place_of_that(override, tmp_path):
+    # It was refused, as being in sweep and in draws.
+    given = write(tmp_path, "own.toml", 'extends = "sea_wind"\nsweep.wind.from_deg = [0, 90]\n')
+    for study in (load_study("sea_wind", [override]), load_study(given)):
+        assert [draw.key for draw in study.draws] == ["wind.speed_mps", "vessel.speed_mps"]
+        experiment = Experiment("t", study)
+        flown = [experiment.request(number).scenario.wind for number in range(experiment.flights)]
+        assert {wind.from_deg for wind in flown} == {0.0, 90.0}
+        # Samples with a speed ratio out of range are sampled again at the point that needs it.
+        assert len({wind.speed_mps for wind in flown}) >= study.flights
+
+
+def test_a_file_that_sweeps_and_samples_a_key_is_refused(tmp_path):
+    path = write(
+        tmp_path,
+        "both.toml",
+        'extends = "sea_wind"\nsweep.wind.from_deg = [0, 90]\n[[draws]]\nkey = "wind.from_deg"\nuniform = [0.0, 9.0]\n',
+    )
+    assert "'wind.from_deg' is in sweep and in draws; give it in one of them" in refusal(path)
+
+
+def test_an_override_of_a_speed_ends_a_sampled_speed_ratio_and_one_of_the_ratio_a_swept_speed(
+    tmp_path,
+):
+    drawn = write(
+        tmp_path,
+        "drawn.toml",
+        'title = "d"\n[[draws]]\nkey = "vessel.speed_ratio"\nuniform = [0.2, 0.5]\n',
+    )
+    study = load_study(drawn, ["vessel.speed_mps=5"])
+    assert (study.draws, study.vessel_speed) == ((), 5.0)
+    swept = write(tmp_path, "speeds.toml", 'title = "s"\nsweep.vessel.speed_mps = [5, 6]\n')
+    assert [
+        point.scenario.vessel_speed
+        for point in points_of(load_study(swept, ["vessel.speed_ratio=0.5"]))
+    ] == [9.71]
+    # Of a sweep of ratios, of which a run is made, the speed does not end anything.
+    assert "'vessel.speed_mps' has no effect here" in refusal("sweep_nu", "vessel.speed_mps=5")
+
+
+@pytest.mark.parametrize(
+    ("scenario", "override", "words"),
+    [
+        (
+            "monte_carlo",
+            ["start.distance_m=[300, 350]"],
+            "'start.range_m' is swept or sampled in every flight, and takes",
+        ),
+        (
+            "sea_approach",
+            ["vessel.speed_mps=5", 'draws=[{key="vessel.speed_ratio",uniform=[0.1,0.5]}]'],
+            "'vessel.speed_ratio' is swept or sampled in every flight",
+        ),
+        (
+            "monte_carlo",
+            ["start.spread_deg=10"],
+            "'start.aspect_deg' is swept or sampled in every flight",
+        ),
+        (
+            "sweep_nu",
+            ["sweep.start.range_m=[400, 500]", "start.distance_m=[300, 350]"],
+            "'start.range_m' is swept or sampled",
+        ),
+        (
+            "sea_approach",
+            [
+                "vessel.manoeuvres=[{at_s=9}]",
+                "sweep.vessel.manoeuvres=[[{at_s=9}]]",
+                "vessel.manoeuvres.0.turn_deg=5",
+            ],
+            "'vessel.manoeuvres' is swept or sampled in every flight",
+        ),
+    ],
+)
+def test_an_override_that_another_key_puts_aside_in_every_flight_is_refused(
+    scenario, override, words
+):
+    message = refusal(scenario, *override)
+    assert "has no effect here" in message
+    assert words in message
+
+
+def test_a_sweep_on_the_command_line_is_kept_beside_an_earlier_override(tmp_path):
+    path = write(tmp_path, "swept.toml", SWEPT)
+    assert load_study(path, ["wind.speed_mps=9", "sweep.wind.speed_mps=[1, 3]"]).sweep.root[
+        "wind.speed_mps"
+    ] == (1, 3)
+
+
+def test_an_override_of_the_speed_ratio_has_its_way_in_cases_that_name_it_as_a_sweep_does():
+    points = points_of(load_study("paper", ["vessel.speed_ratio=0.3", "fidelity=kinematic"]))
+    assert {point.scenario.vessel.speed_ratio for point in points} == {0.3}
+
+
+def test_lists_are_replaced_and_tables_are_merged():
+    base = {"a": {"x": 1, "y": [1, 2]}, "b": [{"k": 1}], "c": 1}
+    own = {"a": {"y": [3]}, "b": [{"k": 2}, {"k": 3}], "c": {"z": 1}}
+    assert merged(base, own) == {"a": {"x": 1, "y": [3]}, "b": [{"k": 2}, {"k": 3}], "c": {"z": 1}}
+    assert base == {"a": {"x": 1, "y": [1, 2]}, "b": [{"k": 1}], "c": 1}
+
+
+@pytest.mark.parametrize(
+    ("extends", "words"),
+    [
+        (
+            '"b.toml"',
+            "a.toml: extends goes in a circle: b.toml -> a.toml -> b.toml; remove one of them",
+        ),
+        ('"sea_wnd"', "b.toml: extends: unknown scenario 'sea_wnd'; did you mean 'sea_wind'?"),
+        ('"c.toml"', "b.toml: extends: no scenario file 'c.toml'"),
+        (
+            "3",
+            "b.toml: extends is 3; give one catalog name or one path of a TOML file, or false for no base",
+        ),
+        ('["sea_wind", "sim3"]', "b.toml: extends is ['sea_wind', 'sim3']; give one catalog name"),
+    ],
+)
+def test_what_cannot_be_extended_is_refused_in_one_line(tmp_path, extends, words):
+    write(tmp_path, "a.toml", 'extends = "b.toml"\n')
+    path = write(
+        tmp_path, "b.toml", f'title = "b"\nextends = {extends.replace("b.toml", "a.toml")}\n'
+    )
+    assert words in refusal(path)
+
+
+def test_given_keys_are_those_of_the_file_its_base_and_the_overrides(tmp_path):
+    write(
+        tmp_path,
+        "base.toml",
+        'study = "flights"\ntitle = "base"\n[wind]\nspeed_mps = 3.0\n[sensors]\n',
+    )
+    path = write(
+        tmp_path,
+        "own.toml",
+        'extends = "base.toml"\n[[draws]]\nkey = "wind.from_deg"\nuniform = [0.0, 5.0]\n',
+    )
+    document = load_document(path, ["guidance.preview=false"])
+    assert given_keys(document) == {
+        "study",
+        "title",
+        "wind.speed_mps",
+        "sensors",
+        "draws",
+        "guidance.preview",
+    }
+
+
+class Sweep(RootModel[dict[str, list[float]]]):
+    """Values by keys of other sections."""
+
+
+class Swept(BaseModel):
+    sweep: Sweep = Sweep({})
+
+
+@pytest.mark.parametrize("key", ["sweep.wind.speed_mps", 'sweep."wind.speed_mps"'])
+def test_a_section_that_has_keys_of_other_sections_takes_them_whole(key):
+    document = {}
+    set_value(document, key, [0.0, 5.0], Swept)
+    assert document == {"sweep": {"wind.speed_mps": [0.0, 5.0]}}
+    assert known_keys(Swept) == ["sweep"]

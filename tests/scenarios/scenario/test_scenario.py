@@ -1,0 +1,419 @@
+"""What a scenario says of its experiment: whether flights are a random sample, whether there are
+several points, where they start."""
+
+import pytest
+
+from scenarios.errors import InputError
+from scenarios.experiment.points import points_of
+from scenarios.experiment.random_sample import flights_per_sample, is_random_sample
+from scenarios.experiment.requests import Experiment
+from scenarios.scenario.load import checked, load_study, with_values
+from scenarios.scenario.scenario import Scenario
+
+WIND = {"key": "wind.speed_mps", "uniform": [0.0, 5.0]}
+FROM = {"key": "wind.from_deg", "choice": [0.0, 90.0, 180.0, 270.0]}
+LOAD = {"key": "emission.load", "uniform": [0.2, 0.9]}
+SEEDS = {"key": "flight_seed", "choice": [1, 2]}
+SNIFFERS = {"payload.sensor": ["fast", "electrochemical"]}
+COMMON = {"common_random_numbers": True}
+OWN = {"common_random_numbers": False}
+ABOARD = {"payload": ["sniffer"], "emission": {"ship": "container"}}
+START = {"place_m": [-400.0, 0.0], "course_deg": 0.0}
+
+
+@pytest.mark.parametrize(
+    ("keys", "at_random"),
+    [
+        ({}, True),
+        ({"start": START}, False),
+        ({"start": START, "draws": [WIND]}, True),
+        # One seed for all: a hundred times the same flight.
+        ({"flight_seed": 3, "flights": 100}, False),
+        ({"flight_seed": 3, "draws": [WIND]}, True),
+        ({"study": "monte_carlo", "draws": [WIND]}, True),
+        # One seed, and four winds in turn: fifty times the same four flights. At random by their
+        # weights they are a sample.
+        ({"flight_seed": 5, "flights": 200, "draws": [FROM]}, False),
+        (
+            {"flight_seed": 5, "flights": 200, "draws": [FROM | {"weights": [1.0, 1.0, 2.0, 1.0]}]},
+            True,
+        ),
+        ({"flight_seed": 5, "flights": 200, "draws": [FROM, WIND]}, True),
+        ({"flights": 200, "draws": [FROM]}, True),
+        # Seeds in turn, and each once; or each ten times.
+        ({"flights": 2, "draws": [SEEDS]}, True),
+        ({"flights": 20, "draws": [SEEDS]}, False),
+        ({"flights": 4, "draws": [{"key": "flight_seed", "choice": [7, 7, 7, 7]}]}, False),
+        # Two seeds with two winds each, or one seed with both: no flight twice, and no sample more
+        # than there are seeds.
+        ({"flights": 4, "draws": [SEEDS, FROM]}, False),
+        ({"flights": 2, "draws": [SEEDS, FROM]}, True),
+        ({"flights": 2, "draws": [FROM, SEEDS]}, False),
+        ({"flights": 4, "sweep": {"flight_seed": [1, 2]}, "draws": [FROM]}, False),
+        # Random variables of one value.
+        ({"flight_seed": 3, "flights": 8, "draws": [WIND | {"uniform": [5.0, 5.0]}]}, False),
+        (
+            {"flight_seed": 3, "flights": 8, "draws": [FROM | {"weights": [0.0, 1.0, 0.0, 0.0]}]},
+            False,
+        ),
+        ({"flights": 1, "sweep": {"flight_seed": [1, 2]}}, True),
+        ({"flights": 10, "sweep": {"flight_seed": [1, 2]}}, False),
+        # In calm air nothing but the start depends on the seed.
+        ({"start": START, "flights": 8, "draws": [FROM]}, False),
+        ({"start": START, "flights": 8, "draws": [FROM], "turbulence": {"level": "light"}}, True),
+        (
+            {"start": START, "flights": 8, "draws": [FROM], "sensors": {"position_sigma_m": 1.0}},
+            True,
+        ),
+        (
+            {
+                "start": {"range_m": 500.0, "aspect_deg": 180.0},
+                "flights": 8,
+                "sweep": {"start.course_deg": [0.0, 90.0]},
+            },
+            False,
+        ),
+        # Sniffers that read the same flight, and those on flights of their own.
+        ({"flights": 8, "sweep": SNIFFERS}, False),
+        (ABOARD | {"flights": 8, "sweep": SNIFFERS} | COMMON, False),
+        (ABOARD | {"flights": 8, "sweep": SNIFFERS, "flight_seed": 3}, False),
+        (ABOARD | {"flights": 8, "sweep": SNIFFERS}, True),
+        # And sniffers that are drawn, without and with a path that depends on what is read.
+        ({"flight_seed": 3, "flights": 8, "draws": [LOAD]}, False),
+        ({"flight_seed": 3, "flights": 8, "draws": [LOAD, WIND]}, True),
+        (
+            {"flight_seed": 3, "flights": 8, "draws": [LOAD], "following": {"plume": "estimated"}},
+            True,
+        ),
+        ({"flights": 8, "draws": [LOAD]}, True),
+        (
+            {"flights": 4, "draws": [SEEDS, {"key": "payload.exact", "choice": [True, False]}]},
+            False,
+        ),
+        # Each level starts from the nearest flights of the one before.
+        ({"study": "monte_carlo", "method": "subset", "draws": [WIND]}, False),
+        ({"study": "falsify", "draws": [WIND]}, False),
+        ({"cases": [{"name": "one"}]}, False),
+    ],
+)
+def test_flights_are_a_random_sample_where_they_differ_by_chance_alone(keys, at_random):
+    assert is_random_sample(Scenario(title="own", **keys)) is at_random
+
+
+@pytest.mark.parametrize(
+    ("keys", "shared"),
+    [
+        ({"flights": 8}, 1),
+        ({"sweep": {"nu": [0.3, 0.5]}}, 1),
+        ({"sweep": {"nu": [0.3, 0.5]}, "flights": 8}, 2),
+        ({"sweep": {"nu": [0.3, 0.5], "keepout.radius_m": [200.0, 250.0, 300.0]}}, 3),
+        ({"sweep": {"keepout.radius_m": [200.0, 250.0, 300.0]}, "flights": 8}, 3),
+        ({"sweep": {"keepout.radius_m": [200.0, 250.0, 200.0]}, "flights": 8}, 2),
+        ({"sweep": {"flight_seed": [1, 2, 3]}}, 1),
+        ({"fidelity": "both", "flights": 8}, 2),
+        # Speed ratios of one flight each have seeds of their own, but all points of a sweep the
+        # same sample of random variables.
+        ({"sweep": {"nu": [0.3, 0.5]}, "draws": [FROM | {"weights": [1.0] * 4}]}, 2),
+        # Numbers of their own, asked for or because of an instrument; the vehicles share them.
+        (OWN | {"sweep": {"nu": [0.3, 0.5]}, "flights": 8}, 1),
+        (OWN | {"sweep": {"vessel.speed_ratio": [0.3, 0.5]}}, 1),
+        (ABOARD | {"sweep": {"nu": [0.3, 0.5], "keepout.radius_m": [200.0, 250.0, 300.0]}}, 1),
+        (ABOARD | {"sweep": {"nu": [0.3, 0.5]}, "draws": [FROM | {"weights": [1.0] * 4}]}, 1),
+        (
+            OWN | {"fidelity": "both", "sweep": {"keepout.radius_m": [200.0, 250.0]}, "flights": 8},
+            2,
+        ),
+        # Seeds that are given come again.
+        (OWN | {"sweep": {"flight_seed": [1, 2, 3], "keepout.radius_m": [200.0, 250.0]}}, 2),
+        (OWN | {"sweep": {"keepout.radius_m": [200.0, 250.0]}, "flight_seed": 3}, 2),
+        # Common numbers.
+        (COMMON | {"sweep": {"nu": [0.3, 0.5]}}, 2),
+        (ABOARD | COMMON | {"sweep": {"wind.from_deg": [0.0, 90.0]}, "flights": 8}, 2),
+    ],
+)
+def test_flights_of_several_points_share_what_is_random(keys, shared):
+    scenario = Scenario(title="own", **keys)
+    assert flights_per_sample(scenario) == shared
+    experiment = Experiment("own", scenario)
+    assert (
+        len({experiment.request(i).seed for i in range(experiment.flights)})
+        == experiment.flights / shared
+    )
+
+
+@pytest.mark.parametrize(("common", "samples"), [(None, 1), (True, 1), (False, 3)])
+def test_flights_with_swept_seeds_share_their_random_variables_where_these_are_common(
+    common, samples
+):
+    swept = {"flight_seed": [1, 2, 3]}
+    scenario = Scenario(title="own", sweep=swept, draws=[WIND], common_random_numbers=common)
+    experiment = Experiment("own", scenario)
+    winds = {experiment.request(i).scenario.wind.speed_mps for i in range(3)}
+    assert len(winds) == samples == 3 // flights_per_sample(scenario)
+
+
+def test_what_is_random_at_a_point_of_a_sweep_follows_from_its_values_alone():
+    def seeds(**sweep):
+        scenario = Scenario(title="own", flights=2, sweep=sweep, **OWN)
+        experiment = Experiment("own", scenario)
+        return {
+            (*experiment.request(i).inputs.values(), i % 2): experiment.request(i).seed
+            for i in range(experiment.flights)
+        }
+
+    alone = seeds(**{"keepout.radius_m": [200]})
+    among = seeds(**{"keepout.radius_m": [150.0, 200.0, 250.0]})
+    assert alone.items() <= among.items()
+    assert len({*among.values()}) == 6
+
+
+def test_a_comparison_has_the_starts_of_the_point_that_it_is_beside():
+    variants = [{"name": "other", "set": {"guidance.preview": False}}]
+    sweep = {"keepout.radius_m": [200.0, 250.0]}
+    compared = {"comparison": {"variants": variants}, "draws": [WIND]}
+    scenario = Scenario(title="own", flights=3, sweep=sweep, **compared, **OWN)
+    experiment = Experiment("own", scenario)
+    study, beside = ([experiment.request(i + first) for i in range(6)] for first in (0, 6))
+    assert [of.seed for of in study] == [of.seed for of in beside]
+    assert [of.scenario.wind for of in study] == [of.scenario.wind for of in beside]
+    assert len({of.seed for of in study}) == 6
+
+
+@pytest.mark.parametrize(
+    ("keys", "several"),
+    [
+        ({}, False),
+        ({"flights": 5, "draws": [WIND]}, False),
+        ({"sweep": {"nu": [0.3]}}, True),
+        ({"cases": [{"name": "one"}]}, True),
+        ({"comparison": {"variants": [{"name": "one", "set": {}}]}}, True),
+        ({"fidelity": "both"}, True),
+    ],
+)
+def test_an_experiment_has_several_points_by_what_varies_otherwise_than_at_random(keys, several):
+    assert Scenario(title="own", **keys).several_points is several
+
+
+def test_a_distance_that_is_sampled_is_checked_by_its_own_value_and_not_by_that_of_starts_without_it():
+    study = load_study("starts_anywhere", ["keepout.radius_m=500", "draws.1.uniform=[510,1300]"])
+    assert study.draws[1].key == "start.range_m"
+    with pytest.raises(
+        InputError, match=r"start\.range_m is 490 m; it must exceed keepout\.radius_m, 500 m"
+    ):
+        with_values(study, {"start.range_m": 490.0})
+
+
+CASE = [{"name": "own", "set": {"seed": 3}}]
+
+
+@pytest.mark.parametrize(
+    ("keys", "words"),
+    [
+        (
+            {"draws": [{"key": "criteria.tracking_error_rms_m", "uniform": [1.0, 2.0]}]},
+            "draws has 'criteria.tracking_error_rms_m'",
+        ),
+        (
+            {"draws": [{"key": "search.kept", "choice": [1, 2]}]},
+            "draws has 'search.kept', which sets nothing of a flight",
+        ),
+        (
+            {"draws": [WIND, {"key": "draws.0.uniform", "choice": [[0, 1], [0, 2]]}]},
+            "draws has 'draws.0.uniform'",
+        ),
+        (
+            {"sweep": {"nu": [0.3], "vessel.speed_ratio": [0.4]}},
+            "sweep has 'nu' and 'vessel.speed_ratio', which are the same",
+        ),
+        (
+            {
+                "sweep": {"nu": [0.3]},
+                "draws": [{"key": "vessel.speed_ratio", "uniform": [0.2, 0.4]}],
+            },
+            "is in sweep and in draws",
+        ),
+        ({"cases": CASE}, "case 'own' sets 'seed', on which its flights do not depend"),
+        (
+            {"cases": [{"name": "own", "set_kinematic": {"flights": 3}}]},
+            "case 'own' sets 'flights'",
+        ),
+        (
+            {"cases": [{"name": "own", "set": {"sweep.wind.speed_mps": [3]}}]},
+            "case 'own' sets 'sweep.wind.speed_mps'",
+        ),
+        (
+            {"comparison": {"variants": [{"name": "own", "set": {"study": "paper"}}]}},
+            "comparison 'own' sets 'study'",
+        ),
+        (
+            {"comparison": {"variants": [{"name": "own", "set": {"search.kept": 9}}]}},
+            "comparison 'own' sets 'search.kept'",
+        ),
+        (
+            {"comparison": {"variants": [{"name": "own", "set": {"draws": []}}]}},
+            "comparison 'own' sets 'draws'",
+        ),
+        (
+            {"arena": {"conditions": [{"name": "own", "title": "Own", "set": {"flights": 2}}]}},
+            "condition 'own' sets 'flights'",
+        ),
+        (
+            {"arena": {"conditions": [{"name": "own", "title": "Own", "set": {"arena": {}}}]}},
+            "condition 'own' sets 'arena'",
+        ),
+    ],
+)
+def test_what_no_flight_depends_on_is_neither_sampled_nor_set_for_some_flights(keys, words):
+    with pytest.raises(InputError) as refusal:
+        checked({"title": "own", **keys}, Scenario)
+    assert words in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
+def test_two_comparisons_of_one_name_are_refused():
+    twice = [{"name": "own", "set": {"guidance.preview": of}} for of in (True, False)]
+    words = "2 comparisons are called 'own', and would count as one; give each a name of its own"
+    with pytest.raises(InputError, match=words):
+        checked({"title": "own", "comparison": {"variants": twice}}, Scenario)
+    cases = [{"name": "own", "comparison": True}, {"name": "other"}]
+    with pytest.raises(InputError, match=words):
+        checked({"title": "own", "cases": cases, "comparison": {"variants": twice[:1]}}, Scenario)
+
+
+def test_what_some_flights_may_depend_on_is_set_for_them():
+    of_flights = {"flight_seed": 3, "criteria.settles": False, "wind": {"speed_mps": 3.0}}
+    conditions = [
+        {
+            "name": "own",
+            "title": "Own",
+            "set": of_flights | {"draws": [WIND], "speed_ratio": [0.2, 0.5]},
+        }
+    ]
+    cases = [{"name": "own", "set": of_flights | {"sweep.nu": [0.3]}}]
+    assert (
+        Scenario(title="own", study="arena", arena={"conditions": conditions})
+        .arena.conditions[0]
+        .set["flight_seed"]
+        == 3
+    )
+    assert Scenario(title="own", cases=cases).cases[0].set["flight_seed"] == 3
+    variants = [
+        {
+            "name": "own",
+            "set": of_flights | {"fidelity": "kinematic", "draws.0.uniform": [0.0, 1.0]},
+        }
+    ]
+    assert (
+        Scenario(title="own", draws=[WIND], comparison={"variants": variants})
+        .comparison.variants[0]
+        .set["flight_seed"]
+        == 3
+    )
+
+
+def test_swept_values_that_are_equal_are_flown_once():
+    points = points_of(
+        Scenario(
+            title="own",
+            sweep={"wind.speed_mps": [5, 5.0, 6], "start.distance_m": [[400, 500], [400.0, 500]]},
+        )
+    )
+    assert [point.scenario.wind.speed_mps for point in points] == [5.0, 6.0]
+
+
+def test_a_comparison_at_a_speed_ratio_that_is_not_swept_is_refused():
+    for nu in ("[0.33]", "[0.3, 0.33]"):
+        with pytest.raises(
+            InputError,
+            match=r"'comparison\.nu' has no effect here: .* these ratios in sweep\.nu, too",
+        ):
+            load_study("sweep_nu", ["sweep.nu=[0.3, 0.6]", f"comparison.nu={nu}"])
+    # That of the file is left aside by an override.
+    assert load_study("sweep_nu", ["sweep.nu=[0.3]"]).comparison.nu == (0.15, 0.5)
+
+
+def test_a_funnel_that_is_too_high_for_exhaust_is_refused_by_its_key_at_any_point():
+    # measurement.plume takes heights of 1 to 200 m; an axis without smoke may begin higher.
+    within = ["plume.source_height_m=200", "flight.altitude_m=100"]
+    assert load_study("sulphur", within).plume.source_height_m == 200.0
+    assert load_study("sweep_nu", ["plume.source_height_m=500"]).plume.source_height_m == 500.0
+    with pytest.raises(
+        InputError,
+        match=r"^plume\.source_height_m is 500 m beside emission\.ship; .* 200 m at most: lower it",
+    ):
+        load_study("sulphur", ["plume.source_height_m=500"])
+
+
+@pytest.mark.parametrize(
+    ("name", "overrides", "funnel", "start"),
+    [
+        # measurement/ships.toml: 35 m of the container, 16 of the coaster, 55 of the
+        # cruise ship.
+        ("sulphur", (), 35.0, 35.0),
+        ("sulphur", ("emission.ship=cruise",), 55.0, 55.0),
+        # The UAV keeps 3 m, in light turbulence 6, within flight.altitude_min_m and altitude_max_m:
+        # 20 and 120 m above the sea.
+        ("sulphur", ("emission.ship=coaster", "vessel.speed_mps=6"), 16.0, 23.0),
+        (
+            "sulphur",
+            ("emission.ship=coaster", "vessel.speed_mps=6", "following.plume=estimated"),
+            16.0,
+            23.0,
+        ),
+        ("sulphur", ("plume.source_height_m=150", "turbulence.level=light"), 150.0, 114.0),
+        ("sulphur", ("flight.altitude_min_m=36", "flight.altitude_max_m=40"), 35.0, 38.0),
+        (
+            "sulphur",
+            ("emission.ship=coaster", "vessel.speed_mps=6", "plume.source_height_m=25"),
+            25.0,
+            25.0,
+        ),
+        (
+            "sulphur",
+            ("emission.ship=coaster", "vessel.speed_mps=6", "flight.altitude_m=40"),
+            16.0,
+            40.0,
+        ),
+        ("sweep_nu", (), 60.0, 60.0),
+    ],
+)
+def test_a_plume_begins_at_the_funnel_of_its_ship_unless_its_height_is_given(
+    name, overrides, funnel, start
+):
+    scenario = load_study(name, overrides)
+    assert (scenario.source_height, scenario.altitude) == (funnel, start)
+
+
+@pytest.mark.parametrize(
+    "varied", ["sweep.emission.ship=%s", 'draws=[{key="emission.ship",choice=%s}]']
+)
+def test_ships_are_compared_from_one_altitude_or_funnel_height(varied):
+    ships = varied % '["container","cruise"]'
+    with pytest.raises(
+        InputError,
+        match=r"'emission\.ship' varies .* height of the funnel here: give flight\.altitude_m, or each",
+    ):
+        load_study("sulphur", [ships])
+    # Either gives all of them the one altitude for which the autopilot is designed.
+    for given in ("flight.altitude_m=40", "plume.source_height_m=40"):
+        assert load_study("sulphur", [ships, given]).altitude == 40.0
+
+
+@pytest.mark.parametrize(
+    ("keys", "words"),
+    [
+        (
+            ["flight.altitude_m=5"],
+            "flight.altitude_m is 5 m, below .* 20 to 120 m: set it in between, or lower ",
+        ),
+        (
+            ["flight.altitude_m=130"],
+            "flight.altitude_m is 130 m, above .* in between, or raise flight.altitude_max_m",
+        ),
+    ],
+)
+def test_a_start_outside_of_the_altitudes_at_which_exhaust_is_crossed_is_refused(keys, words):
+    with pytest.raises(InputError, match=words):
+        load_study("sulphur", keys)
+    # Without exhaust there are no such altitudes.
+    assert load_study("sweep_nu", ["plume.source_height_m=15"]).altitude == 15.0
