@@ -57,7 +57,7 @@ _Tables = dict[str, list[Row]]
 
 
 @dataclass(frozen=True, kw_only=True)
-class FlightWork:
+class FlightRunner:
     """Plans, flies, measures and records the flights of experiments.
 
     Attributes
@@ -87,7 +87,7 @@ class FlightWork:
         """Return the JSBSim root of the aircraft with its autopilot, if it is to fly."""
         return self.setup.aircraft.model if self.setup and self.setup.aircraft else None
 
-    def moved(self, model: Path) -> "FlightWork":
+    def moved(self, model: Path) -> "FlightRunner":
         """Return the same work with its files in another directory."""
         if self.setup is None or self.setup.aircraft is None:
             return self
@@ -115,7 +115,7 @@ class FlightWork:
         experiment, number = self.located(task.number)
         return experiment.request(number, task.point, seed=task.seed)
 
-    def fly(self, task: Task) -> Result:
+    def run(self, task: Task) -> Result:
         """Plan, fly, measure and record one flight."""
         began = time.perf_counter()
         row, tables = self._named(task), _Tables()

@@ -17,8 +17,7 @@ from common.interrupt import terminated_like_interrupted
 from common.run_layout import REPORT_HTML, REPORT_PDF, flight_of
 
 if TYPE_CHECKING:
-    from scenarios.engine.executors import ExecutorFactory
-    from scenarios.engine.runner import Launch, RunResult
+    from scenarios.engine.runner import ExecutorFactory, Launch, RunResult
 
 MET, NOT_MET, UNEXPLAINED = 0, 1, 3
 
@@ -101,7 +100,7 @@ def command(
     flight entered the keep-out area although every premise of its guard held, 130 interrupted, by
     Ctrl-C or SIGTERM. Of a flight that is replayed: 0 its row is identical, 1 it is not.
     """
-    from scenarios.engine.executors import ExecutorFactory
+    from scenarios.engine.runner import ExecutorFactory
     from scenarios.engine.task import Limits
     from scenarios.errors import InputError
 
@@ -189,7 +188,7 @@ def _run(
     scenario = None if replayed else load_study(name, overrides)
 
     from common.provenance import command_line
-    from scenarios.engine.progress import progress_bar
+    from scenarios.engine.runner import progress_bar
 
     given = command_line("scenarios.run", sys.argv)
     with progress_bar() as progress:

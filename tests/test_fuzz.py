@@ -20,8 +20,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from common.command_line import BAD_INPUT
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.engine.memory import data_memory
+from scenarios.engine.processes import InProcessExecutor, data_memory
 from scenarios.errors import InputError
 from scenarios.scenario.load import load_study
 from scenarios.scenario.scenario import Scenario
@@ -162,7 +161,7 @@ def place(tmp_path_factory):
         patch.chdir(place)
         # In this process: what examples damage is not how flights are spread over processes.
         patch.setattr(
-            "scenarios.engine.executors.LocalExecutor", lambda work, **_: InProcessExecutor(work)
+            "scenarios.engine.runner.LocalExecutor", lambda work, **_: InProcessExecutor(work)
         )
         assert (
             run_command(

@@ -17,7 +17,7 @@ from scenarios.api.scenario import Given, Scenario, load, sweeps_nu
 from scenarios.errors import InputError
 
 if TYPE_CHECKING:
-    from scenarios.engine.executor import Executor
+    from scenarios.engine.processes import Executor
     from scenarios.engine.runner import Progress, RunResult
     from scenarios.engine.task import Work
     from scenarios.studies.flight_study import FlightStudy
@@ -55,7 +55,7 @@ def fly(
     ------
     InputError : the scenario cannot be flown, or has several flights, or not this one; one line
     """
-    from scenarios.engine.in_process_executor import InProcessExecutor
+    from scenarios.engine.processes import InProcessExecutor
     from scenarios.engine.runner import fly_study
     from scenarios.studies.single_flight import SingleFlight
 
@@ -105,7 +105,7 @@ def run(
     KeyboardInterrupt : it was interrupted; in ``out`` finished flights are kept, and ``--resume``
         of the command line goes on
     """
-    from scenarios.engine.executors import ExecutorFactory
+    from scenarios.engine.runner import ExecutorFactory
     from scenarios.studies.registry import run_study
 
     if jobs is not None and not (isinstance(jobs, Integral) and jobs >= 1):
@@ -236,7 +236,7 @@ def _shown(*, progress: bool) -> Iterator["Progress"]:
     if not progress:
         yield lambda *_: None
         return
-    from scenarios.engine.progress import progress_bar
+    from scenarios.engine.runner import progress_bar
 
     with progress_bar() as show:
         yield show

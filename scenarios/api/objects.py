@@ -98,10 +98,10 @@ class LentWork:
         """Return the same work with its files in another directory."""
         return LentWork(self.wrapped.moved(model), self.parts)
 
-    def fly(self, task: Task) -> Result:
+    def run(self, task: Task) -> Result:
         """Do a task."""
         with lent(self.parts):
-            return self.wrapped.fly(task)
+            return self.wrapped.run(task)
 
     def lost(self, task: Task, reason: str) -> Result:
         """Return the result of a task whose process was lost."""

@@ -38,7 +38,7 @@ from scenarios.experiment.random_sample import (
 )
 from scenarios.experiment.requests import Experiment
 from scenarios.flight.time_history import UNFINISHED
-from scenarios.flight_runner import FlightWork, history_columns
+from scenarios.flight_runner import FlightRunner, history_columns
 from scenarios.instruments.instrument import declarations
 from scenarios.measures.columns import (
     ANY_KEY,
@@ -250,7 +250,7 @@ class FlightStudy:
         trials = {trial: flown_config(scenario) for trial, scenario in self.trials.items()}
         return {"trials": trials, "trial_flights": self.flights, "flights_planned": self.planned}
 
-    def work(self, run: RunDirectory) -> FlightWork:
+    def work(self, run: RunDirectory) -> FlightRunner:
         """Return the work on its flights, after writing the logo and the aircraft's autopilot into
         the run directory.
 
@@ -282,7 +282,7 @@ class FlightStudy:
         self._manifest["guidance_lag_s"] = (
             setup or kinematic_setup(first)
         ).lag + 0.5 / first.guidance.rate_hz
-        return FlightWork(
+        return FlightRunner(
             experiments=tuple(self.experiments.values()),
             histories=self.histories,
             setup=setup,
@@ -318,7 +318,7 @@ class FlightStudy:
         """Return the tasks of those flights that have no time history yet, and of those that had
         one, to be recorded.
         """
-        gone = set(run.gone)
+        gone = set(run.missing_files)
         missing = {
             number
             for number in numbers

@@ -18,8 +18,7 @@ from measurement.emission import Ship
 from measurement.gases import UNITS
 from measurement.sniffer.channel import Channel
 from measurement.sniffer.spec import SnifferSpec
-from scenarios.engine.fingerprint import fingerprint
-from scenarios.engine.run_directory import RunDirectory
+from scenarios.engine.run_directory import RunDirectory, fingerprint
 from scenarios.errors import InputError
 from scenarios.scenario.documented_parts import (
     DIMENSIONLESS,

@@ -5,10 +5,9 @@ from contextlib import nullcontext
 from pathlib import Path
 
 from common.registry import PluginError, is_file_part
-from scenarios.engine.executor import Executor
-from scenarios.engine.executors import ExecutorFactory
+from scenarios.engine.processes import Executor
 from scenarios.engine.run_directory import RunDirectory
-from scenarios.engine.runner import Launch, Progress, RunResult, Study, fly_study
+from scenarios.engine.runner import ExecutorFactory, Launch, Progress, RunResult, Study, fly_study
 from scenarios.engine.task import Work
 from scenarios.errors import InputError
 from scenarios.scenario.load import AnyStudy

@@ -6,14 +6,13 @@ from pathlib import Path
 from typing import Any
 
 from common.run_layout import COMPARISON, JOURNAL, MANIFEST, SUMMARY, flight_of, is_file_name
-from scenarios.engine.fingerprint import differences
 from scenarios.engine.journal import Journal
-from scenarios.engine.run_directory import RunDirectory
+from scenarios.engine.run_directory import RunDirectory, differences
 from scenarios.engine.runner import Study, StudySummary
 from scenarios.engine.task import Row, Task, Work
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
-from scenarios.flight_runner import FlightWork
+from scenarios.flight_runner import FlightRunner
 from scenarios.scenario.aircraft_folder import folder_of
 from scenarios.scenario.load import checked
 from scenarios.scenario.parts import names_folder
@@ -178,7 +177,7 @@ class Replay(SingleFlight):
         work = super().work(run)
         return (
             replace(work, viewer=self._viewer)
-            if self._viewer and isinstance(work, FlightWork)
+            if self._viewer and isinstance(work, FlightRunner)
             else work
         )
 

@@ -10,7 +10,7 @@ from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, Study, StudySummary
 from scenarios.engine.task import Task, Work
 from scenarios.experiment.requests import table_of
-from scenarios.flight_runner import FlightWork
+from scenarios.flight_runner import FlightRunner
 from scenarios.studies.flight_study import FlightStudy
 from scenarios.studies.summary import FlightCounts
 
@@ -66,7 +66,7 @@ class SingleFlight:
     def work(self, run: RunDirectory) -> Work:
         """Return the work of the study, which keeps every time history."""
         work = self._study.work(run)
-        return replace(work, histories=sys.maxsize) if isinstance(work, FlightWork) else work
+        return replace(work, histories=sys.maxsize) if isinstance(work, FlightRunner) else work
 
     def run(self, fly: Fly, _run: RunDirectory, _journal: Journal) -> None:
         """Fly the flight; its time history is written."""

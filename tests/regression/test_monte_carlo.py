@@ -7,7 +7,7 @@ import json
 import pandas as pd
 import pytest
 
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.load import load_study
 from scenarios.studies.registry import run_study
 

@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from scenarios.engine.executors import ExecutorFactory
+from scenarios.engine.runner import ExecutorFactory
 from scenarios.scenario.load import load_study
 from scenarios.studies.registry import run_study
 

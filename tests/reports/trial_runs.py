@@ -7,7 +7,7 @@ from report_parts import blocks_of
 
 from reports.document.blocks import FlightPicker, Table
 from reports.document.chart import Chart
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.sections.experiment import TrialList
 from scenarios.studies.registry import run_study
 

@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.load import load_study
 from scenarios.studies.registry import run_study
 

@@ -10,7 +10,7 @@ import pytest
 
 from common.registry import ENTRY_POINTS, file_hash
 from gnc.laws import STEERING_LAWS
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.engine.runner import fly_study
 from scenarios.errors import InputError
 from scenarios.scenario.load import load_study, with_values

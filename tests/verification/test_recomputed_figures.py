@@ -13,7 +13,7 @@ import pytest
 from scipy.interpolate import BPoly
 from scipy.optimize import brentq, minimize_scalar
 
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.load import load_study
 from scenarios.studies.registry import run_study
 

@@ -56,7 +56,7 @@ class ConvergenceWork:
         """Return the same work: it needs no files."""
         return self
 
-    def fly(self, task: Task) -> Result:
+    def run(self, task: Task) -> Result:
         """Fly a block."""
         block = self.blocks[task.number]
         return Result(task=task, tables={SUMMARY: fly_block(block)}, items=len(block.cases))

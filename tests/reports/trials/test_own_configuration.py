@@ -22,7 +22,7 @@ from reports.run.flight_config import flight_config, flight_configs
 from reports.run.plume_shape import plume_shape
 from reports.run.run_data import RunData, read_run
 from reports.run.trials import read_trials
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.load import load_study
 from scenarios.studies.registry import run_study
 

@@ -1,9 +1,9 @@
 import pytest
 from engine_cases import Squares
 
-from scenarios.engine import executors
-from scenarios.engine.executors import DASK, LOCAL, ExecutorFactory
-from scenarios.engine.local_executor import LocalExecutor
+from scenarios.engine import runner
+from scenarios.engine.processes import LocalExecutor
+from scenarios.engine.runner import DASK, LOCAL, ExecutorFactory
 from scenarios.errors import InputError
 
 
@@ -23,7 +23,7 @@ def test_a_scheduler_that_would_not_be_asked_is_refused():
 
 @pytest.mark.parametrize("scheduler", [None, "tcp://10.0.0.1:8786"])
 def test_dask_where_it_is_not_installed_is_refused_with_what_to_install(monkeypatch, scheduler):
-    monkeypatch.setattr(executors, "find_spec", lambda _: None)
+    monkeypatch.setattr(runner, "find_spec", lambda _: None)
     with pytest.raises(
         InputError,
         match=r"--executor is dask, which .* pip install -c constraints.txt -e '\.\[dask\]'",

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from scenarios.engine.fingerprint import SOURCE, fingerprint, source_hash
+from scenarios.engine.run_directory import SOURCE, fingerprint, source_hash
 
 ROOT = Path(__file__).parents[3]
 

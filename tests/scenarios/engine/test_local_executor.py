@@ -15,8 +15,7 @@ from pathlib import Path
 import pytest
 from engine_cases import TABLE, Squares, begun, workers
 
-from scenarios.engine.executor import MAX_ATTEMPTS
-from scenarios.engine.local_executor import LocalExecutor
+from scenarios.engine.processes import MAX_ATTEMPTS, LocalExecutor
 from scenarios.engine.task import Limits, Task
 from scenarios.errors import InputError
 
@@ -222,9 +221,9 @@ class Slow(Squares):
 
     later: float
 
-    def fly(self, task):
+    def run(self, task):
         time.sleep(0.05)
-        result = super().fly(task)
+        result = super().run(task)
         time.sleep(self.later if task.number > 3 else 0.0)
         return result
 

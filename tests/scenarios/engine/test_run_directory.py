@@ -2,8 +2,7 @@ import pandas as pd
 import pytest
 
 from common.files import write_whole
-from scenarios.engine.fingerprint import fingerprint
-from scenarios.engine.run_directory import RunDirectory
+from scenarios.engine.run_directory import RunDirectory, fingerprint
 from scenarios.errors import InputError
 
 

@@ -4,7 +4,7 @@ import pytest
 
 from reports.registry import content
 from reports.run.run_data import read_run
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.experiment.requests import Experiment
 from scenarios.scenario.load import load_study
 from scenarios.studies.registry import run_study, study_of

@@ -8,7 +8,7 @@ import pytest
 from flight_cases import scenario
 
 from gnc.mission.mission import Mode
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.load import load_study
 from scenarios.scenario.sections.flight import DITCHED
 from scenarios.studies.registry import run_study

@@ -14,7 +14,7 @@ from aircraft.spec import AircraftError
 from innerloop.store import DesignError, cache_directory
 from reports.output import write_report
 from reports.run.run_data import read_run
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.errors import InputError
 from scenarios.run import command
 from scenarios.scenario.load import load_study

@@ -5,7 +5,7 @@ both.
 import pandas as pd
 import pytest
 
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
 from scenarios.scenario.load import load_study

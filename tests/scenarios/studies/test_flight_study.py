@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from aircraft.spec import AircraftError
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.errors import InputError
 from scenarios.scenario.load import load_study
 from scenarios.studies.registry import run_study, study_of

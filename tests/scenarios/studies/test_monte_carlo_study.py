@@ -6,10 +6,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from scenarios.engine.executors import ExecutorFactory
-from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.engine.journal import Journal
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.engine.run_directory import RunDirectory
+from scenarios.engine.runner import ExecutorFactory
 from scenarios.errors import InputError
 from scenarios.scenario.load import load_study
 from scenarios.statistics.sensitivity import sensitivity_indices

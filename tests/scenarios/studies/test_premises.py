@@ -7,7 +7,7 @@ import pandas as pd
 
 from common.premises import TERMS
 from common.run_layout import COLUMNS, FLIGHTS
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.flight.guard_belief import GuardBelief
 from scenarios.measures import figures
 from scenarios.run import exit_status

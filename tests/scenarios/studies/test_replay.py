@@ -9,8 +9,8 @@ import pytest
 from common.run_layout import flight_of
 from reports.registry import content
 from reports.run.run_data import read_run
-from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.engine.journal import Journal
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.engine.runner import fly_study
 from scenarios.engine.task import Result, Task
 from scenarios.errors import InputError

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.engine.task import Task
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
@@ -184,7 +184,7 @@ def test_a_patrol_that_fails_is_a_row_with_its_reason():
         setup=None,
         spreads=PredictedSpreads(),
     )
-    (row,) = work.fly(Task(number=0)).tables["summary.csv"]
+    (row,) = work.run(Task(number=0)).tables["summary.csv"]
     assert (row["outcome"], row["criteria_met"]) == ("failed", False)
     assert row["message"].startswith("patrol.separation_m is 20000 m")
 

@@ -1,28 +1,91 @@
-"""Executes tasks in processes of this machine.
+"""Executes tasks: in processes of this machine, on a Dask cluster, or in the caller's process.
 
-Every process has its own pipe and shares no lock with the others, so that a process that dies at
-any moment loses its current task and nothing else. (Pools that share one channel do not survive
-that: github.com/noxdafox/pebble/issues/163; the pool of the standard library stops altogether.)
+Every process of this machine has its own pipe and shares no lock with the others, so that a
+process that dies at any moment loses its current task and nothing else. (Pools that share one
+channel do not survive that: github.com/noxdafox/pebble/issues/163; the pool of the standard
+library stops altogether.)
 """
 
 import multiprocessing
+import re
 import signal
+import sys
 import time
 from collections import Counter, deque
 from collections.abc import Iterable, Iterator, Sequence
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
+from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import Protocol, Self
 
 from common.interrupt import follow_parent
-from scenarios.engine.executor import MAX_ATTEMPTS, QUEUE_DEPTH
-from scenarios.engine.memory import data_memory, limit_memory
 from scenarios.engine.task import Limits, Result, Task, Work
 from scenarios.errors import InputError
 
+if sys.platform != "win32":
+    import resource
+
+MAX_ATTEMPTS = 2
+"""How often a task is tried if its process is lost."""
+
+QUEUE_DEPTH = 2
+"""Tasks that a process holds at most: the current one and the next, so that it need not wait for
+it.
+"""
+
 JOIN_TIMEOUT = 5.0
 """Time that an idle process has to end by itself before it is killed [s]; it takes milliseconds."""
+
+
+class Executor(Protocol):
+    """Executes tasks in processes that have their work; leaving its context ends them."""
+
+    def __enter__(self) -> Self:
+        """Start."""
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """End every process; after an error at once."""
+
+    def fly(self, tasks: Iterable[Task]) -> Iterator[Result]:
+        """Yield the result of every task as it arrives, in any order.
+
+        Tasks are taken from the iterable only when a process has room for one: it may be long.
+        """
+
+
+class InProcessExecutor:
+    """For one flight, where a process of its own would be the greater part of the time; without
+    limits of time and memory.
+
+    Parameters
+    ----------
+    work : to be done on each task
+    """
+
+    def __init__(self, work: Work) -> None:
+        self._work = work
+
+    def __enter__(self) -> Self:
+        """Do nothing: there is no process to start."""
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Do nothing: there is no process to end."""
+
+    def fly(self, tasks: Iterable[Task]) -> Iterator[Result]:
+        """Yield the result of every task, in their order."""
+        return map(self._work.run, tasks)
 
 
 class LocalExecutor:
@@ -222,10 +285,42 @@ def _serve(
         while True:
             task = connection.recv()
             try:
-                connection.send(work.fly(task))
+                connection.send(work.run(task))
             except MemoryError:
                 limit = "" if memory is None else f"; its limit is {memory / 2**20:.0f} MiB"
                 connection.send(f"ran out of memory{limit}")
                 return
     except (EOFError, BrokenPipeError, ConnectionResetError):
         return
+
+
+def limit_memory(limit: int | None) -> None:
+    """Limit the data memory of this process to ``limit`` [bytes]; allocations beyond it raise
+    MemoryError.
+
+    Without effect on systems that have no such limit.
+    """
+    if limit is not None and sys.platform != "win32":
+        _, hard = resource.getrlimit(resource.RLIMIT_DATA)
+        resource.setrlimit(
+            resource.RLIMIT_DATA,
+            (limit if hard == resource.RLIM_INFINITY else min(limit, hard), hard),
+        )
+
+
+def data_memory() -> int:
+    """Return the data memory of this process [bytes]; 0 if the system does not report it."""
+    try:
+        status = Path("/proc/self/status").read_text(encoding="ascii")
+    except OSError:
+        return 0
+    found = re.search(r"^VmData:\s+(\d+) kB$", status, re.MULTILINE)
+    return 1024 * int(found[1]) if found else 0
+
+
+def peak_memory() -> float:
+    """Return the peak resident memory of this process [bytes]; 0 if the system does not report it."""
+    if sys.platform == "win32":
+        return 0.0
+    unit = 1 if sys.platform == "darwin" else 1024
+    return float(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit)
