@@ -17,7 +17,7 @@ from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import ExecutorFactory, fly_study
 from scenarios.engine.task import Task, Work
 from scenarios.scenario.load import load_study
-from scenarios.studies.registry import study_of
+from scenarios.studies.base import study_of
 
 REFERENCE_STEP = 2.9e-6
 """Time of a step of JSBSim alone, with the bare aircraft, on the machine for which limits are given

@@ -207,7 +207,7 @@ def _run(
                 launched=_print_launch,
             )
         else:
-            from scenarios.studies.registry import run_study
+            from scenarios.studies.base import run_study
 
             result = run_study(
                 scenario,
@@ -227,8 +227,8 @@ def _run(
         done = result.summary.done
         kept = f"{done} of {result.planned} {result.what} are done and kept"
         left = f"{_are_left(result.planned - done)} to fly"
-        if beside := result.summary.beside_left:
-            left += f"; of the comparisons {_are_left(beside)} to fly"
+        if comparisons := result.summary.comparisons_left:
+            left += f"; of the comparisons {_are_left(comparisons)} to fly"
         print(
             f"interrupted; {kept}, {left}. Continue with: {_again(directory, out=out, resume=resume)}",
             file=sys.stderr,
@@ -250,13 +250,17 @@ def exit_status(result: "RunResult", report_status: int) -> int:
 
 def _print_launch(launch: "Launch") -> None:
     """Say how many flights there are to fly, and how many are done."""
-    beside = f", and {launch.beside_left} of comparisons" if launch.beside_left else ""
+    comparisons = (
+        f", and {launch.comparisons_left} of comparisons" if launch.comparisons_left else ""
+    )
     if launch.resumed:
         left = launch.planned - launch.done
         kept = f"; {launch.done} {'is' if launch.done == 1 else 'are'} done and kept"
-        print(f"{launch.what} left to fly: {left} of {launch.planned}{beside}{kept}", flush=True)
+        print(
+            f"{launch.what} left to fly: {left} of {launch.planned}{comparisons}{kept}", flush=True
+        )
     else:
-        print(f"{launch.what} to fly: {launch.planned}{beside}", flush=True)
+        print(f"{launch.what} to fly: {launch.planned}{comparisons}", flush=True)
 
 
 def _are_left(number: int) -> str:

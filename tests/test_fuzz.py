@@ -24,7 +24,7 @@ from scenarios.engine.processes import InProcessExecutor, data_memory
 from scenarios.errors import InputError
 from scenarios.scenario.load import load_study
 from scenarios.scenario.scenario import Scenario
-from scenarios.studies.registry import study_of
+from scenarios.studies.base import study_of
 from tests.in_process import run_command
 from tests.scenarios.short_trial import short_trial
 

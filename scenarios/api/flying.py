@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from common.text import did_you_mean
-from scenarios.api.objects import LentWork, check_picklable, lent
+from scenarios.api.objects import WorkWithParts, check_picklable, registered
 from scenarios.api.results import Flight, Run
 from scenarios.api.scenario import Given, Scenario, load, sweeps_nu
 from scenarios.errors import InputError
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from scenarios.engine.processes import Executor
     from scenarios.engine.runner import Progress, RunResult
     from scenarios.engine.task import Work
-    from scenarios.studies.flight_study import FlightStudy
+    from scenarios.studies.base import FlightStudy
 
 _LOOKED_THROUGH = 1000
 """Most flights of a study among which the name that was meant is looked for."""
@@ -57,11 +57,11 @@ def fly(
     """
     from scenarios.engine.processes import InProcessExecutor
     from scenarios.engine.runner import fly_study
-    from scenarios.studies.single_flight import SingleFlight
+    from scenarios.studies.base import SingleFlight
 
     loaded = load(scenario).set(**keys)
     with (
-        lent(loaded.parts),
+        registered(loaded.parts),
         _directory(out) as (directory, keeping),
         _shown(progress=progress) as show,
     ):
@@ -106,7 +106,7 @@ def run(
         of the command line goes on
     """
     from scenarios.engine.runner import ExecutorFactory
-    from scenarios.studies.registry import run_study
+    from scenarios.studies.base import run_study
 
     if jobs is not None and not (isinstance(jobs, Integral) and jobs >= 1):
         raise InputError(
@@ -117,10 +117,10 @@ def run(
     processes = ExecutorFactory(jobs=jobs or os.cpu_count() or 1)
 
     def executor(work: "Work") -> "Executor":
-        return processes(LentWork(work, loaded.parts) if loaded.parts else work)
+        return processes(WorkWithParts(work, loaded.parts) if loaded.parts else work)
 
     with (
-        lent(loaded.parts),
+        registered(loaded.parts),
         _directory(out) as (directory, keeping),
         _shown(progress=progress) as show,
     ):
@@ -142,8 +142,7 @@ def flights_of(loaded: Scenario) -> "FlightStudy":
     ------
     InputError : it has no such flights
     """
-    from scenarios.studies.flight_study import FlightStudy
-    from scenarios.studies.registry import study_of
+    from scenarios.studies.base import FlightStudy, study_of
 
     study = study_of(loaded.config, loaded.name, loaded.changes)
     if not isinstance(study, FlightStudy) or study.chooses_flights:

@@ -39,7 +39,7 @@ class Copies:
 
 
 @dataclass(frozen=True, slots=True)
-class Lent:
+class GivenPart:
     """A part that was given as an object.
 
     Attributes
@@ -54,11 +54,11 @@ class Lent:
     part: Any
 
 
-Parts = tuple[Lent, ...]
+Parts = tuple[GivenPart, ...]
 
 
 @contextmanager
-def lent(parts: Parts) -> Iterator[None]:
+def registered(parts: Parts) -> Iterator[None]:
     """Have the parts known by their names inside the context.
 
     Raises
@@ -83,7 +83,7 @@ def lent(parts: Parts) -> Iterator[None]:
 
 
 @dataclass(frozen=True, slots=True)
-class LentWork:
+class WorkWithParts:
     """Work with the parts that it needs, so that processes of their own know them, too."""
 
     wrapped: Work
@@ -94,13 +94,13 @@ class LentWork:
         """Return the directory of the files that the work needs, or None."""
         return self.wrapped.model
 
-    def moved(self, model: Path) -> "LentWork":
+    def moved(self, model: Path) -> "WorkWithParts":
         """Return the same work with its files in another directory."""
-        return LentWork(self.wrapped.moved(model), self.parts)
+        return WorkWithParts(self.wrapped.moved(model), self.parts)
 
     def run(self, task: Task) -> Result:
         """Do a task."""
-        with lent(self.parts):
+        with registered(self.parts):
             return self.wrapped.run(task)
 
     def lost(self, task: Task, reason: str) -> Result:
@@ -150,7 +150,7 @@ class _Namer:
     """Goes through a table and collects the objects that it finds."""
 
     def __init__(self) -> None:
-        self.found: dict[tuple[str, str], Lent] = {}
+        self.found: dict[tuple[str, str], GivenPart] = {}
 
     def table(self, given: Mapping[str, Any], key: str) -> dict[str, Any]:
         made: dict[str, Any] = {}
@@ -222,7 +222,7 @@ class _Namer:
             raise InputError(
                 f"aircraft is an object called '{name}', as one of JSBSim's own is; rename yours"
             )
-        given = Lent(key, name, Copies(part) if made and key in _COPIED else part)
+        given = GivenPart(key, name, Copies(part) if made and key in _COPIED else part)
         if self.found.setdefault((registry.kind, name), given).part != given.part:
             raise InputError(f"{key}: two objects are called '{name}'; give each a name of its own")
         return name
@@ -248,8 +248,8 @@ def _registry(key: str) -> Registry[Any]:
     from aircraft.fleet import AIRCRAFT
     from gnc.laws import STEERING_LAWS
     from scenarios.search.method import SEARCH_METHODS
+    from scenarios.studies.base import STUDIES
     from scenarios.studies.checks import PART_REGISTRIES
-    from scenarios.studies.study import STUDIES
 
     registries: dict[str, Registry[Any]] = {
         **PART_REGISTRIES,

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from scenarios.api.html import table
-from scenarios.api.objects import Parts, lent, named
+from scenarios.api.objects import Parts, named, registered
 from scenarios.errors import InputError
 from scenarios.scenario.keys import suggestion
 from scenarios.scenario.load import AnyStudy, load_document, load_study, sweeps_speed_ratio
@@ -47,7 +47,7 @@ class Scenario:
     config: AnyStudy = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        with lent(self.parts):
+        with registered(self.parts):
             object.__setattr__(self, "config", load_study(self.source, self.changes))
 
     @property

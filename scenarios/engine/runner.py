@@ -52,7 +52,7 @@ class StudySummary:
     met : whether all planned items are done and met their criteria
     lines : the result in lines of text, for the console
     manifest : entries for the manifest of the run
-    beside_left : number of items of comparisons that are not done, which count neither as done nor
+    comparisons_left : number of items of comparisons that are not done, which count neither as done nor
         as planned
     unexplained : number of items that contradict what is proved
     """
@@ -61,7 +61,7 @@ class StudySummary:
     met: bool
     lines: list[str]
     manifest: dict[str, Any]
-    beside_left: int = 0
+    comparisons_left: int = 0
     unexplained: int = 0
 
 
@@ -73,14 +73,14 @@ class Launch:
     ----------
     what : name of the items that the study counts, in the plural
     planned, done : largest possible number of items, and the number of those that are done
-    beside_left : number of items of comparisons that are not done
+    comparisons_left : number of items of comparisons that are not done
     resumed : whether the run had begun before
     """
 
     what: str
     planned: int
     done: int
-    beside_left: int
+    comparisons_left: int
     resumed: bool
 
 
@@ -101,9 +101,9 @@ class Study(Protocol):
         """Return the largest possible number of items."""
 
     @property
-    def beside(self) -> int:
-        """Return how many results that are no items there are beside them, as of comparisons;
-        progress counts them, too.
+    def comparisons(self) -> int:
+        """Return the number of results of comparisons, which are no items; progress counts them,
+        too.
         """
 
     def initial_manifest(self) -> dict[str, Any]:
@@ -303,7 +303,7 @@ class _Execution:
             what=study.what,
             planned=study.planned,
             done=before.done if before else 0,
-            beside_left=before.beside_left if before else study.beside,
+            comparisons_left=before.comparisons_left if before else study.comparisons,
             resumed=before is not None,
         )
 
@@ -336,7 +336,7 @@ class _Execution:
 
         def report() -> None:
             # What tunes a law before its flights is neither an item nor beside them.
-            possible = self._study.beside
+            possible = self._study.comparisons
             self._progress("flying", done + min(beside, possible), self._study.planned + possible)
 
         report()

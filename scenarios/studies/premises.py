@@ -13,9 +13,7 @@ from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import StudySummary
 from scenarios.statistics.premises import TABLE_COLUMNS, premise_lines, premise_table
-from scenarios.studies.flight_study import FlightStudy
-from scenarios.studies.rows import frame
-from scenarios.studies.study import study
+from scenarios.studies.base import FlightStudy, frame, study
 
 _COLUMNS = ("flight_id", "turbulence", "duration_s", *PREMISE_COLUMNS)
 """Columns of the summary that the table is made of."""

@@ -17,10 +17,8 @@ from scenarios.scenario.aircraft_folder import folder_of
 from scenarios.scenario.load import checked
 from scenarios.scenario.parts import names_folder
 from scenarios.scenario.scenario import Scenario
-from scenarios.studies.flight_study import FlightStudy
+from scenarios.studies.base import FlightStudy, SingleFlight, study_of
 from scenarios.studies.manifest import plugins, refuse_changed
-from scenarios.studies.registry import study_of
-from scenarios.studies.single_flight import SingleFlight
 
 _TABLES = (SUMMARY, COMPARISON)
 """Tables that may have the row of a flight."""

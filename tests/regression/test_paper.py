@@ -21,7 +21,7 @@ from reports.run.run_data import read_run
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.load import load_study
 from scenarios.studies import paper
-from scenarios.studies.registry import run_study
+from scenarios.studies.base import run_study
 from tests.run_tables import rows_of
 
 FEW_RESERVES = (0.0, 0.015, 0.2, 0.4, 0.6)

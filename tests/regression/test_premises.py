@@ -9,7 +9,7 @@ import pytest
 
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.studies.base import run_study
 
 LAW = f"guidance.law={Path(__file__).parent}/law_past_the_ship.py:PastTheShip"
 STANDOFF = (

@@ -9,7 +9,7 @@ from reports.document.chart import Chart
 from reports.render import matplotlib_charts
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.studies.base import run_study
 
 
 def flown(tmp_path_factory, scenario, overrides):

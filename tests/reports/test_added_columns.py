@@ -22,7 +22,7 @@ from reports.run.run_data import read_run
 from scenarios.api.results import Run
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.studies.base import run_study
 
 METER = """
 import numpy as np
@@ -178,7 +178,7 @@ def test_python_has_its_unit_and_meaning(paths):
 STUDY = """
 from common.columns import Column
 from scenarios.flight_runner import FlightRunner
-from scenarios.studies.flight_study import FlightStudy
+from scenarios.studies.base import FlightStudy
 from dataclasses import fields
 
 class Spare(FlightStudy):

@@ -22,8 +22,7 @@ from scenarios.studies.arena.entrants import cases_of, conditions_of, entrants_o
 from scenarios.studies.arena.results import estimates, limits, tuned_record
 from scenarios.studies.arena.tuning import Tuner
 from scenarios.studies.arena.work import ArenaWork
-from scenarios.studies.flight_study import FlightStudy
-from scenarios.studies.study import study
+from scenarios.studies.base import FlightStudy, study
 
 TUNING_COLUMNS = described(
     {

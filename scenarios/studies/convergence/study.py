@@ -108,7 +108,7 @@ class ConvergenceStudy:
             )
         except InfeasibleError as error:
             raise InputError(f"guidance: {error}") from None
-        self.planned, self.beside = scenario.ensemble.trajectories * len(g.laws), 0
+        self.planned, self.comparisons = scenario.ensemble.trajectories * len(g.laws), 0
         self._manifest = initial_manifest(scenario, name, overrides)
         self.config_hash = str(self._manifest["config_hash"])
 

@@ -16,7 +16,7 @@ from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import read_run
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.studies.base import run_study
 
 QUICK = (
     "fidelity=kinematic", "guidance.rate_hz=10",

@@ -80,7 +80,7 @@ class SquareStudy:
             recorded,
             config_hash,
         )
-        self.planned, self.beside = sum(map(len, batches)), 0
+        self.planned, self.comparisons = sum(map(len, batches)), 0
         self.seen = []
 
     def initial_manifest(self):

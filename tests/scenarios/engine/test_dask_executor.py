@@ -20,7 +20,7 @@ from scenarios.engine.runner import ExecutorFactory
 from scenarios.engine.task import Limits
 from scenarios.errors import InputError
 from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.studies.base import run_study
 
 SETTINGS = [
     "flights=6",

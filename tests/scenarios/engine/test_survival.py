@@ -17,7 +17,7 @@ import pytest
 
 from scenarios.engine.runner import ExecutorFactory
 from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.studies.base import run_study
 from tests.scenarios.short_trial import short_trial
 
 FLIGHTS = 60

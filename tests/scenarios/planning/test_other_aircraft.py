@@ -18,7 +18,7 @@ from scenarios.engine.processes import InProcessExecutor
 from scenarios.errors import InputError
 from scenarios.run import command
 from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.studies.base import run_study
 from tests.run_tables import manifest_of, rows_of
 
 SHORT = ["sweep.nu=[0.5]", "flight.crossings=2", "comparison.variants=[]"]

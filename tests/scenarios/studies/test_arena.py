@@ -10,7 +10,7 @@ from scenarios.engine.processes import InProcessExecutor
 from scenarios.errors import InputError
 from scenarios.scenario.load import load_study
 from scenarios.studies.arena.entrants import conditions_of, entrants_of
-from scenarios.studies.registry import run_study
+from scenarios.studies.base import run_study
 from tests.in_process import assert_refused, run_command
 from tests.run_tables import manifest_of, rows_of
 from tests.scenarios.plugin_files import LAW

@@ -13,7 +13,7 @@ from scenarios.engine.runner import ExecutorFactory
 from scenarios.errors import InputError
 from scenarios.scenario.load import load_study
 from scenarios.scenario.sections.convergence import ConvergenceScenario
-from scenarios.studies.registry import run_study
+from scenarios.studies.base import run_study
 from tests.run_tables import manifest_of
 
 FEW = ["ensemble.trajectories=12", "ensemble.distance_max_m=100", "ensemble.samples=2"]

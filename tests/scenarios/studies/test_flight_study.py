@@ -11,7 +11,7 @@ from aircraft.spec import AircraftError
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.errors import InputError
 from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study, study_of
+from scenarios.studies.base import run_study, study_of
 from tests.run_tables import manifest_of, rows_of
 from tests.scenarios.short_trial import short_trial
 
@@ -202,7 +202,7 @@ def test_what_the_aircraft_cannot_do_is_reported_in_one_line(listed, tmp_path, m
     def refused(*_args, **_keys):
         raise AircraftError("does not turn right: lower the bank")
 
-    monkeypatch.setattr("scenarios.studies.flight_study.predicted_spreads", refused)
+    monkeypatch.setattr("scenarios.studies.base.predicted_spreads", refused)
     with pytest.raises(InputError, match="x8: does not turn right: lower the bank"):
         run(listed, tmp_path / "run")
 

@@ -13,7 +13,7 @@ from scenarios.engine.runner import ExecutorFactory
 from scenarios.errors import InputError
 from scenarios.scenario.load import load_study
 from scenarios.statistics.sensitivity import sensitivity_indices
-from scenarios.studies.registry import run_study, study_of
+from scenarios.studies.base import run_study, study_of
 from tests.run_tables import manifest_of
 from tests.scenarios.losing_executor import losing
 

@@ -12,7 +12,7 @@ from scenarios.flight.guard_belief import GuardBelief
 from scenarios.measures import figures
 from scenarios.run import exit_status
 from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.studies.base import run_study
 
 QUICK = [
     "fidelity='kinematic'", "flights=1", "flight.duration_max_s=40",

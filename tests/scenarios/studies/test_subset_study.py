@@ -15,11 +15,11 @@ from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import ExecutorFactory
 from scenarios.engine.task import Task
 from scenarios.errors import InputError
-from scenarios.experiment.declared import beyond_declared
 from scenarios.experiment.draws import sampled_flight, value_at
 from scenarios.experiment.requests import Experiment
+from scenarios.experiment.sampling import beyond_declared
 from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study, study_of
+from scenarios.studies.base import run_study, study_of
 from scenarios.studies.replay import Replay
 from scenarios.world.noise import Noise
 from tests.run_tables import manifest_of

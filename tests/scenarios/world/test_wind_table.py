@@ -10,7 +10,7 @@ from flight_cases import fly, scenario
 from scenarios.errors import InputError
 from scenarios.scenario.load import load_study
 from scenarios.scenario.sections.world import WindConfig
-from scenarios.studies.flight_study import FlightStudy
+from scenarios.studies.base import FlightStudy
 from scenarios.world.place import Place
 from scenarios.world.wind_netcdf import read_netcdf
 from scenarios.world.wind_table import first_time, tabled_wind

@@ -7,7 +7,7 @@ import pytest
 
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.studies.base import run_study
 from tests.scenarios.short_search import short_flights
 
 SEARCH = f"""

@@ -11,8 +11,7 @@ from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary
 from scenarios.engine.task import Task
 from scenarios.errors import InputError
-from scenarios.experiment.random_sample import flights_per_sample, is_random_sample
-from scenarios.experiment.sampling import Points
+from scenarios.experiment.sampling import SamplingDesign, flights_per_sample, is_random_sample
 from scenarios.scenario.scenario import Scenario
 from scenarios.statistics.estimates import (
     COLUMNS,
@@ -22,9 +21,7 @@ from scenarios.statistics.estimates import (
 )
 from scenarios.statistics.stopping import looks, tight_enough
 from scenarios.statistics.violations import count_violations
-from scenarios.studies.flight_study import FlightStudy
-from scenarios.studies.rows import frame
-from scenarios.studies.study import study
+from scenarios.studies.base import FlightStudy, frame, study
 from scenarios.studies.summary import FlightCounts
 
 
@@ -65,7 +62,7 @@ class MonteCarloStudy(FlightStudy):
                 f"flights is {scenario.flights}, and nothing random differs between them: seeds, start and choices are given, so"
                 " some are copies, from which no probability follows; leave out flight_seed, or set study to 'flights'"
             )
-        self._points: dict[int, Points] = {}
+        self._points: dict[int, SamplingDesign] = {}
         self._looks, self._stopped = 0, False
 
     def task(self, number: int) -> Task:
@@ -73,12 +70,12 @@ class MonteCarloStudy(FlightStudy):
         points = self._points_of(self._experiment.stream(number))
         return Task(number=number, point=points.at(self._experiment.index(number)))
 
-    def _points_of(self, stream: int) -> Points:
+    def _points_of(self, stream: int) -> SamplingDesign:
         """Return the samples at the points of a sweep that have a number of random numbers."""
         if stream not in self._points:
             scenario = self._scenario
             own = np.random.SeedSequence([scenario.seed, stream]).generate_state(1)[0]
-            self._points[stream] = Points(
+            self._points[stream] = SamplingDesign(
                 scenario.sampling,
                 dimension=len(scenario.draws),
                 flights=scenario.flights,
@@ -176,7 +173,7 @@ def monte_carlo_study(
     ``MonteCarloStudy``.
     """
     if scenario.method == "subset":
-        from scenarios.studies.monte_carlo.subset import SubsetStudy
+        from scenarios.studies.subset import SubsetStudy
 
         return SubsetStudy(scenario, name, trials, overrides=overrides)
     return MonteCarloStudy(scenario, name, trials, overrides=overrides)

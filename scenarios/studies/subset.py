@@ -30,8 +30,7 @@ from scenarios.statistics.subset_levels import Array, Simulation
 from scenarios.statistics.subset_simulation import Point, Simulating, SubsetSimulation
 from scenarios.statistics.subset_statistics import pessimistic_upper, subset_statistics
 from scenarios.statistics.violations import count_violations
-from scenarios.studies.chosen_flights import ChosenFlightsStudy, clearance
-from scenarios.studies.rows import frame
+from scenarios.studies.base import ChosenFlightsStudy, clearance, frame
 
 
 class SubsetStudy(ChosenFlightsStudy):
