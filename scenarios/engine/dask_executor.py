@@ -61,7 +61,10 @@ class DaskExecutor:
     """
 
     def __init__(self, work: Work, *, scheduler: str | None, jobs: int, limits: Limits) -> None:
-        self._work, self._scheduler, self._jobs, self._limits = work, scheduler, jobs, limits
+        self._work = work
+        self._scheduler = scheduler
+        self._jobs = jobs
+        self._limits = limits
         self._name = f"plume-flight-study-{uuid.uuid4().hex}"
         self._cluster: Any = None
         self._worker_count, self._counted_at = 1, -math.inf

@@ -99,7 +99,9 @@ class LocalExecutor:
     """
 
     def __init__(self, work: Work, *, jobs: int, limits: Limits) -> None:
-        self._work, self._jobs, self._limits = work, jobs, limits
+        self._work = work
+        self._jobs = jobs
+        self._limits = limits
         self._workers: list[WorkerProcess] = []
         self._retries: deque[Task] = deque()
         self._attempts: Counter[int] = Counter()

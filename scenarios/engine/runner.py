@@ -228,13 +228,11 @@ class _Execution:
         progress: Progress,
         command: str,
     ) -> None:
-        self._study, self._run, self._journal, self._before, self._progress = (
-            study,
-            run,
-            journal,
-            before,
-            progress,
-        )
+        self._study = study
+        self._run = run
+        self._journal = journal
+        self._before = before
+        self._progress = progress
         # A run that is resumed is as old as its first flight, and has taken as long as all of its
         # sessions.
         began = before.get("begun_utc") or f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ}"

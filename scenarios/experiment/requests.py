@@ -86,7 +86,9 @@ class Experiment:
     """
 
     def __init__(self, name: str, scenario: Scenario, *, alone: bool = True) -> None:
-        self.name, self.scenario, self._alone = name, scenario, alone
+        self.name = name
+        self.scenario = scenario
+        self._alone = alone
         self.points = points_of(scenario)
         labels = Counter(point.label for point in self.points)
         self.points = [

@@ -5,6 +5,7 @@ search goes through, and whether flights are a random sample of it, from which a
 import functools
 import math
 from collections.abc import Collection, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -34,10 +35,11 @@ has a side.
 """
 
 
+@dataclass(frozen=True, slots=True)
 class SamplingDesign:
     """Points that spread evenly over the unit cube of the random variables, by the numbers of flights.
 
-    Parameters
+    Attributes
     ----------
     sampling : ``sobol``, scrambled; ``latin_hypercube`` of as many strata as there are flights;
         ``random`` for no points at all
@@ -45,40 +47,38 @@ class SamplingDesign:
     flights, seed : of the study
     """
 
-    def __init__(self, sampling: str, *, dimension: int, flights: int, seed: int) -> None:
-        self._sampling, self._dimension, self._flights, self._seed = (
-            sampling,
-            dimension,
-            flights,
-            seed,
-        )
-        self._block = functools.lru_cache(maxsize=4)(self._made)
+    sampling: str
+    dimension: int
+    flights: int
+    seed: int
 
     def at(self, number: int) -> tuple[float, ...]:
-        """Return the point of a flight, which depends on its number and the parameters alone; empty
+        """Return the point of a flight, which depends on its number and the attributes alone; empty
         if it has none.
         """
-        if self._sampling == "random" or not self._dimension:
+        if self.sampling == "random" or not self.dimension:
             return ()
-        if self._sampling == "latin_hypercube":
-            return tuple(self._block(0)[number])
+        if self.sampling == "latin_hypercube":
+            return tuple(_block(self, 0)[number])
         block, i = divmod(number, _BLOCK)
-        return tuple(self._block(block)[i])
+        return tuple(_block(self, block)[i])
 
-    def _made(self, block: int) -> Sequence[Sequence[float]]:
-        from scipy.stats import qmc
 
-        if self._sampling == "latin_hypercube":
-            design: np.ndarray = qmc.LatinHypercube(self._dimension, rng=self._seed).random(
-                self._flights
-            )
-        else:
-            sequence = qmc.Sobol(self._dimension, scramble=True, rng=self._seed)
-            if block:
-                sequence.fast_forward(block * _BLOCK)
-            design = sequence.random(_BLOCK)
-        points: list[list[float]] = design.tolist()
-        return points
+@functools.lru_cache(maxsize=4)
+def _block(design: SamplingDesign, block: int) -> list[list[float]]:
+    """Return points that are made together: all of a Latin hypercube, ``_BLOCK`` of a sequence."""
+    from scipy.stats import qmc
+
+    points: np.ndarray
+    if design.sampling == "latin_hypercube":
+        points = qmc.LatinHypercube(design.dimension, rng=design.seed).random(design.flights)
+    else:
+        sequence = qmc.Sobol(design.dimension, scramble=True, rng=design.seed)
+        if block:
+            sequence.fast_forward(block * _BLOCK)
+        points = sequence.random(_BLOCK)
+    rows: list[list[float]] = points.tolist()
+    return rows
 
 
 def is_random_sample(scenario: Scenario) -> bool:

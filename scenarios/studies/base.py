@@ -86,6 +86,7 @@ from scenarios.studies.manifest import (
     flown_config,
     initial_manifest,
     plugins,
+    refuse_changed,
     trial_entries,
     vessel_files,
     write_logo,
@@ -98,8 +99,8 @@ STUDIES: Registry[Callable[..., Study]] = Registry(
 )
 """Studies by the word that a scenario file has for them.
 
-Each is called as ``scenarios.studies.base.FlightStudy`` is: with the scenario, its name,
-the scenarios to fly by name, and the overrides.
+Each is called as ``FlightStudy`` is: with the scenario, its name, the scenarios to fly by name, and
+the overrides; one of another kind of scenario without the scenarios to fly.
 """
 
 study = STUDIES.register
@@ -521,12 +522,13 @@ _ROUNDING = 1e-12
 """Relative error of a product [-]."""
 
 
+@study("trials")
 class TrialStudy(FlightStudy):
     """The trials of a list, one after the other.
 
     Parameters
     ----------
-    study, name : the list, and its name
+    listed, name : the list, and its name
     overrides : overrides that were applied, recorded in the manifest
 
     Raises
@@ -535,27 +537,28 @@ class TrialStudy(FlightStudy):
         as of ``FlightStudy``
     """
 
-    def __init__(self, study: TrialList, name: str, *, overrides: Sequence[str] = ()) -> None:
-        super().__init__(study, name, _trials(study), overrides=overrides)
+    def __init__(self, listed: TrialList, name: str, *, overrides: Sequence[str] = ()) -> None:
+        super().__init__(listed, name, _trials(listed), overrides=overrides)
 
 
-def _trials(study: TrialList) -> dict[str, Scenario]:
-    seed = [] if study.seed is None else [f"seed={study.seed}"]
+def _trials(listed: TrialList) -> dict[str, Scenario]:
+    """Return the trials of a list by name, each with its share of flights."""
+    seed = [] if listed.seed is None else [f"seed={listed.seed}"]
     trials: dict[str, Scenario] = {}
-    for listed in study.trials:
-        trial = load_study(listed, [*study.set, *seed], refusing=False)
+    for path in listed.trials:
+        trial, name = load_study(path, [*listed.set, *seed], refusing=False), Path(path).stem
         if not isinstance(trial, Scenario) or trial.study != "flights":
             raise InputError(
-                f"trials: '{listed}' is a study of {trial.study}; list scenarios of flights"
+                f"trials: '{path}' is a study of {trial.study}; list scenarios of flights"
             )
-        if Path(listed).stem in trials:
+        if name in trials:
             raise InputError(
-                f"trials: two are called '{Path(listed).stem}'; list each once, and give files names of their own"
+                f"trials: two are called '{name}'; list each once, and give files names of their own"
             )
         # Of 100 flights 0.07 are 7, and not the eighth that rounding would add.
-        flights = math.ceil(study.share * trial.flights * (1.0 - _ROUNDING))
-        trials[Path(listed).stem] = trial.model_copy(update={"flights": flights})
-    for override in study.set:
+        flights = math.ceil(listed.share * trial.flights * (1.0 - _ROUNDING))
+        trials[name] = trial.model_copy(update={"flights": flights})
+    for override in listed.set:
         key, _ = parse_override(override)
         users = [unused(trial, key) for trial in trials.values()]
         if all(users):
@@ -579,13 +582,11 @@ class SingleFlight:
     planned, comparisons = 1, 0
 
     def __init__(self, study: Study, task: Task, *, flight_id: str, trial: str, table: str) -> None:
-        self._study, self._task, self._flight_id, self._trial, self._table = (
-            study,
-            task,
-            flight_id,
-            trial,
-            table,
-        )
+        self._study = study
+        self._task = task
+        self._flight_id = flight_id
+        self._trial = trial
+        self._table = table
         self.config_hash = f"{study.config_hash} {flight_id}"
 
     @classmethod
@@ -654,10 +655,6 @@ def study_of(scenario: AnyStudy, name: str, overrides: Sequence[str] = ()) -> St
     ------
     InputError : the scenario cannot be flown
     """
-    if isinstance(scenario, TrialList):
-        from scenarios.studies.base import TrialStudy
-
-        return TrialStudy(scenario, name, overrides=overrides)
     if isinstance(scenario, ConvergenceScenario):
         from scenarios.studies.convergence.study import ConvergenceStudy
 
@@ -666,6 +663,8 @@ def study_of(scenario: AnyStudy, name: str, overrides: Sequence[str] = ()) -> St
         made = STUDIES.get(scenario.study)
     except PluginError as error:
         raise InputError(str(error)) from None
+    if not isinstance(scenario, Scenario):
+        return made(scenario, name, overrides=overrides)
     with plugins_explained(f"study '{scenario.study}'", [scenario]):
         return made(scenario, name, {name: scenario}, overrides=overrides)
 
@@ -702,8 +701,6 @@ def run_study(
     if not resume:
         RunDirectory(directory).refuse_taken()
     elif isinstance(scenario, Scenario):
-        from scenarios.studies.manifest import plugins, refuse_changed
-
         # Before an autopilot is designed for what is refused then.
         then, now = RunDirectory(directory).plugins(), plugins([scenario])
         refuse_changed(then, {name: digest for name, digest in now.items() if name in then})
