@@ -62,26 +62,21 @@ class MonteCarloStudy(FlightStudy):
                 f"flights is {scenario.flights}, and nothing random differs between them: seeds, start and choices are given, so"
                 " some are copies, from which no probability follows; leave out flight_seed, or set study to 'flights'"
             )
-        self._points: dict[int, SamplingDesign] = {}
         self._looks, self._stopped = 0, False
 
     def task(self, number: int) -> Task:
         """Return the task of a flight, at its point."""
-        points = self._points_of(self._experiment.stream(number))
-        return Task(number=number, point=points.at(self._experiment.index(number)))
+        design = self._design_with(self._experiment.stream(number))
+        return Task(number=number, point=design.at(self._experiment.index(number)))
 
-    def _points_of(self, stream: int) -> SamplingDesign:
+    def _design_with(self, stream: int) -> SamplingDesign:
         """Return the samples at the points of a sweep that have a number of random numbers."""
-        if stream not in self._points:
-            scenario = self._scenario
-            own = np.random.SeedSequence([scenario.seed, stream]).generate_state(1)[0]
-            self._points[stream] = SamplingDesign(
-                scenario.sampling,
-                dimension=len(scenario.draws),
-                flights=scenario.flights,
-                seed=int(own) if stream else scenario.seed,
-            )
-        return self._points[stream]
+        scenario, seed = self._scenario, self._scenario.seed
+        if stream:
+            seed = int(np.random.SeedSequence([seed, stream]).generate_state(1)[0])
+        return SamplingDesign(
+            scenario.sampling, dimension=len(scenario.draws), flights=scenario.flights, seed=seed
+        )
 
     def run(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
         """Fly up to one look after the other, until one shows what was asked for; then the
