@@ -1,5 +1,6 @@
-"""One flight, from its request to its row: plan, fly, measure, judge. Every way that one can end is a
-row.
+"""One flight, from its task to its row: request, plan, fly, measure, judge.
+
+Every way that a flight can end is a row: only ``FlightRunner.run`` catches.
 """
 
 import bisect
@@ -65,12 +66,14 @@ class Flown:
     request, plan : what was to be flown
     instruments : on board, in the order of ``plan.payload``
     record : what was recorded
+    every_step : whether every step of the guidance was, and not only the samples of the log
     """
 
     request: FlightRequest
     plan: FlightPlan
     instruments: list[Instrument | EvaluatedInstrument]
     record: FlightRecord
+    every_step: bool
 
 
 @dataclass(slots=True)
@@ -139,13 +142,13 @@ class Findings:
                 self.tables[file] = [self.named | row | self.named for row in rows]
             self.document = found.document or self.document
 
-    def add_search(self, flown: Flown, *, every_step: bool) -> None:
+    def add_search(self, flown: Flown) -> None:
         """Add how the plume was searched for and the fuel judged, in a flight with a gas reader."""
         plan, record, history = flown.plan, flown.record, self.history
         reader = next((each for each in flown.instruments if isinstance(each, GasReader)), None)
         if reader is not None and history is not None:
             self.row |= finding_figures(
-                history[:: plan.log_interval] if every_step else history,
+                history[:: plan.log_interval] if flown.every_step else history,
                 flown.request.scenario.flight,
                 noise=reader.spec.known("co2").noise,
                 enough=record.enough,
@@ -207,10 +210,7 @@ class FlightRunner:
         plan = self.plan(request)
         findings.add_plan(plan)
         flown = self.fly(request, plan, every_step=task.every_step)
-        findings.add_record(flown)
-        findings.add_evaluations(flown)
-        findings.add_search(flown, every_step=task.every_step)
-        findings.tables |= self.more_tables(request, plan, flown.record, findings.row)
+        self.measure(flown, findings)
         failed = failed_criteria(findings.row, request.scenario.criteria)
         findings.row |= {"criteria_met": not failed, "message": "; ".join(failed)}
 
@@ -250,7 +250,21 @@ class FlightRunner:
             reader=reader_of(plan, instruments),
             every_step=every_step,
         )
-        return Flown(request=request, plan=plan, instruments=instruments, record=record)
+        return Flown(
+            request=request,
+            plan=plan,
+            instruments=instruments,
+            record=record,
+            every_step=every_step,
+        )
+
+    def measure(self, flown: Flown, findings: Findings) -> None:
+        """Add what a flight shows: its own figures, those of its instruments, those of its study."""
+        findings.add_record(flown)
+        findings.add_evaluations(flown)
+        findings.add_search(flown)
+        more = self.more_tables(flown.request, flown.plan, flown.record, findings.row)
+        findings.tables |= more
 
     def more_tables(
         self,
@@ -335,7 +349,7 @@ class FlightRunner:
 
 def history_columns(experiments: Iterable[Experiment]) -> dict[str, Column]:
     """Return the columns that time histories of some experiments may have."""
-    points = (point.scenario for of in experiments for point in of.points)
+    points = [point.scenario for of in experiments for point in of.points]
     beliefs = BELIEF_COLUMNS | GuardBelief.COLUMNS
     return HISTORY_COLUMNS | beliefs | declarations(points).histories
 
