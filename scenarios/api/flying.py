@@ -5,13 +5,13 @@ import shutil
 import tempfile
 import weakref
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from common.text import did_you_mean
-from scenarios.api.objects import WorkWithParts, check_picklable, registered
+from scenarios.api.given_parts import WorkWithParts, check_picklable, registered
 from scenarios.api.results import Flight, Run
 from scenarios.api.scenario import Given, Scenario, load, sweeps_nu
 from scenarios.errors import InputError
@@ -48,7 +48,7 @@ def fly(
     flight_id : name of the flight, where the scenario has several
     out : run directory, which must be new or empty
     progress : show a progress bar on standard error
-    keys : to set, as of ``Scenario.set``:
+    keys : to set, same as ``Scenario.set``:
         ``fly("sweep_nu", nu=0.5, **{"guidance.preview": False})``
 
     Raises
@@ -95,7 +95,7 @@ def run(
 
     Parameters
     ----------
-    scenario, out, progress, keys : as of ``fly``
+    scenario, out, progress, keys : same as ``fly``
     jobs : number of processes; one per core if not given
 
     Raises
@@ -136,7 +136,7 @@ def run(
 
 
 def flights_of(loaded: Scenario) -> "FlightStudy":
-    """Return the study of a scenario, single flights of which can be flown.
+    """Return the study of a scenario whose flights can be flown alone.
 
     Raises
     ------
@@ -229,16 +229,11 @@ def _refuse_taken(directory: Path) -> None:
         ) from None
 
 
-@contextmanager
-def _shown(*, progress: bool) -> Iterator["Progress"]:
-    """Yield what is called as the flights advance: a progress bar, or nothing."""
-    if not progress:
-        yield lambda *_: None
-        return
+def _shown(*, progress: bool) -> "AbstractContextManager[Progress]":
+    """Return the context of what is called as flights advance: a progress bar, or nothing."""
     from scenarios.engine.runner import progress_bar
 
-    with progress_bar() as show:
-        yield show
+    return progress_bar() if progress else nullcontext(lambda *_: None)
 
 
 def _finished(result: "RunResult", keeping: Keeping) -> Run:

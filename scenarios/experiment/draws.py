@@ -42,7 +42,7 @@ class SampledFlight:
 
     @property
     def seed(self) -> int:
-        """Return the seed of its noise; beside a blend, of what is not blended."""
+        """Return the seed of its noise; of a blend, of the part that is not blended."""
         return self.noise.seed
 
 
@@ -193,7 +193,7 @@ def check_draws(trial: str, scenario: Scenario, given: Collection[str] = ()) -> 
 
     Raises
     ------
-    InputError : as of ``sampled_flight``
+    InputError : same as ``sampled_flight``
     """
     for draw in scenario.draws:
         if draw.within is not None and not _share_below(draw, draw.within[0]) < _share_below(

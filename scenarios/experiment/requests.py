@@ -61,7 +61,7 @@ class FlightRequest:
 
     @property
     def seed(self) -> int:
-        """Return the seed of its noise; beside a blend, of what is not blended."""
+        """Return the seed of its noise; of a blend, of the part that is not blended."""
         return self.noise.seed
 
 
@@ -119,7 +119,7 @@ class Experiment:
 
     def named(self, number: int) -> tuple[str, str]:
         """Return name and variant of a flight."""
-        point, index = self._point(number)
+        point, index = self.point_of(number)
         parts = [] if self._alone and point.label else [self.name]
         parts += [point.label] if point.label else []
         parts += [f"{index:05d}"] if point.flights > 1 or not point.label else []
@@ -129,7 +129,7 @@ class Experiment:
         """Return the name of the study's flight with which a comparison's flight is compared; empty
         for other flights.
         """
-        point, index = self._point(number)
+        point, index = self.point_of(number)
         if point.paired_point is None:
             return ""
         return self.named(
@@ -142,19 +142,10 @@ class Experiment:
         """
         return [self.named(end - 1)[0] for end in self._ends]
 
-    def stream(self, number: int) -> int:
-        """Return the number that tells random numbers of a flight's point from those of others; 0
-        where points share them.
-        """
-        return self._point(number)[0].stream
-
-    def label(self, number: int) -> str:
-        """Return the name of a flight's point, as of its case."""
-        return self._point(number)[0].label
-
-    def index(self, number: int) -> int:
-        """Return the number of a flight among those of its point."""
-        return self._point(number)[1]
+    def point_of(self, number: int) -> tuple[Point, int]:
+        """Return the point of a flight, and the flight's number among those of its point."""
+        i = bisect.bisect_right(self._ends, number)
+        return self.points[i], number - (self._ends[i - 1] if i else 0)
 
     def request(
         self, number: int, at: Sequence[float] = (), *, seed: int | None = None
@@ -171,7 +162,7 @@ class Experiment:
         ------
         InputError : a sampled value is out of range
         """
-        point, index = self._point(number)
+        point, index = self.point_of(number)
         flight_id, variant = self.named(number)
         if point.scenario.draws:
             sampled = self._sampled(point, index, at)
@@ -234,10 +225,6 @@ class Experiment:
             if draws:
                 yield with_values(point.scenario, {draw.key: draw.largest for draw in draws})
 
-    def _point(self, number: int) -> tuple[Point, int]:
-        i = bisect.bisect_right(self._ends, number)
-        return self.points[i], number - (self._ends[i - 1] if i else 0)
-
     def _sampled(self, point: Point, index: int, at: Sequence[float]) -> SampledFlight:
         """Return a flight with its samples; one of a comparison has those of the study's flight
         with which it is compared.
@@ -260,8 +247,8 @@ class Experiment:
     def _seed(self, point: Point, index: int) -> int:
         """Return the seed of a flight; variants of a point start alike.
 
-        It depends on nu alone where that is swept, with one flight at each, and no other random
-        numbers are asked for.
+        In a sweep of nu with one flight a point it depends on nu alone, unless the points are to
+        share their random numbers, or each has a stream of its own.
         """
         common = self.scenario.common_random_numbers is True and bool(point.inputs)
         if point.nu is not None and point.flights == 1 and not (point.stream or common):

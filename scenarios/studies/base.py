@@ -133,7 +133,7 @@ class FlightStudy:
     what = "flights"
 
     FIGURES: Declared = ()
-    """Columns of the summary that a study of a user's own adds; its work fills them."""
+    """Columns of the summary that a study adds; its work fills them."""
 
     TABLES: Mapping[str, Declared] = {}
     """Columns of tables that it adds, by file, beside those that name the flight."""
@@ -474,7 +474,7 @@ class ChosenFlightsStudy(FlightStudy):
 
     Raises
     ------
-    InputError : as of ``FlightStudy``
+    InputError : same as ``FlightStudy``
     """
 
     chooses_flights = True
@@ -534,7 +534,7 @@ class TrialStudy(FlightStudy):
     Raises
     ------
     InputError : a listed trial does not exist, or is not one of flights, or two have one name; and
-        as of ``FlightStudy``
+        same as ``FlightStudy``
     """
 
     def __init__(self, listed: TrialList, name: str, *, overrides: Sequence[str] = ()) -> None:

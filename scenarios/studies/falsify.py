@@ -75,9 +75,9 @@ class FalsificationStudy(ChosenFlightsStudy):
 
     Flights of the search are numbered from 0; after the largest number that one may have come the
     confirmations, in the order of the flights that they repeat, so that a run that is resumed finds
-    them whatever it has flown in between.
+    them in any order of flights.
 
-    Parameters as of any study; ``InputError`` as of ``FlightStudy``.
+    Parameters and ``InputError`` are the same as those of ``FlightStudy``.
     """
 
     def __init__(
@@ -92,7 +92,7 @@ class FalsificationStudy(ChosenFlightsStudy):
         numbers = self._search.flights_max * (1 + self._search.confirmations)
         super().__init__(scenario, name, trials, numbers=numbers, overrides=overrides)
         self._space = search_space(self._scenario)
-        # Of the numbers most stand for no flight, of which no time history is kept.
+        # Most numbers stand for no flight, and so for no time history.
         self.histories *= 1 + self._search.confirmations
         self.tables[DRAWS] = INPUT_COLUMNS | SEARCH_COLUMNS | self.tables[DRAWS]
         self._proposed = 0

@@ -37,7 +37,7 @@ class MonteCarloStudy(FlightStudy):
 
     Raises
     ------
-    InputError : as of ``FlightStudy``; a study of several points that is to stop by itself, or
+    InputError : same as ``FlightStudy``; a study of several points that is to stop by itself, or
         flights that are no random sample
     """
 
@@ -66,8 +66,8 @@ class MonteCarloStudy(FlightStudy):
 
     def task(self, number: int) -> Task:
         """Return the task of a flight, at its point."""
-        design = self._design_with(self._experiment.stream(number))
-        return Task(number=number, point=design.at(self._experiment.index(number)))
+        point, index = self._experiment.point_of(number)
+        return Task(number=number, point=self._design_with(point.stream).at(index))
 
     def _design_with(self, stream: int) -> SamplingDesign:
         """Return the samples at the points of a sweep that have a number of random numbers."""

@@ -41,9 +41,7 @@ class PremisesStudy(FlightStudy):
 
     def _table(self, journal: Journal) -> pd.DataFrame:
         numbered = list(journal.numbered(SUMMARY))
-        cases = []
-        for number, _ in numbered:
-            (experiment,) = self.experiments.values()
-            cases.append(experiment.label(number))
+        (experiment,) = self.experiments.values()
+        cases = [experiment.point_of(number)[0].label for number, _ in numbered]
         rows = frame((row for _, row in numbered), _COLUMNS)
         return premise_table(rows, cases, EXCEEDED_PER_HOUR)

@@ -114,7 +114,7 @@ class OriginalFlight:
             raise InputError(
                 f"'{self.directory}': flight '{self.row['flight_id']}' has number {self.task.number}; '{trial}' has no such flight"
             )
-        # Of a flight that the study gave a seed of its own, the row has it.
+        # The study may have chosen the seed: the row has it.
         return study, Task(
             number=number, point=self.task.point, seed=self.row.get("seed"), every_step=True
         )
@@ -195,7 +195,7 @@ class Replay(SingleFlight):
         }
 
     def work(self, run: RunDirectory) -> Work:
-        """Return the work of the original study, shown where that is asked for."""
+        """Return the work of the original study, shown by FlightGear if there is a viewer."""
         work = super().work(run)
         return (
             replace(work, viewer=self._viewer)

@@ -41,7 +41,7 @@ class SubsetStudy(ChosenFlightsStudy):
     declared one within that range, as in the plain study, which samples such flights again. A
     flight without a measurement passes no threshold.
 
-    Parameters as of any study; ``InputError`` as of ``FlightStudy``.
+    Parameters and ``InputError`` are the same as those of ``FlightStudy``.
     """
 
     def __init__(
