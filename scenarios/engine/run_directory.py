@@ -170,23 +170,28 @@ class RunDirectory:
                 f"'{self.path}' was run with another configuration{f': {keys}' if keys else ''}; resume it with the same scenario,"
                 " --seed and --set values"
             )
-        if differing := differences(theirs):
-            name = differing[0]
-            before, now = theirs.get(name, "unknown"), fingerprint()[name]
-            raise InputError(
-                f"'{self.path}' was started with {name} {before}, now it is {now}: results would not be comparable;"
-                f" resume it with the same {name}, or start a new run in another --out"
-            )
-        for path in self.path.iterdir():
-            if path.is_symlink():
-                raise InputError(
-                    f"'{path}' is a link; results are written into '{self.path}' alone: replace it by what it links to"
-                )
+        self._refuse_other_software(theirs)
+        self._refuse_links()
         self._create()
         listed = manifest.get(FILES)
         names = [str(name) for name in listed] if isinstance(listed, list) else []
         self.missing_files = [name for name in names if not _is_whole(self.path / name)]
         return manifest
+
+    def _refuse_other_software(self, theirs: Mapping[str, str]) -> None:
+        for name in differences(theirs)[:1]:
+            before, now = theirs.get(name, "unknown"), fingerprint()[name]
+            raise InputError(
+                f"'{self.path}' was started with {name} {before}, now it is {now}: results would not be comparable;"
+                f" resume it with the same {name}, or start a new run in another --out"
+            )
+
+    def _refuse_links(self) -> None:
+        for path in self.path.iterdir():
+            if path.is_symlink():
+                raise InputError(
+                    f"'{path}' is a link; results are written into '{self.path}' alone: replace it by what it links to"
+                )
 
     def remove_partial_files(self) -> None:
         """Remove partly written files of a program that was killed. No other program may be
@@ -331,15 +336,9 @@ def changed_keys(before: Mapping[str, Any], now: Mapping[str, Any]) -> str:
 def _values(manifest: Mapping[str, Any]) -> Iterator[tuple[str, object]]:
     yield "the scenario's name", manifest.get("name")
     yield from _flat(config := manifest.get("config"), "")
-    of_trials = manifest.get("trial_parameters")
-    # A list of trials says nothing of the keys that they have.
-    if isinstance(config, dict) and config.get("study") == "trials" and isinstance(of_trials, dict):
-        for trial, listed in of_trials.items():
-            yield from (
-                (f"{of['key']} of {trial}", of.get("value"))
-                for of in listed
-                if isinstance(of, dict) and "key" in of
-            )
+    if isinstance(config, dict) and config.get("study") == "trials":
+        # A list says nothing of the keys of its trials.
+        yield from _flat(manifest.get("trials"), "")
     yield from _flat(manifest.get("plugins"), "the hash of ")
 
 
