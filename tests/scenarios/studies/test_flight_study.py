@@ -148,7 +148,7 @@ def test_a_run_is_resumed_with_the_same_trials_only(tmp_path):
     one.write_text(TRIAL + "[keepout]\nradius_m = 190.0\n", encoding="utf-8")
     with pytest.raises(
         InputError,
-        match=r"configuration: keepout\.radius_m of one was 200\.0, and is 190\.0 now; resume",
+        match=r"configuration: one\.keepout\.radius_m was 200\.0, and is 190\.0 now; resume",
     ):
         run(listed, tmp_path / "run", "share=0.1", resume=True)
 
