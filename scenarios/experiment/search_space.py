@@ -5,8 +5,7 @@ import numpy as np
 from scenarios.experiment.declared import beyond_declared
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.experiment import DrawConfig
-from scenarios.search.coordinate import Coordinate
-from scenarios.search.space import Space
+from scenarios.search.method import Coordinate, Space
 
 _DIRECTIONS = ("course_deg", "from_deg", "aspect_deg", "heading_deg")
 """Ends of the keys of directions, which are the same after a full circle [deg]; a turn is none: it

@@ -6,22 +6,22 @@ import math
 from collections.abc import Generator, Sequence
 from typing import Any
 
+from aircraft.wind import CALM
 from gnc.guard.guard import GuardStatus
 from gnc.guidance import Guidance
 from gnc.mission.axis import SearchedAxis
 from gnc.mission.follow import PlumeFollowing
-from scenarios.flight.ending import Ending
+from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from scenarios.flight.ending import EarlyStop, Ending, Settling
 from scenarios.flight.guard_belief import GuardBelief
-from scenarios.flight.interventions import interventions
-from scenarios.flight.judge import Judge
-from scenarios.flight.onboard import OnboardSensing
-from scenarios.flight.plume_readings import PlumeBelief, PlumeReadings, axis_of
-from scenarios.flight.record import FlightRecord
-from scenarios.flight.recorder import Recorder
-from scenarios.flight.settling import Settling
+from scenarios.flight.onboard import OnboardSensing, PlumeBelief, PlumeReadings, axis_of
+from scenarios.flight.record import FlightRecord, Recorder, interventions
 from scenarios.instruments.instrument import GasReader, Instrument
 from scenarios.planning.flight_plan import FlightPlan
+from scenarios.vehicles.jsbsim import JsbsimVehicle
+from scenarios.vehicles.kinematic import KinematicVehicle
 from scenarios.vehicles.vehicle import Vehicle
+from scenarios.vehicles.vehicle_setup import VehicleSetup
 
 Commands = tuple[float, float]
 """Heading rate [rad/s] and airspeed [m/s]."""
@@ -74,7 +74,11 @@ class ClosedLoop:
         )
         self._sensing = _sensing(plan, vehicle, guidance, reader)
         self.ending = Ending(
-            plan, vehicle, guidance, self.settling, _judge(plan, guidance, reader, self.settling)
+            plan,
+            vehicle,
+            guidance,
+            self.settling,
+            _early_stop(plan, guidance, reader, self.settling),
         )
 
     def steps(self) -> Generator[Commands, Commands, FlightRecord]:
@@ -152,7 +156,7 @@ class ClosedLoop:
             outcome=ending.outcome,
             message=ending.message,
             mode=ending.mode,
-            enough=ending.enough,
+            stop_reason=ending.stop_reason,
             verdict=ending.verdict,
             settled_at=self.settling.at,
             interventions=interventions(guarding, time_step),
@@ -218,11 +222,56 @@ def _sensing(
     )
 
 
-def _judge(
+def _early_stop(
     plan: FlightPlan, guidance: Guidance, reader: GasReader | None, settling: Settling
-) -> Judge | None:
-    """Return what ends a flight when it has enough, of one that is to."""
+) -> EarlyStop | None:
+    """Return what ends a flight early, of one that may end so."""
     mission = guidance.mission
     if not plan.until_verdict or reader is None or not isinstance(mission, PlumeFollowing):
         return None
-    return Judge(reader, mission, settling)
+    return EarlyStop(reader, mission, settling)
+
+
+def failable(plan: FlightPlan) -> bool:
+    """Return whether a part of the aircraft may fail in a flight."""
+    return plan.world is not None and plan.world.fault.of_aircraft()
+
+
+def release(
+    plan: FlightPlan,
+    setup: VehicleSetup,
+    viewer: tuple[str, int] | None = None,
+    *,
+    flown: AutopilotedAircraft | None = None,
+) -> Vehicle:
+    """Return the vehicle at the start of a flight.
+
+    Parameters
+    ----------
+    plan : the flight
+    setup : of the aircraft, or of the kinematic vehicle
+    viewer : host and port of a FlightGear that is to show the aircraft, in real time; none if not
+        given
+    flown : an aircraft that has flown before, to be used again; a fresh one if not given
+    """
+    start, world = plan.start, plan.world
+    where = {
+        "north": start.north,
+        "east": start.east,
+        "altitude": plan.altitude,
+        "course": start.course,
+    }
+    aircraft = setup.aircraft
+    if aircraft is None:
+        wind = world.weather.wind if world else CALM
+        return KinematicVehicle(
+            **where, speed=plan.guidance.speed, time_step=plan.time_step, lag=setup.lag, wind=wind
+        )
+    flown = flown or AutopilotedAircraft(aircraft.spec, aircraft.model, failable=failable(plan))
+    if viewer is not None:
+        flown.fdm.stream_to_flightgear(*viewer)
+    # Still air needs no weather of its own.
+    weather = world.weather if world and plan.sensing else None
+    return JsbsimVehicle(
+        flown, aircraft.start, aircraft.envelope, **where, time_step=plan.time_step, weather=weather
+    )

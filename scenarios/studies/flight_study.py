@@ -53,7 +53,7 @@ from scenarios.measures.columns import (
 from scenarios.planning.limits import omega_max
 from scenarios.planning.scaling import scaled, scaled_keys
 from scenarios.planning.spreads import predicted_spreads
-from scenarios.planning.theory.speed_ratio import theory_over_speed_ratio
+from scenarios.planning.theory import theory_over_speed_ratio
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.experiment import STUDY, TrialList
 from scenarios.statistics.sulphur import COLUMNS as SULPHUR_COLUMNS

@@ -8,7 +8,7 @@ import numpy as np
 
 from common.run_layout import DRAWS, SUMMARY, WORST
 from scenarios.engine.journal import Journal
-from scenarios.search.space import Space
+from scenarios.search.method import Space
 from scenarios.studies.chosen_flights import clearance
 
 CONFIRMATION = "confirmation"

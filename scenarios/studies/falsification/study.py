@@ -17,9 +17,7 @@ from scenarios.experiment.scenario_file import scenario_file
 from scenarios.experiment.search_space import search_space
 from scenarios.measures.columns import INPUT_COLUMNS, SEARCH_COLUMNS
 from scenarios.scenario.scenario import Scenario
-from scenarios.search.method import SearchSettings
-from scenarios.search.space import Array
-from scenarios.search.turns import methods_named, search_in_turns
+from scenarios.search.method import Array, SearchSettings, methods_named, search_in_turns
 from scenarios.studies.chosen_flights import ChosenFlightsStudy, clearance
 from scenarios.studies.falsification.results import (
     CONFIRMATION,

@@ -16,12 +16,13 @@ from scenarios.experiment.sampling import Points
 from scenarios.scenario.scenario import Scenario
 from scenarios.statistics.estimates import (
     COLUMNS,
+    count_violations,
     interval_confidence,
+    looks,
     pessimistic_share,
     study_statistics,
+    tight_enough,
 )
-from scenarios.statistics.stopping import looks, tight_enough
-from scenarios.statistics.violations import count_violations
 from scenarios.studies.flight_study import FlightStudy
 from scenarios.studies.rows import frame
 from scenarios.studies.study import study

@@ -9,7 +9,7 @@ from common.physics import METRES_PER_SECOND_PER_KNOT
 from scenarios.errors import InputError
 from scenarios.scenario.load import CATALOG
 from scenarios.world.ais import read_ais
-from scenarios.world.ais.made import MADE, danish_file, marine_cadastre_file
+from scenarios.world.ais.synthetic import SYNTHETIC, danish_file, marine_cadastre_file
 
 PLAIN = "time_utc,mmsi,lat_deg,lon_deg,sog_kn,cog_deg"
 
@@ -312,12 +312,12 @@ def test_nmea_sentences_of_which_none_is_read_are_refused_with_their_types(read)
 
 
 def test_the_files_that_come_with_the_project_are_those_that_are_made():
-    for name, text in zip(MADE, (danish_file(), marine_cadastre_file()), strict=True):
+    for name, text in zip(SYNTHETIC, (danish_file(), marine_cadastre_file()), strict=True):
         assert (CATALOG / "ais" / name).read_text(encoding="utf-8") == text
 
 
 def test_what_is_wrong_in_the_made_file_is_dropped_and_counted():
-    found = read_ais(CATALOG / "ais" / "made_danish.csv", MADE["made_danish.csv"])
+    found = read_ais(CATALOG / "ais" / "synthetic_danish.csv", SYNTHETIC["synthetic_danish.csv"])
     # ``danish_file`` adds one row of each kind; a row twice and one out of order have times that
     # are there.
     assert sum(found.dropped.values()) == found.rows - len(found.time) >= 5

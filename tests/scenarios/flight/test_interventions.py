@@ -1,6 +1,6 @@
 import pytest
 
-from scenarios.flight.interventions import interventions
+from scenarios.flight.record import interventions
 
 
 def test_each_stretch_of_steps_is_one_intervention():

@@ -11,9 +11,8 @@ from scenarios.errors import InputError
 from scenarios.scenario.load import load_study
 from scenarios.scenario.sections.world import WindConfig
 from scenarios.studies.flight_study import FlightStudy
-from scenarios.world.place import Place
-from scenarios.world.wind_netcdf import read_netcdf
-from scenarios.world.wind_table import first_time, tabled_wind
+from scenarios.world.vessel import Place
+from scenarios.world.wind import first_time, read_netcdf, tabled_wind
 from scenarios.world.world import mean_wind, place_of, vessel_of
 
 HOURLY = """time_utc,speed_mps,from_deg

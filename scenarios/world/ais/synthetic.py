@@ -1,7 +1,7 @@
-"""The two files of AIS reports that come with the project. No ship sent them: they are made here.
+"""The two files of AIS reports that come with the project, which no ship sent.
 
-``python -m scenarios.world.ais.made DIR`` writes both. The ships turn by 90 degrees and slow down;
-their reports are as late, as wrong and as incomplete as those of a receiver on the coast are.
+``python -m scenarios.world.ais.synthetic DIR`` writes both. The ships turn by 90 degrees and slow
+down; their reports are as late, as wrong and as incomplete as those of a receiver on the coast.
 """
 
 import math
@@ -16,7 +16,7 @@ from common.physics import METRES_PER_SECOND_PER_KNOT
 from scenarios.scenario.sections.world import VesselConfig
 from scenarios.world.vessel import ManoeuvringVessel
 
-MADE = {"made_danish.csv": 219999001, "made_marine_cadastre.csv": 366999002}
+SYNTHETIC = {"synthetic_danish.csv": 219999001, "synthetic_marine_cadastre.csv": 366999002}
 """Their names, and the MMSI of the ship: of Denmark and of the United States, and of no ship."""
 
 _DURATION = 4200.0
@@ -44,7 +44,7 @@ def danish_file() -> str:
     ship = _ship(speed_kn=12.0, course_deg=20.0, turn_deg=90.0)
     times = _report_times(ship, slow=10.0, fast=10.0 / 3.0, lost=0.1)
     rows = [
-        f"{datetime.fromtimestamp(time, UTC):%d/%m/%Y %H:%M:%S},Class A,{MADE['made_danish.csv']},{latitude:.6f},{longitude:.6f},"
+        f"{datetime.fromtimestamp(time, UTC):%d/%m/%Y %H:%M:%S},Class A,{SYNTHETIC['synthetic_danish.csv']},{latitude:.6f},{longitude:.6f},"
         f"Under way using engine,,{speed:.1f},{course:.1f},,Unknown,,MADE SHIP,Cargo,,,,GPS,,,,AIS,,,,"
         for time, latitude, longitude, speed, course in _reports(
             ship, times, place=(57.2, 11.3), seed=1
@@ -66,7 +66,7 @@ def marine_cadastre_file() -> str:
     ship = _ship(speed_kn=11.0, course_deg=185.0, turn_deg=-90.0)
     times = _report_times(ship, slow=60.0, fast=60.0, lost=0.0)
     rows = [
-        f"{MADE['made_marine_cadastre.csv']},{datetime.fromtimestamp(time, UTC):%Y-%m-%d %H:%M:%S},{longitude:.5f},{latitude:.5f},"
+        f"{SYNTHETIC['synthetic_marine_cadastre.csv']},{datetime.fromtimestamp(time, UTC):%Y-%m-%d %H:%M:%S},{longitude:.5f},{latitude:.5f},"
         f"{speed:.1f},{course:.1f},511,MADE SHIP,,,70,0,,,,70,A"
         for time, latitude, longitude, speed, course in _reports(
             ship, times, place=(44.6, -124.6), seed=2
@@ -152,7 +152,7 @@ def _with(row: str, changes: dict[int, str]) -> str:
 
 def main(directory: Path) -> None:
     """Write both files into a directory."""
-    for name, text in zip(MADE, (danish_file(), marine_cadastre_file()), strict=True):
+    for name, text in zip(SYNTHETIC, (danish_file(), marine_cadastre_file()), strict=True):
         (directory / name).write_text(text, encoding="utf-8")
 
 

@@ -1,4 +1,4 @@
-"""What theory says over the speed ratio: curves for the reports, whichever speed ratios are flown."""
+"""Curves over the speed ratio from theory, for the reports."""
 
 import functools
 import json

@@ -1,4 +1,4 @@
-"""When a flight has enough: a verdict by all looks together, or a plume that cannot be measured."""
+"""When a flight ends early: a verdict by all looks together, or a plume that cannot be measured."""
 
 import math
 from types import SimpleNamespace
@@ -8,8 +8,8 @@ import pytest
 from gnc.estimation.plume.passes import SensorState
 from gnc.mission.axis import PlumeEstimate, SearchedAxis
 from gnc.mission.mission import NO_CENTRE, Mode, OrbitStatus
-from scenarios.flight import judge as judging
-from scenarios.flight.judge import GONE, INTERVAL, Enough, Judge
+from scenarios.flight import ending
+from scenarios.flight.ending import LEFT_BY, LOOK_INTERVAL, EarlyStop, StopReason
 
 
 class Axis(SearchedAxis):
@@ -39,7 +39,7 @@ class Mission:
 
 
 def judged(monkeypatch, contents, *, axis=None, settled=0.0, quality="B"):
-    """Return a judge whose looks find these contents one after the other, each with half the noise
+    """Return the early stop whose looks find these contents one after the other, each with half the noise
     of the one before, and its mission.
     """
     looks = iter(enumerate(contents))
@@ -54,18 +54,18 @@ def judged(monkeypatch, contents, *, axis=None, settled=0.0, quality="B"):
             quality=quality,
         )
 
-    monkeypatch.setattr(judging, "estimate", estimate)
+    monkeypatch.setattr(ending, "estimate", estimate)
     reader = SimpleNamespace(limit_percent=0.1, spec=None, readings=lambda since: since)
     mission = Mission(axis or Axis())
-    return Judge(reader, mission, SimpleNamespace(at=settled)), mission
+    return EarlyStop(reader, mission, SimpleNamespace(at=settled)), mission
 
 
-def looks(judge, number, distance=230.0):
+def looks(stop, number, distance=230.0):
     """Let as many looks go by, sampled ten times a second; return the times at which it was over."""
     return [
         t
-        for t in (0.1 * i for i in range(round(10 * number * INTERVAL) + 1))
-        if judge.over(t, distance)
+        for t in (0.1 * i for i in range(round(10 * number * LOOK_INTERVAL) + 1))
+        if stop.has_left(t, distance)
     ]
 
 
@@ -73,51 +73,54 @@ def test_a_flight_leaves_at_the_first_look_beyond_the_guard_band_of_repeated_loo
     # 1.8 standard uncertainties above, then as many below: more than one look needs, 1.645, and
     # less than one of several.
     contents = [0.1 + 1.8 * 0.0403, 0.1 - 1.8 * 0.0206, 0.05]
-    judge, mission = judged(monkeypatch, contents)
-    assert looks(judge, 2) == []
-    assert (judge.enough, mission.departing) == (None, False)
+    stop, mission = judged(monkeypatch, contents)
+    assert looks(stop, 2) == []
+    assert (stop.reason, mission.departing) == (None, False)
     again, mission = judged(monkeypatch, contents)
     looks(again, 3)
-    assert (again.enough, mission.departing) == (Enough.BELOW, True)
-    assert again.left_at == pytest.approx(3 * INTERVAL, abs=0.11)
+    assert (again.reason, mission.departing) == (StopReason.BELOW, True)
+    assert again.left_at == pytest.approx(3 * LOOK_INTERVAL, abs=0.11)
     assert again.verdict.looks == 3
 
 
 def test_a_record_that_has_no_verdict_ends_no_flight(monkeypatch):
-    judge, mission = judged(monkeypatch, [2.0, 2.0, 2.0], quality="C")
-    looks(judge, 3)
-    assert (judge.enough, mission.departing, judge.verdict.looks) == (None, False, 0)
+    stop, mission = judged(monkeypatch, [2.0, 2.0, 2.0], quality="C")
+    looks(stop, 3)
+    assert (stop.reason, mission.departing, stop.verdict.looks) == (None, False, 0)
 
 
 def test_it_is_over_when_the_vehicle_has_gone_farther_than_where_it_left(monkeypatch):
-    judge, mission = judged(monkeypatch, [0.5])
-    looks(judge, 1)
+    stop, mission = judged(monkeypatch, [0.5])
+    looks(stop, 1)
     assert mission.departing
-    assert not judge.over(40.0, 230.0 + GONE - 1.0)
-    assert judge.over(41.0, 230.0 + GONE + 1.0)
+    assert not stop.has_left(40.0, 230.0 + LEFT_BY - 1.0)
+    assert stop.has_left(41.0, 230.0 + LEFT_BY + 1.0)
 
 
 def test_before_the_flight_has_settled_no_reading_counts(monkeypatch):
-    judge, _ = judged(monkeypatch, [], settled=math.nan)
-    assert looks(judge, 5) == []
-    assert judge.enough is None
+    stop, _ = judged(monkeypatch, [], settled=math.nan)
+    assert looks(stop, 5) == []
+    assert stop.reason is None
 
 
 def test_off_its_orbit_and_where_it_is_detected_no_plume_is_out_of_reach(monkeypatch):
-    judge, mission = judged(monkeypatch, [0.1] * 9, axis=Axis(measurable=0.01))
+    stop, mission = judged(monkeypatch, [0.1] * 9, axis=Axis(measurable=0.01))
     mission.orbit = OrbitStatus(NO_CENTRE, 0.0, in_place=False)
-    looks(judge, 3)
+    looks(stop, 3)
     found, _ = judged(monkeypatch, [0.1] * 9, axis=Axis(measurable=0.01, mode=Mode.FOUND))
     looks(found, 3)
-    assert (judge.enough, found.enough) == (None, None)
+    assert (stop.reason, found.reason) == (None, None)
 
 
 @pytest.mark.parametrize(
-    ("beliefs", "enough"),
-    [({"sensor": SensorState.STUCK}, Enough.SENSOR), ({"measurable": 0.01}, Enough.OUT_OF_REACH)],
+    ("beliefs", "reason"),
+    [
+        ({"sensor": SensorState.STUCK}, StopReason.SENSOR),
+        ({"measurable": 0.01}, StopReason.OUT_OF_REACH),
+    ],
 )
-def test_what_cannot_be_measured_is_left_with_what_is_believed(monkeypatch, beliefs, enough):
-    judge, mission = judged(monkeypatch, [], axis=Axis(**beliefs))
-    looks(judge, 2)
-    assert (judge.enough, mission.departing) == (enough, True)
-    assert "131 m high, with a deviation of 8 m" in judge.words
+def test_what_cannot_be_measured_is_left_with_what_is_believed(monkeypatch, beliefs, reason):
+    stop, mission = judged(monkeypatch, [], axis=Axis(**beliefs))
+    looks(stop, 2)
+    assert (stop.reason, mission.departing) == (reason, True)
+    assert "131 m high, with a deviation of 8 m" in stop.message
