@@ -160,8 +160,13 @@ class Table:
         number = self._columns[name]
         return [row[number] for row in self.rows]
 
-    def numbers(self, name: str) -> Array:
+    def numbers(self, name: str, *, words: bool = False) -> Array:
         """Return a column as numbers, NaN where a cell is empty, shape (n,).
+
+        Parameters
+        ----------
+        name : of the column
+        words : whether words are NaN as well, in a table whose rows may say nothing
 
         Raises
         ------
@@ -169,6 +174,8 @@ class Table:
         """
         cells = self.column(name)
         values = np.array([_number(cell, self.format.decimal) for cell in cells], dtype=np.float64)
+        if words:
+            return np.where(np.isfinite(values), values, np.nan)
         bad = [
             i
             for i in np.flatnonzero(~np.isfinite(values)).tolist()
@@ -187,18 +194,19 @@ class Table:
             )
         return values
 
-    def times(self, name: str, *, day: date | None = None) -> Moments:
+    def times(self, name: str, *, day: date | None = None, usual: str = "") -> Moments:
         """Return a column as times.
 
         Numbers are seconds, or what ``time_unit`` or the column's own unit says; from 1979 on they
         are since 1970, as far as the unit is known or they are milliseconds or microseconds by
         their size. A time of day is of the ``day``, and goes on over midnight.
+        ``usual`` is the format of tables of this kind, where none is given.
 
         Raises
         ------
         TableError : a cell cannot be read
         """
-        return _times(self, name, day)
+        return _times(self, name, day, self.format.time_format or usual)
 
 
 _SEPARATOR_NAMES = {
@@ -538,23 +546,20 @@ _WITHOUT_DATE_FORMATS = ("%d.%m.%Y %H:%M:%S", "%d/%m/%Y %H:%M:%S", "%m/%d/%Y %H:
 """Formats that are named where a date is in one of them: none is taken unless it is given."""
 
 
-def _times(table: Table, name: str, day: date | None) -> Moments:
+def _times(table: Table, name: str, day: date | None, pattern: str) -> Moments:
     import pandas as pd
 
     cells = table.column(name)
     if not cells:
         return Moments(seconds=np.empty(0), dated=False, offset=False)
-    if table.format.time_format:
-        moments = pd.to_datetime(
-            pd.Series(cells), format=table.format.time_format, utc=True, errors="coerce"
-        )
-        _refuse_first(table, name, cells, moments.isna().to_numpy(), table.format.time_format)
-        return Moments(
-            seconds=_since_1970(moments), dated=True, offset="%z" in table.format.time_format
-        )
+    empty = np.array([cell.lower() in _EMPTY for cell in cells])
+    if pattern:
+        moments = pd.to_datetime(pd.Series(cells), format=pattern, utc=True, errors="coerce")
+        example = datetime(2026, 6, 1, 10, tzinfo=UTC).strftime(pattern)
+        _refuse_first(table, name, cells, moments.isna().to_numpy() & ~empty, example)
+        return Moments(seconds=_since_1970(moments), dated=True, offset="%z" in pattern)
     numbers = np.array([_number(cell, table.format.decimal) for cell in cells])
     if np.isfinite(numbers).mean() > 0.5:
-        empty = np.array([cell.lower() in _EMPTY for cell in cells])
         _refuse_first(table, name, cells, ~np.isfinite(numbers) & ~empty, "seconds")
         return _numeric_times(table, name, numbers)
     clock = [_TIME_OF_DAY.fullmatch(cell) for cell in cells]
@@ -565,7 +570,7 @@ def _times(table: Table, name: str, day: date | None) -> Moments:
         "" if second else cell.replace(",", ".") for cell, second in zip(cells, leap, strict=True)
     ]
     moments = pd.to_datetime(pd.Series(texts), format="ISO8601", utc=True, errors="coerce")
-    bad = moments.isna().to_numpy() & np.array([text.lower() not in _EMPTY for text in texts])
+    bad = moments.isna().to_numpy() & ~empty & ~leap
     _refuse_first(table, name, cells, bad, "2024-05-01T12:00:00.0, or seconds")
     first = next((text for text in texts if text), "")
     return Moments(

@@ -2,7 +2,6 @@
 of the Copernicus Climate Data Store, read by xarray), turbulence and discrete gusts.
 """
 
-import csv
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -17,12 +16,11 @@ from aircraft.fdm import TIME_STEP
 from aircraft.weather import STEPS_BETWEEN_GUSTS, TURBULENCE, Gust, Weather
 from aircraft.wind import CALM, WindField, constant_wind, over_the_sea
 from common.physics import wind_velocity
+from common.tables import Table, TableError, read_table
 from common.text import install_words, other_units, utc_text
-from measurement.tables import decimal_commas, other_separator
 from scenarios.errors import InputError
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.world import WindConfig
-from scenarios.world.ais.reports import number_of, seconds_of
 from scenarios.world.vessel import Place
 
 STILL_AIR = Weather(wind=CALM, turbulence=None, gusts=(), seed=0)
@@ -180,91 +178,62 @@ def _read_netcdf(
 @lru_cache(maxsize=8)
 def _read_table(path: Path, _stamp: tuple[int, int]) -> TabledWind:
     try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            return _on_grid(path, list(_rows(path, csv.reader(file))))
+        return _on_grid(path, list(_rows(path, read_table(path, head=COLUMNS))))
     except OSError as error:
         raise InputError(
             f"wind.table: {path}: cannot be read: {error.strerror}; check the path"
         ) from None
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise InputError(
-            f"wind.table: {path}: not a table as text ({error}); save it in UTF-8"
-        ) from None
+    except TableError as error:
+        raise InputError(f"wind.table: {path}: {error}") from None
 
 
-def _rows(
-    path: Path, cells: Iterator[list[str]]
-) -> Iterator[tuple[int, float, float, float, float]]:
+def _rows(path: Path, table: Table) -> Iterator[tuple[int, float, float, float, float]]:
     """Yield line, time [s], height [m], and where the wind blows to, north and east [m/s]; not a
     number for what has no column.
+
+    Raises
+    ------
+    InputError : a column is missing or twice, or a row has no wind or one that cannot be
+    TableError : a cell is no number or no time
     """
-    lines = enumerate(cells, start=1)
-    first, heads = next(
-        (
-            (line, [head.strip().lower() for head in row])
-            for line, row in lines
-            if any(map(str.strip, row))
-        ),
-        (0, []),
-    )
-    if not heads:
-        columns = ",".join(COLUMNS[:1] + COLUMNS[2:])
-        raise InputError(
-            f"wind.table: {path}: the file is empty; give a table with the columns {columns}"
-        )
-    if words := other_separator(",".join(heads)):
-        raise InputError(f"wind.table: {path} {words}")
-    if not set(COLUMNS[2:]) <= set(heads) or not set(COLUMNS[:2]) & set(heads):
-        remedy = other_units(heads, COLUMNS[2:]) or "rename the columns to these"
-        if _TO in heads and COLUMNS[3] not in heads:
+    names = [name.lower() for name in table.names]
+    if not set(COLUMNS[2:]) <= set(names) or not set(COLUMNS[:2]) & set(names):
+        remedy = other_units(names, COLUMNS[2:]) or "rename the columns to these"
+        if _TO in names and COLUMNS[3] not in names:
             remedy = f"{COLUMNS[3]} is where the wind comes from: add 180 deg to '{_TO}', less 360 where it is more, and rename it"
-        raise InputError(f"wind.table: {path}, line {first}: the header is {','.join(heads)[:80]!r}; it must be {','.join(COLUMNS)}"
-                         f", of which time_utc or height_m may be missing: {remedy}")  # fmt: skip
-    if twice := [column for column in COLUMNS if heads.count(column) > 1]:
         raise InputError(
-            f"wind.table: {path}, line {first}: the header has '{twice[0]}' twice; leave one of the columns out"
+            f"wind.table: {path}, line {table.head_line}: the header is {','.join(names)[:80]!r};"
+            f" it must be {','.join(COLUMNS)}, of which time_utc or height_m may be missing: {remedy}"
         )
-    for line, row in lines:
-        if not any(cell.strip() for cell in row):
-            continue
-        if words := _incomplete(heads, row):
-            raise InputError(f"wind.table: {path}, line {line} {words}")
-        named = dict(zip(heads, row, strict=False))
-        try:
-            time = seconds_of(named.get("time_utc", "")) if "time_utc" in heads else math.nan
-        except ValueError:
-            raise InputError(
-                f"wind.table: {path}, line {line}: {named.get('time_utc', '')[:40]!r} is no time, as in 2026-06-01T12:00:00Z;"
-                " correct it"
-            ) from None
-        height, speed, direction = (number_of(named.get(column)) for column in COLUMNS[1:])
-        good = (
-            0.0 <= speed <= _SPEED_MAX
-            and abs(direction) <= 360.0
-            and ("height_m" not in heads or 0.0 < height <= 20e3)
+    if twice := [column for column in COLUMNS if names.count(column) > 1]:
+        raise InputError(
+            f"wind.table: {path}, line {table.head_line}: the header has '{twice[0]}' twice; leave"
+            " one of the columns out"
         )
-        if not good:
-            raise InputError(
-                f"wind.table: {path}, line {line}: {','.join(row)[:80]!r}; speeds go from 0 to {_SPEED_MAX:g} m/s, directions"
-                " from 0 to 360 deg, heights are above 0: correct the line, or delete it"
-            )
-        yield line, time, height, *wind_velocity(speed, direction)
-
-
-def _incomplete(heads: list[str], row: list[str]) -> str:
-    """Return what a row lacks, and the remedy; nothing of one with a number in each column of
-    numbers.
-    """
-    shown = repr(",".join(row)[:80])
-    numbers = [heads.index(column) for column in COLUMNS[1:] if column in heads]
-    if words := decimal_commas(row, heads, numbers):
-        return words
-    if len(row) < len(heads):
-        return f"has {len(row)} of {len(heads)} columns: {shown}; correct the line, or delete it"
-    for place in numbers:
-        if math.isnan(number_of(row[place])):
-            return f"has {row[place][:40]!r} for {heads[place]}, which is not a number: correct the line, or delete it"
-    return ""
+    there = {column: table.names[names.index(column)] for column in COLUMNS if column in names}
+    nothing = np.full(len(table), math.nan)
+    times = table.times(there["time_utc"]).seconds if "time_utc" in there else nothing
+    heights = table.numbers(there["height_m"]) if "height_m" in there else nothing
+    speeds, directions = (table.numbers(there[column]) for column in COLUMNS[2:])
+    # Where no wind blows it comes from nowhere.
+    directions = np.where((speeds == 0.0) & np.isnan(directions), 0.0, directions)
+    good = (
+        (speeds >= 0.0)
+        & (speeds <= _SPEED_MAX)
+        & (np.abs(directions) <= 360.0)
+        & (np.isfinite(times) | ("time_utc" not in there))
+        & (((heights > 0.0) & (heights <= 20e3)) | ("height_m" not in there))
+    )
+    if not good.all():
+        row = int(np.argmin(good))
+        raise InputError(
+            f"wind.table: {path}, line {table.lines[row]}: {','.join(table.rows[row])[:80]!r}; every"
+            f" row has its columns: speeds go from 0 to {_SPEED_MAX:g} m/s, directions from 0 to 360"
+            " deg, heights are above 0: correct the line, or delete it"
+        )
+    for row, line in enumerate(table.lines):
+        wind = wind_velocity(float(speeds[row]), float(directions[row]))
+        yield line, float(times[row]), float(heights[row]), *wind
 
 
 def _on_grid(path: Path, rows: list[tuple[int, float, float, float, float]]) -> TabledWind:
