@@ -15,7 +15,7 @@ from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from scenarios.flight.ending import EarlyStop, Ending, Settling
 from scenarios.flight.guard_belief import GuardBelief
 from scenarios.flight.onboard import OnboardSensing, PlumeBelief, PlumeReadings, axis_of
-from scenarios.flight.record import FlightRecord, Recorder, interventions
+from scenarios.flight.record import NO_REFERENCE, FlightRecord, GuardedStep, Recorder, interventions
 from scenarios.instruments.instrument import GasReader, Instrument
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.vehicles.jsbsim import JsbsimVehicle
@@ -90,26 +90,16 @@ class ClosedLoop:
         or out of control.
         """
         # Names of their own: this is the innermost loop of every flight.
-        plan, guidance, sensing, recorder, ending = (
-            self.plan,
-            self.guidance,
-            self._sensing,
-            self._recorder,
-            self.ending,
-        )
+        plan, guidance, sensing = self.plan, self.guidance, self._sensing
+        recorder, ending, belief = self._recorder, self.ending, self._guard_belief
         mission, target, guard = guidance.mission, guidance.target, guidance.guard
-        belief = self._guard_belief
-        guide, motion_of, advance, reference_of = (
-            guidance.step,
-            self.vehicle.motion,
-            self.vehicle.advance,
-            recorder.reference,
-        )
+        guide, reference_of = guidance.step, recorder.reference
+        motion_of, advance = self.vehicle.motion, self.vehicle.advance
         time_step, log_interval = plan.time_step, plan.log_interval
         record_interval = 1 if self._every_step else log_interval
         demand_max = command_max = airspeed_error = 0.0
         saturated = step = 0
-        guarding: list[tuple[int, float, bool]] = []
+        guarded: list[GuardedStep] = []
         for step in range(round(plan.duration_max / time_step) + 1):
             time, motion = step * time_step, motion_of()
             recorded = step % record_interval == 0
@@ -132,25 +122,19 @@ class ClosedLoop:
             command_max = max(command_max, commanded)
             saturated += tracker.saturated
             if guidance.guarding and guard is not None:
-                guarding.append(
-                    (
-                        step,
-                        math.hypot(motion.north - target.north, motion.east - target.east),
-                        guard.status is GuardStatus.LOST,
-                    )
-                )
+                distance = math.hypot(motion.north - target.north, motion.east - target.east)
+                guarded.append(GuardedStep(step, distance, guard.status is GuardStatus.LOST))
             if recorded:
                 sampled = step % log_interval == 0
-                sample, complete = recorder.record(
-                    time, motion, reference or reference_of() or (math.nan,) * 4, judged=sampled
-                )
+                placed = reference or reference_of() or NO_REFERENCE
+                sample, complete = recorder.record(time, motion, placed, judged=sampled)
                 if sampled and ending.reached(time, motion, sample, complete=complete):
                     break
             command, airspeed = yield command, guidance.airspeed_command
             if belief is not None:
                 belief.command(tracker.heading_rate_command)
             advance(command, airspeed - airspeed_error)
-        ending.guarded, ending.saturated = bool(guarding), saturated / (step + 1)
+        ending.guarded, ending.saturated = bool(guarded), saturated / (step + 1)
         rows = recorder.rows()
         return FlightRecord(
             outcome=ending.outcome,
@@ -159,14 +143,14 @@ class ClosedLoop:
             stop_reason=ending.stop_reason,
             verdict=ending.verdict,
             settled_at=self.settling.at,
-            interventions=interventions(guarding, time_step),
+            interventions=interventions(guarded, time_step),
             columns=recorder.columns,
             history=rows[::log_interval] if self._every_step else rows,
             every_step=rows,
             saturation_fraction=ending.saturated,
             heading_rate_demand_max=demand_max,
             heading_rate_command_max=command_max,
-            guard_time=len(guarding) * time_step,
+            guard_time=len(guarded) * time_step,
         )
 
 
@@ -178,8 +162,8 @@ def fly(
     reader: GasReader | None = None,
     every_step: bool = False,
 ) -> FlightRecord:
-    """Fly ``plan`` with a vehicle that stands at its start as its guidance commands; parameters as
-    of ``ClosedLoop``.
+    """Fly ``plan`` with a vehicle that stands at its start as its guidance commands; parameters
+    are those of ``ClosedLoop``.
     """
     steps = ClosedLoop(plan, vehicle, payload, reader=reader, every_step=every_step).steps()
     follow = steps.send

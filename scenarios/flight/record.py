@@ -27,6 +27,21 @@ if TYPE_CHECKING:
     from measurement.estimate.repeated import RepeatedVerdict
 
 
+class GuardedStep(NamedTuple):
+    """A step of the guidance at which the keep-out guard changed the command.
+
+    Attributes
+    ----------
+    step : its number
+    distance : to the vessel, as the guidance knows it [m]
+    lost : whether the guard's radius could not be held
+    """
+
+    step: int
+    distance: float
+    lost: bool
+
+
 class Intervention(NamedTuple):
     """A stretch of guidance steps in each of which the guard changed the command.
 
@@ -44,29 +59,22 @@ class Intervention(NamedTuple):
     lost: bool
 
 
-def interventions(
-    guarding: Sequence[tuple[int, float, bool]], time_step: float
-) -> list[Intervention]:
-    """Return the stretches.
-
-    Parameters
-    ----------
-    guarding : of each step at which the guard changed the command: its number, the distance to the
-        vessel [m], whether it was lost
-    time_step : of the guidance [s]
+def interventions(guarded: Sequence[GuardedStep], time_step: float) -> list[Intervention]:
+    """Return the stretches of steps at which the guard changed commands, by the guidance's time
+    step [s].
     """
-    stretches: list[list[tuple[int, float, bool]]] = []
-    for entry in guarding:
-        if stretches and entry[0] == stretches[-1][-1][0] + 1:
+    stretches: list[list[GuardedStep]] = []
+    for entry in guarded:
+        if stretches and entry.step == stretches[-1][-1].step + 1:
             stretches[-1].append(entry)
         else:
             stretches.append([entry])
     return [
         Intervention(
-            time_s=stretch[0][0] * time_step,
+            time_s=stretch[0].step * time_step,
             duration_s=len(stretch) * time_step,
-            distance_min_m=min(distance for _, distance, _ in stretch),
-            lost=any(lost for _, _, lost in stretch),
+            distance_min_m=min(entry.distance for entry in stretch),
+            lost=any(entry.lost for entry in stretch),
         )
         for stretch in stretches
     ]
@@ -143,11 +151,9 @@ WIND_COLUMNS = ("true_wind_north_mps", "true_wind_east_mps")
 PLACE_COLUMNS = ("latitude_deg", "longitude_deg", "time_utc")
 """Where and when on earth, of flights of which that is known: they follow from the others, too."""
 
-COLUMNS = tuple(
-    column
-    for column in HISTORY_COLUMNS
-    if column not in (*RELATIVE_COLUMNS, *WIND_COLUMNS, *PLACE_COLUMNS)
-)
+_DERIVED = RELATIVE_COLUMNS + WIND_COLUMNS + PLACE_COLUMNS
+
+COLUMNS = tuple(column for column in HISTORY_COLUMNS if column not in _DERIVED)
 """Columns of a flight's record."""
 
 
@@ -201,10 +207,25 @@ class FlightRecord:
         return self.history[:, self.columns.index(name)]
 
 
-_NO_ORBIT = OrbitStatus(NO_CENTRE, math.nan, in_place=False)
+class ReferencePoint(NamedTuple):
+    """Where the reference is in the frame of the air mass.
 
-Place = tuple[float, float, float, float]
-"""North and east [m], course [rad] and heading rate [rad/s]."""
+    Attributes
+    ----------
+    north, east : [m]
+    course, heading_rate : [rad, rad/s]
+    """
+
+    north: float
+    east: float
+    course: float
+    heading_rate: float
+
+
+NO_REFERENCE = ReferencePoint(math.nan, math.nan, math.nan, math.nan)
+"""Before the mission has placed it."""
+
+_NO_ORBIT = OrbitStatus(NO_CENTRE, math.nan, in_place=False)
 
 
 class Recorder:
@@ -221,11 +242,6 @@ class Recorder:
     columns : of the record
     """
 
-    __slots__ = (
-        "_axis_at", "_guard", "_guidance", "_mission", "_own", "_pack", "_payload", "_rows", "_sample", "_settled", "_target",
-        "_vessel_at", "columns",
-    )  # fmt: skip
-
     def __init__(
         self,
         guidance: Guidance,
@@ -234,32 +250,34 @@ class Recorder:
         payload: Sequence[Instrument],
         settling: Settling,
     ) -> None:
-        self._guidance, self._own, self._target = guidance, guidance.own, guidance.target
-        self._mission, self._guard = guidance.mission, guidance.guard
         instruments: Sequence[Any] = payload
-        self._sample, self._payload, self._settled = vehicle.sample, instruments, settling.update
+        self._guidance = guidance
+        self._own, self._target = guidance.own, guidance.target
+        self._mission, self._guard = guidance.mission, guidance.guard
+        self._sample, self._payload = vehicle.sample, instruments
+        self._update_settling = settling.update
         # A track, plume or instrument of a user's own may answer in other numbers than Python's,
         # and in other rows than tuples.
         self._vessel_at: Callable[[float], Any] = world.vessel.motion if world else _no_vessel
         self._axis_at: Callable[[float], Any] = world.plume.axis if world else _no_axis
-        self.columns = COLUMNS + tuple(
-            column for instrument in instruments for column in instrument.COLUMNS
-        )
+        own_columns = [column for instrument in instruments for column in instrument.COLUMNS]
+        self.columns = COLUMNS + tuple(own_columns)
         # As bytes: tuples would be numbers by the hundred thousand for Python to look after, and
         # slow to make an array of.
-        self._rows, self._pack = list[bytes](), struct.Struct(f"{len(self.columns)}d").pack
+        self._rows: list[bytes] = []
+        self._pack = struct.Struct(f"{len(self.columns)}d").pack
 
-    def reference(self) -> Place | None:
-        """Return where the reference is in the frame of the air mass; nothing before the mission
-        has placed it.
-        """
+    def reference(self) -> ReferencePoint | None:
+        """Return where the reference is; None before the mission has placed it."""
         if self._mission.orbit is None:
             return None
         reference = self._mission.tracker.reference
-        return reference.north, reference.east, reference.course, reference.heading_rate
+        return ReferencePoint(
+            reference.north, reference.east, reference.course, reference.heading_rate
+        )
 
     def record(
-        self, time: float, motion: MeasuredMotion, reference: Place, *, judged: bool
+        self, time: float, motion: MeasuredMotion, reference: ReferencePoint, *, judged: bool
     ) -> tuple[tuple[float, ...], bool]:
         """Keep a row; return the vehicle's sample, and whether the flight has all its crossings, by
         ``judged`` samples.
@@ -270,40 +288,59 @@ class Recorder:
         motion : of the vehicle, true
         reference : as the guidance had it when it computed its commands
         """
-        guidance, own, target, mission, guard = (
-            self._guidance,
-            self._own,
-            self._target,
-            self._mission,
-            self._guard,
-        )
+        guidance, own, target = self._guidance, self._own, self._target
+        mission, guard = self._mission, self._guard
         tracker = mission.tracker
         centre, centre_error, in_place = mission.orbit or _NO_ORBIT
-        own_north, own_east, v_north, v_east, _ = motion
-        north, east, course, heading_rate = reference
-        north += own.drift_north
-        east += own.drift_east
+        reference_north = reference.north + own.drift_north
+        reference_east = reference.east + own.drift_east
         vessel, axis = self._vessel_at(time), self._axis_at(time)
-        seen_north, seen_east = target.north, target.east
         sample = self._sample()
         read: Sequence[Any] = ()
         if self._payload:
             read_all = _read_all if self._rows else _read_first
             read = read_all(self._payload, time, motion, sample)
-        self._rows.append(self._pack(
-            time, *motion, math.atan2(v_east, v_north), *vessel, axis, north, east, course, heading_rate,
-            seen_north + centre.x, seen_east + centre.y, centre_error, own.wind_north, own.wind_east,
-            seen_north, seen_east, centre.speed_ratio, guidance.mode.number,
-            tracker.heading_rate_demand, guidance.heading_rate_command, guidance.airspeed_command, guidance.altitude_command,
-            tracker.saturated, float(guard.status) if guard is not None else 0.0,
-            *sample, *read,
-        ))  # fmt: skip
+        self._rows.append(
+            self._pack(
+                time,
+                *motion,
+                math.atan2(motion.velocity_east, motion.velocity_north),
+                *vessel,
+                axis,
+                reference_north,
+                reference_east,
+                reference.course,
+                reference.heading_rate,
+                target.north + centre.x,
+                target.east + centre.y,
+                centre_error,
+                own.wind_north,
+                own.wind_east,
+                target.north,
+                target.east,
+                centre.speed_ratio,
+                guidance.mode.number,
+                tracker.heading_rate_demand,
+                guidance.heading_rate_command,
+                guidance.airspeed_command,
+                guidance.altitude_command,
+                tracker.saturated,
+                float(guard.status) if guard is not None else 0.0,
+                *sample,
+                *read,
+            )
+        )
         if not judged:
             return sample, False
-        error = math.hypot(north - own_north, east - own_east)
-        place = centre_error if in_place else math.inf
-        x, y = float(own_north - vessel[0]), float(own_east - vessel[1])
-        return sample, self._settled(time, error, place, x, y, float(axis))
+        settled = self._update_settling(
+            time,
+            math.hypot(reference_north - motion.north, reference_east - motion.east),
+            centre_error if in_place else math.inf,
+            float(motion.north - vessel[0]),
+            float(motion.east - vessel[1]),
+            float(axis),
+        )
+        return sample, settled
 
     def rows(self) -> Array:
         """Return what is recorded, shape (rows, columns)."""
@@ -348,7 +385,7 @@ def _read_first(
     return values
 
 
-def _no_vessel(_time: float) -> Place:
+def _no_vessel(_time: float) -> tuple[float, float, float, float]:
     return 0.0, 0.0, 0.0, 0.0
 
 
