@@ -4,7 +4,7 @@ of the Copernicus Climate Data Store, read by xarray), turbulence and discrete g
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from aircraft.fdm import TIME_STEP
 from aircraft.weather import STEPS_BETWEEN_GUSTS, TURBULENCE, Gust, Weather
 from aircraft.wind import CALM, WindField, constant_wind, over_the_sea
 from common.physics import wind_velocity
-from common.tables import Table, TableError, read_table
+from common.tables import Table, TableError, read_table, unit_factor
 from common.text import install_words, other_units, utc_text
 from scenarios.errors import InputError
 from scenarios.scenario.scenario import Scenario
@@ -127,6 +127,7 @@ def tabled_wind(config: WindConfig, place: Place, duration: float) -> WindField:
                 f" {utc_text(place.utc)} to {utc_text(place.utc + duration)}: give a longer table, or set place.utc or"
                 " flight.duration_max_s"
             )
+    found = _where_it_blows(found, place, duration, str(name))
     times = [time - place.utc for time in found.times] or [0.0]
     if config.roughness_m is None:
         return WindField(found.velocity, times, found.heights or (10.0,))
@@ -136,6 +137,32 @@ def tabled_wind(config: WindConfig, place: Place, duration: float) -> WindField:
         )
     return over_the_sea(
         found.velocity[:, 0], times, roughness=config.roughness_m, height=config.height_m
+    )
+
+
+def _where_it_blows(found: TabledWind, place: Place, duration: float, name: str) -> TabledWind:
+    """Return a wind without the times at which it is not known, of which a flight needs none.
+
+    Raises
+    ------
+    InputError : the flight needs one of them
+    """
+    known: npt.NDArray[np.bool_] = np.asarray(np.isfinite(found.velocity).all(axis=(1, 2)))
+    if known.all():
+        return found
+    times = np.array(found.times)
+    # A flight needs the last time before it, and the first one after it.
+    first = int(np.searchsorted(times, place.utc, side="right")) - 1
+    last = int(np.searchsorted(times, place.utc + duration))
+    missing = [time for time in range(first, last + 1) if not known[time]]
+    if missing:
+        more = f" and {len(missing) - 1} more" if len(missing) > 1 else ""
+        raise InputError(
+            f"wind.table: {name} has no wind at {utc_text(times[missing[0]])}{more}, which the flight"
+            " needs; give another file, another place or another time (place.utc)"
+        )
+    return replace(
+        found, times=tuple(times[known].tolist()), velocity=found.velocity[known], lines=None
     )
 
 
@@ -280,17 +307,11 @@ _PLACES = ("latitude", "longitude")
 _OTHER_NAMES = {"lat": "latitude", "lon": "longitude"}
 """What other files than ERA5's call places."""
 
-_METRES_PER_SECOND = {
-    "m s**-1",
-    "m s-1",
-    "m s^-1",
-    "m/s",
-    "ms-1",
-    "m.s-1",
-    "metre per second",
-    "meter per second",
-}
-"""Units of a wind that need no conversion, as netCDF files write them."""
+_CALENDARS = ("standard", "gregorian", "proleptic_gregorian")
+"""CF's names of the calendar that clocks have."""
+
+_STANDARD_NAMES = {"u": "eastward_wind", "v": "northward_wind"}
+"""CF's names of a wind, whatever its variables are called."""
 
 _CLOSED = 1e-3
 """What a grid that goes round the earth may lack to 360 deg after its last step [deg]: its
@@ -335,6 +356,7 @@ def read_netcdf(
 def _wind_at(
     path: Path, data: Any, latitude_deg: float, longitude_deg: float
 ) -> tuple[tuple[float, ...], tuple[float, ...], Array]:
+    data = _in_cf_names(_of_one_version(_along_steps(data)))
     time = next((name for name in _TIMES if name in data.dims), None)
     pairs = [(height, u, v) for height, u, v in _PAIRS if u in data and v in data]
     if time is None or not (pairs or {"u", "v", "height"} <= {*data.variables}):
@@ -349,8 +371,9 @@ def _wind_at(
             if other in data.dims and name not in data.variables
         }
     )
-    _check_wind(path, data, time, [name for _, *names in pairs for name in names] or ["u", "v"])
-    data = data.sortby(time)
+    names = [name for _, *pair in pairs for name in pair] or ["u", "v"]
+    _check_wind(path, data, time, names)
+    data = _in_metres_per_second(path, data, names).sortby(time)
     if set(_PLACES) <= set(data.dims):
         data = _at_place(path, data, latitude_deg, longitude_deg)
     if pairs:
@@ -366,28 +389,84 @@ def _wind_at(
             [data[name].transpose(time, "height").values for name in ("v", "u")], axis=-1
         )
     data_times = data[time].values.astype("datetime64[ms]").astype(np.int64) / 1000.0
-    if not np.isfinite(velocity).all():
+    if not np.isfinite(velocity).any():
         raise InputError(
             f"wind.table: {path}: it has no wind at {latitude_deg:.3f}, {longitude_deg:.3f} deg; give another place"
         )
     return tuple(float(t) for t in data_times), heights, np.asarray(velocity, dtype=np.float64)
 
 
-def _check_wind(path: Path, data: Any, time: str, names: list[str]) -> None:
-    """Refuse a wind in another unit than m/s, without a time, or with dimensions that are neither
-    time nor place.
+def _of_one_version(data: Any) -> Any:
+    """Return the data of all versions as one: ERA5's final hours, and its first ones (ERA5T) where
+    there are none yet, as ``expver`` 1 and 5.
     """
+    if "expver" not in data.dims:
+        return data
+    whole = data.isel(expver=0, drop=True)
+    for number in range(1, data.sizes["expver"]):
+        whole = whole.combine_first(data.isel(expver=number, drop=True))
+    return whole
+
+
+def _along_steps(data: Any) -> Any:
+    """Return the data of a forecast over the times that it is for, not over its steps."""
+    if "step" not in data.dims or "time" in data.dims:
+        return data
+    valid = data["time"] + data["step"] if "time" in data.coords else data["step"]
+    return (
+        data.drop_vars("valid_time", errors="ignore")
+        .assign_coords(valid_time=("step", valid.values))
+        .swap_dims(step="valid_time")
+    )
+
+
+def _in_cf_names(data: Any) -> Any:
+    """Return the data with a wind of CF's standard names, over a height, as u and v."""
+    if any(u in data for _, u, _ in _PAIRS) or "u" in data:
+        return data
+    names = {
+        name: short
+        for short, standard in _STANDARD_NAMES.items()
+        for name in data.data_vars
+        if data[name].attrs.get("standard_name") == standard
+    }
+    data = data.rename(names)
+    if "u" in data and "height" in data.coords and "height" not in data.dims:
+        data = data.expand_dims("height")
+    return data
+
+
+def _in_metres_per_second(path: Path, data: Any, names: list[str]) -> Any:
+    """Return the data with a wind in m/s."""
     for name in names:
         unit = str(data[name].attrs.get("units", "m/s")).strip()
-        if unit not in _METRES_PER_SECOND:
-            raise InputError(
-                f"wind.table: {path}: {name} is in {unit!r}; it has to be in m/s: convert it"
-            )
+        try:
+            factor = unit_factor(unit, "m/s")
+        except TableError as error:
+            raise InputError(f"wind.table: {path}: {name}: {error}") from None
+        if factor != 1.0:
+            data = data.assign({name: factor * data[name]})
+    return data
+
+
+def _check_wind(path: Path, data: Any, time: str, names: list[str]) -> None:
+    """Refuse a wind without a time, of a calendar that no clock has, or with dimensions that are
+    neither time nor place.
+    """
+    for name in names:
         if others := [str(of) for of in data[name].dims if of not in (time, "height", *_PLACES)]:
             raise InputError(
                 f"wind.table: {path}: {name} has the dimension '{others[0]}' beside time and place; select one of its"
                 f" {data.sizes[others[0]]} values, and write that to a file"
             )
+    calendar = data[time].encoding.get("calendar") or getattr(
+        data[time].values.flat[0] if data.sizes[time] else None, "calendar", "standard"
+    )
+    if calendar not in _CALENDARS:
+        raise InputError(
+            f"wind.table: {path}: its times are of the calendar '{calendar}', and a flight's are of the"
+            " Gregorian one; convert them"
+        )
     if not np.issubdtype(data[time].dtype, np.datetime64):
         raise InputError(
             f"wind.table: {path}: its times have no unit and origin, as 'hours since 2026-06-01'; give {time} such units"

@@ -282,8 +282,13 @@ def test_netcdf_is_read_by_its_units_names_and_dimensions(tmp_path):
     in_metres = data.assign(u10=data["u10"].assign_attrs(units="m s**-1"))
     assert read("metres.nc", in_metres)[2] == pytest.approx(expected)
     knots = data.assign(v10=data["v10"].assign_attrs(units="knots"))
+    east, north = read("knots.nc", knots)[2][0, 0][::-1]
+    assert (east, north) == pytest.approx(
+        (expected[0, 0, 1], 0.514444 * expected[0, 0, 0]), rel=1e-5
+    )
+    kelvin = data.assign(v10=data["v10"].assign_attrs(units="K"))
     for name, changed, words in (
-        ("knots.nc", knots, r"v10 is in 'knots'; it has to be in m/s: convert it"),
+        ("kelvin.nc", kelvin, r"v10: 'K' is no unit of this quantity, which is in m/s"),
         (
             "ensemble.nc",
             data.expand_dims(number=2),
@@ -304,6 +309,70 @@ def test_netcdf_is_read_by_its_units_names_and_dimensions(tmp_path):
         match="its times have no unit and origin, as 'hours since 2026-06-01'; give valid_time such",
     ):
         read_netcdf(tmp_path / "numbers.nc", 57.2, 11.2)
+
+
+@pytest.fixture
+def hours(tmp_path):
+    """Three hours of wind on a small grid, towards the east at 1, 2 and 3 m/s."""
+    xarray = pytest.importorskip("xarray", reason="xarray is an extra")
+    pytest.importorskip("h5netcdf", reason="h5netcdf is an extra")
+    east = np.ones((3, 2, 2)) * np.array([1.0, 2.0, 3.0])[:, None, None]
+    dims = ("valid_time", "latitude", "longitude")
+    times = np.array(["2026-06-01T10", "2026-06-01T11", "2026-06-01T12"], dtype="datetime64[ns]")
+    return xarray.Dataset(
+        {"u10": (dims, east), "v10": (dims, np.zeros_like(east))},
+        coords={"valid_time": times, "latitude": [57.0, 58.0], "longitude": [11.0, 12.0]},
+    )
+
+
+def stored(data, tmp_path, name="wind.nc", **how):
+    data.to_netcdf(tmp_path / name, engine="h5netcdf", **how)
+    return str(tmp_path / name)
+
+
+def test_versions_of_era5_are_one_wind(hours, tmp_path):
+    import xarray
+
+    final, first = hours.copy(deep=True), hours.copy(deep=True)
+    final["u10"][2] = final["v10"][2] = np.nan
+    first["u10"][:2] = first["v10"][:2] = np.nan
+    both = xarray.concat([final, first], xarray.IndexVariable("expver", [1, 5]))
+    field = wind(stored(both, tmp_path))
+    assert [field.now(3600.0 * hour, 10.0)[1] for hour in range(3)] == pytest.approx(
+        [1.0, 2.0, 3.0]
+    )
+
+
+def test_hours_without_wind_count_only_where_a_flight_needs_them(hours, tmp_path):
+    hours["u10"][2] = np.nan
+    path = stored(hours, tmp_path)
+    field = wind(path, duration=3000.0)
+    assert field.now(1800.0, 10.0)[1] == pytest.approx(1.5)
+    with pytest.raises(
+        InputError, match="has no wind at 2026-06-01T12:00:00Z, which the flight needs"
+    ):
+        wind(path, duration=5000.0)
+
+
+def test_a_wind_of_cf_standard_names_is_read(hours, tmp_path):
+    renamed = hours.rename(u10="ua", v10="va", valid_time="time").assign_coords(height=10.0)
+    for name, standard in (("ua", "eastward_wind"), ("va", "northward_wind")):
+        renamed[name].attrs["standard_name"] = standard
+    assert wind(stored(renamed, tmp_path)).now(3600.0, 10.0)[1] == pytest.approx(2.0)
+
+
+def test_a_forecast_is_read_over_the_times_that_it_is_for(hours, tmp_path):
+    begin = np.datetime64("2026-06-01T10", "ns")
+    steps = hours["valid_time"].values - begin
+    forecast = hours.rename(valid_time="step").assign_coords(step=steps, time=begin)
+    assert wind(stored(forecast, tmp_path)).now(7200.0, 10.0)[1] == pytest.approx(3.0)
+
+
+def test_a_calendar_that_no_clock_has_is_named(hours, tmp_path):
+    numbered = hours.assign_coords(valid_time=[0.0, 1.0, 2.0])
+    numbered["valid_time"].attrs = {"units": "hours since 2026-06-01 10:00", "calendar": "noleap"}
+    with pytest.raises(InputError, match="its times are of the calendar 'noleap'"):
+        wind(stored(numbered, tmp_path))
 
 
 @pytest.mark.parametrize("longitudes", [np.array([11.0, 12.0]), np.arange(0.0, 350.0, 0.25)])
