@@ -26,8 +26,7 @@ from gnc.guidance import Guidance
 from gnc.mission.axis import SearchedAxis
 from scenarios.engine.task import Task
 from scenarios.experiment.requests import Experiment
-from scenarios.flight.onboard import OnboardSensing
-from scenarios.flight.plume_readings import axis_of
+from scenarios.flight.onboard import OnboardSensing, axis_of
 from scenarios.flight_runner import FlightRunner
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.planning.spreads import PredictedSpreads

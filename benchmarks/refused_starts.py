@@ -24,8 +24,7 @@ from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
 from scenarios.experiment.sampling import SamplingDesign
 from scenarios.planning.limits import omega_max
-from scenarios.planning.planner import plan_flight
-from scenarios.planning.start import sampled_start
+from scenarios.planning.missions import plan_flight, sampled_start
 from scenarios.scenario.load import load_study
 from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup

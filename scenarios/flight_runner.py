@@ -21,14 +21,13 @@ from common.columns import Column, Table
 from common.run_layout import CROSSINGS, DRAWS, INTERVENTIONS
 from scenarios.engine.task import Result, Row, Task
 from scenarios.experiment.requests import Experiment, FlightRequest, table_of
-from scenarios.flight.closed_loop import fly
-from scenarios.flight.failure import failure, unflown
+from scenarios.flight.closed_loop import fly, release
+from scenarios.flight.ending import failure, unflown
 from scenarios.flight.guard_belief import GuardBelief
+from scenarios.flight.onboard import BELIEF_COLUMNS
 from scenarios.flight.outcome import Outcome
-from scenarios.flight.plume_readings import BELIEF_COLUMNS
 from scenarios.flight.record import HISTORY_COLUMNS, FlightRecord
-from scenarios.flight.release import release
-from scenarios.flight.time_history import history_files
+from scenarios.flight.time_history import flight_history, history_files
 from scenarios.instruments.fuel_estimate import repeated_figures, with_verdict
 from scenarios.instruments.instrument import (
     EvaluatedInstrument,
@@ -41,9 +40,8 @@ from scenarios.measures.crossings import crossing_rows
 from scenarios.measures.figures import flight_figures, plan_row
 from scenarios.measures.finding import finding_figures
 from scenarios.measures.own_instruments import check_instruments, evaluated
-from scenarios.measures.relative_state import flight_history
 from scenarios.planning.flight_plan import FlightPlan
-from scenarios.planning.planner import plan_flight
+from scenarios.planning.missions import plan_flight
 from scenarios.planning.spreads import PredictedSpreads
 from scenarios.scenario.extension_points import PAYLOADS
 from scenarios.scenario.sections.experiment import STUDY
@@ -151,7 +149,7 @@ class Findings:
                 history[:: plan.log_interval] if flown.every_step else history,
                 flown.request.scenario.flight,
                 noise=reader.spec.known("co2").noise,
-                enough=record.enough,
+                stop_reason=record.stop_reason,
             )
         if record.verdict is not None and "sulphur_verdict" in self.row:
             self.row |= repeated_figures(record.verdict, self.row)

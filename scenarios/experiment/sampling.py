@@ -17,8 +17,7 @@ from scenarios.scenario.load import with_values
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.equipment import SensorsConfig
 from scenarios.scenario.sections.experiment import DrawConfig
-from scenarios.search.coordinate import Coordinate
-from scenarios.search.space import Space
+from scenarios.search.method import Coordinate, Space
 from scenarios.world.vessel import SteadyVessel, check_manoeuvres, largest_acceleration
 from scenarios.world.world import vessel_of
 

@@ -22,10 +22,9 @@ from scenarios.api.scenario import Given, load
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
 from scenarios.experiment.requests import FlightRequest
-from scenarios.flight.closed_loop import ClosedLoop, Commands, record_of
+from scenarios.flight.closed_loop import ClosedLoop, Commands, failable, record_of, release
 from scenarios.flight.outcome import Outcome
 from scenarios.flight.record import FlightRecord
-from scenarios.flight.release import failable, release
 from scenarios.flight_runner import FlightRunner, payload_of, reader_of
 from scenarios.gym.actions import action_box, limits_of
 from scenarios.gym.observation import Array, Observer, observation_space

@@ -16,10 +16,9 @@ from scenarios.flight.record import FlightRecord
 from scenarios.measures.crossings import Crossing, find_crossings
 from scenarios.measures.keepout import closest_approach, keepout_figures
 from scenarios.measures.premises import is_unexplained, premise_figures
-from scenarios.measures.sample import rms
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.world.ais.track import AisVessel
-from scenarios.world.place import Place
+from scenarios.world.vessel import Place
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -387,3 +386,10 @@ def _predicted_interval(plan: FlightPlan, record: FlightRecord, first: float, la
     )
     crossing_rate = per_period / np.interp(ratio, steps, plan.periods)
     return float((last - first) / np.trapezoid(crossing_rate, time))
+
+
+def rms(values: npt.NDArray[np.float64]) -> float:
+    """Return the root of the mean square of ``values``, in their unit; not a number if there are
+    none.
+    """
+    return float(np.sqrt(np.mean(values**2)))

@@ -7,7 +7,7 @@ from typing import Any
 from gnc.estimation.vessel import VesselReport
 from gnc.guidance import GuidanceParameters
 from gnc.reference.reference import PeriodicPath
-from scenarios.planning.bounded_steering import Steering
+from scenarios.planning.guidance import Steering
 from scenarios.planning.limits import omega_max
 from scenarios.planning.margin.keepout_margin import KeepoutMargin
 from scenarios.scenario.scenario import Scenario

@@ -13,7 +13,7 @@ from innerloop.store import Designed
 from scenarios.errors import InputError
 from scenarios.planning.guidance import speed_hold, tracking_parameters
 from scenarios.planning.limits import omega_max
-from scenarios.planning.margin.tracking_spread import SpreadTable, tracking_spreads
+from scenarios.planning.margin.keepout_margin import SpreadTable
 from scenarios.planning.reference import oscillation_at
 from scenarios.planning.scaling import scaled_law_defaults
 from scenarios.scenario.load import with_values
@@ -115,7 +115,8 @@ def _planned_for(scenario: Scenario, defaults: Mapping[str, float]) -> Scenario:
 
 
 def _spread_table(scenario: Scenario, found: Designed, setup: VehicleSetup) -> SpreadTable:
-    # It needs python-control, which a flight in calm air does without.
+    # They need python-control, which a flight in calm air does without.
+    from scenarios.planning.margin.tracking_spread import tracking_spreads
     from scenarios.planning.margin.turn_spread import turn_deviation
 
     schedule = found.design.schedule

@@ -20,9 +20,7 @@ from scenarios.experiment.requests import scenario_file
 from scenarios.experiment.sampling import search_space
 from scenarios.measures.columns import INPUT_COLUMNS, SEARCH_COLUMNS
 from scenarios.scenario.scenario import Scenario
-from scenarios.search.method import SearchSettings
-from scenarios.search.space import Array, Space
-from scenarios.search.turns import methods_named, search_in_turns
+from scenarios.search.method import Array, SearchSettings, Space, methods_named, search_in_turns
 from scenarios.studies.base import ChosenFlightsStudy, clearance, study
 
 CONFIRMATION = "confirmation"

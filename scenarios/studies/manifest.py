@@ -27,7 +27,7 @@ from scenarios.experiment.sampling import (
     random_numbers_of_points,
 )
 from scenarios.planning.scaling import scaled_keys
-from scenarios.planning.theory.speed_ratio import theory_over_speed_ratio
+from scenarios.planning.theory import theory_over_speed_ratio
 from scenarios.scenario.documented_parts import (
     DIMENSIONLESS,
     DocumentedKey,

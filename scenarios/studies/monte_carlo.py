@@ -15,12 +15,13 @@ from scenarios.experiment.sampling import SamplingDesign, flights_per_sample, is
 from scenarios.scenario.scenario import Scenario
 from scenarios.statistics.estimates import (
     COLUMNS,
+    count_violations,
     interval_confidence,
+    looks,
     pessimistic_share,
     study_statistics,
+    tight_enough,
 )
-from scenarios.statistics.stopping import looks, tight_enough
-from scenarios.statistics.violations import count_violations
 from scenarios.studies.base import FlightStudy, frame, study
 from scenarios.studies.summary import FlightCounts
 

@@ -14,9 +14,9 @@ from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Progress
 from scenarios.engine.task import Row
 from scenarios.experiment.requests import FlightRequest
-from scenarios.planning.bounded_steering import farthest_start, largest_speed, search_steering
+from scenarios.planning.guidance import farthest_start, largest_speed, search_steering
 from scenarios.planning.limits import omega_max
-from scenarios.planning.planner import plan_flight
+from scenarios.planning.missions import plan_flight
 from scenarios.planning.reference import circle, oscillation_at
 from scenarios.scenario.load import with_values
 from scenarios.scenario.sections.guidance import GuidanceConfig

@@ -12,7 +12,7 @@ from gnc.estimation.error_budget import EXCEEDED_PER_HOUR
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import StudySummary
-from scenarios.statistics.premises import TABLE_COLUMNS, premise_lines, premise_table
+from scenarios.statistics.estimates import TABLE_COLUMNS, premise_lines, premise_table
 from scenarios.studies.base import FlightStudy, frame, study
 
 _COLUMNS = ("flight_id", "turbulence", "duration_s", *PREMISE_COLUMNS)

@@ -19,17 +19,20 @@ from scenarios.errors import InputError
 from scenarios.experiment.draws import has_speed_ratio, value_at, values_at
 from scenarios.scenario.load import with_values
 from scenarios.scenario.scenario import Scenario
-from scenarios.statistics.estimates import COLUMNS
-from scenarios.statistics.subset_estimates import (
+from scenarios.statistics.estimates import COLUMNS, count_violations
+from scenarios.statistics.subset_simulation import (
+    Array,
+    Point,
     RareProbability,
+    Simulating,
+    Simulation,
+    SubsetSimulation,
     input_shifts,
     near_event,
+    pessimistic_upper,
     rare_probability,
+    subset_statistics,
 )
-from scenarios.statistics.subset_levels import Array, Simulation
-from scenarios.statistics.subset_simulation import Point, Simulating, SubsetSimulation
-from scenarios.statistics.subset_statistics import pessimistic_upper, subset_statistics
-from scenarios.statistics.violations import count_violations
 from scenarios.studies.base import ChosenFlightsStudy, clearance, frame
 
 

@@ -1,15 +1,19 @@
-"""Where the vessel really is, at any time: at constant velocity, or through its manoeuvres."""
+"""Where the vessel really is, at any time: at constant velocity, or through its manoeuvres; and where
+on earth a flight begins.
+"""
 
 import math
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
+from common.geodesy import LocalFrame
 from gnc.errors import InfeasibleError
 from scenarios.scenario.extension_points import VESSEL_TRACKS
-from scenarios.scenario.sections.world import VesselConfig
+from scenarios.scenario.sections.world import PlaceConfig, VesselConfig
 
 TRACK_STEP = 0.05
 """Time step of a tabled track [s]; between its points the track is a parabola to 1e-5 m."""
@@ -239,4 +243,36 @@ def sampled(vessel: VesselTruth, duration: float) -> tuple[Array, Array]:
     times = track_times(duration).tolist()
     return np.array([vessel.motion(time)[2:] for time in times]), np.array(
         [vessel.course(time) for time in times]
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Place:
+    """Where and when a flight begins; what is not known is not a number.
+
+    Attributes
+    ----------
+    latitude, longitude : of the origin [rad]
+    altitude : at which north and east metres are counted [m]
+    utc : of the start, since 1970 [s]
+    """
+
+    latitude: float
+    longitude: float
+    altitude: float
+    utc: float
+
+    @cached_property
+    def frame(self) -> LocalFrame:
+        """The frame that north and east metres are in."""
+        return LocalFrame(self.latitude, self.longitude, self.altitude)
+
+
+def given_place(config: PlaceConfig, altitude: float) -> Place:
+    """Return the place that a scenario gives, with metres at an altitude [m]."""
+    return Place(
+        latitude=math.nan if config.latitude_deg is None else math.radians(config.latitude_deg),
+        longitude=math.nan if config.longitude_deg is None else math.radians(config.longitude_deg),
+        altitude=altitude,
+        utc=math.nan if config.utc is None else config.utc.timestamp(),
     )

@@ -13,15 +13,18 @@ from common.registry import PluginError
 from scenarios.scenario.extension_points import PLUME_MODELS, VESSEL_TRACKS
 from scenarios.scenario.scenario import Scenario
 from scenarios.world.ais.track import AisVessel, ais_vessel
-from scenarios.world.background import UNIFORM, Background
-from scenarios.world.exhaust import Exhaust
 from scenarios.world.faults import TimedFault
 from scenarios.world.own_part import are_numbers, asked, is_number, is_own, refuse_answer
-from scenarios.world.place import Place, given_place
-from scenarios.world.plume import Plume
-from scenarios.world.vessel import SteadyVessel, VesselTruth, sampled, track_times
-from scenarios.world.weather import wind_of
-from scenarios.world.wind_table import first_time
+from scenarios.world.plume import UNIFORM, Background, Exhaust, Plume
+from scenarios.world.vessel import (
+    Place,
+    SteadyVessel,
+    VesselTruth,
+    given_place,
+    sampled,
+    track_times,
+)
+from scenarios.world.wind import first_time, wind_of
 
 TRACK_MARGIN = 5.0
 """How long the track goes on after the longest flight [s]."""

@@ -210,7 +210,7 @@ def test_an_export_into_a_link_is_refused(copy, tmp_path):
         (
             "summary.csv",
             lambda text: text.replace(",", ";"),
-            "' is separated by semicolons; separate its columns by commas",
+            "' is not separated by commas: it was saved by another program",
         ),
         (
             "summary.csv",

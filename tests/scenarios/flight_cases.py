@@ -11,7 +11,7 @@ from gnc.mission.mission import Mode
 from scenarios.engine.task import Task
 from scenarios.experiment.requests import Experiment
 from scenarios.flight_runner import FlightRunner
-from scenarios.planning.planner import plan_flight
+from scenarios.planning.missions import plan_flight
 from scenarios.planning.spreads import PredictedSpreads
 from scenarios.scenario.load import OPERATIONAL, bases
 from scenarios.scenario.overrides import merged

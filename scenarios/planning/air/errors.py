@@ -13,7 +13,7 @@ import numpy.typing as npt
 from aircraft.wind import WindField
 from gnc.estimation.error_budget import Bias, ErrorBudget, Growth, Process, TurnDeviation
 from gnc.estimation.navigation import NOISE_DEVIATIONS
-from scenarios.planning.air.estimated_wind import (
+from scenarios.planning.air.wind import (
     WIND_FOLLOWED,
     largest_wind_change,
     turbulence_met,

@@ -15,7 +15,7 @@ import pandas as pd
 from common.run_layout import HISTORY_SUFFIX, PHASES, SHIPS, SUMMARY
 from scenarios.engine.task import Result, Row, Task
 from scenarios.experiment.requests import Experiment
-from scenarios.flight.failure import failure
+from scenarios.flight.ending import failure
 from scenarios.flight.outcome import Outcome
 from scenarios.flight_runner import FlightRunner
 from scenarios.scenario.extension_points import PAYLOADS

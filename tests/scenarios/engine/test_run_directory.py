@@ -182,7 +182,7 @@ def test_every_package_that_a_flight_imports_is_in_the_hash():
         ("measurement/sniffer/sniffer.py", True),
         ("measurement/sniffer/presets/fast.toml", True),
         ("aircraft/models/aircraft/x8/x8.xml", True),
-        ("scenarios/planning/theory/crossing_limits.json", True),
+        ("scenarios/planning/crossing_limits.json", True),
         ("scenarios/flight_runner.py", True),
         # Scenarios are compared by their content, and neither documents nor compiled files decide
         # anything.

@@ -9,7 +9,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from scenarios.engine.task import Result, Task
-from scenarios.flight.plume_readings import BELIEF_COLUMNS
+from scenarios.flight.onboard import BELIEF_COLUMNS
 from scenarios.flight.record import HISTORY_COLUMNS
 from scenarios.flight.time_history import as_parquet, history_files, keeps_history
 from scenarios.instruments.sniffer import SnifferOnBoard

@@ -13,7 +13,7 @@ from scenarios.errors import InputError
 from scenarios.experiment.points import points_of
 from scenarios.scenario.load import load_study
 from scenarios.studies.checks import check_without_design
-from scenarios.world.exhaust import emission
+from scenarios.world.plume import emission
 from tests.in_process import run_command
 from tests.run_tables import manifest_of
 

@@ -19,11 +19,10 @@ from gnc.estimation.error_budget import (
     TurnDeviation,
     WindErrorByGusts,
 )
-from scenarios.flight.closed_loop import fly
+from scenarios.flight.closed_loop import fly, release
 from scenarios.flight.guard_belief import GuardBelief
 from scenarios.flight.outcome import Outcome
 from scenarios.flight.record import COLUMNS, FlightRecord
-from scenarios.flight.release import release
 from scenarios.measures.figures import flight_figures
 from scenarios.measures.premises import premise_figures
 from scenarios.vehicles.vehicle_setup import kinematic_setup

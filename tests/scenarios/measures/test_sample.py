@@ -2,7 +2,7 @@ import math
 
 import numpy as np
 
-from scenarios.measures.sample import rms
+from scenarios.measures.figures import rms
 
 
 def test_the_rms_of_a_sine_over_its_period_is_its_amplitude_over_the_root_of_two():

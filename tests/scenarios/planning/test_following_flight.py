@@ -11,7 +11,7 @@ from gnc.errors import InfeasibleError
 from gnc.estimation.navigation import WindFilter
 from gnc.mission.follow import FollowingParameters
 from innerloop.flight.part_failure import PartFailure
-from scenarios.planning.air.estimated_wind import navigation_parameters, wind_followed
+from scenarios.planning.air.wind import navigation_parameters, wind_followed
 from scenarios.planning.declared_vessel import check_declared
 from scenarios.vehicles.thrust_expectation import ThrustErrors, ThrustExpectation
 from scenarios.vehicles.vehicle_setup import kinematic_setup

@@ -7,7 +7,7 @@ import pytest
 
 from gnc.errors import InfeasibleError
 from scenarios.errors import InputError
-from scenarios.measures.bezier import bezier_points
+from scenarios.measures.keepout import bezier_points
 from scenarios.planning.limits import check_recorded, path_error_max
 from scenarios.scenario.load import load_study
 from scenarios.studies.checks import check_without_design

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from common.intervals import upper_bound
-from scenarios.statistics.stopping import confidence_at, looks, tight_enough
+from scenarios.statistics.estimates import confidence_at, looks, tight_enough
 
 
 def rows_with(distances, entered=0, outcome="completed"):

@@ -131,7 +131,7 @@ def test_the_console_says_the_bound_of_the_statistics_in_which_a_lost_flight_cou
 @pytest.fixture
 def frequent_looks(monkeypatch):
     """Look after 8, 16, 32 flights and so on: 256 would take too long here."""
-    monkeypatch.setattr("scenarios.statistics.stopping.FIRST_LOOK", 8)
+    monkeypatch.setattr("scenarios.statistics.estimates.FIRST_LOOK", 8)
 
 
 def test_a_study_stops_by_itself_where_the_interval_it_was_asked_for_is_tight_enough(

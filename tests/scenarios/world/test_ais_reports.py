@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from scenarios.scenario.sections.equipment import VesselReportsConfig
-from scenarios.world.ais_reports import no_outage, received_reports
+from scenarios.world.ais.track import no_outage, received_reports
 from scenarios.world.vessel import SteadyVessel
 
 DURATION = 4000.0
