@@ -27,6 +27,7 @@ from scenarios.flight.outcome import Outcome
 from scenarios.flight.plume_readings import BELIEF_COLUMNS
 from scenarios.flight.record import HISTORY_COLUMNS, FlightRecord
 from scenarios.flight.release import release
+from scenarios.flight.smoke import smoke_record
 from scenarios.flight.time_history import history_files
 from scenarios.instruments.fuel_estimate import repeated_figures, with_verdict
 from scenarios.instruments.instrument import (
@@ -121,6 +122,7 @@ class FlightWork:
         row, tables = self._named(task), _Tables()
         history: pd.DataFrame | None = None
         document: Mapping[str, Any] | None = None
+        smoke: bytes | None = None
         try:
             request = self.request(task)
             row |= _request_row(request)
@@ -140,6 +142,11 @@ class FlightWork:
                 plan, vehicle, read, reader=reader_of(plan, instruments), every_step=task.every_step
             )
             history = flight_history(plan, record)
+            smoke = smoke_record(
+                plan.world.exhaust if plan.world else None,
+                float(history["time_s"].iloc[-1]),
+                request.scenario.keepout.radius_m,
+            )
             figures, found = flight_figures(plan, record)
             row |= figures | _never_flown(request, figures)
             # Before an instrument of a user's own may fail.
@@ -190,7 +197,12 @@ class FlightWork:
             )
             row |= failure(error) | flown
         return self._result(
-            task, row | {"wall_time_s": time.perf_counter() - began}, tables, history, document
+            task,
+            row | {"wall_time_s": time.perf_counter() - began},
+            tables,
+            history,
+            document,
+            smoke,
         )
 
     def lost(self, task: Task, reason: str) -> Result:
@@ -245,6 +257,7 @@ class FlightWork:
         tables: Mapping[str, list[Row]] | None = None,
         history: pd.DataFrame | None = None,
         document: Mapping[str, Any] | None = None,
+        smoke: bytes | None = None,
     ) -> Result:
         table = table_of(row["variant"])
         return Result(
@@ -255,6 +268,7 @@ class FlightWork:
                 task,
                 history,
                 document,
+                smoke,
                 columns={} if history is None else self.columns,
                 planned=self._ends[-1],
                 kept=self.histories,
