@@ -27,6 +27,7 @@ from scenarios.flight.guard_belief import GuardBelief
 from scenarios.flight.onboard import BELIEF_COLUMNS
 from scenarios.flight.outcome import Outcome
 from scenarios.flight.record import HISTORY_COLUMNS, FlightRecord
+from scenarios.flight.smoke import smoke_record
 from scenarios.flight.time_history import flight_history, history_files
 from scenarios.instruments.fuel_estimate import repeated_figures, with_verdict
 from scenarios.instruments.instrument import (
@@ -84,12 +85,14 @@ class Findings:
     tables : its rows in other tables
     history : its time history, once it was flown
     document : what an instrument says of it beside its columns and figures
+    smoke : parcels of the exhaust that it was flown in, if there was any
     """
 
     row: Row
     tables: Tables = field(default_factory=dict)
     history: pd.DataFrame | None = None
     document: Mapping[str, Any] | None = None
+    smoke: bytes | None = None
 
     @property
     def named(self) -> Row:
@@ -111,6 +114,11 @@ class Findings:
         """Add the time history, and what is measured without any instrument."""
         plan, record = flown.plan, flown.record
         self.history = flight_history(plan, record)
+        self.smoke = smoke_record(
+            plan.world.exhaust if plan.world else None,
+            float(self.history["time_s"].iloc[-1]),
+            flown.request.scenario.keepout.radius_m,
+        )
         figures, crossings = flight_figures(plan, record)
         self.row |= figures
         # How many manoeuvres of the vessel begin after the end of the flight.
@@ -337,6 +345,7 @@ class FlightRunner:
                 task,
                 history,
                 findings.document,
+                findings.smoke,
                 columns={} if history is None else self.columns,
                 planned=self._ends[-1],
                 kept=self.histories,
