@@ -16,7 +16,7 @@ from report_parts import assert_axes_read_quantity_and_unit, blocks_of, draw_all
 from trial_runs import charts_of, rows_of, with_criterion, with_values
 
 from reports.build import build_reports
-from reports.document.blocks import FlightPicker, Table, Text
+from reports.document.blocks import FlightPicker, Fold, Table, Text
 from reports.errors import ReportError
 from reports.flights.trials.panels_over import PanelsOver, by_violation
 from reports.flights.trials.tables import FAILED_MAX
