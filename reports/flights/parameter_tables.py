@@ -27,9 +27,12 @@ def parameter_blocks(run: RunData, trials: list[Trial]) -> list[Block]:
     """Return what a run's trials set, sweep and sample, and behind a fold every other parameter with
     its default.
     """
+    if not trials:
+        return []
     blocks: list[Block] = []
+    more: list[Table] = []
     if len(trials) == 1 and trials[0].swept and len(trials[0].flown):
-        blocks += [
+        more.append(
             flight_table(
                 run,
                 trials[0].flown,
@@ -37,15 +40,14 @@ def parameter_blocks(run: RunData, trials: list[Trial]) -> list[Block]:
                 OSCILLATION_COLUMNS,
                 flown_ratio=flown_elsewhere(trials[0]),
                 caption="The reference's oscillation in each flight; by equations (6), (8) and (10) of the paper.",
-            ),
-        ]
-    if not trials:
-        return []
+            )
+        )
     for trial in trials:
         derived = _derived(run, trial) if len(trials) == 1 else []
         blocks += [Heading(trial.title), _table(_rows(trial) + derived)]
     every = [[p["key"], "", _default(p), p["unit"], p["meaning"]] for p in trials[0].parameters()]
-    return [*blocks, Fold(title="Every parameter, with its default", blocks=[_table(every)])]
+    title = "Every parameter, with its default"
+    return [*blocks, Fold(title=title, blocks=[*more, _table(every)])]
 
 
 def _table(rows: list[list[str]]) -> Table:
