@@ -3,7 +3,7 @@
 import re
 from typing import Any
 
-from reports.document.blocks import Block, Fold, Heading, Table
+from reports.document.blocks import Block, Fold, Heading, Table, Text
 from reports.document.tables import in_symbols, parameter_value, span
 from reports.flights.names import flown_elsewhere, manoeuvre_name, swept_column
 from reports.flights.trials.tables import OSCILLATION_COLUMNS, flight_table
@@ -42,9 +42,12 @@ def parameter_blocks(run: RunData, trials: list[Trial]) -> list[Block]:
                 caption="The reference's oscillation in each flight; by equations (6), (8) and (10) of the paper.",
             )
         )
-    for trial in trials:
-        derived = _derived(run, trial) if len(trials) == 1 else []
-        blocks += [Heading(trial.title), _table(_rows(trial) + derived)]
+    if len(trials) == 1:
+        blocks += [Heading(trials[0].title), _table(_rows(trials[0]) + _derived(run, trials[0]))]
+    else:
+        # What a trial is about stands above its figures.
+        blocks.append(Text("What each trial sets is in the manifest, and in report.html."))
+        blocks += [Fold(title=trial.title, blocks=[_table(_rows(trial))]) for trial in trials]
     every = [[p["key"], "", _default(p), p["unit"], p["meaning"]] for p in trials[0].parameters()]
     title = "Every parameter, with its default"
     return [*blocks, Fold(title=title, blocks=[*more, _table(every)])]

@@ -253,9 +253,8 @@ def test_a_long_list_of_failed_flights_is_cut_and_says_so(run):
 
 
 def test_parameters_say_what_a_trial_sets_and_samples_and_nothing_else(report):
-    tables = blocks_of(report, Table, "parameters")
-    (fold,) = blocks_of(report, Fold, "parameters")
-    (defaults,) = fold.blocks
+    tables = [block for fold in blocks_of(report, Fold, "parameters") for block in fold.blocks]
+    *tables, defaults = tables
     steady, turns = ({row[0]: row[1:3] for row in table.rows} for table in tables)
     assert steady["wind.speed_mps"] == ["uniform from 2 to 4", "0"]
     assert steady["criteria.crossing_interval_error"] == ["0.0321", "0.01"]
