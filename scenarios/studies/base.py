@@ -169,10 +169,7 @@ class FlightStudy:
             "config_hash": self.config_hash,
             **trial_entries(self.trials, as_read={} if flown is trials else trials),
             "plugins": self.plugins,
-            "vessel_files": {
-                name: {"rows": reports.rows, "used": len(reports.time), "dropped": reports.dropped}
-                for name, reports in self.vessel_files.items()
-            },
+            "vessel_files": {name: reports.record() for name, reports in self.vessel_files.items()},
         }
 
     def _make_flights(self, trials: Mapping[str, Scenario]) -> Mapping[str, Scenario]:
@@ -399,7 +396,7 @@ class FlightStudy:
             trial_counts[row["trial"]].add(row)
         lines = [
             *whole.unexplained_lines(),
-            *(reports.described() for reports in self.vessel_files.values()),
+            *(line for reports in self.vessel_files.values() for line in reports.lines()),
             f"flights: {whole.line()}",
         ]
         if len(trial_counts) > 1:

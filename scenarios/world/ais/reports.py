@@ -6,7 +6,7 @@ import math
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from itertools import islice, pairwise
 from numbers import Integral
@@ -161,6 +161,20 @@ class AisReports:
         if share <= _DROPPED_MOST:
             return ""
         return f"{self.path.name}: {share:.0%} of the reports of MMSI {self.mmsi} were dropped"
+
+    def lines(self) -> list[str]:
+        """Return what a console says of the file: how it was used, and a warning if there is one."""
+        return [self.described(), *([f"warning: {self.warning}"] if self.warning else [])]
+
+    def record(self) -> dict[str, Any]:
+        """Return for JSON how the file was used, and the ship's size where it says one."""
+        return {
+            "rows": self.rows,
+            "used": len(self.time),
+            "dropped": self.dropped,
+            "warning": self.warning,
+            "size": asdict(self.size) if self.size else None,
+        }
 
     def described(self) -> str:
         """Return how many rows were used and dropped, in a line."""
