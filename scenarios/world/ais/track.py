@@ -336,8 +336,3 @@ def _received_from_file(
         elif not (missed or outage[0] <= report.time + late < outage[1]):
             received.append((report.time + late, report))
     return sorted(received, key=lambda entry: entry[0])
-
-
-def no_outage() -> tuple[float, float]:
-    """Return an outage that never begins [s]."""
-    return math.inf, math.inf
