@@ -50,8 +50,10 @@ def check_flyable(guidance: GuidanceConfig, title: str, envelope: Envelope) -> N
     bank = bank_for_heading_rate(omega_max(guidance), airspeed)
     if bank > envelope.bank_max:
         raise InputError(
-            f"guidance asks for {math.degrees(bank):.1f} deg of bank; the autopilot of {title} stops at"
-            f" {math.degrees(envelope.bank_max):.0f}: lower guidance.bank_deg or guidance.heading_rate_max_rad_s"
+            f"guidance asks for {math.degrees(bank):.1f} deg of bank; the autopilot of {title}"
+            " stops at"
+            f" {math.degrees(envelope.bank_max):.0f}: lower guidance.bank_deg or"
+            " guidance.heading_rate_max_rad_s"
         )
 
 
@@ -106,7 +108,9 @@ def check_recorded(scenario: Scenario) -> None:
         else f"set it to {enough:g}"
     )
     raise InfeasibleError(
-        f"flight.log_rate_hz is {rate:g} Hz; at {omega_max(g):.3g} rad/s and {g.airspeed_mps:.4g} m/s the path between two samples,"
-        f" and with it keep-out figures, may be wrong by {error:.2g} m, and the limit is {_PATH_ERROR_MAX:g} m: {remedy}, or lower"
+        f"flight.log_rate_hz is {rate:g} Hz; at {omega_max(g):.3g} rad/s and {g.airspeed_mps:.4g}"
+        " m/s the path between two samples,"
+        f" and with it keep-out figures, may be wrong by {error:.2g} m, and the limit is"
+        f" {_PATH_ERROR_MAX:g} m: {remedy}, or lower"
         " guidance.heading_rate_max_rad_s"
     )

@@ -30,7 +30,7 @@ class Corners:
 
     Parameters
     ----------
-    space, settings, generator : as of ``SEARCH_METHODS``
+    space, settings, generator : same as ``SEARCH_METHODS``
     """
 
     exhausted = False
@@ -105,7 +105,7 @@ class LocalClimb:
 
     Parameters
     ----------
-    space, settings, generator : as of ``SEARCH_METHODS``
+    space, settings, generator : same as ``SEARCH_METHODS``
     """
 
     def __init__(
@@ -186,7 +186,7 @@ class CovarianceMatrixAdaptation:
 
     Parameters
     ----------
-    space, settings, generator : as of ``SEARCH_METHODS``
+    space, settings, generator : same as ``SEARCH_METHODS``
     """
 
     def __init__(
@@ -264,7 +264,7 @@ class DifferentialEvolution:
 
     Parameters
     ----------
-    space, settings, generator : as of ``SEARCH_METHODS``
+    space, settings, generator : same as ``SEARCH_METHODS``
     """
 
     def __init__(

@@ -169,7 +169,7 @@ def tight_enough(
             dtype=np.float64
         )
         interval = quantile_interval(distances[np.isfinite(distances)], distance_quantile, level)
-        # If a limit is missing the width is not a number, and this comparison is false.
+        # If a limit is missing the width is NaN, and this comparison is false.
         return interval.width <= distance_quantile_width_m
     return True
 
@@ -208,7 +208,7 @@ def study_statistics(
     look_number: int | None = None,
     per_sample: int = 1,
 ) -> Json:
-    """Return the content of ``statistics.json``; values that are not a number become None.
+    """Return the content of ``statistics.json``; NaN becomes None.
 
     Parameters
     ----------
@@ -256,7 +256,7 @@ def study_statistics(
 
 
 def interval_confidence(confidence: float, look_number: int | None) -> float:
-    """Return the confidence of each interval, by that of the study and its look, as of
+    """Return the confidence of each interval, by that of the study and its look, same as
     ``study_statistics``.
     """
     return confidence if look_number is None else confidence_at(look_number, confidence)
@@ -270,7 +270,7 @@ def pessimistic_share(found: Violations, level: float, *, per_sample: int) -> Js
 
 
 def study_figures(rows: pd.DataFrame) -> dict[str, Array]:
-    """Return the figures of each flight, shape (n,); not a number where a flight has no such
+    """Return the figures of each flight, shape (n,); NaN where a flight has no such
     figure.
 
     Distances are in metres, and clearances are measured from r_min; the error of the mean crossing

@@ -202,10 +202,8 @@ def aircraft_setup(
     level, climbing, parts = None, None, fault_names(schedule.spec)
     if failing := [setting for setting in settings if setting.declared_faults.intersection(parts)]:
         failable = AutopilotedAircraft(schedule.spec, run.model, failable=True)
-        gradient, turn = (
-            max(setting.following.climb_gradient for setting in failing),
-            max(bank, schedule.envelope.bank),
-        )
+        gradient = max(setting.following.climb_gradient for setting in failing)
+        turn = max(bank, schedule.envelope.bank)
         level, climbing = (
             measure_part_failure(failable, start, turn, schedule.envelope.airspeed_min, each)
             for each in (0.0, gradient)

@@ -42,7 +42,7 @@ class VesselTruth(Protocol):
 
     @property
     def manoeuvres_end(self) -> float:
-        """Time at which the last manoeuvre ends, not a number without any [s]."""
+        """Time at which the last manoeuvre ends, NaN without any [s]."""
 
 
 vessel_track = VESSEL_TRACKS.register
@@ -56,8 +56,6 @@ class SteadyVessel:
     ----------
     speed, course : over the ground [m/s, rad]
     """
-
-    __slots__ = ("_course", "_v_east", "_v_north", "manoeuvres_end")
 
     def __init__(self, speed: float, course: float) -> None:
         self._course = course
@@ -81,7 +79,7 @@ class TabledVessel:
     ----------
     velocity : north and east, shape (n, 2) [m/s]
     course : shape (n,) [rad]
-    manoeuvres_end : when the last manoeuvre ends, not a number without any [s]
+    manoeuvres_end : when the last manoeuvre ends, NaN without any [s]
     """
 
     def __init__(self, velocity: Array, course: Array, manoeuvres_end: float) -> None:
@@ -184,8 +182,10 @@ def check_manoeuvres(vessel: VesselConfig, speed: float) -> None:
     ):
         if m.at_s < end - TRACK_STEP:
             raise InfeasibleError(
-                f"vessel.manoeuvres.{i} begins at {m.at_s:g} s, before an earlier one has ended, at {end:g} s; let it begin later,"
-                " or turn faster (turn_rate_deg_s) or accelerate harder (acceleration_mps2), or make one manoeuvre of both"
+                f"vessel.manoeuvres.{i} begins at {m.at_s:g} s, before an earlier one has ended, at"
+                f" {end:g} s; let it begin later,"
+                " or turn faster (turn_rate_deg_s) or accelerate harder (acceleration_mps2), or"
+                " make one manoeuvre of both"
             )
         end = max(end, until)
 
@@ -248,7 +248,7 @@ def sampled(vessel: VesselTruth, duration: float) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, kw_only=True)
 class Place:
-    """Where and when a flight begins; what is not known is not a number.
+    """Where and when a flight begins; what is not known is NaN.
 
     Attributes
     ----------

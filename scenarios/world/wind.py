@@ -125,8 +125,10 @@ def tabled_wind(config: WindConfig, place: Place, duration: float) -> WindField:
         if not first <= place.utc <= place.utc + duration <= last:
             at = [f" (line {line})" for line in found.lines] if found.lines else ["", ""]
             raise InputError(
-                f"wind.table: {name} goes from {utc_text(first)}{at[0]} to {utc_text(last)}{at[1]}; the longest flight goes from"
-                f" {utc_text(place.utc)} to {utc_text(place.utc + duration)}: give a longer table, or set place.utc or"
+                f"wind.table: {name} goes from {utc_text(first)}{at[0]} to {utc_text(last)}{at[1]};"
+                " the longest flight goes from"
+                f" {utc_text(place.utc)} to {utc_text(place.utc + duration)}: give a longer table,"
+                " or set place.utc or"
                 " flight.duration_max_s"
             )
     times = [time - place.utc for time in found.times] or [0.0]
@@ -142,7 +144,7 @@ def tabled_wind(config: WindConfig, place: Place, duration: float) -> WindField:
 
 
 def first_time(table: str, place: Place) -> float:
-    """Return the first time of a file of wind, since 1970 [s]; not a number where it has none.
+    """Return the first time of a file of wind, since 1970 [s]; NaN where it has none.
 
     Raises
     ------
@@ -164,7 +166,8 @@ def _read(table: str, place: Place) -> TabledWind:
         return _read_table(path, stamp)
     if not math.isfinite(place.latitude):
         raise InputError(
-            f"wind.table: {path} has winds of many places; say which: place.latitude_deg, place.longitude_deg"
+            f"wind.table: {path} has winds of many places; say which: place.latitude_deg,"
+            " place.longitude_deg"
         )
     return _read_netcdf(path, stamp, math.degrees(place.latitude), math.degrees(place.longitude))
 
@@ -217,12 +220,17 @@ def _rows(
     if not set(COLUMNS[2:]) <= set(heads) or not set(COLUMNS[:2]) & set(heads):
         remedy = other_units(heads, COLUMNS[2:]) or "rename the columns to these"
         if _TO in heads and COLUMNS[3] not in heads:
-            remedy = f"{COLUMNS[3]} is where the wind comes from: add 180 deg to '{_TO}', less 360 where it is more, and rename it"
-        raise InputError(f"wind.table: {path}, line {first}: the header is {','.join(heads)[:80]!r}; it must be {','.join(COLUMNS)}"
+            remedy = (
+                f"{COLUMNS[3]} is where the wind comes from: add 180 deg to '{_TO}', less 360"
+                " where it is more, and rename it"
+            )
+        raise InputError(f"wind.table: {path}, line {first}: the header is"
+            f" {','.join(heads)[:80]!r}; it must be {','.join(COLUMNS)}"
                          f", of which time_utc or height_m may be missing: {remedy}")  # fmt: skip
     if twice := [column for column in COLUMNS if heads.count(column) > 1]:
         raise InputError(
-            f"wind.table: {path}, line {first}: the header has '{twice[0]}' twice; leave one of the columns out"
+            f"wind.table: {path}, line {first}: the header has '{twice[0]}' twice; leave one of the"
+            " columns out"
         )
     for line, row in lines:
         if not any(cell.strip() for cell in row):
@@ -234,7 +242,8 @@ def _rows(
             time = seconds_of(named.get("time_utc", "")) if "time_utc" in heads else math.nan
         except ValueError:
             raise InputError(
-                f"wind.table: {path}, line {line}: {named.get('time_utc', '')[:40]!r} is no time, as in 2026-06-01T12:00:00Z;"
+                f"wind.table: {path}, line {line}: {named.get('time_utc', '')[:40]!r} is no time,"
+                " as in 2026-06-01T12:00:00Z;"
                 " correct it"
             ) from None
         height, speed, direction = (number_of(named.get(column)) for column in COLUMNS[1:])
@@ -245,7 +254,8 @@ def _rows(
         )
         if not good:
             raise InputError(
-                f"wind.table: {path}, line {line}: {','.join(row)[:80]!r}; speeds go from 0 to {_SPEED_MAX:g} m/s, directions"
+                f"wind.table: {path}, line {line}: {','.join(row)[:80]!r}; speeds go from 0 to"
+                f" {_SPEED_MAX:g} m/s, directions"
                 " from 0 to 360 deg, heights are above 0: correct the line, or delete it"
             )
         yield line, time, height, *wind_velocity(speed, direction)
@@ -263,7 +273,10 @@ def _incomplete(heads: list[str], row: list[str]) -> str:
         return f"has {len(row)} of {len(heads)} columns: {shown}; correct the line, or delete it"
     for place in numbers:
         if math.isnan(number_of(row[place])):
-            return f"has {row[place][:40]!r} for {heads[place]}, which is not a number: correct the line, or delete it"
+            return (
+                f"has {row[place][:40]!r} for {heads[place]}, which is not a number: correct the"
+                " line, or delete it"
+            )
     return ""
 
 
@@ -277,19 +290,22 @@ def _on_grid(path: Path, rows: list[tuple[int, float, float, float, float]]) -> 
         key = time if timed else 0.0
         if key < before:
             raise InputError(
-                f"wind.table: {path}, line {line}: {utc_text(time)} is before the line above; sort the table by time"
+                f"wind.table: {path}, line {line}: {utc_text(time)} is before the line above; sort"
+                " the table by time"
             )
         layers = at.setdefault(key, {})
         if (layer := height if layered else 0.0) in layers:
             raise InputError(
-                f"wind.table: {path}, line {line}: the time and height of a line above once more; delete one of them"
+                f"wind.table: {path}, line {line}: the time and height of a line above once more;"
+                " delete one of them"
             )
         layers[layer], before = (north, east), key
     heights = tuple(sorted(next(iter(at.values()))))
     for time, layers in at.items():
         if tuple(sorted(layers)) != heights:
             raise InputError(
-                f"wind.table: {path}: at {utc_text(time)} heights are {sorted(layers)} m, at first {list(heights)}; give the same"
+                f"wind.table: {path}: at {utc_text(time)} heights are {sorted(layers)} m, at first"
+                f" {list(heights)}; give the same"
                 " at all times"
             )
     velocity = np.array([[layers[height] for height in heights] for layers in at.values()])
@@ -348,7 +364,8 @@ def read_netcdf(
         import xarray
     except ImportError:
         raise InputError(
-            f"wind.table: {path}: netCDF needs xarray and h5netcdf; install the extra: {install_words('weather')}"
+            f"wind.table: {path}: netCDF needs xarray and h5netcdf; install the extra:"
+            f" {install_words('weather')}"
         ) from None
     try:
         with xarray.open_dataset(path) as data:
@@ -370,7 +387,8 @@ def _wind_at(
     pairs = [(height, u, v) for height, u, v in _PAIRS if u in data and v in data]
     if time is None or not (pairs or {"u", "v", "height"} <= {*data.variables}):
         raise InputError(
-            f"wind.table: {path}: it has {', '.join(sorted(map(str, data.variables)))[:120]}; needed are a time and u10 with v10,"
+            f"wind.table: {path}: it has {', '.join(sorted(map(str, data.variables)))[:120]};"
+            " needed are a time and u10 with v10,"
             " or u and v over height"
         )
     data = data.rename(
@@ -399,7 +417,8 @@ def _wind_at(
     data_times = data[time].values.astype("datetime64[ms]").astype(np.int64) / 1000.0
     if not np.isfinite(velocity).all():
         raise InputError(
-            f"wind.table: {path}: it has no wind at {latitude_deg:.3f}, {longitude_deg:.3f} deg; give another place"
+            f"wind.table: {path}: it has no wind at {latitude_deg:.3f}, {longitude_deg:.3f} deg;"
+            " give another place"
         )
     return tuple(float(t) for t in data_times), heights, np.asarray(velocity, dtype=np.float64)
 
@@ -416,12 +435,14 @@ def _check_wind(path: Path, data: Any, time: str, names: list[str]) -> None:
             )
         if others := [str(of) for of in data[name].dims if of not in (time, "height", *_PLACES)]:
             raise InputError(
-                f"wind.table: {path}: {name} has the dimension '{others[0]}' beside time and place; select one of its"
+                f"wind.table: {path}: {name} has the dimension '{others[0]}' beside time and place;"
+                " select one of its"
                 f" {data.sizes[others[0]]} values, and write that to a file"
             )
     if not np.issubdtype(data[time].dtype, np.datetime64):
         raise InputError(
-            f"wind.table: {path}: its times have no unit and origin, as 'hours since 2026-06-01'; give {time} such units"
+            f"wind.table: {path}: its times have no unit and origin, as 'hours since 2026-06-01';"
+            f" give {time} such units"
         )
     if not data.sizes[time]:
         raise InputError(
@@ -436,7 +457,8 @@ def _at_place(path: Path, data: Any, latitude_deg: float, longitude_deg: float) 
         low, high = float(data[name].min()), float(data[name].max())
         if not low <= value <= high:
             raise InputError(
-                f"wind.table: {path}: {name}s go from {low:g} to {high:g} deg, and the flight begins at {value:.3f}; give a file"
+                f"wind.table: {path}: {name}s go from {low:g} to {high:g} deg, and the flight"
+                f" begins at {value:.3f}; give a file"
                 " of that place"
             )
         data = data.sel({name: low}) if low == high else data.sortby(name)

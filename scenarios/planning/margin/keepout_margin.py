@@ -473,7 +473,7 @@ def mean_interval(intervals: tuple[float, float]) -> float:
 
 def _filter_sigma(known: FilterParameters, interval: float) -> float:
     """Return the standard deviation of the vessel's place as the filter knows it, at the mean
-    interval of her reports [m].
+    interval of its reports [m].
     """
     vessel = VesselFilter(known)
     for number in range(_SETTLED):

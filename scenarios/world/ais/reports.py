@@ -1,5 +1,5 @@
 """Reports of one vessel from a file: a table in one of the known layouts, or NMEA sentences as received
-(``!AIVDM,...``, decoded by pyais). Rows of no use are left out and counted.
+(``!AIVDM,...``, decoded by pyais). Unusable rows are left out and counted.
 """
 
 import bisect
@@ -27,7 +27,7 @@ from scenarios.scenario.sections.world import GAP_MAX
 
 
 class AisRow(NamedTuple):
-    """A report as its file has it; not a number where it says nothing.
+    """A report as its file has it; NaN where it says nothing.
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ def seconds_of(text: str) -> float:
 
 
 def number_of(text: str | None) -> float:
-    """Return a number, with a point or a comma; not a number if there is none."""
+    """Return a number, with a point or a comma; NaN if there is none."""
     try:
         return float((text or "").strip().replace(",", "."))
     except ValueError:
@@ -81,7 +81,7 @@ NO_TIME, NO_PLACE, NO_SPEED, DUPLICATE, OUT_OF_ORDER, OUT_OF_REACH = (
     "without a time", "without a possible position", "without speed or course", "with the time of another", "out of order",
     "out of reach of others",
 )  # fmt: skip
-"""Why rows are of no use."""
+"""Why rows are not used."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -96,7 +96,7 @@ class AisReports:
     latitude, longitude : [rad]
     speed, course : over the ground, course from true north [m/s, rad]
     rows : of the vessel in the file
-    dropped : number of rows of no use, by why they are
+    dropped : number of rows that are not used, by the reason
     """
 
     path: Path
@@ -154,7 +154,8 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
             else "correct the rows, or give another file"
         )
         raise InputError(
-            f"{path}: {len(kept)} of {len(rows)} rows of MMSI {identity} used, two are needed;{f' dropped: {why};' if why else ''}"
+            f"{path}: {len(kept)} of {len(rows)} rows of MMSI {identity} used, two are"
+            f" needed;{f' dropped: {why};' if why else ''}"
             f" {remedy}"
         )
     columns = np.array(kept).T
@@ -179,7 +180,7 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
 
 
 def _by_what_they_say(rows: Sequence[AisRow]) -> list[str]:
-    """Return why each row is of no use by its own values, empty where it is: ITU-R M.1371-5 has 91,
+    """Return why a row is not used by its own values, empty where it is: ITU-R M.1371-5 has 91,
     181, 102.3 and 360 for none.
     """
     reasons = []
@@ -196,7 +197,7 @@ def _by_what_they_say(rows: Sequence[AisRow]) -> list[str]:
 
 
 def _by_their_times(rows: Sequence[AisRow]) -> list[str]:
-    """Return why each row is of no use by its time: the longest run of rows whose times rise is
+    """Return why a row is not used by its time: the longest run of rows whose times rise is
     kept.
     """
     last: list[int] = []
@@ -225,7 +226,7 @@ def _by_their_times(rows: Sequence[AisRow]) -> list[str]:
 
 
 def _by_their_places(rows: Sequence[AisRow]) -> list[str]:
-    """Return why each row is of no use by its place: a vessel could not have come from the row
+    """Return why a row is not used by its place: a vessel could not have come from the row
     before, nor gone to the next.
     """
     _, time, latitude, longitude, _, _ = (
@@ -333,7 +334,8 @@ def rows_of(path: Path, mmsi: int | None) -> tuple[int, list[AisRow]]:
         raise InputError(f"{path}: cannot be read: {error.strerror}; check the path") from None
     except (UnicodeDecodeError, csv.Error) as error:
         raise InputError(
-            f"{path}: not a table or NMEA sentences as text ({error}); unpack it, or save it in UTF-8"
+            f"{path}: not a table or NMEA sentences as text ({error}); unpack it, or save it in"
+            " UTF-8"
         ) from None
 
 
@@ -359,7 +361,8 @@ def _table_rows(
         plain = LAYOUTS[0].columns
         remedy = other_units(heads, plain) or "rename the columns to these"
         raise InputError(
-            f"{path}, line {first}: the header is {head.strip()[:_SHOWN]!r}; known are those of the Danish Maritime Authority and"
+            f"{path}, line {first}: the header is {head.strip()[:_SHOWN]!r}; known are those of the"
+            " Danish Maritime Authority and"
             f" of Marine Cadastre, and {','.join(plain)}: {remedy}"
         )
     if twice := [column for column in layout.columns if heads.count(column) > 1]:
@@ -386,7 +389,8 @@ def _table_rows(
             seconds = layout.seconds(time) if places[0] < len(cells) else math.nan
         except ValueError:
             raise InputError(
-                f"{path}, line {number}: {time[:40]!r} is no time of the layout {layout.name}, as in {layout.time}; correct it, or"
+                f"{path}, line {number}: {time[:40]!r} is no time of the layout {layout.name}, as"
+                f" in {layout.time}; correct it, or"
                 " delete the line"
             ) from None
         yield int(identity), AisRow(number, seconds, *map(number_of, others))
@@ -404,7 +408,8 @@ def _of_one(
             found.append(row)
     if mmsi is None and len(counts) > 1:
         raise InputError(
-            f"{path}: it has {len(counts)} vessels, {_most(counts)}; name one of them by its MMSI (vessel.mmsi)"
+            f"{path}: it has {len(counts)} vessels, {_most(counts)}; name one of them by its MMSI"
+            " (vessel.mmsi)"
         )
     if not found:
         return None
@@ -416,7 +421,8 @@ def _no_row(path: Path, mmsi: int | None, rows: Iterable[tuple[int, AisRow]]) ->
     counts = Counter(identity for identity, _ in rows)
     if not counts:
         return InputError(
-            f"{path}: no row has an MMSI in digits, as 219999001, in the column of its name; give a file of AIS reports"
+            f"{path}: no row has an MMSI in digits, as 219999001, in the column of its name; give a"
+            " file of AIS reports"
         )
     return InputError(
         f"{path}: no row of MMSI {mmsi}; it has {_most(counts)}: check the number (vessel.mmsi)"
@@ -484,7 +490,8 @@ def nmea_rows(lines: Iterable[str], path: Path) -> Iterator[tuple[int, AisRow]]:
             else "no sentence that can be decoded"
         )
         raise InputError(
-            f"{path}: it has {types}; position reports of types {', '.join(map(str, _POSITION_REPORTS))} are read, others have no"
+            f"{path}: it has {types}; position reports of types"
+            f" {', '.join(map(str, _POSITION_REPORTS))} are read, others have no"
             " speed and course, or none that is exact enough: give a file with these"
         )
 
@@ -504,12 +511,14 @@ def _time_of(head: str, path: Path, number: int) -> float:
         time = float(text) if text.replace(".", "", 1).isdigit() else seconds_of(text)
     except ValueError:
         raise InputError(
-            f"{path}, line {number}: the sentence has no time; give each its time of reception, as in"
+            f"{path}, line {number}: the sentence has no time; give each its time of reception, as"
+            " in"
             " \\c:1780315200*5A\\!AIVDM,... or 2026-06-01T12:00:00Z !AIVDM,..."
         ) from None
     if time >= _DATE_FROM:
         raise InputError(
-            f"{path}, line {number}: the time {text} is beyond milliseconds since 1970, and no date without its marks is read; give"
+            f"{path}, line {number}: the time {text} is beyond milliseconds since 1970, and no date"
+            " without its marks is read; give"
             " seconds since 1970, as 1780315200, or 2026-06-01T12:00:00Z"
         )
     return time / 1000.0 if time >= _MILLISECONDS_FROM else time
@@ -521,11 +530,11 @@ _PAIRS_MIN = 10
 
 _WAY_MIN, _TIME_MAX = 30.0, 60.0
 """Least way between the places of a pair [m], which scatter by some, and longest time [s]: in it
-she goes nearly straight.
+the vessel goes nearly straight.
 """
 
 _TURN_MAX, _FASTER_MAX = math.radians(10.0), 1.2
-"""Change of course [rad], and larger over smaller speed [-], up to which she went straight and
+"""Change of course [rad], and larger over smaller speed [-], up to which it went straight and
 evenly in a longer time.
 """
 
@@ -555,16 +564,19 @@ def check_units(
     swapped = _against_places(time, longitude, latitude, speed, course)
     if swapped is not None and _agree(*swapped, share=_CLOSE):
         raise InputError(
-            f"{path}: latitude and longitude are swapped: only so are speeds and courses those between places; swap the"
+            f"{path}: latitude and longitude are swapped: only so are speeds and courses those"
+            " between places; swap the"
             " columns' names"
         )
     if not _RATIO[0] <= ratio <= _RATIO[1]:
         raise InputError(
-            f"{path}: reported speeds are {ratio:.2f} of those between places, in the median; they must be in knots (column"
+            f"{path}: reported speeds are {ratio:.2f} of those between places, in the median; they"
+            " must be in knots (column"
             " sog_kn or SOG), and latitude and longitude in degrees: convert them"
         )
     raise InputError(
-        f"{path}: reported courses are {off:.0f} deg off those between places, in the median; they must be over the ground, in"
+        f"{path}: reported courses are {off:.0f} deg off those between places, in the median; they"
+        " must be over the ground, in"
         " degrees from true north (column cog_deg or COG): convert them, or take another column"
     )
 
