@@ -783,9 +783,15 @@ def _shift(
         ]
         medians = (float(declared.median()), float(near.median()))
         return InputShift(
-            key=key, distance=found, median=medians[0], median_near=medians[1], edges=tuple(edges.tolist()), names=(),
-            declared=shares[0], near=shares[1],
-        )  # fmt: skip
+            key=key,
+            distance=found,
+            median=medians[0],
+            median_near=medians[1],
+            edges=tuple(edges.tolist()),
+            names=(),
+            declared=shares[0],
+            near=shares[1],
+        )
     words = [declared.astype(str), near.astype(str)]
     names = tuple(dict.fromkeys([*sorted(words[0].unique()), *words[1].unique()]))
     counted = [tuple(float((values == name).mean()) for name in names) for values in words]

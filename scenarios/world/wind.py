@@ -224,9 +224,11 @@ def _rows(
                 f"{COLUMNS[3]} is where the wind comes from: add 180 deg to '{_TO}', less 360"
                 " where it is more, and rename it"
             )
-        raise InputError(f"wind.table: {path}, line {first}: the header is"
+        raise InputError(
+            f"wind.table: {path}, line {first}: the header is"
             f" {','.join(heads)[:80]!r}; it must be {','.join(COLUMNS)}"
-                         f", of which time_utc or height_m may be missing: {remedy}")  # fmt: skip
+            f", of which time_utc or height_m may be missing: {remedy}"
+        )
     if twice := [column for column in COLUMNS if heads.count(column) > 1]:
         raise InputError(
             f"wind.table: {path}, line {first}: the header has '{twice[0]}' twice; leave one of the"

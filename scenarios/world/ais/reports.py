@@ -78,9 +78,13 @@ satellite navigation [m/s, m].
 """
 
 NO_TIME, NO_PLACE, NO_SPEED, DUPLICATE, OUT_OF_ORDER, OUT_OF_REACH = (
-    "without a time", "without a possible position", "without speed or course", "with the time of another", "out of order",
+    "without a time",
+    "without a possible position",
+    "without speed or course",
+    "with the time of another",
+    "out of order",
     "out of reach of others",
-)  # fmt: skip
+)
 """Why rows are not used."""
 
 
