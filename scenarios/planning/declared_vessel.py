@@ -14,7 +14,6 @@ from gnc.estimation.vessel import KEPT, VesselLimits, VesselReport, radius_after
 from scenarios.scenario.scenario import Scenario
 from scenarios.world.ais.track import AisVessel
 from scenarios.world.vessel import (
-    ManoeuvringVessel,
     SteadyVessel,
     VesselTruth,
     largest_acceleration,
@@ -56,40 +55,29 @@ def check_declared(scenario: Scenario, vessel: VesselTruth) -> None:
     """
     if not scenario.guidance.keepout_guard:
         return
-    # A steady vessel does at any time what it does at first.
-    f = scenario.following
-    duration = 0.0 if type(vessel) is SteadyVessel else scenario.flight.duration_max_s
+    f, duration = scenario.following, scenario.flight.duration_max_s
+    if type(vessel) is SteadyVessel:
+        # It does at any time what it does at first.
+        duration = 0.0
     acceleration, speed = largest_acceleration(vessel, duration), largest_speed(vessel, duration)
-    other = "fly another time of its file (place.utc)" if isinstance(vessel, AisVessel) else ""
-    scripted = (
-        "vessel.manoeuvres"
-        if isinstance(vessel, ManoeuvringVessel)
-        else f"vessel.track '{scenario.vessel.track}'"
-    )
+    relied = "on which the keep-out guard relies: declare more, or fly another time or track"
     if acceleration > f.vessel_acceleration_mps2:
         raise InfeasibleError(
             f"the vessel accelerates by {_at_least(acceleration)} m/s2, changes of speed and course"
-            " together; declared are at most"
-            f" following.vessel_acceleration_mps2 = {f.vessel_acceleration_mps2:g}, on which the"
-            " keep-out guard relies: declare"
-            f" more, or {other or f'manoeuvre more gently ({scripted})'}"
+            " together; declared are at most following.vessel_acceleration_mps2 ="
+            f" {f.vessel_acceleration_mps2:g}, {relied}"
         )
     if f.vessel_speed_max_mps is not None and speed > f.vessel_speed_max_mps:
         raise InfeasibleError(
             f"the vessel moves at up to {_at_least(speed)} m/s over the ground; it is declared to"
-            " stay within"
-            f" following.vessel_speed_max_mps = {f.vessel_speed_max_mps:g}, on which the keep-out"
-            " guard relies: declare more, or"
-            f" {other or 'sail more slowly'}"
+            f" stay within following.vessel_speed_max_mps = {f.vessel_speed_max_mps:g}, {relied}"
         )
     # NaN is no agreement.
     if not (off := largest_inconsistency(vessel, duration)) <= _INCONSISTENCY_MAX:
         raise InfeasibleError(
             f"vessel.track '{scenario.vessel.track}': its places and the integral of the velocity"
-            " that motion() returns differ"
-            f" by up to {off:.2g} m; {_INCONSISTENCY_MAX:g} m are allowed for rounding: let the"
-            " velocity be the derivative of the"
-            " place, on which the keep-out guard relies"
+            f" that motion() returns differ by up to {off:.2g} m; {_INCONSISTENCY_MAX:g} m are"
+            " allowed for rounding: let the velocity be the derivative of the place"
         )
 
 
