@@ -153,12 +153,9 @@ def _check_within(
     if off[worst] > allowed[worst]:
         raise InfeasibleError(
             f"the report of {utc_text(vessel.place.utc + report.time)} and the smooth track through"
-            " all reports lie"
-            f" {off[worst]:.1f} m apart after {age[worst]:.1f} s; {allowed[worst]:.1f} m are"
-            " allowed for by"
-            f" reports.position_sigma_m and {declared}: declare more, delete the report, or fly"
-            " another time"
-            " of its file (place.utc)"
+            f" all reports lie {off[worst]:.1f} m apart after {age[worst]:.1f} s;"
+            f" {allowed[worst]:.1f} m are allowed for by reports.position_sigma_m and {declared}:"
+            " declare more, delete the report, or fly another time of its file (place.utc)"
         )
 
 

@@ -105,17 +105,15 @@ def flown_altitudes(scenario: Scenario) -> tuple[float, float]:
     if highest - lowest < _ROOM:
         raise InfeasibleError(
             f"flight.altitude_min_m and altitude_max_m are {flight.altitude_min_m:g} and"
-            f" {flight.altitude_max_m:g} m; the aircraft"
-            f" keeps {margin:g} m from each, and a plume is searched for within at least {_ROOM:g}"
-            " m: give them"
-            f" {2.0 * margin + _ROOM:g} m or more between them"
+            f" {flight.altitude_max_m:g} m; the aircraft keeps {margin:g} m from each, and a plume"
+            f" is searched for within at least {_ROOM:g} m: give them {2.0 * margin + _ROOM:g} m or"
+            " more between them"
         )
     if not lowest <= scenario.altitude <= highest:
         raise InfeasibleError(
             f"the flight starts at an altitude of {scenario.altitude:g} m; the aircraft keeps"
-            f" within {lowest:g} and {highest:g} m,"
-            " which follow from flight.altitude_min_m and altitude_max_m: set flight.altitude_m in"
-            " between"
+            f" within {lowest:g} and {highest:g} m, which follow from flight.altitude_min_m and"
+            " altitude_max_m: set flight.altitude_m in between"
         )
     return lowest, highest
 

@@ -57,9 +57,8 @@ class PredictedSpreads:
             raise InfeasibleError(self.refused[key])
         if key not in self.tables:
             raise InputError(
-                "guidance is sampled from a continuous distribution in turbulence, where each value"
-                " takes a margin of its own;"
-                " give it a choice of values instead"
+                "guidance is sampled from a continuous distribution in turbulence, where each"
+                " value takes a margin of its own; give it a choice of values instead"
             )
         return self.tables[key]
 

@@ -390,9 +390,8 @@ def _asked(name: str, method: SearchMethod, found: Found, room: int, dimension: 
     if points.ndim != 2 or points.shape[1] != dimension or len(points) > room:
         raise PluginError(
             f"search method '{name}' proposed points of shape {points.shape}; it was asked for at"
-            f" most {room} of {dimension}"
-            f" coordinates each: let ask(found, room) return an array of shape (n, {dimension}), n"
-            " up to room"
+            f" most {room} of {dimension} coordinates each: let ask(found, room) return an array of"
+            f" shape (n, {dimension}), n up to room"
         )
     # NaN is outside, too.
     if (outside := points[~((points >= -_ROUNDING) & (points <= 1.0 + _ROUNDING))]).size:

@@ -180,9 +180,8 @@ def check_manoeuvres(vessel: VesselConfig, speed: float) -> None:
         if m.at_s < end - TRACK_STEP:
             raise InfeasibleError(
                 f"vessel.manoeuvres.{i} begins at {m.at_s:g} s, before an earlier one has ended, at"
-                f" {end:g} s; let it begin later,"
-                " or turn faster (turn_rate_deg_s) or accelerate harder (acceleration_mps2), or"
-                " make one manoeuvre of both"
+                f" {end:g} s; let it begin later, or turn faster (turn_rate_deg_s) or accelerate"
+                " harder (acceleration_mps2), or make one manoeuvre of both"
             )
         end = max(end, until)
 

@@ -126,9 +126,8 @@ def tabled_wind(config: WindConfig, place: Place, duration: float) -> WindField:
             at = [f" (line {line})" for line in found.lines] if found.lines else ["", ""]
             raise InputError(
                 f"wind.table: {name} goes from {utc_text(first)}{at[0]} to {utc_text(last)}{at[1]};"
-                " the longest flight goes from"
-                f" {utc_text(place.utc)} to {utc_text(place.utc + duration)}: give a longer table,"
-                " or set place.utc or"
+                f" the longest flight goes from {utc_text(place.utc)} to"
+                f" {utc_text(place.utc + duration)}: give a longer table, or set place.utc or"
                 " flight.duration_max_s"
             )
     times = [time - place.utc for time in found.times] or [0.0]
@@ -225,9 +224,8 @@ def _rows(
                 " where it is more, and rename it"
             )
         raise InputError(
-            f"wind.table: {path}, line {first}: the header is"
-            f" {','.join(heads)[:80]!r}; it must be {','.join(COLUMNS)}"
-            f", of which time_utc or height_m may be missing: {remedy}"
+            f"wind.table: {path}, line {first}: the header is {','.join(heads)[:80]!r}; it must be"
+            f" {','.join(COLUMNS)}, of which time_utc or height_m may be missing: {remedy}"
         )
     if twice := [column for column in COLUMNS if heads.count(column) > 1]:
         raise InputError(
@@ -245,8 +243,7 @@ def _rows(
         except ValueError:
             raise InputError(
                 f"wind.table: {path}, line {line}: {named.get('time_utc', '')[:40]!r} is no time,"
-                " as in 2026-06-01T12:00:00Z;"
-                " correct it"
+                " as in 2026-06-01T12:00:00Z; correct it"
             ) from None
         height, speed, direction = (number_of(named.get(column)) for column in COLUMNS[1:])
         good = (
@@ -307,8 +304,7 @@ def _on_grid(path: Path, rows: list[tuple[int, float, float, float, float]]) -> 
         if tuple(sorted(layers)) != heights:
             raise InputError(
                 f"wind.table: {path}: at {utc_text(time)} heights are {sorted(layers)} m, at first"
-                f" {list(heights)}; give the same"
-                " at all times"
+                f" {list(heights)}; give the same at all times"
             )
     velocity = np.array([[layers[height] for height in heights] for layers in at.values()])
     return TabledWind(
@@ -390,8 +386,7 @@ def _wind_at(
     if time is None or not (pairs or {"u", "v", "height"} <= {*data.variables}):
         raise InputError(
             f"wind.table: {path}: it has {', '.join(sorted(map(str, data.variables)))[:120]};"
-            " needed are a time and u10 with v10,"
-            " or u and v over height"
+            " needed are a time and u10 with v10, or u and v over height"
         )
     data = data.rename(
         {
@@ -438,8 +433,7 @@ def _check_wind(path: Path, data: Any, time: str, names: list[str]) -> None:
         if others := [str(of) for of in data[name].dims if of not in (time, "height", *_PLACES)]:
             raise InputError(
                 f"wind.table: {path}: {name} has the dimension '{others[0]}' beside time and place;"
-                " select one of its"
-                f" {data.sizes[others[0]]} values, and write that to a file"
+                f" select one of its {data.sizes[others[0]]} values, and write that to a file"
             )
     if not np.issubdtype(data[time].dtype, np.datetime64):
         raise InputError(
@@ -460,8 +454,7 @@ def _at_place(path: Path, data: Any, latitude_deg: float, longitude_deg: float) 
         if not low <= value <= high:
             raise InputError(
                 f"wind.table: {path}: {name}s go from {low:g} to {high:g} deg, and the flight"
-                f" begins at {value:.3f}; give a file"
-                " of that place"
+                f" begins at {value:.3f}; give a file of that place"
             )
         data = data.sel({name: low}) if low == high else data.sortby(name)
     left = [name for name in _PLACES if name in data.dims]

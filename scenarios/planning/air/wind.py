@@ -112,10 +112,8 @@ def check_not_outrun(
         )
         raise InfeasibleError(
             f"at a height of {height:.0f} m, {why}, the vessel moves at up to {fastest:.1f} m/s"
-            " through the air,"
-            f" nu = {fastest / speed:.2f}; the UAV at {speed:g} m/s follows up to nu = {ratio:g}:"
-            " fly faster, in less wind, or at"
-            " another height"
+            f" through the air, nu = {fastest / speed:.2f}; the UAV at {speed:g} m/s follows up to"
+            f" nu = {ratio:g}: fly faster, in less wind, or at another height"
         )
 
 

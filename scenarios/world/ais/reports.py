@@ -159,8 +159,7 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
         )
         raise InputError(
             f"{path}: {len(kept)} of {len(rows)} rows of MMSI {identity} used, two are"
-            f" needed;{f' dropped: {why};' if why else ''}"
-            f" {remedy}"
+            f" needed;{f' dropped: {why};' if why else ''} {remedy}"
         )
     columns = np.array(kept).T
     directed = np.isfinite(columns[5]) & (columns[5] < 360.0)
@@ -366,8 +365,7 @@ def _table_rows(
         remedy = other_units(heads, plain) or "rename the columns to these"
         raise InputError(
             f"{path}, line {first}: the header is {head.strip()[:_SHOWN]!r}; known are those of the"
-            " Danish Maritime Authority and"
-            f" of Marine Cadastre, and {','.join(plain)}: {remedy}"
+            f" Danish Maritime Authority and of Marine Cadastre, and {','.join(plain)}: {remedy}"
         )
     if twice := [column for column in layout.columns if heads.count(column) > 1]:
         raise InputError(
@@ -394,8 +392,7 @@ def _table_rows(
         except ValueError:
             raise InputError(
                 f"{path}, line {number}: {time[:40]!r} is no time of the layout {layout.name}, as"
-                f" in {layout.time}; correct it, or"
-                " delete the line"
+                f" in {layout.time}; correct it, or delete the line"
             ) from None
         yield int(identity), AisRow(number, seconds, *map(number_of, others))
 
@@ -516,8 +513,7 @@ def _time_of(head: str, path: Path, number: int) -> float:
     except ValueError:
         raise InputError(
             f"{path}, line {number}: the sentence has no time; give each its time of reception, as"
-            " in"
-            " \\c:1780315200*5A\\!AIVDM,... or 2026-06-01T12:00:00Z !AIVDM,..."
+            " in \\c:1780315200*5A\\!AIVDM,... or 2026-06-01T12:00:00Z !AIVDM,..."
         ) from None
     if time >= _DATE_FROM:
         raise InputError(
@@ -569,8 +565,7 @@ def check_units(
     if swapped is not None and _agree(*swapped, share=_CLOSE):
         raise InputError(
             f"{path}: latitude and longitude are swapped: only so are speeds and courses those"
-            " between places; swap the"
-            " columns' names"
+            " between places; swap the columns' names"
         )
     if not _RATIO[0] <= ratio <= _RATIO[1]:
         raise InputError(

@@ -127,9 +127,8 @@ def _check_covered(reports: AisReports, begin: float, end: float, gap_max: float
     if not reports.time[0] <= begin < end <= reports.time[-1]:
         raise InputError(
             f"{reports.path}: reports of MMSI {reports.mmsi} go from {utc_text(reports.time[0])}"
-            f" (line {reports.line[0]:.0f}) to"
-            f" {utc_text(reports.time[-1])} (line {reports.line[-1]:.0f}); the longest flight goes"
-            f" from {utc_text(begin)} to"
+            f" (line {reports.line[0]:.0f}) to {utc_text(reports.time[-1])} (line"
+            f" {reports.line[-1]:.0f}); the longest flight goes from {utc_text(begin)} to"
             f" {utc_text(end)}: set place.utc or flight.duration_max_s"
         )
     gaps = np.diff(reports.time)
@@ -138,10 +137,9 @@ def _check_covered(reports: AisReports, begin: float, end: float, gap_max: float
     if gaps[worst] > gap_max:
         raise InputError(
             f"{reports.path}, line {reports.line[worst]:.0f}: after {utc_text(reports.time[worst])}"
-            " there is no report of MMSI"
-            f" {reports.mmsi} for {gaps[worst]:.0f} s; the track is bridged over vessel.gap_max_s ="
-            f" {gap_max:g} s at"
-            " most: set it, or fly another time (place.utc, flight.duration_max_s)"
+            f" there is no report of MMSI {reports.mmsi} for {gaps[worst]:.0f} s; the track is"
+            f" bridged over vessel.gap_max_s = {gap_max:g} s at most: set it, or fly another time"
+            " (place.utc, flight.duration_max_s)"
         )
 
 
