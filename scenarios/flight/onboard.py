@@ -19,8 +19,8 @@ from scenarios.vehicles.vehicle import Vehicle
 from scenarios.world.faults import SATELLITES, VESSEL_DATA
 from scenarios.world.world import World
 
-_SELDOM = 15.0
-"""Time between looks at what is costly to compute [s]."""
+_BELIEF_INTERVAL = 15.0
+"""Time between evaluations of what is costly to compute [s]."""
 
 
 class PlumeReadings:
@@ -35,8 +35,6 @@ class PlumeReadings:
     interval : guidance steps between rows of the record, at which the sniffer's path is known
     knows_axis : whether the guidance is given the true axis
     """
-
-    __slots__ = ("_axis", "_interval", "_knows_axis", "_reader", "_vehicle", "_world")
 
     def __init__(
         self,
@@ -60,9 +58,9 @@ class PlumeReadings:
             if isinstance(axis, SearchedAxis):
                 axis.take_readings(time, readings)
         if self._knows_axis and step % guidance.plan_interval == 0:
-            self._tell(time, guidance)
+            self._set_true_axis(time, guidance)
 
-    def _tell(self, time: float, guidance: Guidance) -> None:
+    def _set_true_axis(self, time: float, guidance: Guidance) -> None:
         """Say where the mean axis is, seen from the centre of oscillation as the guidance has it."""
         exhaust, orbit = self._world.exhaust, guidance.mission.orbit
         if exhaust is None or orbit is None or not isinstance(self._axis, PredictedAxis):
@@ -86,8 +84,10 @@ BELIEF_COLUMNS = described(
         "axis_offset_deviation_m": "standard deviation of the estimated offset",
         "axis_spread_estimated_m": "estimated vertical spread of the plume",
         "axis_spread_across_estimated_m": "estimated horizontal spread of the plume",
-        "axis_measurable": "estimated probability that the plume can be crossed within the limits of the altitude",
-        "axis_innovation": "mean normalised innovation squared of the passes, 1 where the filter is consistent",
+        "axis_measurable": "estimated probability that the plume can be crossed within the limits"
+        " of the altitude",
+        "axis_innovation": "mean normalised innovation squared of the passes, 1 where the filter is"
+        " consistent",
     }
 )
 """Of a time history, of flights that search for the plume."""
@@ -116,11 +116,17 @@ class PlumeBelief:
         """Return a value for each column."""
         found = self._axis.estimate
         if time >= self._next:
-            self._measurable, self._next = self._axis.measurable(), time + _SELDOM
+            self._measurable, self._next = self._axis.measurable(), time + _BELIEF_INTERVAL
         return (
-            found.height, found.height_deviation, found.offset, found.offset_deviation, found.spread,
-            found.spread_across, self._measurable, found.innovation,
-        )  # fmt: skip
+            found.height,
+            found.height_deviation,
+            found.offset,
+            found.offset_deviation,
+            found.spread,
+            found.spread_across,
+            self._measurable,
+            found.innovation,
+        )
 
 
 def axis_of(guidance: Guidance) -> ExpectedAxis | None:
@@ -146,11 +152,6 @@ class OnboardSensing:
         the command
     """
 
-    __slots__ = (
-        "_air_data", "_altitude", "_engine", "_exact", "_fault", "_guidance", "_held", "_read_with_errors", "_readings", "_received",
-        "_report", "_satellites_fail", "_servo_error", "_vehicle", "_vessel", "airspeed_error", "failing",
-    )  # fmt: skip
-
     def __init__(
         self,
         sensing: Sensing,
@@ -163,19 +164,20 @@ class OnboardSensing:
     ) -> None:
         if not isinstance(guidance.target, ReportedTarget):
             raise TypeError(
-                "the guidance knows its target exactly, and has no use for reports; give it a filter"
+                "the guidance knows its target exactly, and has no use for reports; give it a"
+                " filter"
             )
-        self._fault, self._vessel = world.fault, world.vessel
-        self._read_with_errors, self._air_data = sensing.errors.read, vehicle.air_data
-        self._servo_error, self._engine = vehicle.servo_error, vehicle.engine
-        self._exact, self._received = (
-            sensing.received is None,
-            list(reversed(sensing.received or [])),
-        )
         self._vehicle, self._guidance, self._readings = vehicle, guidance, readings
-        self._report = guidance.target.report
-        self._altitude, self._held, self.failing = altitude, False, world.fault.of_aircraft()
+        self._fault, self._vessel = world.fault, world.vessel
+        self._fault_pending = world.fault.of_aircraft()
         self._satellites_fail = world.fault.kind == SATELLITES
+        self._read_with_errors = sensing.errors.read
+        self._air_data, self._servo_error = vehicle.air_data, vehicle.servo_error
+        self._engine = vehicle.engine
+        self._exact = sensing.received is None
+        self._received = list(reversed(sensing.received or []))
+        self._report = guidance.target.report
+        self._altitude, self._elevator_held = altitude, False
         self.airspeed_error = 0.0
 
     def read(self, step: int, time: float, motion: MeasuredMotion) -> SensorReadings:
@@ -192,8 +194,8 @@ class OnboardSensing:
         else:
             while self._received and self._received[-1][0] <= time:
                 self._report(self._received.pop()[1])
-        if self.failing and time >= fault.begins:
-            self.failing = False
+        if self._fault_pending and time >= fault.begins:
+            self._fault_pending = False
             self._vehicle.fail(fault.kind)
         # It begins with a place that is known, too: dead reckoning goes on from one.
         satellites = not self._satellites_fail or step == 0 or not fault.lasts(SATELLITES, time)
@@ -222,7 +224,11 @@ class OnboardSensing:
             self._altitude = guidance.altitude_command
             self._vehicle.command_altitude(self._altitude)
         monitor = guidance.monitor
-        if not self._held and monitor is not None and monitor.fault is Fault.ACTUATOR_STUCK:
+        if (
+            not self._elevator_held
+            and monitor is not None
+            and monitor.fault is Fault.ACTUATOR_STUCK
+        ):
             # Where one surface is elevator and aileron, each would undo the other's work.
-            self._held = True
+            self._elevator_held = True
             self._vehicle.hold_elevator()

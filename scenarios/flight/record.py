@@ -112,7 +112,8 @@ HISTORY_COLUMNS = described(
         "heading_rate_demand_rad_s": "heading rate that the law demands, before any limit",
         "heading_rate_command_rad_s": "commanded heading rate",
         "airspeed_command_mps": "commanded airspeed",
-        "altitude_command_m": "commanded altitude; far below the sea while a vehicle with a fault glides",
+        "altitude_command_m": "commanded altitude; far below the sea while a vehicle with a fault"
+        " glides",
         "command_saturated": "1 while the demand is limited to omega_max",
         "guard": "1 while the keep-out guard changes commands, 2 while it cannot hold its radius",
         "altitude_m": "altitude above the sea",
@@ -139,7 +140,7 @@ HISTORY_COLUMNS = described(
     }
 )
 """Columns of a time history, in order, and what each is. A vehicle's own, from ``altitude_m`` on,
-may be not a number.
+may be NaN.
 """
 
 RELATIVE_COLUMNS = ("delta_m", "rho_m", "phi_r_rad", "phi_rad")
@@ -167,7 +168,7 @@ class FlightRecord:
     mode : of the guidance at the end, or ``DITCHED``
     stop_reason : why it left before its time, or nothing
     verdict : on the fuel by all looks of a flight that ends with one, or None
-    settled_at : when it had settled, not a number if it never had [s]
+    settled_at : when it had settled, NaN if it never had [s]
     interventions : each time that the keep-out guard changed commands
     columns : of the histories: ``COLUMNS``, and those of the payload
     history : shape (samples, len(columns))
@@ -357,13 +358,11 @@ def _read_all(
 def _read_first(
     payload: Sequence[Any], time: float, motion: MeasuredMotion, sample: tuple[float, ...]
 ) -> list[Any]:
-    """Return what instruments read first; an error says which of them reads what is of no use."""
+    """Return what instruments read first; an error says which of them reads something unusable."""
     values: list[Any] = []
     for instrument in payload:
-        part, count = (
-            f"payload: instrument of class {type(instrument).__qualname__}",
-            len(instrument.COLUMNS),
-        )
+        part = f"payload: instrument of class {type(instrument).__qualname__}"
+        count = len(instrument.COLUMNS)
         read = asked(
             part,
             "failed in read()",

@@ -50,10 +50,8 @@ def flight_history(plan: FlightPlan, record: FlightRecord) -> pd.DataFrame:
     names = (*record.columns, *RELATIVE_COLUMNS)
     wind = plan.world.weather.wind if plan.world else CALM
     if wind != CALM:
-        names, states = (
-            (*names, *WIND_COLUMNS),
-            (*states, *wind.at(column("time_s"), column("altitude_m"))),
-        )
+        names = (*names, *WIND_COLUMNS)
+        states = (*states, *wind.at(column("time_s"), column("altitude_m")))
     # One table at once: to add columns to one takes five times as long.
     history = pd.DataFrame(np.column_stack([record.every_step, *states]), columns=list(names))
     place = plan.world.place if plan.world else None
@@ -78,10 +76,8 @@ def relative_states(
     ``gnc.paper.relative_state``.
     """
     delta = look_ahead.epsilon * (to_north**2 + to_east**2) + look_ahead.radius
-    z_north, z_east = (
-        to_north + delta * np.cos(reference_course),
-        to_east + delta * np.sin(reference_course),
-    )
+    z_north = to_north + delta * np.cos(reference_course)
+    z_east = to_east + delta * np.sin(reference_course)
     z_course = np.arctan2(z_east, z_north)
     return (
         delta,

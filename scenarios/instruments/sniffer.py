@@ -155,16 +155,23 @@ spreads from the axis.
 
 PASS_FIGURES = described(
     {
-        "plume_axis_crossings": "crossings of the smoke's mean axis seen from above, in the time evaluated, with smoke or without",
-        "smoke_passes": "of those crossings the ones with smoke: once above exp(-2) of the concentration in the plume's centre",
+        "plume_axis_crossings": "crossings of the smoke's mean axis seen from above, in the time"
+        " evaluated, with smoke or without",
+        "smoke_passes": "of those crossings the ones with smoke: once above exp(-2) of the"
+        " concentration in the plume's centre",
         "hit_rate": Column(
-            "of those crossings the share whose peak is above 0.6 of the concentration in the centre of the plume",
+            "of those crossings the share whose peak is above 0.6 of the concentration in the"
+            " centre of the plume",
             title="Hit rate",
         ),
-        "seconds_in_plume_s": "time in which the concentration is above exp(-2) of that on the axis",
-        "dose_per_pass_ppm_s": "mean over plume_axis_crossings, with smoke or without, of the integral of CO2 above clean air",
-        "axis_height_error_mean_m": "mean height of plume_axis_crossings above the plume's own axis",
-        "axis_height_error_rms_m": "root mean square height of plume_axis_crossings above the plume's own axis",
+        "seconds_in_plume_s": "time in which the concentration is above exp(-2) of that on the"
+        " axis",
+        "dose_per_pass_ppm_s": "mean over plume_axis_crossings, with smoke or without, of the"
+        " integral of CO2 above clean air",
+        "axis_height_error_mean_m": "mean height of plume_axis_crossings above the plume's own"
+        " axis",
+        "axis_height_error_rms_m": "root mean square height of plume_axis_crossings above the"
+        " plume's own axis",
     }
 )
 """Columns of the summary."""
@@ -192,8 +199,8 @@ def pass_figures(
 
     Parameters
     ----------
-    across, above : from the plume's axis, not a number where there is no plume, shape (n,) [m]
-    fraction : as of ``fraction_of_axis``
+    across, above : from the plume's axis, NaN where there is no plume, shape (n,) [m]
+    fraction : same as ``fraction_of_axis``
     excess_co2 : above clean air [ppm]
     time_step : between samples [s]
     """
@@ -257,7 +264,7 @@ class SnifferSettings:
 
     Attributes
     ----------
-    sensor : a preset of measurement/sniffer/presets, or a table of one's own with the keys of these
+    sensor : a preset of measurement/sniffer/presets, or an inline table with the same keys
     exact : whether the instrument is as its data sheet says; otherwise gains, zeros, responses and
         cross-sensitivities are sampled within what is stated
     limit_percent : sulphur content that the verdict is on [% m/m]: 0.1 in an emission control area,
@@ -287,15 +294,17 @@ class SnifferSettings:
             try:
                 self.spec.check_known()
             except MeasurementError as error:
-                raise MeasurementError(f"sensor is a table of no use: {error}") from None
+                raise MeasurementError(f"sensor is an invalid table: {error}") from None
             if "co2" not in (gases := self.spec.gases):
                 raise MeasurementError(
-                    f"sensor is a table of no use: its channels are {', '.join(gases)}, and co2, which shows the plume, is not"
+                    f"sensor is an invalid table: its channels are {', '.join(gases)}, and co2,"
+                    " which shows the plume, is not"
                     " among them: add the table payload.sensor.channels.co2"
                 )
         if not 0.0 < self.limit_percent <= 5.0:
             raise MeasurementError(
-                f"limit_percent is {self.limit_percent:g}; give above 0 to 5 % m/m, as 0.1 in an emission control area"
+                f"limit_percent is {self.limit_percent:g}; give above 0 to 5 % m/m, as 0.1 in an"
+                " emission control area"
             )
         if self.rule not in _rules():
             guess = did_you_mean(self.rule, _rules()) or ";"
@@ -334,11 +343,9 @@ class SnifferOnBoard:
             raise InfeasibleError(
                 "payload.instruments has a sniffer, and there is no exhaust: set emission.ship"
             )
-        self._exhaust, self._settings, self._fault = (
-            world.exhaust,
-            scenario.payload.settings(type(self)),
-            world.fault,
-        )
+        self._exhaust = world.exhaust
+        self._settings = scenario.payload.settings(type(self))
+        self._fault = world.fault
         self.spec: SnifferSpec = self._settings.spec
         actual = self.spec if self._settings.exact else self.spec.drawn(generator)
         self._sniffer = Sniffer(actual, generator=generator, time_step=TIME_STEP)
@@ -434,11 +441,9 @@ class SnifferOnBoard:
         if not since < at[-1]:
             return Evaluation(columns=columns)
         flown = at >= since
-        limit, fuel, expected = (
-            self._settings.limit_percent,
-            self._exhaust.fuel,
-            expected_fsc(self._exhaust.fuel),
-        )
+        limit = self._settings.limit_percent
+        fuel = self._exhaust.fuel
+        expected = expected_fsc(self._exhaust.fuel)
         known = fuel_estimate(
             self.readings(since),
             self.spec,

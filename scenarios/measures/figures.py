@@ -273,10 +273,8 @@ def crossings_of(
     plan: FlightPlan, record: FlightRecord, settled: Mask, position: Array, velocity: Array
 ) -> list[Crossing]:
     """Find crossings of an axis that may turn, in the frame that turns with it."""
-    time, axis = (
-        record.column("time_s")[settled],
-        np.unwrap(record.column("plume_axis_rad")[settled]),
-    )
+    time = record.column("time_s")[settled]
+    axis = np.unwrap(record.column("plume_axis_rad")[settled])
     position, velocity = position[settled], velocity[settled]
     elevation = plan.world.elevation if plan.world else 0.0
     if axis[0] == axis[-1] and not np.any(axis - axis[0]):
@@ -389,7 +387,7 @@ def _predicted_interval(plan: FlightPlan, record: FlightRecord, first: float, la
 
 
 def rms(values: npt.NDArray[np.float64]) -> float:
-    """Return the root of the mean square of ``values``, in their unit; not a number if there are
+    """Return the root of the mean square of ``values``, in their unit; NaN if there are
     none.
     """
     return float(np.sqrt(np.mean(values**2)))

@@ -136,7 +136,8 @@ def search_steering(
         )
     except InfeasibleError as error:
         raise InfeasibleError(
-            f"guidance.tuning is 'bounded' with guidance.reserve {scenario.guidance.reserve:g}: {error} (guidance.reserve)"
+            f"guidance.tuning is 'bounded' with guidance.reserve {scenario.guidance.reserve:g}:"
+            f" {error} (guidance.reserve)"
         ) from None
 
 

@@ -104,14 +104,16 @@ def flown_altitudes(scenario: Scenario) -> tuple[float, float]:
     lowest, highest = flight.altitudes_kept(scenario.turbulence.level)
     if highest - lowest < _ROOM:
         raise InfeasibleError(
-            f"flight.altitude_min_m and altitude_max_m are {flight.altitude_min_m:g} and {flight.altitude_max_m:g} m; the aircraft"
-            f" keeps {margin:g} m from each, and a plume is searched for within at least {_ROOM:g} m: give them"
-            f" {2.0 * margin + _ROOM:g} m or more between them"
+            f"flight.altitude_min_m and altitude_max_m are {flight.altitude_min_m:g} and"
+            f" {flight.altitude_max_m:g} m; the aircraft keeps {margin:g} m from each, and a plume"
+            f" is searched for within at least {_ROOM:g} m: give them {2.0 * margin + _ROOM:g} m or"
+            " more between them"
         )
     if not lowest <= scenario.altitude <= highest:
         raise InfeasibleError(
-            f"the flight starts at an altitude of {scenario.altitude:g} m; the aircraft keeps within {lowest:g} and {highest:g} m,"
-            " which follow from flight.altitude_min_m and altitude_max_m: set flight.altitude_m in between"
+            f"the flight starts at an altitude of {scenario.altitude:g} m; the aircraft keeps"
+            f" within {lowest:g} and {highest:g} m, which follow from flight.altitude_min_m and"
+            " altitude_max_m: set flight.altitude_m in between"
         )
     return lowest, highest
 
@@ -168,10 +170,8 @@ def _expectation(
 ) -> Expectation:
     """Return what is known of ship and sensor, within the altitudes that are flown."""
     f, middle = scenario.following, expected_emission(scenario, vessel, 0.5)
-    sources, loads = (
-        f.source_height_m,
-        [expected_emission(scenario, vessel, (i + 0.5) / _LOADS) for i in range(_LOADS)],
-    )
+    sources = f.source_height_m
+    loads = [expected_emission(scenario, vessel, (i + 0.5) / _LOADS) for i in range(_LOADS)]
     return Expectation(
         source_height=axis_height(scenario, vessel).source,
         source_deviation=(sources[1] - sources[0]) / math.sqrt(12.0) if sources else _SOURCE_ERROR,
@@ -199,7 +199,8 @@ def sniffer_on_board(scenario: Scenario) -> SnifferSpec:
     """
     if "sniffer" not in scenario.payload.instruments:
         raise InfeasibleError(
-            "following.plume is 'estimated', and nothing measures it: put 'sniffer' into payload.instruments"
+            "following.plume is 'estimated', and nothing measures it: put 'sniffer' into"
+            " payload.instruments"
         )
     spec: SnifferSpec = scenario.payload.settings(SnifferOnBoard).spec
     return spec
@@ -253,7 +254,8 @@ def additional_distance(
         return 0.0
     if "sniffer" not in scenario.payload.instruments:
         raise InfeasibleError(
-            "following.distance is 'best_measurement', and nothing measures: put 'sniffer' into payload.instruments"
+            "following.distance is 'best_measurement', and nothing measures: put 'sniffer' into"
+            " payload.instruments"
         )
     further = np.linspace(0.0, _FARTHEST, _GRID)
     return float(

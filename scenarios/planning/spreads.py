@@ -57,8 +57,8 @@ class PredictedSpreads:
             raise InfeasibleError(self.refused[key])
         if key not in self.tables:
             raise InputError(
-                "guidance is sampled from a continuous distribution in turbulence, where each value takes a margin of its own;"
-                " give it a choice of values instead"
+                "guidance is sampled from a continuous distribution in turbulence, where each"
+                " value takes a margin of its own; give it a choice of values instead"
             )
         return self.tables[key]
 
@@ -123,11 +123,9 @@ def _spread_table(scenario: Scenario, found: Designed, setup: VehicleSetup) -> S
     air = low_altitude_turbulence(
         scenario.altitude, TURBULENCE[scenario.turbulence.level].wind_at_20ft
     )
-    tracking, hold, span = (
-        tracking_parameters(scenario, setup),
-        speed_hold(scenario, setup),
-        _wing_span(schedule.spec),
-    )
+    tracking = tracking_parameters(scenario, setup)
+    hold = speed_hold(scenario, setup)
+    span = _wing_span(schedule.spec)
     orbits = dict(_orbits(scenario))
     return SpreadTable(
         speed_ratios=tuple(orbits),

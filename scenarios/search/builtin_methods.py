@@ -25,12 +25,13 @@ _CORNERS_AT_ONE_TIME = 0.5
 
 @search_method("corners")
 class Corners:
-    """Points at random corners of the cube; times and courses, whose ends mean nothing, anywhere in
-    their range.
+    """Points at random corners of the cube: most quantities at an end of their range, every choice
+    equally often, two events at the same time. Times and courses, whose ends mean nothing, lie
+    anywhere in their range.
 
     Parameters
     ----------
-    space, settings, generator : as of ``SEARCH_METHODS``
+    space, settings, generator : same as ``SEARCH_METHODS``
     """
 
     exhausted = False
@@ -79,7 +80,7 @@ class Corners:
 _BATCH = 8
 """Points that are tried from one place, before the step follows from what came of them."""
 
-_CLIMB_FIRST, _CLIMB_LONGEST, _CLIMB_SHORTEST = 0.2, 0.4, 0.01
+_CLIMB_FIRST_STEP, _CLIMB_LONGEST_STEP, _CLIMB_SHORTEST_STEP = 0.2, 0.4, 0.01
 """Steps, one sigma of each coordinate [-]; a climb ends below the shortest."""
 
 _LONGER, _SHORTER = 1.3, 0.75
@@ -101,11 +102,12 @@ _STEPS_AT_ONE_TIME = 0.05
 
 @search_method("local")
 class LocalClimb:
-    """Climbs, one after the other, each until it finds a violation or its steps become short.
+    """Climbs to a violation, one after the other: random steps from one of the worst points, longer
+    after a success, shorter after a failure. A climb ends at a violation, or with short steps.
 
     Parameters
     ----------
-    space, settings, generator : as of ``SEARCH_METHODS``
+    space, settings, generator : same as ``SEARCH_METHODS``
     """
 
     def __init__(
@@ -114,7 +116,7 @@ class LocalClimb:
         self._space, self._generator = space, generator
         self._starts = Starts(space, settings.restarts, generator)
         self._best: Array | None = None
-        self._least, self._step = math.inf, _CLIMB_FIRST
+        self._least, self._step = math.inf, _CLIMB_FIRST_STEP
         self._proposed = np.empty((0, space.dimension))
 
     @property
@@ -128,7 +130,7 @@ class LocalClimb:
             return np.empty((0, self._space.dimension))
         if self._best is None:
             self._best, self._least = self._starts.next(found)
-            self._step = _CLIMB_FIRST
+            self._step = _CLIMB_FIRST_STEP
         best = self._best
         steps = [self._space.tried(lambda: self._stepped(best)) for _ in range(_BATCH)]
         if math.isinf(self._least):
@@ -161,16 +163,16 @@ class LocalClimb:
         worthwhile = bool(clearances[i] < self._least - WORTHWHILE)
         if clearances[i] < self._least:
             self._best, self._least = self._proposed[i], float(clearances[i])
-        self._step = min(self._step * (_LONGER if worthwhile else _SHORTER), _CLIMB_LONGEST)
-        if self._best is not None and (self._least < 0.0 or self._step < _CLIMB_SHORTEST):
+        self._step = min(self._step * (_LONGER if worthwhile else _SHORTER), _CLIMB_LONGEST_STEP)
+        if self._best is not None and (self._least < 0.0 or self._step < _CLIMB_SHORTEST_STEP):
             self._starts.ended(self._best)
             self._best = None
 
 
-_CMA_FIRST, _CMA_SHORTEST = 0.15, 0.005
+_CMA_FIRST_STEP, _CMA_SHORTEST_STEP = 0.15, 0.005
 """Steps, one sigma of each coordinate [-]; a search ends below the shortest."""
 
-_CMA_STUCK = 12
+_CMA_GENERATIONS_STUCK = 12
 """Generations in a row without a point that is better by a worthwhile amount, after which it begins
 anew.
 """
@@ -181,12 +183,13 @@ _LEAST_COORDINATES = 2
 
 @search_method("cma")
 class CovarianceMatrixAdaptation:
-    """CMA-ES over the coordinates that take any value; choices stay those of the point from which
-    it began.
+    """CMA-ES (Hansen, arXiv:1604.00772), by the package ``cma``: steps whose covariance follows from
+    those that succeeded. It goes over the coordinates that take any value; choices stay those of the
+    point from which it began.
 
     Parameters
     ----------
-    space, settings, generator : as of ``SEARCH_METHODS``
+    space, settings, generator : same as ``SEARCH_METHODS``
     """
 
     def __init__(
@@ -233,7 +236,7 @@ class CovarianceMatrixAdaptation:
             "verbose": -9,
         }
         self._strategy = cma.CMAEvolutionStrategy(
-            self._start[self._free].tolist(), _CMA_FIRST, options
+            self._start[self._free].tolist(), _CMA_FIRST_STEP, options
         )
 
     def tell(self, clearances: Array) -> None:
@@ -247,24 +250,25 @@ class CovarianceMatrixAdaptation:
             self._least = float(clearances[i])
             self._best = self._start.copy()
             self._best[self._free] = self._asked[i]
-        stuck = self._stale >= _CMA_STUCK or self._strategy.sigma < _CMA_SHORTEST
+        stuck = self._stale >= _CMA_GENERATIONS_STUCK or self._strategy.sigma < _CMA_SHORTEST_STEP
         if self._least < 0.0 or stuck or self._strategy.stop():
             self._starts.ended(self._best)
             self._strategy = None
 
 
-_DE_STUCK = 15
+_DE_GENERATIONS_STUCK = 15
 """Generations in a row whose best is no better, after which a new population begins."""
 
 
 @search_method("differential_evolution")
 class DifferentialEvolution:
-    """The strategy best/1/bin, with a differential weight that is sampled for each generation; it
-    begins with a Sobol sequence.
+    """A population that is recombined with its best (Storn and Price, J. Glob. Optim. 11, 1997): the
+    strategy best/1/bin, with a differential weight that is sampled for each generation. It begins
+    with a Sobol sequence.
 
     Parameters
     ----------
-    space, settings, generator : as of ``SEARCH_METHODS``
+    space, settings, generator : same as ``SEARCH_METHODS``
     """
 
     def __init__(
@@ -314,7 +318,7 @@ class DifferentialEvolution:
         self._points = np.where(better[:, None], self._proposed, self._points)
         self._clearances = np.where(better, clearances, self._clearances)
         self._begun, self._stale = True, 0 if clearances.min() < least else self._stale + 1
-        if self._stale >= _DE_STUCK:
+        if self._stale >= _DE_GENERATIONS_STUCK:
             self._restart()
 
     def _restart(self) -> None:

@@ -389,13 +389,15 @@ def _asked(name: str, method: SearchMethod, found: Found, room: int, dimension: 
         return np.empty((0, dimension))
     if points.ndim != 2 or points.shape[1] != dimension or len(points) > room:
         raise PluginError(
-            f"search method '{name}' proposed points of shape {points.shape}; it was asked for at most {room} of {dimension}"
-            f" coordinates each: let ask(found, room) return an array of shape (n, {dimension}), n up to room"
+            f"search method '{name}' proposed points of shape {points.shape}; it was asked for at"
+            f" most {room} of {dimension} coordinates each: let ask(found, room) return an array of"
+            f" shape (n, {dimension}), n up to room"
         )
-    # Not a number is outside, too.
+    # NaN is outside, too.
     if (outside := points[~((points >= -_ROUNDING) & (points <= 1.0 + _ROUNDING))]).size:
         raise PluginError(
-            f"search method '{name}' proposed a coordinate of {outside[0]:g}; each lies from 0 to 1, over the range of its random"
+            f"search method '{name}' proposed a coordinate of {outside[0]:g}; each lies from 0 to"
+            " 1, over the range of its random"
             " variable: let ask(found, room) return such points alone"
         )
     return points

@@ -71,12 +71,8 @@ def count_violations(rows: pd.DataFrame) -> Violations:
     rows : a row per flight with ``flight_id``, ``outcome``, ``min_distance_m`` and
         ``keepout_violations``
     """
-    measured = np.isfinite(
-        pd.to_numeric(rows["min_distance_m"], errors="coerce").to_numpy(dtype=np.float64)
-    )
-    entered = measured & (
-        pd.to_numeric(rows["keepout_violations"], errors="coerce").to_numpy(dtype=np.float64) > 0.0
-    )
+    measured = np.isfinite(_numbers(rows, "min_distance_m"))
+    entered = measured & (_numbers(rows, "keepout_violations") > 0.0)
     lost = rows[~entered & (~measured | (rows["outcome"] == Outcome.DIVERGED.value).to_numpy())]
     return Violations(
         flights=len(rows),
@@ -104,8 +100,6 @@ def looks(planned: int) -> list[int]:
     ----------
     planned : number of flights, above 0
     """
-    if planned < 1:
-        raise ValueError(f"planned flights are {planned}; plan one at least")
     numbers = []
     flights = FIRST_LOOK
     while flights < planned:
@@ -125,8 +119,6 @@ def confidence_at(look_number: int, confidence: float) -> float:
     look_number : number of the look, from 1
     confidence : confidence of all looks together, between 0 and 1
     """
-    if look_number < 1:
-        raise ValueError(f"look number is {look_number}; looks are counted from 1")
     return 1.0 - (1.0 - confidence) / (look_number * (look_number + 1))
 
 
@@ -150,26 +142,16 @@ def tight_enough(
     distance_quantile_width_m : demanded width of the two-sided interval of a quantile of the
         closest approach [m]
     distance_quantile : probability of that quantile
-
-    Raises
-    ------
-    ValueError : neither interval is demanded
     """
-    if violation_upper is None and distance_quantile_width_m is None:
-        raise ValueError(
-            "no interval is demanded; give violation_upper or distance_quantile_width_m"
-        )
     level = confidence_at(look_number, confidence)
     if violation_upper is not None:
         found = count_violations(rows)
         if upper_bound(found.events_at_most, found.flights, level) > violation_upper:
             return False
     if distance_quantile_width_m is not None:
-        distances = pd.to_numeric(rows["min_distance_m"], errors="coerce").to_numpy(
-            dtype=np.float64
-        )
+        distances = _numbers(rows, "min_distance_m")
         interval = quantile_interval(distances[np.isfinite(distances)], distance_quantile, level)
-        # If a limit is missing the width is not a number, and this comparison is false.
+        # If a limit is missing the width is NaN, and this comparison is false.
         return interval.width <= distance_quantile_width_m
     return True
 
@@ -186,10 +168,19 @@ NAMED_MAX = 10
 """Largest number of flights that are named for each outcome; ``summary.csv`` has all."""
 
 COLUMNS = (
-    "flight_id", "outcome", "mode_at_end", "min_distance_m", "keepout_radius_m", "keepout_violations", "crossing_interval_mean_s",
-    "crossing_interval_predicted_s", "crossing_distance_min_m", "crossing_clearance_min_m", "tracking_error_rms_m",
+    "flight_id",
+    "outcome",
+    "mode_at_end",
+    "min_distance_m",
+    "keepout_radius_m",
+    "keepout_violations",
+    "crossing_interval_mean_s",
+    "crossing_interval_predicted_s",
+    "crossing_distance_min_m",
+    "crossing_clearance_min_m",
+    "tracking_error_rms_m",
     "settling_time_s",
-)  # fmt: skip
+)
 """Columns of the summary that the estimates use."""
 
 DRIVEN = ("clearance_m", "tracking_error_rms_m", "crossing_interval_error", "settling_time_s")
@@ -208,7 +199,7 @@ def study_statistics(
     look_number: int | None = None,
     per_sample: int = 1,
 ) -> Json:
-    """Return the content of ``statistics.json``; values that are not a number become None.
+    """Return the content of ``statistics.json``; NaN becomes None.
 
     Parameters
     ----------
@@ -256,7 +247,7 @@ def study_statistics(
 
 
 def interval_confidence(confidence: float, look_number: int | None) -> float:
-    """Return the confidence of each interval, by that of the study and its look, as of
+    """Return the confidence of each interval, by that of the study and its look, same as
     ``study_statistics``.
     """
     return confidence if look_number is None else confidence_at(look_number, confidence)
@@ -270,28 +261,30 @@ def pessimistic_share(found: Violations, level: float, *, per_sample: int) -> Js
 
 
 def study_figures(rows: pd.DataFrame) -> dict[str, Array]:
-    """Return the figures of each flight, shape (n,); not a number where a flight has no such
+    """Return the figures of each flight, shape (n,); NaN where a flight has no such
     figure.
 
     Distances are in metres, and clearances are measured from r_min; the error of the mean crossing
     interval is relative to the predicted interval [-]; the settling time is in seconds, and a
     flight that never settled has none.
     """
-
-    def column(name: str) -> Array:
-        return pd.to_numeric(rows[name], errors="coerce").to_numpy(dtype=np.float64)
-
+    distance = _numbers(rows, "min_distance_m")
+    interval = _numbers(rows, "crossing_interval_mean_s")
+    predicted = _numbers(rows, "crossing_interval_predicted_s")
     return {
-        "min_distance_m": column("min_distance_m"),
-        "clearance_m": column("min_distance_m") - column("keepout_radius_m"),
-        "crossing_interval_error": column("crossing_interval_mean_s")
-        / column("crossing_interval_predicted_s")
-        - 1.0,
-        "crossing_distance_min_m": column("crossing_distance_min_m"),
-        "crossing_clearance_m": column("crossing_clearance_min_m"),
-        "tracking_error_rms_m": column("tracking_error_rms_m"),
-        "settling_time_s": column("settling_time_s"),
+        "min_distance_m": distance,
+        "clearance_m": distance - _numbers(rows, "keepout_radius_m"),
+        "crossing_interval_error": interval / predicted - 1.0,
+        "crossing_distance_min_m": _numbers(rows, "crossing_distance_min_m"),
+        "crossing_clearance_m": _numbers(rows, "crossing_clearance_min_m"),
+        "tracking_error_rms_m": _numbers(rows, "tracking_error_rms_m"),
+        "settling_time_s": _numbers(rows, "settling_time_s"),
     }
+
+
+def _numbers(rows: pd.DataFrame, name: str) -> Array:
+    """Return a column as numbers; NaN where a flight has none."""
+    return pd.to_numeric(rows[name], errors="coerce").to_numpy(dtype=np.float64)
 
 
 def named(found: Violations) -> Json:

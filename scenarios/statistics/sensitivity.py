@@ -240,7 +240,7 @@ class Sensitivity:
     flights : number of flights that were used
     known : number of flights that have the figure
     inputs : indices of the inputs, the largest delta first
-    delta_floor, first_order_floor : the noise floors [-]; not a number without indices
+    delta_floor, first_order_floor : the noise floors [-]; NaN without indices
     left_out : reasons why other inputs have no indices
     message : reason why no input has indices; empty if some do
     """
@@ -268,7 +268,7 @@ def sensitivity_indices(
     ----------
     inputs : a row per flight, a column per input; numbers, or words, which are categories without
         an order
-    figure : figure of each flight, shape (n,); flights where it is not a number are left out
+    figure : figure of each flight, shape (n,); flights where it is NaN are left out
     confidence : confidence of the intervals, between 0 and 1; that of delta is of a normal
         distribution with the bootstrap's deviation
     seed : seed of the choice of flights, the noise floor and the bootstrap

@@ -403,10 +403,8 @@ class SubsetSimulation:
             states = yield from self._moved(states, threshold, scales, spread, generator, counts)
             moved, accepted = counts.moved - before.moved, counts.accepted - before.accepted
             scales.inputs = _adapted(scales.inputs, moved, accepted, wave)
-            moved, accepted = (
-                counts.blended - before.blended,
-                counts.blended_accepted - before.blended_accepted,
-            )
+            moved = counts.blended - before.blended
+            accepted = counts.blended_accepted - before.blended_accepted
             scales.blend = _adapted(scales.blend, moved, accepted, wave)
             parts.append(states)
             missing -= len(states.values)
@@ -425,11 +423,9 @@ class SubsetSimulation:
         """Propose a move of each chain; return the states after it."""
         count = len(states.values)
         kind = generator.random(count) if self.noise else np.ones(count)
-        renewed, blended, moved = (
-            kind < RENEWALS,
-            (kind >= RENEWALS) & (kind < RENEWALS + BLENDS),
-            kind >= RENEWALS + BLENDS,
-        )
+        renewed = kind < RENEWALS
+        blended = (kind >= RENEWALS) & (kind < RENEWALS + BLENDS)
+        moved = kind >= RENEWALS + BLENDS
         steps = np.minimum(1.0, scales.inputs * spread)
         proposed = np.sqrt(1.0 - steps**2) * states.normal + steps * generator.standard_normal(
             states.normal.shape
@@ -787,9 +783,15 @@ def _shift(
         ]
         medians = (float(declared.median()), float(near.median()))
         return InputShift(
-            key=key, distance=found, median=medians[0], median_near=medians[1], edges=tuple(edges.tolist()), names=(),
-            declared=shares[0], near=shares[1],
-        )  # fmt: skip
+            key=key,
+            distance=found,
+            median=medians[0],
+            median_near=medians[1],
+            edges=tuple(edges.tolist()),
+            names=(),
+            declared=shares[0],
+            near=shares[1],
+        )
     words = [declared.astype(str), near.astype(str)]
     names = tuple(dict.fromkeys([*sorted(words[0].unique()), *words[1].unique()]))
     counted = [tuple(float((values == name).mean()) for name in names) for values in words]
@@ -812,7 +814,7 @@ def subset_statistics(
     *,
     confidence: float,
 ) -> Json:
-    """Return the content of ``statistics.json``; values that are not a number become None.
+    """Return the content of ``statistics.json``; NaN becomes None.
 
     Flights of the first levels are a plain random sample, which gives a bound by itself. Of those
     that have no measurement, or were lost without a violation, nobody knows where they would have

@@ -35,11 +35,6 @@ class Telemetry:
     frame : local frame
     """
 
-    __slots__ = (
-        "_airspeed", "_altitude", "_climb", "_controls", "_downward", "_east", "_forward", "_heading", "_heading_rate", "_incidence", "_latitude",
-        "_longitude", "_north", "_pitch", "_roll", "_sideslip", "_throttle", "_to_local", "_weight",
-    )  # fmt: skip
-
     def __init__(self, fdm: Fdm, frame: EquatorFrame) -> None:
         self._latitude = fdm.node("position/lat-geod-rad").get_double_value
         self._longitude = fdm.node("position/long-gc-rad").get_double_value
@@ -67,8 +62,6 @@ class Telemetry:
 
     def motion(self) -> MeasuredMotion:
         """Return the motion now."""
-        # To unpack two names takes a third of the time of a star in a tuple, in each step of every
-        # flight.
         north, east = self._to_local(self._latitude(), self._longitude())
         return MeasuredMotion(
             north,
@@ -141,11 +134,6 @@ class JsbsimVehicle:
     weather : the air it flies in; none for still air
     """
 
-    __slots__ = (
-        "_airspeed_limits", "_command_airspeed", "_command_heading_rate", "_run", "_runs", "_runs_watched", "_watch", "air_data",
-        "command_altitude", "engine", "fail", "hold_elevator", "motion", "sample", "servo_error",
-    )  # fmt: skip
-
     def __init__(
         self,
         aircraft: AutopilotedAircraft,
@@ -202,13 +190,16 @@ class JsbsimVehicle:
             run()
 
     def fault(self, sample: tuple[float, ...]) -> str:
-        """Return why the aircraft is out of control, or nothing. A value that is not a number is
+        """Return why the aircraft is out of control, or nothing. NaN is
         never within its limits.
         """
         altitude, airspeed, roll = sample[:3]
         low, high = self._airspeed_limits
         if not abs(roll) < _BANK_LIMIT:
-            return f"bank reached {math.degrees(roll):.0f} deg against a limit of {math.degrees(_BANK_LIMIT):.0f}"
+            return (
+                f"bank reached {math.degrees(roll):.0f} deg against a limit of"
+                f" {math.degrees(_BANK_LIMIT):.0f}"
+            )
         if not low < airspeed < high:
             return f"airspeed reached {airspeed:.1f} m/s outside {low:.1f} to {high:.1f}"
         if not altitude > _ALTITUDE_MIN:

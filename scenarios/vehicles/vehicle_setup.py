@@ -199,18 +199,15 @@ def aircraft_setup(
         reversal = reversal_record(
             schedule.spec, run.model, start, max(bank, schedule.envelope.bank), slow_lag
         )
-    level, climbing, parts = None, None, fault_names(schedule.spec)
-    if failing := [setting for setting in settings if setting.declared_faults.intersection(parts)]:
+    parts = fault_names(schedule.spec)
+    failing = [setting for setting in settings if setting.declared_faults.intersection(parts)]
+    level = climbing = None
+    if failing:
         failable = AutopilotedAircraft(schedule.spec, run.model, failable=True)
-        gradient, turn = (
-            max(setting.following.climb_gradient for setting in failing),
-            max(bank, schedule.envelope.bank),
-        )
-        level, climbing = (
-            measure_part_failure(failable, start, turn, schedule.envelope.airspeed_min, each)
-            for each in (0.0, gradient)
-        )
-        climbing = climbing.or_worse(level)
+        gradient = max(setting.following.climb_gradient for setting in failing)
+        turn, slowest = max(bank, schedule.envelope.bank), schedule.envelope.airspeed_min
+        level = measure_part_failure(failable, start, turn, slowest, 0.0)
+        climbing = measure_part_failure(failable, start, turn, slowest, gradient).or_worse(level)
     thrust = None
     if any(setting.follows for setting in settings):
         sound = AutopilotedAircraft(schedule.spec, run.model)
@@ -247,16 +244,9 @@ def _slower_turns(schedule: Schedule) -> tuple[float, ...]:
     airspeed [rad/s].
     """
     tangent = math.tan(schedule.envelope.bank_max)
-    return tuple(
-        min(
-            abs(
-                float(
-                    np.interp(
-                        side * tangent, np.tan([t.roll for t in row]), [t.yaw_rate for t in row]
-                    )
-                )
-            )
-            for side in (-1.0, 1.0)
-        )
-        for row in schedule.trims
-    )
+    slower = []
+    for row in schedule.trims:
+        tangents, rates = np.tan([turn.roll for turn in row]), [turn.yaw_rate for turn in row]
+        left, right = (float(np.interp(each, tangents, rates)) for each in (-tangent, tangent))
+        slower.append(min(abs(left), abs(right)))
+    return tuple(slower)

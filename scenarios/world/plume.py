@@ -54,8 +54,6 @@ class StraightPlume:
         ``plume.heading_deg`` from the bow
     """
 
-    __slots__ = ("_axis", "_steady")
-
     def __init__(
         self,
         plume: PlumeConfig,
@@ -135,10 +133,10 @@ class FluctuatingSmoke(StraightPlume):
 
         Parameters
         ----------
-        emission, air : what leaves the funnel, and into what
+        emission, air : what leaves the stack, and into what
         vessel, wind : motion of the vessel over the ground, and of the air
         duration : to be covered [s]
-        source_height : of the funnel's mouth above the sea [m]
+        source_height : of the stack's mouth above the sea [m]
         settings, seed : of the realisation
 
         Raises
@@ -196,7 +194,7 @@ class Smoke(Protocol):
         settings: Any,
         seed: int,
     ) -> Dispersion:
-        """Return one realisation; arguments as of ``scenarios.world.plume``."""
+        """Return one realisation; arguments are those of ``FluctuatingSmoke``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -205,7 +203,7 @@ class Exhaust:
 
     Attributes
     ----------
-    fuel, emission : what is burnt, and what leaves the funnel
+    fuel, emission : what is burnt, and what leaves the stack
     dispersion : of it, in the frame of the air mass
     displacement : how far that frame has moved north and east at some times [s], in metres
     """
@@ -249,16 +247,13 @@ def emission(scenario: Scenario, *, speed: float, load: float | None = None) -> 
     )
 
 
-def _called(scenario: Scenario) -> str:
-    ship = scenario.emission.ship
-    return f"'{ship}'" if isinstance(ship, str) else "given"
-
-
 def without_smoke(scenario: Scenario) -> str:
     """Return why a vessel with exhaust cannot have such a plume."""
+    ship = scenario.emission.ship
     return (
-        f"emission.ship is {_called(scenario)}, and plume.model '{scenario.plume.model}' has no smoke: set plume.model to"
-        " 'fluctuating', or leave emission.ship out"
+        f"emission.ship is {repr(ship) if isinstance(ship, str) else 'given'}, and plume.model"
+        f" '{scenario.plume.model}' has no smoke: set plume.model to 'fluctuating', or leave"
+        " emission.ship out"
     )
 
 
@@ -271,8 +266,8 @@ def exhaust_of(
     duration: float,
     generator: np.random.Generator,
 ) -> Exhaust | None:
-    """Return the exhaust of a vessel that has any, in some wind, over a duration [s]. It is that of
-    her speed at the start.
+    """Return the exhaust of a vessel that has any, in some wind, over a duration [s]. It is
+    that of its speed at the start.
 
     Raises
     ------

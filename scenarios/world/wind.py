@@ -123,8 +123,9 @@ def tabled_wind(config: WindConfig, place: Place, duration: float) -> WindField:
         if not first <= place.utc <= place.utc + duration <= last:
             at = [f" (line {line})" for line in found.lines] if found.lines else ["", ""]
             raise InputError(
-                f"wind.table: {name} goes from {utc_text(first)}{at[0]} to {utc_text(last)}{at[1]}; the longest flight goes from"
-                f" {utc_text(place.utc)} to {utc_text(place.utc + duration)}: give a longer table, or set place.utc or"
+                f"wind.table: {name} goes from {utc_text(first)}{at[0]} to {utc_text(last)}{at[1]};"
+                f" the longest flight goes from {utc_text(place.utc)} to"
+                f" {utc_text(place.utc + duration)}: give a longer table, or set place.utc or"
                 " flight.duration_max_s"
             )
     found = _where_it_blows(found, place, duration, str(name))
@@ -167,7 +168,7 @@ def _where_it_blows(found: TabledWind, place: Place, duration: float, name: str)
 
 
 def first_time(table: str, place: Place) -> float:
-    """Return the first time of a file of wind, since 1970 [s]; not a number where it has none.
+    """Return the first time of a file of wind, since 1970 [s]; NaN where it has none.
 
     Raises
     ------
@@ -189,7 +190,8 @@ def _read(table: str, place: Place) -> TabledWind:
         return _read_table(path, stamp)
     if not math.isfinite(place.latitude):
         raise InputError(
-            f"wind.table: {path} has winds of many places; say which: place.latitude_deg, place.longitude_deg"
+            f"wind.table: {path} has winds of many places; say which: place.latitude_deg,"
+            " place.longitude_deg"
         )
     return _read_netcdf(path, stamp, math.degrees(place.latitude), math.degrees(place.longitude))
 
@@ -273,20 +275,22 @@ def _on_grid(path: Path, rows: list[tuple[int, float, float, float, float]]) -> 
         key = time if timed else 0.0
         if key < before:
             raise InputError(
-                f"wind.table: {path}, line {line}: {utc_text(time)} is before the line above; sort the table by time"
+                f"wind.table: {path}, line {line}: {utc_text(time)} is before the line above; sort"
+                " the table by time"
             )
         layers = at.setdefault(key, {})
         if (layer := height if layered else 0.0) in layers:
             raise InputError(
-                f"wind.table: {path}, line {line}: the time and height of a line above once more; delete one of them"
+                f"wind.table: {path}, line {line}: the time and height of a line above once more;"
+                " delete one of them"
             )
         layers[layer], before = (north, east), key
     heights = tuple(sorted(next(iter(at.values()))))
     for time, layers in at.items():
         if tuple(sorted(layers)) != heights:
             raise InputError(
-                f"wind.table: {path}: at {utc_text(time)} heights are {sorted(layers)} m, at first {list(heights)}; give the same"
-                " at all times"
+                f"wind.table: {path}: at {utc_text(time)} heights are {sorted(layers)} m, at first"
+                f" {list(heights)}; give the same at all times"
             )
     velocity = np.array([[layers[height] for height in heights] for layers in at.values()])
     return TabledWind(
@@ -338,7 +342,8 @@ def read_netcdf(
         import xarray
     except ImportError:
         raise InputError(
-            f"wind.table: {path}: netCDF needs xarray and h5netcdf; install the extra: {install_words('weather')}"
+            f"wind.table: {path}: netCDF needs xarray and h5netcdf; install the extra:"
+            f" {install_words('weather')}"
         ) from None
     try:
         with xarray.open_dataset(path) as data:
@@ -361,8 +366,8 @@ def _wind_at(
     pairs = [(height, u, v) for height, u, v in _PAIRS if u in data and v in data]
     if time is None or not (pairs or {"u", "v", "height"} <= {*data.variables}):
         raise InputError(
-            f"wind.table: {path}: it has {', '.join(sorted(map(str, data.variables)))[:120]}; needed are a time and u10 with v10,"
-            " or u and v over height"
+            f"wind.table: {path}: it has {', '.join(sorted(map(str, data.variables)))[:120]};"
+            " needed are a time and u10 with v10, or u and v over height"
         )
     data = data.rename(
         {
@@ -391,7 +396,8 @@ def _wind_at(
     data_times = data[time].values.astype("datetime64[ms]").astype(np.int64) / 1000.0
     if not np.isfinite(velocity).any():
         raise InputError(
-            f"wind.table: {path}: it has no wind at {latitude_deg:.3f}, {longitude_deg:.3f} deg; give another place"
+            f"wind.table: {path}: it has no wind at {latitude_deg:.3f}, {longitude_deg:.3f} deg;"
+            " give another place"
         )
     return tuple(float(t) for t in data_times), heights, np.asarray(velocity, dtype=np.float64)
 
@@ -456,8 +462,8 @@ def _check_wind(path: Path, data: Any, time: str, names: list[str]) -> None:
     for name in names:
         if others := [str(of) for of in data[name].dims if of not in (time, "height", *_PLACES)]:
             raise InputError(
-                f"wind.table: {path}: {name} has the dimension '{others[0]}' beside time and place; select one of its"
-                f" {data.sizes[others[0]]} values, and write that to a file"
+                f"wind.table: {path}: {name} has the dimension '{others[0]}' beside time and place;"
+                f" select one of its {data.sizes[others[0]]} values, and write that to a file"
             )
     calendar = data[time].encoding.get("calendar") or getattr(
         data[time].values.flat[0] if data.sizes[time] else None, "calendar", "standard"
@@ -469,7 +475,8 @@ def _check_wind(path: Path, data: Any, time: str, names: list[str]) -> None:
         )
     if not np.issubdtype(data[time].dtype, np.datetime64):
         raise InputError(
-            f"wind.table: {path}: its times have no unit and origin, as 'hours since 2026-06-01'; give {time} such units"
+            f"wind.table: {path}: its times have no unit and origin, as 'hours since 2026-06-01';"
+            f" give {time} such units"
         )
     if not data.sizes[time]:
         raise InputError(
@@ -484,8 +491,8 @@ def _at_place(path: Path, data: Any, latitude_deg: float, longitude_deg: float) 
         low, high = float(data[name].min()), float(data[name].max())
         if not low <= value <= high:
             raise InputError(
-                f"wind.table: {path}: {name}s go from {low:g} to {high:g} deg, and the flight begins at {value:.3f}; give a file"
-                " of that place"
+                f"wind.table: {path}: {name}s go from {low:g} to {high:g} deg, and the flight"
+                f" begins at {value:.3f}; give a file of that place"
             )
         data = data.sel({name: low}) if low == high else data.sortby(name)
     left = [name for name in _PLACES if name in data.dims]

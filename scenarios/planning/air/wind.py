@@ -40,10 +40,8 @@ _LOOKED_AT = 30
 
 def climbed_along(scenario: Scenario) -> float:
     """Return the distance from the vessel up to which an inclined plume is climbed along [m]."""
-    radius, turn = (
-        scenario.keepout.radius_m,
-        scenario.guidance.airspeed_mps / omega_max(scenario.guidance),
-    )
+    radius = scenario.keepout.radius_m
+    turn = scenario.guidance.airspeed_mps / omega_max(scenario.guidance)
     return max(
         _RADII * radius,
         radius + _BEYOND + _TURN_RADII * turn,
@@ -98,7 +96,7 @@ def check_not_outrun(
     InfeasibleError : it does
     """
     if wind.constant:
-        # That is checked at the height of the funnel.
+        # That is checked at the height of the stack.
         return
     crossed = _crossed_heights(scenario, distance)
     heights = [*crossed, _SEA] if glides(scenario) else crossed
@@ -113,9 +111,9 @@ def check_not_outrun(
             else "which is flown"
         )
         raise InfeasibleError(
-            f"at a height of {height:.0f} m, {why}, the vessel moves at up to {fastest:.1f} m/s through the air,"
-            f" nu = {fastest / speed:.2f}; the UAV at {speed:g} m/s follows up to nu = {ratio:g}: fly faster, in less wind, or at"
-            " another height"
+            f"at a height of {height:.0f} m, {why}, the vessel moves at up to {fastest:.1f} m/s"
+            f" through the air, nu = {fastest / speed:.2f}; the UAV at {speed:g} m/s follows up to"
+            f" nu = {ratio:g}: fly faster, in less wind, or at another height"
         )
 
 

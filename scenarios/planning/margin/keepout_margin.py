@@ -473,7 +473,7 @@ def mean_interval(intervals: tuple[float, float]) -> float:
 
 def _filter_sigma(known: FilterParameters, interval: float) -> float:
     """Return the standard deviation of the vessel's place as the filter knows it, at the mean
-    interval of her reports [m].
+    interval of its reports [m].
     """
     vessel = VesselFilter(known)
     for number in range(_SETTLED):
@@ -491,7 +491,7 @@ Array = npt.NDArray[np.float64]
 
 def noise_allowance(seen: float, turned: float, *, time_step: float) -> float:
     """Return what both errors together exceed no oftener than ``GUARDED_PER_HOUR``, as if they were
-    new at each step [m].
+    new at each step [m]. A turn away comes nearest a quarter of a turn after it begins.
 
     Parameters
     ----------
@@ -515,6 +515,12 @@ def position_scatter(
 ) -> float:
     """Return the standard deviation of the error that is seen, per that of the noise, in the worst
     direction and turn [-].
+
+    In axes along and across the reference's course, which turn at omega_r, the true error e and the
+    error n of the position obey e_along' = -dV + omega_r e_right,
+    e_right' = -V dchi - omega_r e_along and n' = -n/T + omega_r (n_right, -n_along) + noise of the
+    density 2 sigma^2/T; the steering law and the airspeed act on e - n. Its covariance solves a
+    Lyapunov equation.
 
     Parameters
     ----------
@@ -592,7 +598,7 @@ _STRAIGHT = 1e-6
 
 def steering_gains(guidance: TrackingParameters, turn: float, speed: float) -> Array:
     """Return the commanded turn [rad/s] per unit of each of ``STEERED_BY``, on a reference that
-    turns at ``turn`` [rad/s].
+    turns at ``turn`` [rad/s]: by differences on ``Tracker`` itself, preview included.
 
     Parameters
     ----------

@@ -228,7 +228,7 @@ def tracking_response(
 
     Parameters
     ----------
-    schedule, index, bank_index : the autopilot and where it flies, as of ``gust_loop``
+    schedule, index, bank_index : the autopilot and where it flies, same as ``gust_loop``
     guidance : whose steering it flies, its commands corrected by ``air_turn``
     hold : by which it keeps pace
     speed : V_r [m/s]
@@ -253,10 +253,8 @@ def tracking_response(
     # Four equations for the error along and right and for the commanded airspeed and turn: left @
     # unknowns = right @ gusts.
     held, per_course = hold_of_step[:, None], (speed / s)[:, None]
-    left, right = (
-        np.zeros((len(s), 4, 4), dtype=complex),
-        np.zeros((len(s), 4, len(GUSTS)), dtype=complex),
-    )
+    left = np.zeros((len(s), 4, 4), dtype=complex)
+    right = np.zeros((len(s), 4, len(GUSTS)), dtype=complex)
     left[:, 0, 0], left[:, 0, 1] = s, -turn
     left[:, 0, 2:], right[:, 0] = commands[:, 1], -gusts[:, 1]
     left[:, 1, 0], left[:, 1, 1] = turn, s

@@ -1,5 +1,5 @@
 """Reports of one vessel from a file: a table in one of the known layouts, or NMEA sentences as received
-(``!AIVDM,...``, decoded by pyais). Rows of no use are left out and counted.
+(``!AIVDM,...``, decoded by pyais). Unusable rows are left out and counted.
 """
 
 import math
@@ -25,7 +25,7 @@ from scenarios.scenario.sections.world import GAP_MAX
 
 
 class AisRow(NamedTuple):
-    """A report as its file has it; not a number where it says nothing.
+    """A report as its file has it; NaN where it says nothing.
 
     Attributes
     ----------
@@ -99,10 +99,14 @@ satellite navigation [m/s, m].
 """
 
 NO_TIME, NO_PLACE, NO_SPEED, DUPLICATE, OUT_OF_ORDER, OUT_OF_REACH = (
-    "without a time", "without a possible position", "without speed or course", "with the time of another", "out of order",
+    "without a time",
+    "without a possible position",
+    "without speed or course",
+    "with the time of another",
+    "out of order",
     "out of reach of others",
-)  # fmt: skip
-"""Why rows are of no use."""
+)
+"""Why rows are not used."""
 
 _DROPPED_MOST = 0.1
 """Share of a vessel's rows that may be dropped without a warning; duplicates do not count."""
@@ -245,7 +249,7 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
 
 
 def _by_what_they_say(rows: Sequence[AisRow]) -> list[str]:
-    """Return why each row is of no use by its own values, empty where it is: ITU-R M.1371-5 has 91,
+    """Return why a row is not used by its own values, empty where it is: ITU-R M.1371-5 has 91,
     181, 102.3 and 360 for none.
     """
     reasons = []
@@ -310,7 +314,7 @@ def _lost_directions(rows: Sequence[AisRow], kept: Sequence[AisRow]) -> tuple[in
 
 
 def _by_their_places(rows: Sequence[AisRow]) -> list[str]:
-    """Return why each row is of no use by its place: a vessel could not have come from the row
+    """Return why a row is not used by its place: a vessel could not have come from the row
     before, nor gone to the next.
     """
     _, time, latitude, longitude, _, _ = (
@@ -499,7 +503,8 @@ def rows_of(path: Path, mmsi: int | None) -> tuple[int, list[AisRow], ShipSize |
                 found.append(said.row)
     if mmsi is None and len(counts) > 1:
         raise InputError(
-            f"{path}: it has {len(counts)} vessels, {_most(counts)}; name one of them by its MMSI (vessel.mmsi)"
+            f"{path}: it has {len(counts)} vessels, {_most(counts)}; name one of them by its MMSI"
+            " (vessel.mmsi)"
         )
     if not found:
         raise _no_row(path, mmsi)
@@ -597,7 +602,8 @@ def _from_sentences(lines: Iterable[str], path: Path) -> Iterator[_Said]:
             else "no sentence that can be decoded"
         )
         raise InputError(
-            f"{path}: it has {types}; position reports of types {', '.join(map(str, _POSITION_REPORTS))} are read, others have no"
+            f"{path}: it has {types}; position reports of types"
+            f" {', '.join(map(str, _POSITION_REPORTS))} are read, others have no"
             " speed and course, or none that is exact enough: give a file with these"
         )
 
@@ -617,12 +623,13 @@ def _time_of(before: str, after: str, path: Path, number: int) -> float:
         time = float(text) if text.replace(".", "", 1).isdigit() else _seconds_of(text)
     except ValueError:
         raise InputError(
-            f"{path}, line {number}: the sentence has no time; give each its time of reception, as in"
-            " \\c:1780315200*5A\\!AIVDM,... or 2026-06-01T12:00:00Z !AIVDM,..."
+            f"{path}, line {number}: the sentence has no time; give each its time of reception, as"
+            " in \\c:1780315200*5A\\!AIVDM,... or 2026-06-01T12:00:00Z !AIVDM,..."
         ) from None
     if time >= _DATE_FROM:
         raise InputError(
-            f"{path}, line {number}: the time {text} is beyond milliseconds since 1970, and no date without its marks is read; give"
+            f"{path}, line {number}: the time {text} is beyond milliseconds since 1970, and no date"
+            " without its marks is read; give"
             " seconds since 1970, as 1780315200, or 2026-06-01T12:00:00Z"
         )
     return time / 1000.0 if time >= _MILLISECONDS_FROM else time
@@ -645,11 +652,11 @@ _PAIRS_MIN = 10
 
 _WAY_MIN, _TIME_MAX = 30.0, 60.0
 """Least way between the places of a pair [m], which scatter by some, and longest time [s]: in it
-she goes nearly straight.
+the vessel goes nearly straight.
 """
 
 _TURN_MAX, _FASTER_MAX = math.radians(10.0), 1.2
-"""Change of course [rad], and larger over smaller speed [-], up to which she went straight and
+"""Change of course [rad], and larger over smaller speed [-], up to which it went straight and
 evenly in a longer time.
 """
 
@@ -679,16 +686,18 @@ def check_units(
     swapped = _against_places(time, longitude, latitude, speed, course)
     if swapped is not None and _agree(*swapped, share=_CLOSE):
         raise InputError(
-            f"{path}: latitude and longitude are swapped: only so are speeds and courses those between places; swap the"
-            " columns' names"
+            f"{path}: latitude and longitude are swapped: only so are speeds and courses those"
+            " between places; swap the columns' names"
         )
     if not _RATIO[0] <= ratio <= _RATIO[1]:
         raise InputError(
-            f"{path}: reported speeds are {ratio:.2f} of those between places, in the median; they must be in knots (column"
+            f"{path}: reported speeds are {ratio:.2f} of those between places, in the median; they"
+            " must be in knots (column"
             " sog_kn or SOG), and latitude and longitude in degrees: convert them"
         )
     raise InputError(
-        f"{path}: reported courses are {off:.0f} deg off those between places, in the median; they must be over the ground, in"
+        f"{path}: reported courses are {off:.0f} deg off those between places, in the median; they"
+        " must be over the ground, in"
         " degrees from true north (column cog_deg or COG): convert them, or take another column"
     )
 

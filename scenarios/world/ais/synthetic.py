@@ -28,8 +28,9 @@ sigma of a coordinate [m, s, m].
 """
 
 _DANISH = (
-    "# Timestamp,Type of mobile,MMSI,Latitude,Longitude,Navigational status,ROT,SOG,COG,Heading,IMO,Callsign,Name,Ship type,"
-    "Cargo type,Width,Length,Type of position fixing device,Draught,Destination,ETA,Data source type,A,B,C,D"
+    "# Timestamp,Type of mobile,MMSI,Latitude,Longitude,Navigational"
+    " status,ROT,SOG,COG,Heading,IMO,Callsign,Name,Ship type,Cargo type,Width,Length,Type of"
+    " position fixing device,Draught,Destination,ETA,Data source type,A,B,C,D"
 )
 _MARINE_CADASTRE = (
     "mmsi,base_date_time,longitude,latitude,sog,cog,heading,vessel_name,imo,call_sign,vessel_type,status,length,width,draft,cargo,"
@@ -39,13 +40,14 @@ _MARINE_CADASTRE = (
 
 def danish_file() -> str:
     """Return reports of a ship in the Kattegat: every 10 s, every 3 s while it turns, a tenth of
-    them lost, and rows of no use.
+    them lost, and unusable rows.
     """
     ship = _ship(speed_kn=12.0, course_deg=20.0, turn_deg=90.0)
     times = _report_times(ship, slow=10.0, fast=10.0 / 3.0, lost=0.1)
     rows = [
-        f"{datetime.fromtimestamp(time, UTC):%d/%m/%Y %H:%M:%S},Class A,{SYNTHETIC['synthetic_danish.csv']},{latitude:.6f},{longitude:.6f},"
-        f"Under way using engine,,{speed:.1f},{course:.1f},,Unknown,,MADE SHIP,Cargo,,,,GPS,,,,AIS,,,,"
+        f"{datetime.fromtimestamp(time, UTC):%d/%m/%Y %H:%M:%S},Class"
+        f" A,{SYNTHETIC['synthetic_danish.csv']},{latitude:.6f},{longitude:.6f},Under way using"
+        f" engine,,{speed:.1f},{course:.1f},,Unknown,,MADE SHIP,Cargo,,,,GPS,,,,AIS,,,,"
         for time, latitude, longitude, speed, course in _reports(
             ship, times, place=(57.2, 11.3), seed=1
         )

@@ -105,7 +105,7 @@ def ais_vessel(
 
     Raises
     ------
-    InputError : the file is of no use, or does not cover the flight
+    InputError : the file is not usable, or does not cover the flight
     """
     path = Path(config.track)
     try:
@@ -126,8 +126,9 @@ def _check_covered(reports: AisReports, begin: float, end: float, gap_max: float
     """
     if not reports.time[0] <= begin < end <= reports.time[-1]:
         raise InputError(
-            f"{reports.path}: reports of MMSI {reports.mmsi} go from {utc_text(reports.time[0])} (line {reports.line[0]:.0f}) to"
-            f" {utc_text(reports.time[-1])} (line {reports.line[-1]:.0f}); the longest flight goes from {utc_text(begin)} to"
+            f"{reports.path}: reports of MMSI {reports.mmsi} go from {utc_text(reports.time[0])}"
+            f" (line {reports.line[0]:.0f}) to {utc_text(reports.time[-1])} (line"
+            f" {reports.line[-1]:.0f}); the longest flight goes from {utc_text(begin)} to"
             f" {utc_text(end)}: set place.utc or flight.duration_max_s"
         )
     gaps = np.diff(reports.time)
@@ -135,9 +136,10 @@ def _check_covered(reports: AisReports, begin: float, end: float, gap_max: float
     worst = int(np.argmax(np.where(used, gaps, 0.0)))
     if gaps[worst] > gap_max:
         raise InputError(
-            f"{reports.path}, line {reports.line[worst]:.0f}: after {utc_text(reports.time[worst])} there is no report of MMSI"
-            f" {reports.mmsi} for {gaps[worst]:.0f} s; the track is bridged over vessel.gap_max_s = {gap_max:g} s at"
-            " most: set it, or fly another time (place.utc, flight.duration_max_s)"
+            f"{reports.path}, line {reports.line[worst]:.0f}: after {utc_text(reports.time[worst])}"
+            f" there is no report of MMSI {reports.mmsi} for {gaps[worst]:.0f} s; the track is"
+            f" bridged over vessel.gap_max_s = {gap_max:g} s at most: set it, or fly another time"
+            " (place.utc, flight.duration_max_s)"
         )
 
 
@@ -197,7 +199,7 @@ def _course_of(velocity: Array) -> Array:
 
 
 def _manoeuvres_end(velocity: Array) -> float:
-    """Return when the vessel last changed its velocity as in a manoeuvre [s]; not a number if it
+    """Return when the vessel last changed its velocity as in a manoeuvre [s]; NaN if it
     never did.
     """
     window = round(_MANOEUVRE_TIME / TRACK_STEP)
@@ -336,8 +338,3 @@ def _received_from_file(
         elif not (missed or outage[0] <= report.time + late < outage[1]):
             received.append((report.time + late, report))
     return sorted(received, key=lambda entry: entry[0])
-
-
-def no_outage() -> tuple[float, float]:
-    """Return an outage that never begins [s]."""
-    return math.inf, math.inf

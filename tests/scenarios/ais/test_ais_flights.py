@@ -85,7 +85,7 @@ def test_its_row_says_where_and_when_and_how_fast_the_ship_was(flown):
             [
                 "accelerates by",
                 "following.vessel_acceleration_mps2 = 0.03",
-                "declare more, or fly another time of its file",
+                "declare more, or fly another time or track",
             ],
         ),
         (
@@ -93,7 +93,7 @@ def test_its_row_says_where_and_when_and_how_fast_the_ship_was(flown):
             [
                 "moves at up to",
                 "following.vessel_speed_max_mps = 5",
-                "more, or fly another time of its file (place.utc)",
+                "more, or fly another time or track",
             ],
         ),
     ],
