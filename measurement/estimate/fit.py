@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+import numpy.typing as npt
 from scipy.special import chdtrc
 
 from measurement.estimate.model import (
@@ -22,8 +23,11 @@ from measurement.estimate.model import (
     Property,
     Slope,
     Variances,
+    Window,
     background_of_co2,
     block_record,
+    drawn_errors,
+    error_energy,
     line_operator,
     orthonormal,
     read_errors,
@@ -186,17 +190,49 @@ class _State:
         found = likelihood.fitted(self.residual, self.freed, self.variances, varying)
         return replace(self, variances=found)
 
-    def solved(self, inverse: Array, *, one_shape: bool = False) -> Slope:
-        """Return the slope of the ship's passes."""
+    @property
+    def read_errors(self) -> Array:
+        """Covariance of the errors of CO2 as read, of all blocks [ppm^2]."""
+        size = background_of_co2(self.data, self.variances, self.slope)
+        return read_errors(self.data, self.variances, size)
+
+    def solved(self, inverse: Array) -> Slope:
+        """Return the slope of the ship's passes in their windows, as if these were given."""
         windows = [self.data.windows[i] for i in self.own]
         operator = line_operator(len(self.data.read), windows)
-        z = self.instrument_column
-        if one_shape:
-            operator = with_one_shape(operator, windows, self.data.read)
-            z = self.data.equalised(operator @ self.data.read)  # (5)
-        size = background_of_co2(self.data, self.variances, self.slope)
-        errors = read_errors(self.data, self.variances, size)
-        return solve_slope(self.data, inverse, z, operator, errors, self.signals)
+        energy = error_energy(self.data, inverse, operator, self.read_errors)
+        return solve_slope(inverse, self.instrument_column, energy, self.signals)
+
+    def solved_with_drawn_windows(self, inverse: Array, *, one_shape: bool = False) -> Slope:
+        """Return the slope by (8), for windows that are found in CO2 as it is read.
+
+        Parameters
+        ----------
+        one_shape : whether all passes get their mean shape
+        """
+        data, errors = self.data, self.read_errors
+        drawn = drawn_errors(errors)
+        instruments = np.zeros((len(data.known), drawn.shape[1]))
+        for i, added in enumerate(drawn.T):
+            read = data.read + added
+            windows = [window for window in data.windows_of(read) if self._is_own(window)]
+            operator = line_operator(len(read), windows)
+            windows = [
+                windows[j]
+                for j in np.flatnonzero(stands_out(operator, windows, read, 2.0 * errors))
+            ]
+            operator = line_operator(len(read), windows)
+            if one_shape and windows:
+                operator = with_one_shape(operator, windows, read)
+            instruments[:, i] = data.equalised(operator @ read)  # (5)
+        products = np.vdot(inverse @ data.equalised(drawn), instruments)
+        energy = float(products) / drawn.shape[1]  # (8)
+        return solve_slope(inverse, instruments.mean(axis=1), energy, self.signals)
+
+    def _is_own(self, window: Window) -> bool:
+        """Return whether no pass of another fuel is where this window has its peak."""
+        foreign = [self.data.windows[i] for i in self.foreign]
+        return not any(other.first < window.peak < other.last for other in foreign)
 
     def with_between(self, between: float) -> "_State":
         """Return the state with a standard deviation of the slopes of passes [ppb/ppm]."""
@@ -307,11 +343,11 @@ def fit_record(record: Record, instrument: SnifferSpec) -> Fit:
     else:
         state = state.with_between(0.0)
     inverse = state.inverse(state.fixed, own)
-    found = state.solved(inverse)
+    found = state.solved_with_drawn_windows(inverse)
     bare = state.with_known_properties()
     whole = bare.solved(bare.inverse(state.fixed, own)).kept
     if found.kept < 1.0 - _CORRECTED_MOST:
-        found = state.solved(inverse, one_shape=True)
+        found = state.solved_with_drawn_windows(inverse, one_shape=True)
     if not math.isfinite(found.slope):
         return Fit(instrument=instrument, problems=(_HAZE,))
     if whole < KEPT_LEAST and not problems:
@@ -383,12 +419,7 @@ def _of_passes_that_stand_out(
     """
     data = state.data
     operator = line_operator(len(data.read), data.windows)
-    size = background_of_co2(data, state.variances, state.slope)
-    errors = read_errors(data, state.variances, size)
-    peaks = [window.peak for window in data.windows]
-    rows = operator[peaks]
-    deviations = np.sqrt(np.einsum("ij,jk,ik->i", rows, errors, rows))
-    high = rows @ data.read > _STANDS_OUT * deviations
+    high = stands_out(operator, data.windows, data.read, state.read_errors)
     if not high[state.own].any():
         return state, (_HAZE,)
     high[list(state.foreign)] = True
@@ -402,6 +433,21 @@ def _of_passes_that_stand_out(
     foreign = tuple(int(np.searchsorted(kept, i)) for i in state.foreign)
     state = replace(state, data=fewer, foreign=foreign).refitted()
     return state.with_slope(state.solved(state.inverse(state.fixed))), ()
+
+
+def stands_out(
+    operator: Array, windows: Sequence[Window], read: Array, errors: Array
+) -> npt.NDArray[np.bool_]:
+    """Return which passes are higher over their lines than errors of CO2 are by chance.
+
+    Parameters
+    ----------
+    operator : Q of (5)
+    read, errors : CO2 of all blocks [ppm], and the covariance of its errors [ppm^2]
+    """
+    rows = operator[[window.peak for window in windows]]
+    deviations = np.sqrt(np.einsum("ij,ij->i", rows @ errors, rows))
+    return np.asarray(rows @ read > _STANDS_OUT * deviations)
 
 
 def _without_foreign(state: _State) -> tuple[_State, Array, float]:
