@@ -49,11 +49,17 @@ FOREIGN_MOST = 0.25
 _COMPARED_LEAST = 4
 """Fewest passes among which one can be seen to be of another fuel."""
 
-DISAGREE = 1e-6
-"""Probability of passes that differ as much, below which there is no verdict."""
+TOGETHER = 0.1
+"""Standard deviation of the time between SO2 and CO2 that one pass has and others have not [s]."""
 
-DISAGREE_SMALL, BETWEEN_MOST = 1e-3, 0.2
-"""The same for passes whose standard deviation relative to the slope is above the second figure."""
+_PASS_S = 3.0
+"""Usual length of a pass [s]: a shift by as much counts as a ratio that is twice as large."""
+
+DISAGREE = 0.01
+"""Probability of passes that differ as much, below which there is no verdict.
+
+They may differ by ``ALIKE`` and ``TOGETHER``, so that quiet logs are below it in fewer than 1 of
+1,000."""
 
 CHANGE = 1e-4
 """Probability of a change of slope between two passes, below which there is no verdict."""
@@ -127,11 +133,18 @@ class _State:
 
     @property
     def fixed(self) -> Array:
-        """Fixed columns, passes of other fuels included."""
+        """Fixed columns, passes of other fuels included.
+
+        Where another plume overlaps the ship's, SO2 has another place in the pass than CO2.
+        """
+        if not self.foreign:
+            return self.data.fixed
         others = self.data.passes[:, list(self.foreign)]
-        return (
-            orthonormal(np.hstack([self.data.fixed, others])) if self.foreign else self.data.fixed
-        )
+        return orthonormal(np.hstack([self.data.fixed, others, self.later(others)]))
+
+    def later(self, passes: Array) -> Array:
+        """Return the change of passes that come later, shape (n, k) [ppm/s]."""
+        return -np.asarray(np.gradient(passes, self.data.blocks.time[self.data.known], axis=0))
 
     @property
     def freed(self) -> Array:
@@ -278,7 +291,8 @@ class Fit:
     residuals : how large they are
     background_ppb, background_ppm, background_s : standard deviation of the background of the
         residuals and of CO2, and its correlation length
-    agreement : probability that passes of one slope differ as much; NaN for a single pass
+    agreement : probability that passes of one fuel differ as much, in slope or in time; NaN for a
+        single pass
     excluded : passes of another fuel
     groups : slopes of groups of passes, and their noise
     t90_sd_s, delay_sd_s : standard deviations of t90 of SO2 and of its delay after CO2 [s]
@@ -467,28 +481,59 @@ def _without_foreign(state: _State) -> tuple[_State, Array, float]:
         worst = int(np.argmax(strength))
         too_few = len(state.data.windows) < _COMPARED_LEAST or len(state.foreign) >= most
         if too_few or strength[worst] < FOREIGN_SIGMA:
-            return state, inverse, _agreement(against, inner)
+            return state, inverse, _agreement(state, inverse)
         state = replace(state, foreign=(*state.foreign, state.own[worst])).refitted()
 
 
-def _agreement(against: Array, inner: Array) -> float:
-    """Return the probability that passes of one slope differ as much, by their scores."""
-    if len(against) < 2:
+def _agreement(state: _State, inverse: Array) -> float:
+    """Return the probability that passes of one fuel differ as much, in ratio or in time.
+
+    Another plume that overlaps the ship's is hardly ever in the same place of every pass. So it
+    changes the ratio from pass to pass, and where SO2 is in a pass by the time of CO2. What all
+    passes have in common, as another slope, t90 or delay, counts for nothing.
+
+    Parameters
+    ----------
+    inverse : P of (3) in which slopes of passes may differ by ``ALIKE``
+    """
+    own = state.data.passes[:, state.own]
+    if own.shape[1] < 2:
         return math.nan
-    values, vectors = np.linalg.eigh(inner)
+    later = state.later(own)
+    inverse = _with_columns(inverse, TOGETHER * state.slope * later)
+    common = orthonormal(np.hstack([own.sum(axis=1, keepdims=True), state.data.columns]))
+    weighted = inverse @ common
+    inverse = inverse - weighted @ np.linalg.solve(common.T @ weighted, weighted.T)
+    residual = inverse @ state.residual
+    # Ratios alone as well: among as many places again they are told less well.
+    chances = [
+        _chance_of_scores(columns.T @ residual, columns.T @ (inverse @ columns))
+        for columns in (own, np.hstack([own, _PASS_S * later]))
+    ]
+    return min(1.0, len(chances) * min(chances))
+
+
+def _chance_of_scores(scores: Array, covariance: Array) -> float:
+    """Return the probability of scores that are as large as these, given their covariance."""
+    values, vectors = np.linalg.eigh(covariance)
     telling = values > 1e-4 * values[-1]
-    scores = (vectors.T @ against)[telling] ** 2 / values[telling]
-    return float(chdtrc(max(1, int(telling.sum()) - 1), float(scores.sum())))
+    squares = (vectors.T @ scores)[telling] ** 2 / values[telling]
+    return float(chdtrc(int(telling.sum()), float(squares.sum())))
+
+
+def _with_columns(inverse: Array, columns: Array) -> Array:
+    """Return P of (3) after the outer product of columns has been added to V."""
+    weighted = inverse @ columns
+    inner = np.eye(columns.shape[1]) + columns.T @ weighted
+    return np.asarray(inverse - weighted @ np.linalg.solve(inner, weighted.T))
 
 
 def _disagreement(state: _State, inverse: Array, agreement: float) -> tuple[str, ...]:
     """Return the problem of passes that are not of one fuel, with the ratios that they show."""
     count = len(state.data.windows)
     full = len(state.foreign) >= max(1, int(FOREIGN_MOST * count))
-    varying = state.variances.between > BETWEEN_MOST * abs(state.slope)
     change, chance = _change_of_slope(state, inverse)
-    disagree = agreement < DISAGREE or (agreement < DISAGREE_SMALL and varying)
-    if not (full or disagree or chance < CHANGE):
+    if not (full or agreement < DISAGREE or chance < CHANGE):
         return ()
     if chance < CHANGE and chance < agreement:
         first, last = _times(state, change)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from crossings import changed, crossings, flight, plain_sniffer, read, with_column
+from crossings import BACKGROUND, changed, crossings, flight, plain_sniffer, read, with_column
 
 from measurement.estimate.areas import area_ratio
 from measurement.estimate.estimator import estimate
@@ -407,3 +407,24 @@ def test_flights_of_living_sensors_stick_in_no_step(preset, fsc):
         rounded = Readings(readings.time, readings.values.round(decimals))
         for analyst in (spec, sensor_preset("unspecified")):
             assert STUCK not in told(rounded, analyst)
+
+
+def two_ships(spec, *, coincide):
+    """Return readings of a plume of 0.08 % over every pass, and of one of 0.5 % beside it."""
+    own, other = crossings(0.08, seed=1), crossings(0.5, seed=1 if coincide else 2)
+    return read(spec, own + other - BACKGROUND)
+
+
+def test_another_plume_in_other_places_of_the_passes_has_no_verdict():
+    # It comes 0.5 s before or after the ship's own (sd), with heights of its own.
+    spec = plain_sniffer(8.0, 4.0, so2_noise=2.5, co2_noise=1.0)
+    assert "at least two ratios" in reasons(two_ships(spec, coincide=False), spec)
+
+
+def test_two_plumes_that_coincide_in_every_pass_read_as_one_fuel():
+    # No log can tell: the same air is that of a ship with the mean of both fuels and NO and NO2 of
+    # both.
+    spec = plain_sniffer(8.0, 4.0, so2_noise=2.5, co2_noise=1.0)
+    found = estimate(two_ships(spec, coincide=True), spec)
+    assert found.quality in "AB"
+    assert found.fsc_percent == pytest.approx(0.29, abs=2.0 * found.total_percent)
