@@ -19,6 +19,7 @@ from scenarios.planning.air.estimated_wind import (
     turbulence_met,
     wind_bias,
     wind_change,
+    wind_error_in_weaves,
     wind_followed,
     wind_noise,
     wind_noise_left,
@@ -65,7 +66,7 @@ def error_budget(
     """
     f, altitude_error = scenario.following, setup.altitude_error
     drift = drift_rate(scenario, wind, turn, altitude_error)
-    own_velocity = velocity_error(scenario, drift)
+    own_velocity = velocity_error(scenario, drift) + wind_error_in_weaves(scenario, setup)
     declared = f.speed_error_mps >= own_velocity
     return ErrorBudget(
         own_position=Process(
