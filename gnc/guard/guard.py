@@ -838,8 +838,9 @@ class CommandHistory:
     def _take_in_changes(self, commands: list[float]) -> None:
         """Take in how much commands [rad/s] changed."""
         recent, change, fading = self.recent, self.change, self._fading
-        lowest, highest = min(self._lowest, min(commands)), max(self._highest, max(commands))
-        if (highest - lowest) / self._reversal <= LEAST_CHANGE:
+        lowest, highest = min(commands), max(commands)
+        widest = max(highest, self._highest) - min(lowest, self._lowest)
+        if widest / self._reversal <= LEAST_CHANGE:
             # None of them changes by more than counts at least, as on an orbit.
             recent.extend(commands)
             for _ in commands:

@@ -91,7 +91,7 @@ def measure_weaves(
 def _weave(
     aircraft: AutopilotedAircraft, start: Trim, left: _Turn, right: _Turn, swing: float
 ) -> Weave:
-    """Return a weave by turns to both sides, through an angle to either side of the middle [rad]."""
+    """Return a weave whose courses swing by an angle to either side of the middle [rad]."""
     aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
 
     def turn(side: float, of: _Turn, course: float) -> list[WeaveSample]:

@@ -214,7 +214,8 @@ def aircraft_setup(
             for each in (0.0, gradient)
         )
         climbing = climbing.or_worse(level)
-    thrust, weaves = None, ()
+    thrust: ThrustExpectation | None = None
+    weaves: tuple[Weave, ...] = ()
     if any(setting.follows for setting in settings):
         sound = AutopilotedAircraft(schedule.spec, run.model)
         thrust = thrust_expectation(sound, schedule, start)
