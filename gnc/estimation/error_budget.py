@@ -2,9 +2,9 @@
 
 A term is a **bias** of unknown sign, a **process** that varies about 0 with a standard deviation
 and a correlation time, a **growth** with age, or a **deviation** along a turn. The planner states
-the terms from what the scenario declares (``scenarios/planning/air/errors.py``). The keep-out guard,
-the planner of the orbit's margin, the refusals and the monitor of the premises read them here. Each
-of them needs the same two answers: by how much may a velocity be wrong now (``velocity``), and by
+the terms from what the scenario declares (``scenarios/planning/air/errors.py``). The keep-out
+guard, the planner of the orbit's margin, the refusals and the monitor of the premises read them
+here. Each of them needs the same two answers: by how much may a velocity be wrong now (``velocity``), and by
 how much a place after some time (``displacement``).
 
 **Turbulence, as a moving vehicle meets it.** A horizontal component q of the gusts is a process of

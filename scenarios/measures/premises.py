@@ -73,7 +73,7 @@ _FULL, _FULL_IN_TURBULENCE = 0.98, 0.8
 are seldom full for long without the guard; there nearly full turns count, too."""
 
 _SPEED_BAND = 0.03
-"""Difference of the commanded airspeed from V_r up to which a turn counts as one at V_r, over V_r
+"""Difference of the commanded pace from V_r up to which a turn counts as one at V_r, over V_r
 [-]. The guard commands V_r in a turn away; one that slows down or speeds up has another response.
 """
 
@@ -393,13 +393,13 @@ def _commands(flight: _Flight, rates: Array, step: float) -> _Commands:
     before = time - guard.delay
     delayed = np.interp(before, time, course) + np.minimum(0.0, before - time[0]) * rates[0]
     given = np.diff(course) / step
-    speed_turned = flight.plan.guidance.speed
-    off_speed = np.abs(column("airspeed_command_mps") - speed_turned)
-    away = (column("guard") > 0.0) | (off_speed <= _SPEED_BAND * speed_turned)
-    share = _FULL
-    if flight.budget.turbulence.sigma > 0.0:
-        # There airspeed is commanded for the gust of the moment, and its range is checked instead.
-        share, away = _FULL_IN_TURBULENCE, np.ones(len(time), dtype=np.bool_)
+    # The airspeed is commanded that keeps the pace in the gust of the moment (``gnc.airspeed``).
+    measured, turned_at = column("own_seen_speed_mps"), flight.plan.guidance.speed
+    airspeed = column("airspeed_mps")
+    gust = np.where(np.isfinite(airspeed), airspeed - measured, 0.0)
+    off_speed = np.abs(column("airspeed_command_mps") - gust - turned_at)
+    away = (column("guard") > 0.0) | (off_speed <= _SPEED_BAND * turned_at)
+    share = _FULL_IN_TURBULENCE if flight.budget.turbulence.sigma > 0.0 else _FULL
     return _Commands(
         given=np.clip(given, -flyable, flyable),
         acting=np.clip(np.diff(delayed) / step, -flyable, flyable),
