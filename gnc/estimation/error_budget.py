@@ -4,8 +4,8 @@ A term is a **bias** of unknown sign, a **process** that varies about 0 with a s
 and a correlation time, a **growth** with age, or a **deviation** along a turn. The planner states
 the terms from what the scenario declares (``scenarios/planning/air/errors.py``). The keep-out
 guard, the planner of the orbit's margin, the refusals and the monitor of the premises read them
-here. Each of them needs the same two answers: by how much may a velocity be wrong now (``velocity``), and by
-how much a place after some time (``displacement``).
+here. Each of them needs the same two answers: by how much may a velocity be wrong now
+(``velocity``), and by how much a place after some time (``displacement``).
 
 **Turbulence, as a moving vehicle meets it.** A horizontal component q of the gusts is a process of
 standard deviation sigma and correlation time T = L/V, by the scale length L and the airspeed V. Its
