@@ -28,7 +28,7 @@ from scenarios.flight.release import release
 from scenarios.measures.figures import flight_figures
 from scenarios.measures.relative_state import flight_history
 from scenarios.planning.planner import plan_flight
-from scenarios.scenario.load import checked, load_document
+from scenarios.scenario.files import checked, load_document
 from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 

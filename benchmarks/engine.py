@@ -17,7 +17,7 @@ from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import fly_study
 from scenarios.engine.task import Task, Work
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.registry import study_of
 
 REFERENCE_STEP = 2.9e-6

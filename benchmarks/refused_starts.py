@@ -26,7 +26,7 @@ from scenarios.experiment.sampling import Points
 from scenarios.planning.limits import omega_max
 from scenarios.planning.planner import plan_flight
 from scenarios.planning.start import sampled_start
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 from scenarios.world.noise import start_generator

@@ -23,7 +23,7 @@ from common.command_line import BAD_INPUT
 from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.engine.memory import data_memory
 from scenarios.errors import InputError
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
 from scenarios.studies.registry import study_of
 from tests.in_process import run_command

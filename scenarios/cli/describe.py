@@ -6,13 +6,15 @@ from collections.abc import Iterator
 from itertools import groupby
 
 from scenarios.errors import InputError
-from scenarios.scenario.documented import (
+from scenarios.scenario.documentation import (
+    PART_SECTIONS,
+    DocumentedKey,
     DocumentedSection,
     documented_keys,
+    documented_part_keys,
     documented_sections,
     similar_key,
 )
-from scenarios.scenario.documented_parts import PART_SECTIONS, DocumentedKey, documented_part_keys
 from scenarios.scenario.overrides import as_toml
 from scenarios.scenario.sections.convergence import ConvergenceScenario
 

@@ -12,10 +12,15 @@ from pydantic import BaseModel
 
 from scenarios.cli.describe import value_text
 from scenarios.errors import InputError
-from scenarios.scenario.documented import DocumentedSection, documented_sections
-from scenarios.scenario.documented_parts import DIMENSIONLESS, DocumentedKey, documented_part_keys
+from scenarios.scenario.documentation import (
+    DIMENSIONLESS,
+    DocumentedKey,
+    DocumentedSection,
+    documented_part_keys,
+    documented_sections,
+)
 from scenarios.scenario.effect import compares, unused
-from scenarios.scenario.load import OPERATIONAL, OPERATIONAL_STUDIES, load_document, load_study
+from scenarios.scenario.files import OPERATIONAL, OPERATIONAL_STUDIES, load_document, load_study
 from scenarios.scenario.overrides import Document, as_toml
 from scenarios.scenario.scenario import Scenario
 

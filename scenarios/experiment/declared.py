@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from gnc.errors import InfeasibleError
 from scenarios.errors import InputError
 from scenarios.experiment.draws import speed_ratios, values_at
-from scenarios.scenario.load import with_values
+from scenarios.scenario.files import with_values
 from scenarios.scenario.scenario import Scenario
 from scenarios.world.vessel import SteadyVessel, check_manoeuvres, largest_acceleration
 from scenarios.world.world import vessel_of

@@ -21,15 +21,15 @@ from measurement.sniffer.spec import SnifferSpec
 from scenarios.engine.fingerprint import fingerprint
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
-from scenarios.scenario.documented_parts import (
+from scenarios.scenario.documentation import (
     DIMENSIONLESS,
     DocumentedKey,
     described_fields,
     documented_part_keys,
 )
 from scenarios.scenario.effect import differing, unused
-from scenarios.scenario.keys import line, split_unit
-from scenarios.scenario.load import AnyStudy
+from scenarios.scenario.errors import line, split_unit
+from scenarios.scenario.files import AnyStudy
 from scenarios.scenario.parts import names_file, names_folder, part_names
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.guidance import GuidanceConfig

@@ -18,7 +18,7 @@ from scenarios.planning.bounded_steering import farthest_start, largest_speed, s
 from scenarios.planning.limits import omega_max
 from scenarios.planning.planner import plan_flight
 from scenarios.planning.reference import circle, oscillation_at
-from scenarios.scenario.load import with_values
+from scenarios.scenario.files import with_values
 from scenarios.scenario.sections.guidance import GuidanceConfig
 from scenarios.studies.flight_study import FlightStudy
 from scenarios.studies.study import study

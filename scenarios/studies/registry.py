@@ -11,7 +11,7 @@ from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Launch, Progress, RunResult, Study, fly_study
 from scenarios.engine.task import Work
 from scenarios.errors import InputError
-from scenarios.scenario.load import AnyStudy
+from scenarios.scenario.files import AnyStudy
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.convergence import ConvergenceScenario
 from scenarios.scenario.sections.experiment import TrialList

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from scenarios.errors import InputError
 from scenarios.scenario.effect import unused
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.scenario.overrides import parse_override
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.experiment import TrialList

@@ -21,7 +21,7 @@ from reports.registry import content
 from reports.run.run_data import read_run
 from scenarios.api.results import Run
 from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.registry import run_study
 
 METER = """

@@ -22,7 +22,7 @@ from scenarios.flight.failure import failure
 from scenarios.flight.release import release
 from scenarios.measures.window import window_figures
 from scenarios.planning.planner import plan_flight
-from scenarios.scenario.load import with_values
+from scenarios.scenario.files import with_values
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.experiment import ArenaConfig
 from scenarios.studies.arena.entrants import TUNING, Entrant, draws_left

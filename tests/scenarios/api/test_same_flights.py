@@ -10,7 +10,7 @@ import pytest
 
 from scenarios import InputError, fly, load, run
 from scenarios.engine.fingerprint import fingerprint
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from tests.in_process import run_command
 from tests.run_tables import manifest_of
 

@@ -19,7 +19,7 @@ from scenarios.engine.dask_executor import _WorkPlugin
 from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.task import Limits
 from scenarios.errors import InputError
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.registry import run_study
 
 SETTINGS = [

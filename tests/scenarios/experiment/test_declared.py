@@ -10,7 +10,7 @@ import pytest
 from scenarios.experiment.declared import beyond_declared
 from scenarios.experiment.requests import Experiment
 from scenarios.experiment.search_space import search_space
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
 
 SPEED = 19.42

@@ -6,7 +6,7 @@ from scipy import stats
 
 from scenarios.errors import InputError
 from scenarios.experiment.draws import check_draws, sampled_flight, speed_ratios
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
 
 SPEED = 19.42

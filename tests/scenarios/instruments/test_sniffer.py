@@ -12,7 +12,7 @@ from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
 from scenarios.flight_runner import FlightWork
 from scenarios.planning.spreads import PredictedSpreads
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from tests.run_tables import history_in
 
 # Astern of a ship on a straight course, where the kinematic vehicle settles within a minute or two.

@@ -15,7 +15,7 @@ from scenarios.errors import InputError
 from scenarios.planning.planner import plan_flight
 from scenarios.planning.plume.axis import co2_sensor, plume_axis
 from scenarios.planning.plume.distance import additional_distance, information
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.scenario.sections.flight import ALTITUDE_MARGIN
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 from scenarios.world.exhaust import emission

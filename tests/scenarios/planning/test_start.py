@@ -13,7 +13,7 @@ from gnc.guard.guard import GuardParameters
 from scenarios.experiment.requests import Experiment
 from scenarios.planning.bounded_steering import farthest_start
 from scenarios.planning.start import Start, check_start
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
 
 

@@ -4,7 +4,7 @@ import tomllib
 
 import pytest
 
-from scenarios.scenario.load import CATALOG, bases, catalog, load_document, load_study
+from scenarios.scenario.files import CATALOG, bases, catalog, load_document, load_study
 
 
 def own(path):

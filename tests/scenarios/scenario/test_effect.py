@@ -4,8 +4,8 @@ import pytest
 
 from scenarios.errors import InputError
 from scenarios.experiment.points import points_of
-from scenarios.scenario.experiment_checks import unsteady
-from scenarios.scenario.load import load_study
+from scenarios.scenario.consistency import unsteady
+from scenarios.scenario.files import load_study
 
 LAG = 'sweep."kinematic.heading_rate_lag_s" = [0.1, 0.2]\n'
 DIRECTION = '[[draws]]\nkey = "wind.from_deg"\nuniform = [0.0, 90.0]\n'

@@ -2,7 +2,7 @@ import pytest
 
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
-from scenarios.scenario.load import load_study, with_values
+from scenarios.scenario.files import load_study, with_values
 from scenarios.studies.trials import TrialStudy
 
 

@@ -5,7 +5,7 @@ another value.
 import pytest
 
 from scenarios.errors import InputError
-from scenarios.scenario.load import load_study, with_values
+from scenarios.scenario.files import load_study, with_values
 from scenarios.scenario.scenario import Scenario
 
 

@@ -8,8 +8,8 @@ from pydantic import BaseModel, RootModel
 from scenarios.errors import InputError
 from scenarios.experiment.points import points_of
 from scenarios.experiment.requests import Experiment
-from scenarios.scenario.keys import known_keys
-from scenarios.scenario.load import load_document, load_study
+from scenarios.scenario.errors import known_keys
+from scenarios.scenario.files import load_document, load_study
 from scenarios.scenario.overrides import given_keys, merged, set_value
 from scenarios.scenario.scenario import Scenario
 

@@ -7,7 +7,7 @@ from scenarios.errors import InputError
 from scenarios.experiment.points import points_of
 from scenarios.experiment.random_sample import flights_per_sample, is_random_sample
 from scenarios.experiment.requests import Experiment
-from scenarios.scenario.load import checked, load_study, with_values
+from scenarios.scenario.files import checked, load_study, with_values
 from scenarios.scenario.scenario import Scenario
 
 WIND = {"key": "wind.speed_mps", "uniform": [0.0, 5.0]}

@@ -10,7 +10,7 @@ import pytest
 from aircraft.spec import AircraftError
 from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.errors import InputError
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.registry import run_study, study_of
 from tests.run_tables import manifest_of, rows_of
 from tests.scenarios.short_trial import short_trial

@@ -11,7 +11,7 @@ from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.statistics.sensitivity import sensitivity_indices
 from scenarios.studies.registry import run_study, study_of
 from tests.run_tables import manifest_of

@@ -18,7 +18,7 @@ from scenarios.errors import InputError
 from scenarios.experiment.declared import beyond_declared
 from scenarios.experiment.draws import sampled_flight, value_at
 from scenarios.experiment.requests import Experiment
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.registry import run_study, study_of
 from scenarios.studies.replay import Replay
 from scenarios.world.noise import Noise

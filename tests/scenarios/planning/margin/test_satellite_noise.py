@@ -14,7 +14,7 @@ from scenarios.api.flying import fly
 from scenarios.planning.guidance import satellite_noise, speed_hold, tracking_parameters
 from scenarios.planning.margin.report_scatter import GUARDED_PER_HOUR
 from scenarios.planning.margin.satellite_noise import noise_allowance, position_scatter
-from scenarios.scenario.load import load_study, with_values
+from scenarios.scenario.files import load_study, with_values
 from scenarios.vehicles.sensors import NAVIGATION_TIME
 from scenarios.vehicles.vehicle_setup import KINEMATIC_BANDWIDTH, kinematic_setup
 

@@ -14,7 +14,7 @@ from reports.run.run_data import read_run
 from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.engine.runner import fly_study
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.registry import run_study
 from scenarios.studies.replay import Replay
 from tests.run_tables import manifest_of

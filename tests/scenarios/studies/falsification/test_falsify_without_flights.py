@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from scenarios.errors import InputError
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.falsification import study as falsification
 from scenarios.studies.registry import run_study
 

@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.registry import run_study
 from tests.scenarios.short_search import short_flights
 

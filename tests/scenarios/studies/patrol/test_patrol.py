@@ -11,7 +11,7 @@ from scenarios.engine.task import Task
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
 from scenarios.planning.spreads import PredictedSpreads
-from scenarios.scenario.load import load_study, with_values
+from scenarios.scenario.files import load_study, with_values
 from scenarios.studies.patrol.ships import sampled_patrol
 from scenarios.studies.patrol.tables import patrol_figures, ship_row, wind_row
 from scenarios.studies.patrol.work import PatrolWork

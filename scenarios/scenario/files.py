@@ -4,7 +4,8 @@ import copy
 import functools
 import json
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -15,12 +16,11 @@ from common.registry import announced, is_file_part
 from common.run_layout import FLIGHTS, MANIFEST
 from common.text import did_you_mean
 from scenarios.errors import InputError
-from scenarios.scenario.effect import refuse_unused
-from scenarios.scenario.keys import explanation, key_of
+from scenarios.scenario.effect import reject_unused_keys
+from scenarios.scenario.errors import explanation
 from scenarios.scenario.overrides import (
     Document,
     apply_override,
-    as_toml,
     extended,
     given_keys,
     parse_override,
@@ -99,35 +99,45 @@ def load_study(
     InputError : no such scenario, unreadable TOML, an unknown key, a value out of range, a key
         without effect, or a logo that is no picture
     """
-    document = load_document(name, overrides)
+    own, document = _given(name)
     try:
-        scenario: AnyStudy = checked(document, _kind(document))
+        alone: AnyStudy = checked(document, _kind(document))
     except InputError as error:
-        raise InputError(f"{_where_wrong(name, str(error))}{error}") from None
-    if refusing and isinstance(scenario, Scenario):
+        of_file = isinstance(name, str) and name not in catalog()
+        raise InputError(f"{name}: {error}" if of_file else str(error)) from None
+    scenario = _overridden(alone, document, overrides) if overrides else alone
+    if refusing and isinstance(alone, Scenario):
         # Keys of the file have to act in what the file alone says: an override may well put one of
         # them aside.
-        own, whole = _given(name)
-        refuse_unused(alone := checked(whole, Scenario), given_keys(own))
-        refuse_unused(
-            scenario, {parse_override(override)[0] for override in overrides}, overridden=alone
-        )
+        reject_unused_keys(alone, given_keys(own))
+    if refusing and isinstance(scenario, Scenario):
+        changed = {parse_override(override)[0] for override in overrides}
+        before = alone if isinstance(alone, Scenario) else scenario
+        reject_unused_keys(scenario, changed, overridden=before)
     read_logo(scenario.report)
     return scenario
 
 
-def _where_wrong(name: str | Document, message: str) -> str:
-    """Return a user's file as the beginning of a message about a scenario, where the same is wrong
-    without any override.
+def _overridden(alone: AnyStudy, document: Document, overrides: Sequence[str]) -> AnyStudy:
+    """Return what a document holds with overrides; sections that these leave as they are, are those
+    of ``alone``, what it holds without them.
     """
-    if not isinstance(name, str) or name in catalog():
-        return ""
-    _, alone = _given(name)
-    try:
-        checked(alone, _kind(alone))
-    except InputError as error:
-        return f"{name}: " if str(error) == message else ""
-    return ""
+    changed = _with_overrides(document, overrides)
+    kind = _kind(changed)
+    if kind is not type(alone):
+        found: AnyStudy = checked(changed, kind)
+        return found
+    # An override takes its key out of the sweep, the cases and the draws.
+    read = {"sweep", "cases", "draws", "set", *map(_section, overrides)}
+    return _revised(alone, {name: value for name, value in changed.items() if name in read})
+
+
+def _revised(scenario: Study, sections: Mapping[str, Any]) -> Study:
+    """Return a scenario of which some sections are read anew: of the others is checked only whether
+    all go together.
+    """
+    kept = {name: getattr(scenario, name) for name in scenario.model_fields_set}
+    return checked(kept | dict(sections), type(scenario))
 
 
 def load_document(name: str | Document, overrides: Sequence[str] = ()) -> Document:
@@ -138,6 +148,11 @@ def load_document(name: str | Document, overrides: Sequence[str] = ()) -> Docume
     InputError : no such scenario, unreadable TOML, or an override that cannot be applied
     """
     _, document = _given(name)
+    return _with_overrides(document, overrides)
+
+
+def _with_overrides(document: Document, overrides: Sequence[str]) -> Document:
+    document = copy.deepcopy(document)
     if document.get("study") == "trials":
         own = [override for override in overrides if _section(override) in TrialList.model_fields]
         for_trials = [override for override in overrides if override not in own]
@@ -152,9 +167,6 @@ def load_document(name: str | Document, overrides: Sequence[str] = ()) -> Docume
         refuse_missing(key, value, parsed[-1][1])
     kind = _kind(document | {key: value for key, value in parsed if key == "study"})
     for key, value in parsed:
-        if key == "nu" and kind is Scenario:
-            # Before it is put there: it would take the place of what is swept.
-            raise InputError(_unknown_nu(document, value))
         apply_override(document, key, value, kind)
     return document
 
@@ -306,8 +318,6 @@ def checked(document: Mapping[str, Any], kind: type[Study]) -> Study:
     try:
         return kind.model_validate(document)
     except ValidationError as error:
-        if key_of(error.errors()[0]) == "nu" and kind is Scenario:
-            raise InputError(_unknown_nu(document, document["nu"])) from None
         raise InputError(explanation(error, kind)) from None
 
 
@@ -320,33 +330,22 @@ def sweeps_speed_ratio(document: Mapping[str, Any]) -> bool:
     )
 
 
-def _unknown_nu(document: Mapping[str, Any], nu: object) -> str:
-    """Return what to say of ``nu``, which is no key: the one that sets the speed ratio here."""
-    if isinstance(nu, list):
-        return f"unknown key 'nu'; did you mean 'sweep.nu={as_toml(nu)}'?"
-    key = (
-        f"sweep.nu=[{as_toml(nu)}]"
-        if sweeps_speed_ratio(document)
-        else f"vessel.speed_ratio={as_toml(nu)}"
-    )
-    return f"unknown key 'nu'; did you mean '{key}'?"
-
-
 def with_values(scenario: Scenario, values: Mapping[str, object]) -> Scenario:
-    """Return the scenario with dotted keys set to new values, checked again."""
+    """Return the scenario with dotted keys set to new values, and their sections checked again."""
     if not values:
         return scenario
     if own := [key for key in values if key.partition(".")[0] == "report"]:
         raise InputError(
             f"'{own[0]}' varies from flight to flight; a report is of all flights: set it once, for the scenario"
         )
-    document = scenario.model_dump()
+    sections = {key.partition(".")[0] for key in values} & type(scenario).model_fields.keys()
+    document = scenario.model_dump(include=sections)
     if "guidance.law" in values:
         # Keys that only the other law has, such as those of a steering law that is added, go with
         # it.
         for key in scenario.guidance.keys_lost_with(values["guidance.law"]):
             del document["guidance"][key]
-    for name in ("plume", "payload"):
+    for name in {"plume", "payload"} & sections:
         changed = {
             key.partition(".")[2]: value
             for key, value in values.items()
@@ -356,4 +355,57 @@ def with_values(scenario: Scenario, values: Mapping[str, object]) -> Scenario:
             del document[name][key]
     for key, value in values.items():
         set_value(document, key, value, Scenario)
-    return checked(document, Scenario)
+    return _revised(scenario, document)
+
+
+def aircraft_from(directory: Path, name: str, overrides: Sequence[str]) -> list[str]:
+    """Return overrides that take the aircraft from ``directory``: that of ``--set aircraft=NAME``,
+    else the scenario's if it is there, else the only one there.
+
+    Parameters
+    ----------
+    directory : with folders of aircraft
+    name : of the scenario
+    overrides : of its keys
+
+    Raises
+    ------
+    InputError : no such scenario, directory or aircraft, or several to choose from
+    """
+    from aircraft.fleet.find import folder_names
+
+    keys = [parse_override(override) for override in overrides]
+    demanded = next((str(value) for key, value in reversed(keys) if key == "aircraft"), None)
+    if demanded is None:
+        usual = load_document(name, overrides).get("aircraft")
+        with _aircraft_errors():
+            demanded = str(usual) if usual in folder_names(directory) else None
+    path = folder_of(directory, demanded)
+    return [
+        *(of for of, (key, _) in zip(overrides, keys, strict=True) if key != "aircraft"),
+        f"aircraft={json.dumps(path)}",
+    ]
+
+
+def folder_of(directory: Path, name: str | None) -> str:
+    """Return the path of an aircraft in ``directory``: of the one called ``name``, or else of the
+    only one.
+
+    Raises
+    ------
+    InputError : there is none of this name, or there are several
+    """
+    from aircraft.fleet.find import folder_path
+
+    with _aircraft_errors():
+        return folder_path(directory, name)
+
+
+@contextmanager
+def _aircraft_errors() -> Iterator[None]:
+    from aircraft.spec import AircraftError
+
+    try:
+        yield
+    except AircraftError as error:
+        raise InputError(str(error)) from None
