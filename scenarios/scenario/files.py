@@ -32,8 +32,9 @@ from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.convergence import ConvergenceScenario
 from scenarios.scenario.sections.experiment import TrialList
 from scenarios.scenario.sections.report import read_logo
+from scenarios.scenario.sections.section import Section
 
-Study = TypeVar("Study", Scenario, ConvergenceScenario, TrialList)
+Study = TypeVar("Study", bound=Section)
 
 AnyStudy = Scenario | ConvergenceScenario | TrialList
 
@@ -50,15 +51,12 @@ KINDS: dict[str, type[Any]] = {
 }
 """What a file may say of ``study``, and the scenario that it then holds."""
 
-FORMER_WORDS = {"sea": "flights", "sea_trial": "trials"}
-"""What files made for earlier versions say of ``study``."""
-
 OPERATIONAL = "operational"
 """The base that scenarios of these studies extend which name none; with ``extends = false`` they
 have none.
 """
 
-OPERATIONAL_STUDIES = ("sea", "monte_carlo", "falsify")
+OPERATIONAL_STUDIES = ("monte_carlo", "falsify")
 
 CATALOG, BASES = Path(__file__).parents[1] / "catalog", "bases"
 """The directory of the catalog, whose folders hold a kind of scenario each, and the one of them
@@ -280,8 +278,6 @@ def _resolved(given: Document, folder: Path, where: object) -> tuple[Document, s
         document["set"] = [_with_absolute_file(override, folder) for override in listed]
     study = document.get("study")
     base = document.pop("extends", OPERATIONAL if study in OPERATIONAL_STUDIES else None)
-    if isinstance(study, str):
-        document["study"] = FORMER_WORDS.get(study, study)
     if not (base is None or base is False or isinstance(base, str)):
         raise InputError(
             f"{where}: extends is {base!r}; give one catalog name or one path of a TOML file, or false for no base"

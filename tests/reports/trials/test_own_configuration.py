@@ -27,7 +27,8 @@ from scenarios.scenario.files import load_study
 from scenarios.studies.registry import run_study
 
 APART = """
-study = "sea"
+extends = "operational"
+study = "flights"
 title = "Apart"
 description = "Flights for a test."
 fidelity = "kinematic"
