@@ -164,7 +164,7 @@ def test_a_run_is_resumed_with_the_same_trials_only(tmp_path):
         ('trials = ["sea_wind"]\nset = 5', "set: value is 5; give a list in brackets"),
         (
             'trials = ["sea_wind"]\nset = "share=1"',
-            "set: value is 'share=1'; give a list in brackets",
+            "set is 'share=1'; input should be a valid tuple",
         ),
         ('trials = ["sea_wind"]\nset = ["colour"]', "'colour' is not of the form key=value"),
         ('trials = ["sea_wind"]\nset = ["vessel.colour=1"]', "unknown key 'vessel.colour'"),

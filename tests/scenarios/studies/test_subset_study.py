@@ -339,7 +339,10 @@ def test_its_report_says_the_probability_and_shows_levels_and_inputs(whole, tmp_
             ["method=subset", "subset.flights_per_level=60"],
             ["6 flights that pass on", "must be 10", "100 or more"],
         ),
-        (["method=subset", "subset.repeats=2"], ["subset.repeats is 2; it must be at least 3"]),
+        (
+            ["method=subset", "subset.repeats=2"],
+            ["subset.repeats is 2; input should be greater than or equal to 3"],
+        ),
         (
             ["method=subset", "subset.conditional_probability=0.7"],
             ["subset.conditional_probability", "0.7", "0.5"],

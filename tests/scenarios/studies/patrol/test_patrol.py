@@ -291,7 +291,7 @@ def test_a_study_without_any_verdict_of_an_oracle_either_is_not_met(tmp_path):
 @pytest.mark.parametrize(
     ("override", "words"),
     [
-        ("patrol.ships=0", ("patrol.ships is 0; it must be at least 1",)),
+        ("patrol.ships=0", ("patrol.ships is 0; input should be greater than or equal to 1",)),
         ("patrol.endurance_s=60", ("patrol.endurance_s is 60 s", "patrol.service_s = 165 s")),
         ("patrol.separation_m=9000", ("patrol.separation_m is 9000 m", "patrol.area_m")),
         (
