@@ -144,8 +144,8 @@ _CONTRADICTIONS: tuple[tuple[Callable[["Scenario"], object], str], ...] = (
     (
         lambda s: s.stands_off and s.finds,
         "guidance.mission is 'standoff' with following.plume '{s.following.plume}' and flight.until"
-        " '{s.flight.until}'; a circle about the vessel neither searches for exhaust nor ends with a"
-        " verdict: set them to 'predicted' and 'flown'",
+        " '{s.flight.until}'; a circle about the vessel neither searches for exhaust nor ends with"
+        " a verdict: set them to 'predicted' and 'flown'",
     ),
     (
         lambda s: s.study == "paper" and not s.cases,
@@ -157,7 +157,7 @@ _CONTRADICTIONS: tuple[tuple[Callable[["Scenario"], object], str], ...] = (
     ),
     (
         lambda s: _is_subset(s) and not s.draws,
-        "method is 'subset' and draws is empty; give the random variables, or set method to 'plain'",
+        "method is 'subset' and draws is empty; give random variables, or set method to 'plain'",
     ),
     (
         lambda s: _is_subset(s) and s.several_points,
@@ -278,13 +278,13 @@ def _check_experiment(scenario: "Scenario") -> None:
         )
     if (points := math.prod(map(len, sweep.values()))) > POINTS_MAX:
         raise ValueError(
-            f"sweep has {points} points; the most is {POINTS_MAX}: give fewer values, or sample keys"
-            " at random"
+            f"sweep has {points} points; the most is {POINTS_MAX}: give fewer values, or sample"
+            " keys at random"
         )
     if scenario.several_points and (why := ONE_POINT.get(scenario.study)):
         raise ValueError(
-            f"study is '{scenario.study}' beside a sweep, cases, a comparison or two vehicles; {why}:"
-            " remove them"
+            f"study is '{scenario.study}' beside a sweep, cases, a comparison or two vehicles;"
+            f" {why}: remove them"
         )
     most = scenario.search.flights_max * (1 + scenario.search.confirmations)
     if scenario.study == "falsify" and most > FLIGHTS_MAX:
@@ -304,8 +304,8 @@ def _check_tables(scenario: "Scenario") -> None:
     for kind, names in (("cases", cases), ("comparisons", [*apart, STUDY])):
         if twice := next((name for name in names if names.count(name) > 1), None):
             raise ValueError(
-                f"{kind} are called {', '.join(names)}; '{twice}' is there {names.count(twice)} times:"
-                " give each a name of its own"
+                f"{kind} are called {', '.join(names)}; '{twice}' is there {names.count(twice)}"
+                " times: give each a name of its own"
             )
     for kind, name, keys in _tables_of(scenario):
         for key in keys:
@@ -343,6 +343,9 @@ def _check_varied_keys(scenario: "Scenario") -> None:
             _check_varied(scenario, section, key)
 
 
+_DESIGNED_ONCE = "varies from flight to flight; autopilot and margins are worked out once for"
+
+
 def _check_varied(scenario: "Scenario", section: str, key: str) -> None:
     """Refuse to sweep or sample a key that is the same for all flights, or for which autopilot and
     margins are worked out once; an unknown one, and the vehicle, are refused elsewhere.
@@ -353,20 +356,16 @@ def _check_varied(scenario: "Scenario", section: str, key: str) -> None:
         or (section == "draws" and "." not in key and key != "flight_seed")
     )
     if any(at_or_below(key, of) for of in _DESIGNED_FOR):
-        raise ValueError(
-            f"'{key}' varies from flight to flight; autopilot and margins are worked out once for it:"
-            " give each value a run of its own"
-        )
+        raise ValueError(f"'{key}' {_DESIGNED_ONCE} it: give each value a run of its own")
     if of_run:
         raise ValueError(
-            f"{section} has '{key}', which sets nothing of a flight: the same flights would be flown"
-            " and counted for each value; take keys that flights depend on, as wind.speed_mps or"
-            " flight_seed"
+            f"{section} has '{key}', which sets nothing of a flight: the same flights would be"
+            " flown and counted for each value; take keys that flights depend on, as"
+            " wind.speed_mps or flight_seed"
         )
     ship_alone = key.startswith("emission.ship") and scenario.plume.source_height_m is not None
     if key.startswith(_DESIGN_HEIGHT) and scenario.flight.altitude_m is None and not ship_alone:
         raise ValueError(
-            f"'{key}' varies from flight to flight; autopilot and margins are worked out once for the"
-            " altitude at the start, which is the height of the funnel here: give flight.altitude_m,"
-            " or each value a run of its own"
+            f"'{key}' {_DESIGNED_ONCE} the altitude at the start, which is the height of the"
+            " funnel here: give flight.altitude_m, or each value a run of its own"
         )

@@ -263,7 +263,7 @@ def _range(annotation: Any, metadata: tuple[Any, ...] = ()) -> str:
 
 
 def _constraints(metadata: tuple[Any, ...]) -> tuple[Any, ...]:
-    """Return the constraints in the metadata of an annotated type, which may be wrapped in a field."""
+    """Return the constraints of an annotated type, which may be wrapped in a field."""
     return tuple(
         inner
         for outer in metadata
@@ -373,7 +373,7 @@ def _sentence(text: str) -> str:
 
 
 def _described(made: type[Any]) -> dict[str, str]:
-    """Return what the docstrings of a dataclass and its bases say of its fields, as one line each."""
+    """Return what the docstrings of a dataclass and its bases say of its fields, in a line each."""
     found: dict[str, str] = {}
     for base in reversed(made.__mro__):
         text = inspect.cleandoc(base.__dict__.get("__doc__") or "")

@@ -81,8 +81,8 @@ def reject_unused_keys(
             raise InputError(f"key '{key}' has no effect here: it is used by {user}")
         if overridden and (other := _put_aside_by(scenario, key)):
             raise InputError(
-                f"key '{key}' has no effect here: '{other}' is swept or sampled in every flight, and"
-                f" takes its place; set '{other}' instead, or leave it out of sweep and draws"
+                f"key '{key}' has no effect here: '{other}' is swept or sampled in every flight,"
+                f" and takes its place; set '{other}', or leave it out of sweep and draws"
             )
     for section, key in _varied_by(scenario, given):
         if key == "fidelity":

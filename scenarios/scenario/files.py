@@ -1,4 +1,4 @@
-"""Find a scenario file, apply overrides and check it; everything that is wrong with it is one line."""
+"""Find a scenario file, apply overrides and check it; what is wrong with it is one line."""
 
 import copy
 import functools
@@ -17,7 +17,7 @@ from common.run_layout import FLIGHTS, MANIFEST
 from common.text import did_you_mean
 from scenarios.errors import InputError
 from scenarios.scenario.effect import reject_unused_keys
-from scenarios.scenario.errors import explanation
+from scenarios.scenario.errors import explanation, shown
 from scenarios.scenario.overrides import (
     Document,
     apply_override,
@@ -175,7 +175,8 @@ def _refuse_unknown(sections: set[str]) -> None:
         guess = did_you_mean(section, TrialList.model_fields) or did_you_mean(
             section, Scenario.model_fields
         )
-        known = f"; known are {', '.join(TrialList.model_fields)}, and the keys of each trial's scenario"
+        names = ", ".join(TrialList.model_fields)
+        known = f"; known are {names}, and the keys of each trial's scenario"
         raise InputError(f"unknown key '{section}'{guess or known}")
 
 
@@ -210,7 +211,8 @@ def scenario_path(name: str, folder: Path | None = None, *, extended: bool = Fal
     if is_file((path.parent if path.name == FLIGHTS else path) / MANIFEST):
         run = Path(name).parent if path.name == FLIGHTS else Path(name)
         raise InputError(
-            f"'{run}' is a run, not a scenario; to replay one of its flights, give {run / FLIGHTS}/ID"
+            f"'{run}' is a run, not a scenario; to replay one of its flights, give"
+            f" {run / FLIGHTS}/ID"
         )
     guess = did_you_mean(Path(name).stem if name.endswith(".toml") else name, known)
     what = f"no scenario file '{name}'" if name.endswith(".toml") else f"unknown scenario '{name}'"
@@ -280,7 +282,8 @@ def _resolved(given: Document, folder: Path, where: object) -> tuple[Document, s
     base = document.pop("extends", OPERATIONAL if study in OPERATIONAL_STUDIES else None)
     if not (base is None or base is False or isinstance(base, str)):
         raise InputError(
-            f"{where}: extends is {base!r}; give one catalog name or one path of a TOML file, or false for no base"
+            f"{where}: extends is {shown(base)}; give one catalog name or one path of a TOML file,"
+            " or false for no base"
         )
     return document, None if base is False else base
 
@@ -299,11 +302,12 @@ def _kind(document: Document) -> type[Any]:
     """Return the schema of a document."""
     study = document.get("study", "flights")
     if not isinstance(study, str):
-        raise InputError(f"study is {study!r}; it must be one of {', '.join(KINDS)}")
+        raise InputError(f"study is {shown(study)}; it must be one of {', '.join(KINDS)}")
     if study in KINDS or is_file_part(study) or study in announced("study"):
         return KINDS.get(study, Scenario)
     raise InputError(
-        f"study is {study!r}{did_you_mean(study, KINDS) or ';'} it must be one of {', '.join(KINDS)}, or FILE.py:NAME"
+        f"study is {shown(study)}{did_you_mean(study, KINDS) or ';'} it must be one of"
+        f" {', '.join(KINDS)}, or FILE.py:NAME"
     )
 
 
@@ -332,7 +336,8 @@ def with_values(scenario: Scenario, values: Mapping[str, object]) -> Scenario:
         return scenario
     if own := [key for key in values if key.partition(".")[0] == "report"]:
         raise InputError(
-            f"'{own[0]}' varies from flight to flight; a report is of all flights: set it once, for the scenario"
+            f"'{own[0]}' varies from flight to flight; a report is of all flights: set it for the"
+            " whole scenario"
         )
     sections = {key.partition(".")[0] for key in values} & type(scenario).model_fields.keys()
     document = scenario.model_dump(include=sections)

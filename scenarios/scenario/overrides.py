@@ -51,8 +51,8 @@ def parse_override(override: str) -> tuple[str, object]:
     value = document.pop("value")
     if document:
         raise InputError(
-            f"--set {key}={start}: a line break, and {next(iter(document))!r} after it; give each key a"
-            " --set of its own"
+            f"--set {key}={start}: a line break, and {next(iter(document))!r} after it; give each"
+            " key a --set of its own"
         )
     return key, value
 
@@ -230,7 +230,8 @@ def as_toml(value: object) -> str:
     if isinstance(value, list | tuple):
         return f"[{', '.join(map(as_toml, value))}]"
     if isinstance(value, Mapping):
-        return f"{{{', '.join(f'{_toml_key(str(key))}={as_toml(item)}' for key, item in value.items())}}}"
+        entries = (f"{_toml_key(str(key))}={as_toml(item)}" for key, item in value.items())
+        return f"{{{', '.join(entries)}}}"
     raise InputError(
         f"value is {shown(value)}; a scenario has numbers, words, truth values, times, lists and"
         " tables alone"

@@ -70,8 +70,8 @@ class Scenario(Section):
         Field(ge=1, le=FLIGHTS_MAX),
         Need(
             lambda s: s.study != "monte_carlo" or s.method != "subset",
-            "plain sampling; subset simulation flies subset.flights_per_level in each level of each of"
-            " subset.repeats: set these, or set method to 'plain'",
+            "plain sampling; subset simulation flies subset.flights_per_level in each level of each"
+            " of subset.repeats: set these, or set method to 'plain'",
         ),
         Need(
             lambda s: s.study != "falsify",
@@ -245,7 +245,7 @@ class Scenario(Section):
 
     @property
     def declared_faults(self) -> frozenset[str]:
-        """Return the kinds of faults that its flights may have, and those that they declare beside."""
+        """Return the kinds of faults that its flights may have, and those that they declare."""
         drawn = [
             value for draw in self.draws if draw.key == "fault.kind" for value in draw.choice or ()
         ]

@@ -182,19 +182,21 @@ class DrawConfig(Section):
         ]
         if len(given) != 1:
             raise ValueError(
-                f"draw of '{self.key}' has {' and '.join(given) or 'none'} of uniform, normal, weibull and choice; give one"
+                f"draw of '{self.key}' has {' and '.join(given) or 'none'} of uniform, normal,"
+                " weibull and choice; give one"
             )
         for name in ("uniform", "within"):
             check_ordered(f"{name} of the draw of '{self.key}'", getattr(self, name))
         if self.within is not None and given[0] not in ("normal", "weibull"):
             raise ValueError(
-                f"draw of '{self.key}' has within beside {given[0]}; it cuts off a normal or a weibull"
+                f"draw of '{self.key}' has within beside {given[0]}; it cuts off normal or weibull"
             )
         if self.weights is not None and not (
             len(self.weights) == len(self.choice or ()) and 0.0 < sum(self.weights) < math.inf
         ):
             raise ValueError(
-                f"draw of '{self.key}' has weights {list(self.weights)}; give each choice one, with a sum above 0"
+                f"draw of '{self.key}' has weights {list(self.weights)}; give each choice one,"
+                " with a sum above 0"
             )
         return self
 
@@ -275,9 +277,11 @@ class SubsetConfig(Section):
     @model_validator(mode="after")
     def _enough(self) -> "SubsetConfig":
         if self.passing < CHAINS_MIN:
+            least = math.ceil(CHAINS_MIN / self.conditional_probability)
             raise ValueError(
-                f"conditional_probability times flights_per_level is {self.passing} flights that pass on; it must be {CHAINS_MIN}"
-                f" at least: set subset.flights_per_level to {math.ceil(CHAINS_MIN / self.conditional_probability)} or more"
+                f"conditional_probability times flights_per_level is {self.passing} flights that"
+                f" pass on; it must be {CHAINS_MIN} at least: set subset.flights_per_level to"
+                f" {least} or more"
             )
         return self
 
@@ -376,7 +380,7 @@ class ConditionConfig(Section):
 
 
 class ArenaConfig(Section):
-    """A comparison of steering laws: which take part, in which conditions, and how each is tuned."""
+    """A comparison of steering laws: which take part, in which conditions, how each is tuned."""
 
     NEEDS: ClassVar[tuple[Need, ...]] = (of_study("arena", "laws side by side"),)
 

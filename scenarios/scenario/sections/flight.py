@@ -1,4 +1,4 @@
-"""What a scenario file may say of a flight: where it starts, when it ends, and what it must show."""
+"""What a scenario file may say of a flight: its start, its end, and what it must show."""
 
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -134,8 +134,8 @@ class FlightConfig(Section):
     def _altitudes(self) -> "FlightConfig":
         if self.altitude_min_m >= self.altitude_max_m:
             raise ValueError(
-                f"altitude_min_m is {self.altitude_min_m:g} m and altitude_max_m {self.altitude_max_m:g} m; the first must be"
-                " the lower one"
+                f"altitude_min_m is {self.altitude_min_m:g} m and altitude_max_m"
+                f" {self.altitude_max_m:g} m; the first must be the lower one"
             )
         return self
 
@@ -143,8 +143,8 @@ class FlightConfig(Section):
     def _long_enough(self) -> "FlightConfig":
         if self.duration_max_s < (least := 1.0 / self.log_rate_hz):
             raise ValueError(
-                f"duration_max_s is {self.duration_max_s:g} s; at log_rate_hz, {self.log_rate_hz:g} Hz, nothing is recorded in it:"
-                f" fly {least:g} s or longer"
+                f"duration_max_s is {self.duration_max_s:g} s; at log_rate_hz,"
+                f" {self.log_rate_hz:g} Hz, nothing is recorded in less than {least:g} s"
             )
         return self
 
@@ -252,7 +252,6 @@ class CriteriaConfig(Section):
         known = [*(mode.value for mode in Mode), DITCHED]
         for mode in modes:
             if mode not in known:
-                raise ValueError(
-                    f"'{mode}' is not a mode{did_you_mean(mode, known) or ';'} modes are {', '.join(known)}"
-                )
+                meant = did_you_mean(mode, known) or ";"
+                raise ValueError(f"'{mode}' is not a mode{meant} modes are {', '.join(known)}")
         return modes

@@ -115,7 +115,7 @@ _WAY = Need(
 
 
 class GuidanceConfig(Section):
-    """The paper's outer loop. A steering law may add keys of its own: the fields of its dataclass."""
+    """The paper's outer loop. A steering law may add keys: the fields of its dataclass."""
 
     model_config = ConfigDict(extra="allow")
 
@@ -136,7 +136,7 @@ class GuidanceConfig(Section):
         Field(gt=0.0, le=60.0),
         Need(
             lambda s: s.guidance.heading_rate_max_rad_s is None,
-            "omega_max, which guidance.heading_rate_max_rad_s gives directly: leave one of them out",
+            "omega_max, which guidance.heading_rate_max_rad_s gives directly: leave one out",
         ),
     ] = 45.0
     """Bank whose coordinated turn sets omega_max = g tan(bank)/V_r [deg]; the aircraft's own if not
@@ -154,8 +154,8 @@ class GuidanceConfig(Section):
         VESSEL,
         Need(
             lambda s: not s.guidance.approach,
-            "a reference that is tracked from the first step on; an orbit that is joined has its own"
-            " phase: set guidance.approach to false",
+            "a reference that is tracked from the first step on; an orbit that is joined has its"
+            " own phase: set guidance.approach to false",
         ),
     ] = 0.0
     """Oscillation phase phi_0 [deg]."""
@@ -233,7 +233,8 @@ class GuidanceConfig(Section):
     def _law(self) -> "GuidanceConfig":
         if self.tuning == "bounded" and self.law != "cascade":
             raise ValueError(
-                f"tuning is 'bounded' with law '{self.law}', which has no bound; set law to 'cascade'"
+                f"tuning is 'bounded' with law '{self.law}', which has no bound; set law to"
+                " 'cascade'"
             )
         check_divides("rate_hz", self.rate_hz, 120.0)
         keys, types = self.law_keys, self.law_types if self.model_extra else {}
@@ -245,7 +246,8 @@ class GuidanceConfig(Section):
                 raise ValueError(f"unknown key 'guidance.{name}'{guess or others}")
             if (expected := _expected(types[name], value)) is not None:
                 raise ValueError(
-                    f"{name} is {value!r}; law '{self.law}' takes {expected}, by default {keys[name]!r}"
+                    f"{name} is {value!r}; law '{self.law}' takes {expected}, by default"
+                    f" {keys[name]!r}"
                 )
         return self
 
@@ -291,8 +293,8 @@ def _reasons(law: str) -> Mapping[str, str]:
     tasks = (ON_OSCILLATION, ON_CIRCLE)
     if not isinstance(reasons, Mapping):
         raise PluginError(
-            f"steering law '{law}' has unsupported_tasks = {reasons!r}; give the reason by the task,"
-            f" as in unsupported_tasks = {{'{ON_CIRCLE}': 'it ...'}}"
+            f"steering law '{law}' has unsupported_tasks = {reasons!r}; give the reason by the"
+            f" task, as in unsupported_tasks = {{'{ON_CIRCLE}': 'it ...'}}"
         )
     for task, reason in reasons.items():
         if task not in tasks:
@@ -323,14 +325,15 @@ def _law_keys(law: str) -> dict[str, Any]:
     }
     if without := [name for name, default in keys.items() if default is MISSING]:
         raise PluginError(
-            f"steering law '{law}' has no default for its field '{without[0]}'; give it one, for its fields are keys of [guidance]"
-            " that a scenario may leave out"
+            f"steering law '{law}' has no default for its field '{without[0]}'; its fields are keys"
+            " of [guidance], which a scenario may leave out"
         )
     own = {name: of.default for name, of in GuidanceConfig.model_fields.items() if name in keys}
     if other := [name for name, default in own.items() if keys[name] != default]:
         raise PluginError(
-            f"steering law '{law}' has {other[0]} = {keys[other[0]]!r}, which is a key of [guidance] already, by default"
-            f" {own[other[0]]!r}; give the field another name, or that default"
+            f"steering law '{law}' has {other[0]} = {keys[other[0]]!r}, which is a key of"
+            f" [guidance] already, by default {own[other[0]]!r}; give the field another name, or"
+            " that default"
         )
     return keys
 

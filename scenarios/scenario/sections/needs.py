@@ -1,8 +1,9 @@
 """What a key needs to have an effect: a part of the flights that reads it.
 
-A need stands where the key does, as ``Annotated[Angle, BLOWS]``, or for a whole section as one of its ``NEEDS``.
-From that follow the refusal of a key that nothing uses, the conditions in ``plume-flight describe`` and on the
-reference page, the keys behind a # in a new file and the parameters that a manifest calls unused.
+A need stands where the key does, as ``Annotated[Angle, BLOWS]``, or for a whole section as one of
+its ``NEEDS``. From that follow the refusal of a key that nothing uses, the conditions in
+``plume-flight describe`` and on the reference page, the keys behind a # in a new file, and the
+parameters that a manifest calls unused.
 """
 
 from collections.abc import Callable
@@ -16,7 +17,7 @@ class Need:
 
     Attributes
     ----------
-    acts : whether flights of a scenario have it; reads nothing but keys and properties of the scenario
+    acts : whether flights of a scenario have it; reads nothing but its keys and properties
     user : the part that uses the key, and how to have it
     """
 
@@ -35,8 +36,8 @@ def not_patrol(user: str) -> Need:
 
 
 STEADY = (
-    "the mission that follows the vessel with estimates of vessel and wind; guidance.mission 'track'"
-    " is in still air, beside a steady vessel: leave it out, or set it to 'follow'"
+    "the mission that follows the vessel with estimates of vessel and wind; guidance.mission"
+    " 'track' is in still air, beside a steady vessel: leave it out, or set it to 'follow'"
 )
 
 OPERATIONAL = Need(lambda s: s.follows, STEADY)
@@ -44,12 +45,13 @@ OPERATIONAL = Need(lambda s: s.follows, STEADY)
 
 FOLLOWS = Need(
     lambda s: s.follows,
-    "the mission that follows the vessel with a steered reference: set guidance.mission to 'follow'",
+    "the mission that follows the vessel with a steered reference: set guidance.mission to"
+    " 'follow'",
 )
 TRACKS = Need(
     lambda s: not s.follows,
-    "the mission that tracks the paper's reference; here the reference is steered: set guidance.mission"
-    " to 'track'",
+    "the mission that tracks the paper's reference; here the reference is steered: set"
+    " guidance.mission to 'track'",
 )
 VESSEL = Need(
     lambda s: not s.circles, "an oscillation beside a vessel; here reference.path is 'circle'"

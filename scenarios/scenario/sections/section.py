@@ -20,8 +20,8 @@ class Section(BaseModel):
     """Frozen; unknown keys, numbers that are not finite, and truth values in the place of numbers
     are refused.
 
-    A field is a key: its type has the limits and what the key needs to have an effect (``needs``), its docstring the
-    meaning and the unit, ``"Meaning [unit]."``.
+    A field is a key: its type has the limits and what the key needs to have an effect (``needs``),
+    its docstring the meaning and the unit, ``"Meaning [unit]."``.
     """
 
     model_config = ConfigDict(

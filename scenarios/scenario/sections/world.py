@@ -96,7 +96,7 @@ class VesselConfig(Section):
         file = Path(track).suffix and not (is_file_part(track) or is_data_file(track))
         if file and track not in VESSEL_TRACKS:
             raise ValueError(
-                f"track is '{track}'; the name of a file of AIS reports ends in .csv, .nmea or .txt: rename it"
+                f"track is '{track}'; the name of a file of AIS reports ends in .csv, .nmea or .txt"
             )
         return track
 
@@ -143,7 +143,8 @@ class PlaceConfig(Section):
             raise ValueError(f"value is {utc.isoformat()}; give a time from 1970 to 2199")
         if utc is not None and utc.tzinfo is None:
             raise ValueError(
-                f"value is {utc.isoformat()}, without a zone; give a time in UTC, as in {utc.isoformat()}Z"
+                f"value is {utc.isoformat()}, without a zone; give a time in UTC, as in"
+                f" {utc.isoformat()}Z"
             )
         return utc
 
@@ -371,8 +372,8 @@ class TurbulenceConfig(Section):
     def _gusts(self) -> "TurbulenceConfig":
         if (self.gusts > 0) != (self.gust_speed_mps > 0.0):
             raise ValueError(
-                f"gusts is {self.gusts} with a gust_speed_mps of {self.gust_speed_mps:g}; give turbulence.gusts and"
-                " turbulence.gust_speed_mps, or neither"
+                f"gusts is {self.gusts} with a gust_speed_mps of {self.gust_speed_mps:g}; give"
+                " turbulence.gusts and turbulence.gust_speed_mps, or neither"
             )
         return self
 
