@@ -16,7 +16,7 @@ from aircraft.fdm import TIME_STEP
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import ExecutorFactory, fly_study
 from scenarios.engine.task import Task, Work
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.base import study_of
 
 REFERENCE_STEP = 2.9e-6

@@ -25,7 +25,7 @@ from scenarios.experiment.requests import Experiment
 from scenarios.experiment.sampling import SamplingDesign
 from scenarios.planning.limits import omega_max
 from scenarios.planning.missions import plan_flight, sampled_start
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 from scenarios.world.noise import start_generator

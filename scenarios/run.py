@@ -140,7 +140,7 @@ def command(
 def _list() -> int:
     import tomllib
 
-    from scenarios.scenario.load import catalog
+    from scenarios.scenario.files import catalog
 
     for name, path in catalog().items():
         print(f"{name:24} {tomllib.loads(path.read_text(encoding='utf-8'))['title']}")
@@ -160,7 +160,7 @@ def _run(
     aircraft_dir: Path | None,
 ) -> int:
     from scenarios.errors import InputError
-    from scenarios.scenario.load import catalog, is_flight, load_study
+    from scenarios.scenario.files import catalog, is_flight, load_study
 
     if name is None:
         raise InputError(f"no scenario given; give a TOML file or one of: {', '.join(catalog())}")
@@ -181,7 +181,7 @@ def _run(
         )
     viewer = _viewer(flightgear, replayed=replayed)
     if aircraft_dir is not None and not replayed:
-        from scenarios.scenario.aircraft_folder import aircraft_from
+        from scenarios.scenario.files import aircraft_from
 
         overrides = aircraft_from(aircraft_dir, name, overrides)
     # Before any slow import: most mistakes in the input are found here.

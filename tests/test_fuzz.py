@@ -22,7 +22,7 @@ from hypothesis import strategies as st
 from common.command_line import BAD_INPUT
 from scenarios.engine.processes import InProcessExecutor, data_memory
 from scenarios.errors import InputError
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
 from scenarios.studies.base import study_of
 from tests.in_process import run_command

@@ -9,8 +9,8 @@ from typing import Any
 from scenarios.api.given_parts import Parts, named, registered
 from scenarios.api.html import table
 from scenarios.errors import InputError
-from scenarios.scenario.keys import suggestion
-from scenarios.scenario.load import AnyStudy, load_document, load_study, sweeps_speed_ratio
+from scenarios.scenario.errors import suggestion
+from scenarios.scenario.files import AnyStudy, load_document, load_study, sweeps_speed_ratio
 from scenarios.scenario.overrides import Document, as_toml
 
 Given = str | os.PathLike[str] | Mapping[str, Any]

@@ -9,8 +9,8 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 
 from scenarios.errors import InputError
-from scenarios.scenario.keys import displaced
-from scenarios.scenario.load import with_values
+from scenarios.scenario.files import with_values
+from scenarios.scenario.overrides import displaced
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.experiment import DrawConfig
 from scenarios.world.noise import Noise

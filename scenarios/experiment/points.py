@@ -9,10 +9,9 @@ from dataclasses import dataclass
 
 from common.registry import is_file_part
 from scenarios.errors import InputError
-from scenarios.scenario.experiment_checks import swept_key
-from scenarios.scenario.load import with_values
+from scenarios.scenario.files import with_values
 from scenarios.scenario.scenario import Scenario
-from scenarios.scenario.sections.experiment import STUDY, CaseConfig
+from scenarios.scenario.sections.experiment import STUDY, CaseConfig, swept_key
 
 Values = dict[str, object]
 

@@ -23,11 +23,10 @@ from scenarios.experiment.draws import (
 )
 from scenarios.experiment.points import Point, points_of
 from scenarios.scenario.effect import unused
-from scenarios.scenario.experiment_checks import swept_key
-from scenarios.scenario.keys import displaced
-from scenarios.scenario.load import with_values
+from scenarios.scenario.files import with_values
+from scenarios.scenario.overrides import displaced
 from scenarios.scenario.scenario import Scenario
-from scenarios.scenario.sections.experiment import STUDY, SweepConfig
+from scenarios.scenario.sections.experiment import STUDY, SweepConfig, swept_key
 from scenarios.world.noise import Noise
 
 _PLANNED_FOR = ("guidance.", "turbulence.level", "reference.shape", "following.margin_law")

@@ -13,7 +13,7 @@ from gnc.errors import InfeasibleError
 from scenarios.errors import InputError
 from scenarios.experiment.draws import speed_ratios, values_at
 from scenarios.experiment.points import without_repetitions
-from scenarios.scenario.load import with_values
+from scenarios.scenario.files import with_values
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.equipment import SensorsConfig
 from scenarios.scenario.sections.experiment import DrawConfig

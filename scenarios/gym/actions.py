@@ -12,7 +12,7 @@ from scenarios.flight_runner import FlightRunner
 from scenarios.gym.observation import Array
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.planning.limits import omega_max
-from scenarios.scenario.load import with_values
+from scenarios.scenario.files import with_values
 from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 

@@ -73,7 +73,7 @@ from scenarios.planning.limits import omega_max
 from scenarios.planning.scaling import scaled
 from scenarios.planning.spreads import predicted_spreads
 from scenarios.scenario.effect import unused
-from scenarios.scenario.load import AnyStudy, load_study
+from scenarios.scenario.files import AnyStudy, load_study
 from scenarios.scenario.overrides import parse_override
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.convergence import ConvergenceScenario

@@ -28,15 +28,15 @@ from scenarios.experiment.sampling import (
 )
 from scenarios.planning.scaling import scaled_keys
 from scenarios.planning.theory import theory_over_speed_ratio
-from scenarios.scenario.documented_parts import (
+from scenarios.scenario.documentation import (
     DIMENSIONLESS,
     DocumentedKey,
     described_fields,
     documented_part_keys,
 )
 from scenarios.scenario.effect import differing, unused
-from scenarios.scenario.keys import line, split_unit
-from scenarios.scenario.load import AnyStudy
+from scenarios.scenario.errors import line, split_unit
+from scenarios.scenario.files import AnyStudy
 from scenarios.scenario.parts import names_file, names_folder, part_names
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.guidance import GuidanceConfig

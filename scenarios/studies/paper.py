@@ -18,7 +18,7 @@ from scenarios.planning.guidance import farthest_start, largest_speed, search_st
 from scenarios.planning.limits import omega_max
 from scenarios.planning.missions import plan_flight
 from scenarios.planning.reference import circle, oscillation_at
-from scenarios.scenario.load import with_values
+from scenarios.scenario.files import with_values
 from scenarios.scenario.sections.guidance import GuidanceConfig
 from scenarios.studies.base import FlightStudy, study
 from scenarios.vehicles.vehicle_setup import kinematic_setup

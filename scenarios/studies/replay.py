@@ -14,8 +14,7 @@ from scenarios.engine.task import Row, Task, Work
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
 from scenarios.flight_runner import FlightRunner
-from scenarios.scenario.aircraft_folder import folder_of
-from scenarios.scenario.load import checked
+from scenarios.scenario.files import checked, folder_of
 from scenarios.scenario.parts import names_folder
 from scenarios.scenario.scenario import Scenario
 from scenarios.studies.base import FlightStudy, SingleFlight, study_of

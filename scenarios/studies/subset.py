@@ -17,7 +17,7 @@ from scenarios.engine.runner import Fly, Progress, StudySummary
 from scenarios.engine.task import Task
 from scenarios.errors import InputError
 from scenarios.experiment.draws import has_speed_ratio, value_at, values_at
-from scenarios.scenario.load import with_values
+from scenarios.scenario.files import with_values
 from scenarios.scenario.scenario import Scenario
 from scenarios.statistics.estimates import COLUMNS, count_violations
 from scenarios.statistics.subset_simulation import (

@@ -26,8 +26,7 @@ from innerloop.schedule import Schedule
 from innerloop.store import Designed, designed
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
-from scenarios.scenario.scenario import Scenario
-from scenarios.scenario.scenario_keys import DEFAULT_AIRCRAFT
+from scenarios.scenario.scenario import DEFAULT_AIRCRAFT, Scenario
 from scenarios.vehicles.thrust_expectation import ThrustExpectation, thrust_expectation
 
 KINEMATIC_BANDWIDTH = 1.0

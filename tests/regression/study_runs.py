@@ -8,7 +8,7 @@ from pathlib import Path
 import pandas as pd
 
 from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 from tests.run_tables import rows_of
 

@@ -8,7 +8,7 @@ import pytest
 
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.task import Task
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.base import FlightStudy
 from tests.run_tables import history_in
 

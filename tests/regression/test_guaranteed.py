@@ -9,7 +9,7 @@ from reports.registry import content
 from reports.render.html import write_html
 from reports.run.run_data import read_run
 from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 
 

@@ -19,7 +19,7 @@ from reports.registry import content
 from reports.render.html import write_html
 from reports.run.run_data import read_run
 from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies import paper
 from scenarios.studies.base import run_study
 from tests.run_tables import rows_of

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 
 LAW = f"guidance.law={Path(__file__).parent}/law_past_the_ship.py:PastTheShip"

@@ -3,7 +3,7 @@
 import pandas as pd
 
 from scenarios.engine.runner import ExecutorFactory
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 
 LISTED = """

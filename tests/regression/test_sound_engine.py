@@ -1,7 +1,7 @@
 """A sound aircraft keeps its mission when it is ordered to speed up from a slow pace."""
 
 from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 from tests.run_tables import rows_of
 

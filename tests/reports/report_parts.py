@@ -8,7 +8,7 @@ from reports.build import build_reports
 from reports.document.chart import Chart
 from reports.render import matplotlib_charts
 from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 
 

@@ -12,7 +12,7 @@ from reports.registry import content
 from reports.run.run_data import read_run
 from reports.run.trials import read_trials
 from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 from tests.in_process import assert_refused, run_command
 from tests.run_tables import change_manifest, manifest_of, write_manifest

@@ -30,7 +30,7 @@ from reports.render.html import write_html
 from reports.run.run_data import read_run
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.effect import unused
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 from tests.run_tables import change_manifest, manifest_of, write_manifest
 

@@ -13,7 +13,7 @@ from scenarios.experiment.requests import Experiment
 from scenarios.flight_runner import FlightRunner
 from scenarios.planning.missions import plan_flight
 from scenarios.planning.spreads import PredictedSpreads
-from scenarios.scenario.load import OPERATIONAL, bases
+from scenarios.scenario.files import OPERATIONAL, bases
 from scenarios.scenario.overrides import merged
 from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import kinematic_setup

@@ -3,7 +3,7 @@
 import pandas as pd
 
 from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 
 POPULATION, GENERATIONS, KEPT, CONFIRMATIONS = 12, 7, 3, 2

@@ -121,7 +121,7 @@ def test_help_and_list_answer():
         (["sweep_nu", "--set", "keepout.radius=5"], ["unknown key 'keepout.radius'"]),
         (
             ["sweep_nu", "--set", "keepout.radius_m=-1"],
-            ["keepout.radius_m is -1; it must be at least 10 m"],
+            ["keepout.radius_m is -1; input should be greater than or equal to 10"],
         ),
         (["sweep_nu", "--set", "guidance.airspeed_mps=nan"], ["guidance.airspeed_mps", "nan"]),
         (

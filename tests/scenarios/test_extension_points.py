@@ -13,7 +13,7 @@ from gnc.laws import STEERING_LAWS
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.engine.runner import fly_study
 from scenarios.errors import InputError
-from scenarios.scenario.load import load_study, with_values
+from scenarios.scenario.files import load_study, with_values
 from scenarios.studies.base import run_study
 from scenarios.studies.manifest import parameters
 from scenarios.studies.replay import Replay

@@ -14,7 +14,7 @@ from scipy.interpolate import BPoly
 from scipy.optimize import brentq, minimize_scalar
 
 from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 
 # Issue: to 1 mm and 1e-5 s.

@@ -10,7 +10,7 @@ from scenarios.flight.record import FlightRecord
 from scenarios.flight_runner import FlightRunner
 from scenarios.measures.window import measured_figures, window_figures
 from scenarios.planning.flight_plan import FlightPlan
-from scenarios.scenario.load import with_values
+from scenarios.scenario.files import with_values
 from scenarios.studies.arena.entrants import Entrant
 from scenarios.studies.arena.tuning import Tuner
 

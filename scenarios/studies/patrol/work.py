@@ -19,7 +19,7 @@ from scenarios.flight.ending import failure
 from scenarios.flight.outcome import Outcome
 from scenarios.flight_runner import FlightRunner
 from scenarios.scenario.extension_points import PAYLOADS
-from scenarios.scenario.load import with_values
+from scenarios.scenario.files import with_values
 from scenarios.scenario.scenario import Scenario
 from scenarios.studies.patrol.beside import phases, start_beside, taken
 from scenarios.studies.patrol.legs import Leg, nearest_on, route

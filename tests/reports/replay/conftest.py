@@ -4,7 +4,7 @@ import pytest
 from trial_runs import small_trials
 
 from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies import paper
 from scenarios.studies.base import run_study
 

@@ -17,7 +17,7 @@ from reports.run.run_data import read_run
 from reports.run.surroundings import surroundings
 from reports.run.trials import read_trials
 from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 
 RISING = [(0.0, 2.0), (100.0, 6.0)]

@@ -23,11 +23,12 @@ from reports.run.plume_shape import plume_shape
 from reports.run.run_data import RunData, read_run
 from reports.run.trials import read_trials
 from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 
 APART = """
-study = "sea"
+extends = "operational"
+study = "flights"
 title = "Apart"
 description = "Flights for a test."
 fidelity = "kinematic"

@@ -28,7 +28,7 @@ from reports.run.columns import column
 from reports.run.run_data import read_run
 from reports.run.trials import read_trials
 from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 
 KINEMATIC = """

@@ -24,7 +24,7 @@ from reports.output import write_report
 from reports.registry import content
 from reports.run.run_data import read_run
 from reports.run.trials import Kind, Trial, read_trials
-from scenarios.scenario.load import OPERATIONAL, bases, load_study
+from scenarios.scenario.files import OPERATIONAL, bases, load_study
 from scenarios.scenario.overrides import given_keys
 from scenarios.studies.manifest import parameters
 from tests.reports.run_columns import RUN_COLUMNS

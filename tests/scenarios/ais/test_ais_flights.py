@@ -7,7 +7,7 @@ from flight_cases import fly, plan, scenario
 
 from gnc.errors import InfeasibleError
 from scenarios.errors import InputError
-from scenarios.scenario.load import CATALOG, load_study
+from scenarios.scenario.files import CATALOG, load_study
 from scenarios.scenario.scenario import Scenario
 from scenarios.studies.base import FlightStudy
 from scenarios.world.ais.reports import read_ais

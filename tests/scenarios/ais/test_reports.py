@@ -7,7 +7,7 @@ import pytest
 
 from common.physics import METRES_PER_SECOND_PER_KNOT
 from scenarios.errors import InputError
-from scenarios.scenario.load import CATALOG
+from scenarios.scenario.files import CATALOG
 from scenarios.world.ais import read_ais
 from scenarios.world.ais.synthetic import SYNTHETIC, danish_file, marine_cadastre_file
 

@@ -12,7 +12,7 @@ from scenarios import fly, run
 from scenarios.api.scenario import load
 from scenarios.engine.run_directory import fingerprint
 from scenarios.errors import InputError
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from tests.in_process import run_command
 from tests.run_tables import manifest_of
 

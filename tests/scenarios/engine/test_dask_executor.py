@@ -19,7 +19,7 @@ from scenarios.engine.dask_executor import _WorkPlugin
 from scenarios.engine.runner import ExecutorFactory
 from scenarios.engine.task import Limits
 from scenarios.errors import InputError
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 
 SETTINGS = [

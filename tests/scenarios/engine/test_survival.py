@@ -16,7 +16,7 @@ import pandas as pd
 import pytest
 
 from scenarios.engine.runner import ExecutorFactory
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 from tests.scenarios.short_trial import short_trial
 

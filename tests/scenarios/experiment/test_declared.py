@@ -9,7 +9,7 @@ import pytest
 
 from scenarios.experiment.requests import Experiment
 from scenarios.experiment.sampling import beyond_declared, search_space
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
 
 SPEED = 19.42

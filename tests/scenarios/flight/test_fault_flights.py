@@ -9,7 +9,7 @@ from flight_cases import scenario
 
 from gnc.mission.mission import Mode
 from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.scenario.sections.flight import DITCHED
 from scenarios.studies.base import run_study
 from tests.run_tables import rows_of

@@ -12,7 +12,7 @@ from scenarios.experiment.requests import Experiment
 from scenarios.flight.ending import LEFT_BY
 from scenarios.flight_runner import FlightRunner
 from scenarios.planning.spreads import PredictedSpreads
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from tests.run_tables import history_in
 
 QUICK = (

@@ -17,7 +17,7 @@ from reports.run.run_data import read_run
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.errors import InputError
 from scenarios.run import command
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 from tests.run_tables import manifest_of, rows_of
 

@@ -12,8 +12,8 @@ from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
 from scenarios.flight_runner import FlightRunner
 from scenarios.planning.spreads import PredictedSpreads
-from scenarios.scenario.keys import known_keys
-from scenarios.scenario.load import load_study
+from scenarios.scenario.errors import known_keys
+from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
 
 SHORT = """

@@ -7,7 +7,7 @@ import pytest
 from scenarios.api.scenario import load
 from scenarios.errors import InputError
 from scenarios.planning.guidance import steering_law
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.arena.entrants import entrants_of
 
 

@@ -8,7 +8,7 @@ import pytest
 from gnc.laws import STEERING_LAWS
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.errors import InputError
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.arena.entrants import conditions_of, entrants_of
 from scenarios.studies.base import run_study
 from tests.in_process import assert_refused, run_command

@@ -8,7 +8,7 @@ import pytest
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 from tests.run_tables import manifest_of, rows_of
 

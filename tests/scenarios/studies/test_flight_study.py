@@ -10,7 +10,7 @@ import pytest
 from aircraft.spec import AircraftError
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.errors import InputError
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study, study_of
 from tests.run_tables import manifest_of, rows_of
 from tests.scenarios.short_trial import short_trial
@@ -164,7 +164,7 @@ def test_a_run_is_resumed_with_the_same_trials_only(tmp_path):
         ('trials = ["sea_wind"]\nset = 5', "set: value is 5; give a list in brackets"),
         (
             'trials = ["sea_wind"]\nset = "share=1"',
-            "set: value is 'share=1'; give a list in brackets",
+            "set is 'share=1'; input should be a valid tuple",
         ),
         ('trials = ["sea_wind"]\nset = ["colour"]', "'colour' is not of the form key=value"),
         ('trials = ["sea_wind"]\nset = ["vessel.colour=1"]', "unknown key 'vessel.colour'"),

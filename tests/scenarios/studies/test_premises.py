@@ -11,7 +11,7 @@ from scenarios.engine.processes import InProcessExecutor
 from scenarios.flight.guard_belief import GuardBelief
 from scenarios.measures import figures
 from scenarios.run import exit_status
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 
 QUICK = [

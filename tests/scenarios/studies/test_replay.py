@@ -14,7 +14,7 @@ from scenarios.engine.processes import InProcessExecutor
 from scenarios.engine.runner import fly_study
 from scenarios.engine.task import Result, Task
 from scenarios.errors import InputError
-from scenarios.scenario.load import is_flight, load_study
+from scenarios.scenario.files import is_flight, load_study
 from scenarios.studies.base import run_study
 from scenarios.studies.replay import Replay
 from tests.in_process import assert_refused, run_command

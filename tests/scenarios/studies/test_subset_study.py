@@ -18,7 +18,7 @@ from scenarios.errors import InputError
 from scenarios.experiment.draws import sampled_flight, value_at
 from scenarios.experiment.requests import Experiment
 from scenarios.experiment.sampling import beyond_declared
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study, study_of
 from scenarios.studies.replay import Replay
 from scenarios.world.noise import Noise
@@ -339,7 +339,10 @@ def test_its_report_says_the_probability_and_shows_levels_and_inputs(whole, tmp_
             ["method=subset", "subset.flights_per_level=60"],
             ["6 flights that pass on", "must be 10", "100 or more"],
         ),
-        (["method=subset", "subset.repeats=2"], ["subset.repeats is 2; it must be at least 3"]),
+        (
+            ["method=subset", "subset.repeats=2"],
+            ["subset.repeats is 2; input should be greater than or equal to 3"],
+        ),
         (
             ["method=subset", "subset.conditional_probability=0.7"],
             ["subset.conditional_probability", "0.7", "0.5"],

@@ -8,7 +8,7 @@ import pytest
 from flight_cases import fly, scenario
 
 from scenarios.errors import InputError
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.scenario.sections.world import WindConfig
 from scenarios.studies.base import FlightStudy
 from scenarios.world.vessel import Place

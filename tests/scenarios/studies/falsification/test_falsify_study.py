@@ -13,7 +13,7 @@ from reports.render.matplotlib_charts import draw
 from reports.run.run_data import read_run
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.engine.runner import ExecutorFactory, fly_study
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 from scenarios.studies.replay import Replay
 from tests.run_tables import manifest_of

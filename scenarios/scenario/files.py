@@ -1,10 +1,11 @@
-"""Find a scenario file, apply overrides and check it; everything that is wrong with it is one line."""
+"""Find a scenario file, apply overrides and check it; what is wrong with it is one line."""
 
 import copy
 import functools
 import json
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -15,12 +16,11 @@ from common.registry import announced, is_file_part
 from common.run_layout import FLIGHTS, MANIFEST
 from common.text import did_you_mean
 from scenarios.errors import InputError
-from scenarios.scenario.effect import refuse_unused
-from scenarios.scenario.keys import explanation, key_of
+from scenarios.scenario.effect import reject_unused_keys
+from scenarios.scenario.errors import explanation, shown
 from scenarios.scenario.overrides import (
     Document,
     apply_override,
-    as_toml,
     extended,
     given_keys,
     parse_override,
@@ -32,8 +32,9 @@ from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.convergence import ConvergenceScenario
 from scenarios.scenario.sections.experiment import TrialList
 from scenarios.scenario.sections.report import read_logo
+from scenarios.scenario.sections.section import Section
 
-Study = TypeVar("Study", Scenario, ConvergenceScenario, TrialList)
+Study = TypeVar("Study", bound=Section)
 
 AnyStudy = Scenario | ConvergenceScenario | TrialList
 
@@ -50,15 +51,12 @@ KINDS: dict[str, type[Any]] = {
 }
 """What a file may say of ``study``, and the scenario that it then holds."""
 
-FORMER_WORDS = {"sea": "flights", "sea_trial": "trials"}
-"""What files made for earlier versions say of ``study``."""
-
 OPERATIONAL = "operational"
 """The base that scenarios of these studies extend which name none; with ``extends = false`` they
 have none.
 """
 
-OPERATIONAL_STUDIES = ("sea", "monte_carlo", "falsify")
+OPERATIONAL_STUDIES = ("monte_carlo", "falsify")
 
 CATALOG, BASES = Path(__file__).parents[1] / "catalog", "bases"
 """The directory of the catalog, whose folders hold a kind of scenario each, and the one of them
@@ -99,35 +97,45 @@ def load_study(
     InputError : no such scenario, unreadable TOML, an unknown key, a value out of range, a key
         without effect, or a logo that is no picture
     """
-    document = load_document(name, overrides)
+    own, document = _given(name)
     try:
-        scenario: AnyStudy = checked(document, _kind(document))
+        alone: AnyStudy = checked(document, _kind(document))
     except InputError as error:
-        raise InputError(f"{_where_wrong(name, str(error))}{error}") from None
-    if refusing and isinstance(scenario, Scenario):
+        of_file = isinstance(name, str) and name not in catalog()
+        raise InputError(f"{name}: {error}" if of_file else str(error)) from None
+    scenario = _overridden(alone, document, overrides) if overrides else alone
+    if refusing and isinstance(alone, Scenario):
         # Keys of the file have to act in what the file alone says: an override may well put one of
         # them aside.
-        own, whole = _given(name)
-        refuse_unused(alone := checked(whole, Scenario), given_keys(own))
-        refuse_unused(
-            scenario, {parse_override(override)[0] for override in overrides}, overridden=alone
-        )
+        reject_unused_keys(alone, given_keys(own))
+    if refusing and isinstance(scenario, Scenario):
+        changed = {parse_override(override)[0] for override in overrides}
+        before = alone if isinstance(alone, Scenario) else scenario
+        reject_unused_keys(scenario, changed, overridden=before)
     read_logo(scenario.report)
     return scenario
 
 
-def _where_wrong(name: str | Document, message: str) -> str:
-    """Return a user's file as the beginning of a message about a scenario, where the same is wrong
-    without any override.
+def _overridden(alone: AnyStudy, document: Document, overrides: Sequence[str]) -> AnyStudy:
+    """Return what a document holds with overrides; sections that these leave as they are, are those
+    of ``alone``, what it holds without them.
     """
-    if not isinstance(name, str) or name in catalog():
-        return ""
-    _, alone = _given(name)
-    try:
-        checked(alone, _kind(alone))
-    except InputError as error:
-        return f"{name}: " if str(error) == message else ""
-    return ""
+    changed = _with_overrides(document, overrides)
+    kind = _kind(changed)
+    if kind is not type(alone):
+        found: AnyStudy = checked(changed, kind)
+        return found
+    # An override takes its key out of the sweep, the cases and the draws.
+    read = {"sweep", "cases", "draws", "set", *map(_section, overrides)}
+    return _revised(alone, {name: value for name, value in changed.items() if name in read})
+
+
+def _revised(scenario: Study, sections: Mapping[str, Any]) -> Study:
+    """Return a scenario of which some sections are read anew: of the others is checked only whether
+    all go together.
+    """
+    kept = {name: getattr(scenario, name) for name in scenario.model_fields_set}
+    return checked(kept | dict(sections), type(scenario))
 
 
 def load_document(name: str | Document, overrides: Sequence[str] = ()) -> Document:
@@ -138,6 +146,11 @@ def load_document(name: str | Document, overrides: Sequence[str] = ()) -> Docume
     InputError : no such scenario, unreadable TOML, or an override that cannot be applied
     """
     _, document = _given(name)
+    return _with_overrides(document, overrides)
+
+
+def _with_overrides(document: Document, overrides: Sequence[str]) -> Document:
+    document = copy.deepcopy(document)
     if document.get("study") == "trials":
         own = [override for override in overrides if _section(override) in TrialList.model_fields]
         for_trials = [override for override in overrides if override not in own]
@@ -152,9 +165,6 @@ def load_document(name: str | Document, overrides: Sequence[str] = ()) -> Docume
         refuse_missing(key, value, parsed[-1][1])
     kind = _kind(document | {key: value for key, value in parsed if key == "study"})
     for key, value in parsed:
-        if key == "nu" and kind is Scenario:
-            # Before it is put there: it would take the place of what is swept.
-            raise InputError(_unknown_nu(document, value))
         apply_override(document, key, value, kind)
     return document
 
@@ -165,7 +175,8 @@ def _refuse_unknown(sections: set[str]) -> None:
         guess = did_you_mean(section, TrialList.model_fields) or did_you_mean(
             section, Scenario.model_fields
         )
-        known = f"; known are {', '.join(TrialList.model_fields)}, and the keys of each trial's scenario"
+        names = ", ".join(TrialList.model_fields)
+        known = f"; known are {names}, and the keys of each trial's scenario"
         raise InputError(f"unknown key '{section}'{guess or known}")
 
 
@@ -200,7 +211,8 @@ def scenario_path(name: str, folder: Path | None = None, *, extended: bool = Fal
     if is_file((path.parent if path.name == FLIGHTS else path) / MANIFEST):
         run = Path(name).parent if path.name == FLIGHTS else Path(name)
         raise InputError(
-            f"'{run}' is a run, not a scenario; to replay one of its flights, give {run / FLIGHTS}/ID"
+            f"'{run}' is a run, not a scenario; to replay one of its flights, give"
+            f" {run / FLIGHTS}/ID"
         )
     guess = did_you_mean(Path(name).stem if name.endswith(".toml") else name, known)
     what = f"no scenario file '{name}'" if name.endswith(".toml") else f"unknown scenario '{name}'"
@@ -268,11 +280,10 @@ def _resolved(given: Document, folder: Path, where: object) -> tuple[Document, s
         document["set"] = [_with_absolute_file(override, folder) for override in listed]
     study = document.get("study")
     base = document.pop("extends", OPERATIONAL if study in OPERATIONAL_STUDIES else None)
-    if isinstance(study, str):
-        document["study"] = FORMER_WORDS.get(study, study)
     if not (base is None or base is False or isinstance(base, str)):
         raise InputError(
-            f"{where}: extends is {base!r}; give one catalog name or one path of a TOML file, or false for no base"
+            f"{where}: extends is {shown(base)}; give one catalog name or one path of a TOML file,"
+            " or false for no base"
         )
     return document, None if base is False else base
 
@@ -291,11 +302,12 @@ def _kind(document: Document) -> type[Any]:
     """Return the schema of a document."""
     study = document.get("study", "flights")
     if not isinstance(study, str):
-        raise InputError(f"study is {study!r}; it must be one of {', '.join(KINDS)}")
+        raise InputError(f"study is {shown(study)}; it must be one of {', '.join(KINDS)}")
     if study in KINDS or is_file_part(study) or study in announced("study"):
         return KINDS.get(study, Scenario)
     raise InputError(
-        f"study is {study!r}{did_you_mean(study, KINDS) or ';'} it must be one of {', '.join(KINDS)}, or FILE.py:NAME"
+        f"study is {shown(study)}{did_you_mean(study, KINDS) or ';'} it must be one of"
+        f" {', '.join(KINDS)}, or FILE.py:NAME"
     )
 
 
@@ -306,8 +318,6 @@ def checked(document: Mapping[str, Any], kind: type[Study]) -> Study:
     try:
         return kind.model_validate(document)
     except ValidationError as error:
-        if key_of(error.errors()[0]) == "nu" and kind is Scenario:
-            raise InputError(_unknown_nu(document, document["nu"])) from None
         raise InputError(explanation(error, kind)) from None
 
 
@@ -320,33 +330,23 @@ def sweeps_speed_ratio(document: Mapping[str, Any]) -> bool:
     )
 
 
-def _unknown_nu(document: Mapping[str, Any], nu: object) -> str:
-    """Return what to say of ``nu``, which is no key: the one that sets the speed ratio here."""
-    if isinstance(nu, list):
-        return f"unknown key 'nu'; did you mean 'sweep.nu={as_toml(nu)}'?"
-    key = (
-        f"sweep.nu=[{as_toml(nu)}]"
-        if sweeps_speed_ratio(document)
-        else f"vessel.speed_ratio={as_toml(nu)}"
-    )
-    return f"unknown key 'nu'; did you mean '{key}'?"
-
-
 def with_values(scenario: Scenario, values: Mapping[str, object]) -> Scenario:
-    """Return the scenario with dotted keys set to new values, checked again."""
+    """Return the scenario with dotted keys set to new values, and their sections checked again."""
     if not values:
         return scenario
     if own := [key for key in values if key.partition(".")[0] == "report"]:
         raise InputError(
-            f"'{own[0]}' varies from flight to flight; a report is of all flights: set it once, for the scenario"
+            f"'{own[0]}' varies from flight to flight; a report is of all flights: set it for the"
+            " whole scenario"
         )
-    document = scenario.model_dump()
+    sections = {key.partition(".")[0] for key in values} & type(scenario).model_fields.keys()
+    document = scenario.model_dump(include=sections)
     if "guidance.law" in values:
         # Keys that only the other law has, such as those of a steering law that is added, go with
         # it.
         for key in scenario.guidance.keys_lost_with(values["guidance.law"]):
             del document["guidance"][key]
-    for name in ("plume", "payload"):
+    for name in {"plume", "payload"} & sections:
         changed = {
             key.partition(".")[2]: value
             for key, value in values.items()
@@ -356,4 +356,57 @@ def with_values(scenario: Scenario, values: Mapping[str, object]) -> Scenario:
             del document[name][key]
     for key, value in values.items():
         set_value(document, key, value, Scenario)
-    return checked(document, Scenario)
+    return _revised(scenario, document)
+
+
+def aircraft_from(directory: Path, name: str, overrides: Sequence[str]) -> list[str]:
+    """Return overrides that take the aircraft from ``directory``: that of ``--set aircraft=NAME``,
+    else the scenario's if it is there, else the only one there.
+
+    Parameters
+    ----------
+    directory : with folders of aircraft
+    name : of the scenario
+    overrides : of its keys
+
+    Raises
+    ------
+    InputError : no such scenario, directory or aircraft, or several to choose from
+    """
+    from aircraft.fleet.find import folder_names
+
+    keys = [parse_override(override) for override in overrides]
+    demanded = next((str(value) for key, value in reversed(keys) if key == "aircraft"), None)
+    if demanded is None:
+        usual = load_document(name, overrides).get("aircraft")
+        with _aircraft_errors():
+            demanded = str(usual) if usual in folder_names(directory) else None
+    path = folder_of(directory, demanded)
+    return [
+        *(of for of, (key, _) in zip(overrides, keys, strict=True) if key != "aircraft"),
+        f"aircraft={json.dumps(path)}",
+    ]
+
+
+def folder_of(directory: Path, name: str | None) -> str:
+    """Return the path of an aircraft in ``directory``: of the one called ``name``, or else of the
+    only one.
+
+    Raises
+    ------
+    InputError : there is none of this name, or there are several
+    """
+    from aircraft.fleet.find import folder_path
+
+    with _aircraft_errors():
+        return folder_path(directory, name)
+
+
+@contextmanager
+def _aircraft_errors() -> Iterator[None]:
+    from aircraft.spec import AircraftError
+
+    try:
+        yield
+    except AircraftError as error:
+        raise InputError(str(error)) from None
