@@ -5,6 +5,7 @@ import re
 from matplotlib.figure import Figure
 
 from reports.build import build_reports
+from reports.document.blocks import Fold
 from reports.document.chart import Chart
 from reports.render import matplotlib_charts
 from scenarios.engine.processes import InProcessExecutor
@@ -50,9 +51,15 @@ def draw_all_but(monkeypatch, *names):
 
 
 def blocks_of(report, kind, anchor=None):
-    """Return the blocks of a kind, of the whole report or of one section."""
+    """Return the blocks of a kind, of the whole report or of one section, those behind folds too."""
     sections = [section for section in report.sections if anchor in (None, section.anchor)]
-    return [block for section in sections for block in section.blocks if isinstance(block, kind)]
+    blocks = [
+        inner
+        for section in sections
+        for block in section.blocks
+        for inner in (block, *(block.blocks if isinstance(block, Fold) else ()))
+    ]
+    return [block for block in blocks if isinstance(block, kind)]
 
 
 def named_charts(report):

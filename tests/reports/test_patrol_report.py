@@ -43,7 +43,8 @@ def test_the_verdict_compares_with_the_oracle(run):
 
 
 def test_keys_that_are_sampled_say_how_and_not_what_they_are_where_nothing_samples_them(run):
-    (table,) = (s.blocks[-1] for s in patrol_content(run).sections if s.anchor == "parameters")
+    (fold,) = (s.blocks[-1] for s in patrol_content(run).sections if s.anchor == "parameters")
+    (table,) = fold.blocks
     values = {row[0]: row[1] for row in table.rows}
     # As in the catalog.
     assert values["wind.speed_mps"] == "uniform from 3 to 12"

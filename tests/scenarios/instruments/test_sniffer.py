@@ -158,7 +158,10 @@ def test_the_same_flight_reads_the_same(slow):
 def test_a_flight_without_payload_is_flown_alike(slow):
     _, history, _ = slow
     _, bare, result = flown("payload=[]")
-    assert list(result.files) == ["flights/sulphur_00000.parquet"]
+    assert list(result.files) == [
+        "flights/sulphur_00000.parquet",
+        "flights/sulphur_00000.smoke.json",
+    ]
     assert bare.equals(history[list(bare)])
 
 
