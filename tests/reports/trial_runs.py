@@ -7,9 +7,9 @@ from report_parts import blocks_of
 
 from reports.document.blocks import FlightPicker, Table
 from reports.document.chart import Chart
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.sections.experiment import TrialList
-from scenarios.studies.registry import run_study
+from scenarios.studies.base import run_study
 
 # Both settle and cross a few times, within some 150 s; after that the vessel of the second turns,
 # which takes it 40 s at most.

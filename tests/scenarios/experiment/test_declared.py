@@ -7,9 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from scenarios.experiment.declared import beyond_declared
 from scenarios.experiment.requests import Experiment
-from scenarios.experiment.search_space import search_space
+from scenarios.experiment.sampling import beyond_declared, search_space
 from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
 

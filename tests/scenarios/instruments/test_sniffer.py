@@ -10,7 +10,7 @@ from measurement.emission import expected_fsc, fuel_preset
 from scenarios.engine.task import Task
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
-from scenarios.flight_runner import FlightWork
+from scenarios.flight_runner import FlightRunner
 from scenarios.planning.spreads import PredictedSpreads
 from scenarios.scenario.files import load_study
 from tests.run_tables import history_in
@@ -33,13 +33,13 @@ PERFECT = ("payload.sensor=laser", "payload.exact=true")
 
 def flown(*overrides, every_step=False):
     scenario = load_study("sulphur", (*QUICK, *overrides))
-    work = FlightWork(
+    work = FlightRunner(
         experiments=(Experiment("sulphur", scenario),),
         histories=1,
         setup=None,
         spreads=PredictedSpreads(),
     )
-    result = work.fly(Task(number=0, every_step=every_step))
+    result = work.run(Task(number=0, every_step=every_step))
     (row,) = result.tables["summary.csv"]
     return row, history_in(result), result
 

@@ -6,7 +6,7 @@ from scipy.optimize import brentq
 
 from benchmarks.crossing_limit import designed
 from scenarios.planning.limits import omega_max
-from scenarios.planning.theory.speed_ratio import (
+from scenarios.planning.theory import (
     CROSSING_LIMITS,
     crossing_limit,
     theory_over_speed_ratio,

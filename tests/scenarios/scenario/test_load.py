@@ -3,7 +3,7 @@ import pytest
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
 from scenarios.scenario.files import load_study, with_values
-from scenarios.studies.trials import TrialStudy
+from scenarios.studies.base import TrialStudy
 
 
 def test_the_sweep_is_the_one_that_was_asked_for():

@@ -5,8 +5,8 @@ import pytest
 
 from scenarios.errors import InputError
 from scenarios.experiment.points import points_of
-from scenarios.experiment.random_sample import flights_per_sample, is_random_sample
 from scenarios.experiment.requests import Experiment
+from scenarios.experiment.sampling import flights_per_sample, is_random_sample
 from scenarios.scenario.files import load_study, with_values
 from scenarios.scenario.scenario import Scenario
 

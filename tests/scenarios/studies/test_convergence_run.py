@@ -8,12 +8,12 @@ import pytest
 from gnc.analysis.ensemble import DISTANCE_CONVERGED, PHI_CONVERGED
 from reports.output import write_report
 from reports.run.run_data import read_run
-from scenarios.engine.executors import ExecutorFactory
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
+from scenarios.engine.runner import ExecutorFactory
 from scenarios.errors import InputError
 from scenarios.scenario.files import load_study
 from scenarios.scenario.sections.convergence import ConvergenceScenario
-from scenarios.studies.registry import run_study
+from scenarios.studies.base import run_study
 from tests.run_tables import manifest_of
 
 FEW = ["ensemble.trajectories=12", "ensemble.distance_max_m=100", "ensemble.samples=2"]

@@ -14,8 +14,8 @@ from measurement.sniffer.spec import SnifferSpec
 from scenarios.errors import InputError
 from scenarios.scenario.documentation import described_fields
 from scenarios.scenario.files import load_study, with_values
+from scenarios.studies.base import run_study
 from scenarios.studies.manifest import parameters, plugins, unused_parameters
-from scenarios.studies.registry import run_study
 from tests.scenarios.plugin_files import INSTRUMENT, LAW
 
 

@@ -5,9 +5,8 @@ outruns it, where it glides to.
 import pytest
 
 from gnc.errors import InfeasibleError
-from scenarios.planning.air.estimated_wind import wind_change
-from scenarios.planning.air.flown_heights import check_not_outrun, climbed_along, flown_heights
-from scenarios.planning.plume.axis import axis_height
+from scenarios.planning.air.wind import check_not_outrun, climbed_along, flown_heights, wind_change
+from scenarios.planning.plume import axis_height
 from scenarios.scenario.files import load_study, with_values
 from scenarios.world.world import mean_wind, vessel_of
 
