@@ -47,12 +47,13 @@ class _Watched:
         if isinstance(declared, property) and declared.fget:
             # What follows from keys notes these, as it reads them here.
             return declared.fget(self)
-        value = getattr(self._of, name)
-        if isinstance(value, BaseModel) and name != "sweep":
-            return _Watched(value, f"{self._above}{name}.", self._read)
-        whole = callable(value) or name.startswith("__")
-        self._read.add(self._above if whole else f"{self._above}{name}")
-        return value
+        if name == "sweep":
+            # The same for all flights: what is swept differs, and is a key of its own.
+            return self._of.sweep  # type: ignore[attr-defined]
+        if isinstance(below := getattr(self._of, name, None), BaseModel):
+            return _Watched(below, f"{self._above}{name}.", self._read)
+        self._read.add(self._above if callable(below) else f"{self._above}{name}")
+        return getattr(self._of, name)
 
 
 def reject_unused_keys(

@@ -29,7 +29,7 @@ from scenarios.scenario.sections.experiment import (
 )
 from scenarios.scenario.sections.flight import CriteriaConfig, FlightConfig, StartConfig
 from scenarios.scenario.sections.guidance import FollowingConfig, GuidanceConfig, ReferenceConfig
-from scenarios.scenario.sections.needs import Need, not_patrol, of_study
+from scenarios.scenario.sections.needs import Need, not_patrol, when
 from scenarios.scenario.sections.patrol import PatrolConfig
 from scenarios.scenario.sections.report import ReportConfig
 from scenarios.scenario.sections.section import Range, Section, Seed, Title
@@ -95,14 +95,14 @@ class Scenario(Section):
     """Number of time histories to be kept, evenly spaced over the flights [-]. Those of flights
     that did not meet what is required are kept as well; of missions that were not completed, that
     of the first of each trial."""
-    speed_ratio: Annotated[Range, Need(lambda s: s.draws, "random variables: give draws")] = (
+    speed_ratio: Annotated[Range, when("draws", user="random variables")] = (
         0.0,
         1e9,
     )
     """Flights whose nu leaves this range, at the start or after a manoeuvre, are sampled again [-].
     """
     method: Annotated[
-        Literal["plain", "subset"], of_study("monte_carlo", "a Monte Carlo study")
+        Literal["plain", "subset"], when("study", "monte_carlo", user="a Monte Carlo study")
     ] = "plain"
     """How a Monte Carlo study samples: plain, or by subset simulation, towards rare keep-out
     violations.
@@ -132,7 +132,7 @@ class Scenario(Section):
     statistics: StatisticsConfig = StatisticsConfig()
     subset: SubsetConfig = SubsetConfig()
     search: SearchConfig = SearchConfig()
-    laws: Annotated[tuple[str, ...], of_study("arena", "laws side by side")] = ()
+    laws: Annotated[tuple[str, ...], when("study", "arena", user="laws side by side")] = ()
     """Laws that take part in an arena in addition to its own, each by its name or FILE.py:NAME."""
     arena: ArenaConfig = ArenaConfig()
     patrol: PatrolConfig = PatrolConfig()

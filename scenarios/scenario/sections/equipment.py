@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar
 from pydantic import Field, field_validator, model_validator
 
 from scenarios.scenario.extension_points import PAYLOADS
-from scenarios.scenario.sections.needs import OPERATIONAL, Need
+from scenarios.scenario.sections.needs import OPERATIONAL, Need, when
 from scenarios.scenario.sections.part_section import PartSection
 from scenarios.scenario.sections.section import NonNegative, Positive, Section, check_ordered
 
@@ -81,25 +81,19 @@ class FaultConfig(Section):
     them)."""
     at_s: Annotated[
         tuple[NonNegative, NonNegative],
-        Need(lambda s: s.fault.kind != "none", "a fault: set fault.kind"),
+        when("fault.kind", user="a fault"),
     ] = (100.0, 250.0)
     """Earliest and latest time of the fault, which is sampled in between; or one number, the time
     itself [s].
     """
     vessel_data_s: Annotated[
         Positive,
-        Need(
-            lambda s: s.fault.kind == "vessel_data",
-            "a loss of vessel data: set fault.kind to 'vessel_data'",
-        ),
+        when("fault.kind", "vessel_data", user="a loss of vessel data"),
     ] = 60.0
     """How long vessel data are lost [s]."""
     satellite_navigation_s: Annotated[
         Positive,
-        Need(
-            lambda s: s.fault.kind == "satellite_navigation",
-            "a loss of satellites: set fault.kind to 'satellite_navigation'",
-        ),
+        when("fault.kind", "satellite_navigation", user="a loss of satellites"),
     ] = 10.0
     """How long satellite navigation is lost [s]; any other fault lasts to the end of the flight."""
     declared: tuple[str, ...] = ()
@@ -150,10 +144,7 @@ class KinematicConfig(Section):
     """The paper's vehicle, eq. (1)."""
 
     NEEDS: ClassVar[tuple[Need, ...]] = (
-        Need(
-            lambda s: s.fidelity in ("kinematic", "both"),
-            "the kinematic vehicle: set fidelity to 'kinematic'",
-        ),
+        when("fidelity", "kinematic", "both", user="the kinematic vehicle"),
     )
 
     heading_rate_lag_s: NonNegative = 0.0

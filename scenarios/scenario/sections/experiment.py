@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, RootModel, field_validator, model_validator
 
 from common.registry import PluginError
-from scenarios.scenario.sections.needs import Need, of_study
+from scenarios.scenario.sections.needs import Need, when
 from scenarios.scenario.sections.report import ReportConfig
 from scenarios.scenario.sections.section import (
     Fraction,
@@ -128,7 +128,7 @@ class ComparisonConfig(Section):
     flights: Annotated[
         int | None,
         Field(ge=1, le=1_000_000),
-        Need(lambda s: s.comparison.variants, "variants: give comparison.variants"),
+        when("comparison.variants", user="variants"),
     ] = None
     """Number of flights at each point of the experiment that are flown with each variant; all of
     them if not given [-].
@@ -214,7 +214,7 @@ class DrawConfig(Section):
 class StatisticsConfig(Section):
     """Confidence of the figures of a Monte Carlo study, and when the study may stop."""
 
-    NEEDS: ClassVar[tuple[Need, ...]] = (of_study("monte_carlo", "a Monte Carlo study"),)
+    NEEDS: ClassVar[tuple[Need, ...]] = (when("study", "monte_carlo", user="a Monte Carlo study"),)
 
     confidence: Fraction = 0.95
     """Confidence level of every interval [-]."""
@@ -227,10 +227,7 @@ class StatisticsConfig(Section):
     """
     distance_quantile: Annotated[
         Fraction,
-        Need(
-            lambda s: s.method == "plain",
-            "plain sampling, which may stop by it: set method to 'plain'",
-        ),
+        when("method", "plain", user="plain sampling, which may stop by it"),
     ] = 0.01
     """Quantile of the closest approach whose interval may stop the study [-]."""
 
@@ -295,7 +292,7 @@ _EVOLVES = Need(
 class SearchConfig(Section):
     """A search over the ranges of the random variables, by methods that take turns."""
 
-    NEEDS: ClassVar[tuple[Need, ...]] = (of_study("falsify", "a search"),)
+    NEEDS: ClassVar[tuple[Need, ...]] = (when("study", "falsify", user="a search"),)
 
     methods: Annotated[tuple[str, ...], Field(min_length=1)] = (
         "corners",
@@ -382,7 +379,7 @@ class ConditionConfig(Section):
 class ArenaConfig(Section):
     """A comparison of steering laws: which take part, in which conditions, how each is tuned."""
 
-    NEEDS: ClassVar[tuple[Need, ...]] = (of_study("arena", "laws side by side"),)
+    NEEDS: ClassVar[tuple[Need, ...]] = (when("study", "arena", user="laws side by side"),)
 
     tracking: tuple[str, ...] = ()
     """Laws that track the oscillating reference."""

@@ -6,7 +6,7 @@ from pydantic import Field, field_validator, model_validator
 
 from common.text import did_you_mean
 from gnc.mission.mission import Mode
-from scenarios.scenario.sections.needs import EXHAUST, SNIFFER, VESSEL, Need, not_patrol
+from scenarios.scenario.sections.needs import EXHAUST, SNIFFER, VESSEL, Need, not_patrol, when
 from scenarios.scenario.sections.section import (
     Angle,
     Limit,
@@ -90,7 +90,7 @@ class FlightConfig(Section):
     """
     measured_s: Annotated[
         Positive | None,
-        Need(lambda s: s.payload.instruments, "instruments: set payload.instruments"),
+        when("payload.instruments", user="instruments"),
     ] = None
     """Time before the end of the flight over which instruments are evaluated, settled or not; from
     settling on if not given [s].
@@ -167,9 +167,7 @@ _PAIRS = ("crossing_interval_s", "crossing_distance_m")
 """Criteria of a least and a largest value."""
 
 
-_SETTLES = Need(
-    lambda s: s.criteria.settles, "flights that must settle: set criteria.settles to true"
-)
+_SETTLES = when("criteria.settles", user="flights that must settle")
 
 
 class CriteriaConfig(Section):

@@ -20,6 +20,7 @@ from scenarios.scenario.sections.needs import (
     TRACKS,
     VESSEL,
     Need,
+    when,
 )
 from scenarios.scenario.sections.section import (
     Angle,
@@ -53,16 +54,11 @@ class ReferenceConfig(Section):
     """
     shape: Annotated[str, VESSEL, OSCILLATES] = "sinusoid"
     """Shape of the oscillation: sinusoid, that of the paper, fastest, loiter, or FILE.py:NAME."""
-    radius_m: Annotated[
-        Positive, Need(lambda s: s.circles, "a circle: set reference.path to 'circle'")
-    ] = 130.0
+    radius_m: Annotated[Positive, when("reference.path", "circle", user="a circle")] = 130.0
     """Radius of the circle, flown to the right [m]."""
     standoff_radius_m: Annotated[
         Positive | None,
-        Need(
-            lambda s: s.stands_off,
-            "a circle about the vessel: set guidance.mission to 'standoff'",
-        ),
+        when("guidance.mission", "standoff", user="a circle about the vessel"),
     ] = None
     """Radius of a standoff circle about the vessel [m]; if not given, the smallest on which the
     keep-out guard need not act.
@@ -430,10 +426,7 @@ class FollowingConfig(Section):
     are told."""
     search: Annotated[
         Literal["information", "ladder"],
-        Need(
-            lambda s: s.following.plume == "estimated",
-            "a plume that is searched for: set following.plume to 'estimated'",
-        ),
+        when("following.plume", "estimated", user="a plume that is searched for"),
     ] = "information"
     """How exhaust is searched for: at the most informative height, or up and down a ladder of
     heights.

@@ -8,6 +8,7 @@ parameters that a manifest calls unused.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Any
 
 
@@ -25,9 +26,21 @@ class Need:
     user: str
 
 
-def of_study(study: str, user: str) -> Need:
-    """Return the need of one study."""
-    return Need(lambda s: s.study == study, f"{user}: set study to '{study}'")
+def when(key: str, *values: str, user: str) -> Need:
+    """Return the need of a key that another one turns on.
+
+    Parameters
+    ----------
+    key : the other one
+    values : by which it does, the first of them for the message; any but "none" and nothing if not
+        given
+    user : the part that uses the key
+    """
+    value_of = attrgetter(key)
+    return Need(
+        lambda s: value_of(s) in values if values else value_of(s) and value_of(s) != "none",
+        f"{user}: set {key} to '{values[0]}'" if values else f"{user}: set {key}",
+    )
 
 
 def not_patrol(user: str) -> Need:
@@ -60,7 +73,7 @@ OSCILLATES = Need(
     lambda s: not s.stands_off,
     "an oscillation in the plume; here the vessel is circled: set guidance.mission to 'follow'",
 )
-EXHAUST = Need(lambda s: s.emission.ship is not None, "a ship with exhaust: set emission.ship")
+EXHAUST = when("emission.ship", user="a ship with exhaust")
 SNIFFER = Need(
     lambda s: "sniffer" in s.payload.instruments,
     "a sniffer: put 'sniffer' into payload.instruments",

@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from scenarios.scenario.sections.needs import Need, of_study
+from scenarios.scenario.sections.needs import Need, when
 from scenarios.scenario.sections.section import NonNegative, Positive, Section
 
 SHIPS_MAX = 12
@@ -20,7 +20,9 @@ class PatrolConfig(Section):
     each ship.
     """
 
-    NEEDS: ClassVar[tuple[Need, ...]] = (of_study("patrol", "several ships one after the other"),)
+    NEEDS: ClassVar[tuple[Need, ...]] = (
+        when("study", "patrol", user="several ships one after the other"),
+    )
 
     ships: Annotated[int, Field(ge=1, le=SHIPS_MAX)] = 6
     """Number of ships [-]."""

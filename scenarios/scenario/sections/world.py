@@ -24,6 +24,7 @@ from scenarios.scenario.sections.needs import (
     SNIFFER,
     VESSEL,
     Need,
+    when,
 )
 from scenarios.scenario.sections.part_section import PartSection
 from scenarios.scenario.sections.section import Angle, NonNegative, Positive, Section
@@ -162,8 +163,7 @@ def _has_smoke(setting: str) -> Callable[[Any], object]:
     that name is its own.
     """
     return lambda s: (
-        s.plume.model != "fluctuating"
-        or (s.plume.model_extra or {}).get(setting, getattr(PlumeSettings, setting))
+        s.plume.model != "fluctuating" or getattr(s.plume, setting, getattr(PlumeSettings, setting))
     )
 
 
@@ -288,10 +288,7 @@ _NO_TABLE = Need(
     lambda s: s.wind.table is None,
     "a wind that is not read from a table: leave out this key, or wind.table",
 )
-_PROFILE = Need(
-    lambda s: s.wind.roughness_m is not None,
-    "a wind with a profile over height: set wind.roughness_m",
-)
+_PROFILE = when("wind.roughness_m", user="a wind with a profile over height")
 
 
 class WindConfig(Section):
@@ -332,7 +329,7 @@ class WindConfig(Section):
         return self.speed_mps > 0.0 or self.table is not None
 
 
-_VARIES = Need(lambda s: s.air.background != "none", "a background that varies: set air.background")
+_VARIES = when("air.background", user="a background that varies")
 
 
 class AirConfig(Section):
@@ -363,9 +360,7 @@ class TurbulenceConfig(Section):
     """Number of 1-cosine gusts, at random times and from random directions [-]."""
     gust_speed_mps: NonNegative = 0.0
     """Peak speed of the gusts [m/s]."""
-    gust_length_s: Annotated[
-        Positive, Need(lambda s: s.turbulence.gusts > 0, "gusts: set turbulence.gusts")
-    ] = 4.0
+    gust_length_s: Annotated[Positive, when("turbulence.gusts", user="gusts")] = 4.0
     """Time in which a gust rises, and in which it falls [s]."""
 
     @model_validator(mode="after")
