@@ -27,7 +27,7 @@ from scenarios.flight.closed_loop import fly, release
 from scenarios.flight.time_history import flight_history
 from scenarios.measures.figures import flight_figures
 from scenarios.planning.missions import plan_flight
-from scenarios.scenario.load import checked, load_document
+from scenarios.scenario.files import checked, load_document
 from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 

@@ -17,7 +17,7 @@ import pyarrow.parquet as pq
 from aircraft.wind import CALM
 from common.columns import Table, column_of
 from common.geodesy import LocalFrame
-from common.run_layout import FLIGHTS, evaluation_path, time_history_path
+from common.run_layout import FLIGHTS, evaluation_path, smoke_path, time_history_path
 from gnc.numeric import wrapped
 from gnc.paper import LookAhead
 from scenarios.engine.task import Row, Task
@@ -116,6 +116,7 @@ def history_files(
     task: Task,
     history: pd.DataFrame | None,
     document: Mapping[str, Any] | None,
+    smoke: bytes | None,
     *,
     columns: Table,
     planned: int,
@@ -123,12 +124,13 @@ def history_files(
     row: Row,
 ) -> dict[str, bytes]:
     """Return the time history of a flight as a Parquet file, by its path, if there is one and it is
-    kept; and the document.
+    kept; with it the document and the smoke.
 
     Parameters
     ----------
     history : of the flight, if it has one
     document : what an instrument made of the flight, if any did
+    smoke : parcels of the exhaust, if there was any
     columns : what the columns of time histories are
     task, planned, kept, row : same as ``keeps_history``
     """
@@ -137,6 +139,8 @@ def history_files(
     files = {time_history_path(row["flight_id"]): as_parquet(history, columns)}
     if document is not None:
         files[evaluation_path(row["flight_id"])] = json.dumps(document).encode()
+    if smoke is not None:
+        files[smoke_path(row["flight_id"])] = smoke
     return files
 
 

@@ -16,7 +16,7 @@ from scenarios.planning.limits import omega_max
 from scenarios.planning.margin.keepout_margin import SpreadTable
 from scenarios.planning.reference import oscillation_at
 from scenarios.planning.scaling import scaled_law_defaults
-from scenarios.scenario.load import with_values
+from scenarios.scenario.files import with_values
 from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 

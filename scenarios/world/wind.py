@@ -2,10 +2,9 @@
 of the Copernicus Climate Data Store, read by xarray), turbulence and discrete gusts.
 """
 
-import csv
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -17,12 +16,11 @@ from aircraft.fdm import TIME_STEP
 from aircraft.weather import STEPS_BETWEEN_GUSTS, TURBULENCE, Gust, Weather
 from aircraft.wind import CALM, WindField, constant_wind, over_the_sea
 from common.physics import wind_velocity
+from common.tables import Table, TableError, read_table, unit_factor
 from common.text import install_words, other_units, utc_text
-from measurement.tables import decimal_commas, other_separator
 from scenarios.errors import InputError
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.world import WindConfig
-from scenarios.world.ais.reports import number_of, seconds_of
 from scenarios.world.vessel import Place
 
 STILL_AIR = Weather(wind=CALM, turbulence=None, gusts=(), seed=0)
@@ -130,6 +128,7 @@ def tabled_wind(config: WindConfig, place: Place, duration: float) -> WindField:
                 f" {utc_text(place.utc + duration)}: give a longer table, or set place.utc or"
                 " flight.duration_max_s"
             )
+    found = _where_it_blows(found, place, duration, str(name))
     times = [time - place.utc for time in found.times] or [0.0]
     if config.roughness_m is None:
         return WindField(found.velocity, times, found.heights or (10.0,))
@@ -139,6 +138,32 @@ def tabled_wind(config: WindConfig, place: Place, duration: float) -> WindField:
         )
     return over_the_sea(
         found.velocity[:, 0], times, roughness=config.roughness_m, height=config.height_m
+    )
+
+
+def _where_it_blows(found: TabledWind, place: Place, duration: float, name: str) -> TabledWind:
+    """Return a wind without the times at which it is not known, of which a flight needs none.
+
+    Raises
+    ------
+    InputError : the flight needs one of them
+    """
+    known: npt.NDArray[np.bool_] = np.asarray(np.isfinite(found.velocity).all(axis=(1, 2)))
+    if known.all():
+        return found
+    times = np.array(found.times)
+    # A flight needs the last time before it, and the first one after it.
+    first = int(np.searchsorted(times, place.utc, side="right")) - 1
+    last = int(np.searchsorted(times, place.utc + duration))
+    missing = [time for time in range(first, last + 1) if not known[time]]
+    if missing:
+        more = f" and {len(missing) - 1} more" if len(missing) > 1 else ""
+        raise InputError(
+            f"wind.table: {name} has no wind at {utc_text(times[missing[0]])}{more}, which the flight"
+            " needs; give another file, another place or another time (place.utc)"
+        )
+    return replace(
+        found, times=tuple(times[known].tolist()), velocity=found.velocity[known], lines=None
     )
 
 
@@ -182,101 +207,62 @@ def _read_netcdf(
 @lru_cache(maxsize=8)
 def _read_table(path: Path, _stamp: tuple[int, int]) -> TabledWind:
     try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            return _on_grid(path, list(_rows(path, csv.reader(file))))
+        return _on_grid(path, list(_rows(path, read_table(path, head=COLUMNS))))
     except OSError as error:
         raise InputError(
             f"wind.table: {path}: cannot be read: {error.strerror}; check the path"
         ) from None
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise InputError(
-            f"wind.table: {path}: not a table as text ({error}); save it in UTF-8"
-        ) from None
+    except TableError as error:
+        raise InputError(f"wind.table: {path}: {error}") from None
 
 
-def _rows(
-    path: Path, cells: Iterator[list[str]]
-) -> Iterator[tuple[int, float, float, float, float]]:
+def _rows(path: Path, table: Table) -> Iterator[tuple[int, float, float, float, float]]:
     """Yield line, time [s], height [m], and where the wind blows to, north and east [m/s]; not a
     number for what has no column.
+
+    Raises
+    ------
+    InputError : a column is missing or twice, or a row has no wind or one that cannot be
+    TableError : a cell is no number or no time
     """
-    lines = enumerate(cells, start=1)
-    first, heads = next(
-        (
-            (line, [head.strip().lower() for head in row])
-            for line, row in lines
-            if any(map(str.strip, row))
-        ),
-        (0, []),
+    names = [name.lower() for name in table.names]
+    if not set(COLUMNS[2:]) <= set(names) or not set(COLUMNS[:2]) & set(names):
+        remedy = other_units(names, COLUMNS[2:]) or "rename the columns to these"
+        if _TO in names and COLUMNS[3] not in names:
+            remedy = f"{COLUMNS[3]} is where the wind comes from: add 180 deg to '{_TO}', less 360 where it is more, and rename it"
+        raise InputError(
+            f"wind.table: {path}, line {table.head_line}: the header is {','.join(names)[:80]!r};"
+            f" it must be {','.join(COLUMNS)}, of which time_utc or height_m may be missing: {remedy}"
+        )
+    if twice := [column for column in COLUMNS if names.count(column) > 1]:
+        raise InputError(
+            f"wind.table: {path}, line {table.head_line}: the header has '{twice[0]}' twice; leave"
+            " one of the columns out"
+        )
+    there = {column: table.names[names.index(column)] for column in COLUMNS if column in names}
+    nothing = np.full(len(table), math.nan)
+    times = table.times(there["time_utc"]).seconds if "time_utc" in there else nothing
+    heights = table.numbers(there["height_m"]) if "height_m" in there else nothing
+    speeds, directions = (table.numbers(there[column]) for column in COLUMNS[2:])
+    # Where no wind blows it comes from nowhere.
+    directions = np.where((speeds == 0.0) & np.isnan(directions), 0.0, directions)
+    good = (
+        (speeds >= 0.0)
+        & (speeds <= _SPEED_MAX)
+        & (np.abs(directions) <= 360.0)
+        & (np.isfinite(times) | ("time_utc" not in there))
+        & (((heights > 0.0) & (heights <= 20e3)) | ("height_m" not in there))
     )
-    if not heads:
-        columns = ",".join(COLUMNS[:1] + COLUMNS[2:])
+    if not good.all():
+        row = int(np.argmin(good))
         raise InputError(
-            f"wind.table: {path}: the file is empty; give a table with the columns {columns}"
+            f"wind.table: {path}, line {table.lines[row]}: {','.join(table.rows[row])[:80]!r}; every"
+            f" row has its columns: speeds go from 0 to {_SPEED_MAX:g} m/s, directions from 0 to 360"
+            " deg, heights are above 0: correct the line, or delete it"
         )
-    if words := other_separator(",".join(heads)):
-        raise InputError(f"wind.table: {path} {words}")
-    if not set(COLUMNS[2:]) <= set(heads) or not set(COLUMNS[:2]) & set(heads):
-        remedy = other_units(heads, COLUMNS[2:]) or "rename the columns to these"
-        if _TO in heads and COLUMNS[3] not in heads:
-            remedy = (
-                f"{COLUMNS[3]} is where the wind comes from: add 180 deg to '{_TO}', less 360"
-                " where it is more, and rename it"
-            )
-        raise InputError(
-            f"wind.table: {path}, line {first}: the header is {','.join(heads)[:80]!r}; it must be"
-            f" {','.join(COLUMNS)}, of which time_utc or height_m may be missing: {remedy}"
-        )
-    if twice := [column for column in COLUMNS if heads.count(column) > 1]:
-        raise InputError(
-            f"wind.table: {path}, line {first}: the header has '{twice[0]}' twice; leave one of the"
-            " columns out"
-        )
-    for line, row in lines:
-        if not any(cell.strip() for cell in row):
-            continue
-        if words := _incomplete(heads, row):
-            raise InputError(f"wind.table: {path}, line {line} {words}")
-        named = dict(zip(heads, row, strict=False))
-        try:
-            time = seconds_of(named.get("time_utc", "")) if "time_utc" in heads else math.nan
-        except ValueError:
-            raise InputError(
-                f"wind.table: {path}, line {line}: {named.get('time_utc', '')[:40]!r} is no time,"
-                " as in 2026-06-01T12:00:00Z; correct it"
-            ) from None
-        height, speed, direction = (number_of(named.get(column)) for column in COLUMNS[1:])
-        good = (
-            0.0 <= speed <= _SPEED_MAX
-            and abs(direction) <= 360.0
-            and ("height_m" not in heads or 0.0 < height <= 20e3)
-        )
-        if not good:
-            raise InputError(
-                f"wind.table: {path}, line {line}: {','.join(row)[:80]!r}; speeds go from 0 to"
-                f" {_SPEED_MAX:g} m/s, directions"
-                " from 0 to 360 deg, heights are above 0: correct the line, or delete it"
-            )
-        yield line, time, height, *wind_velocity(speed, direction)
-
-
-def _incomplete(heads: list[str], row: list[str]) -> str:
-    """Return what a row lacks, and the remedy; nothing of one with a number in each column of
-    numbers.
-    """
-    shown = repr(",".join(row)[:80])
-    numbers = [heads.index(column) for column in COLUMNS[1:] if column in heads]
-    if words := decimal_commas(row, heads, numbers):
-        return words
-    if len(row) < len(heads):
-        return f"has {len(row)} of {len(heads)} columns: {shown}; correct the line, or delete it"
-    for place in numbers:
-        if math.isnan(number_of(row[place])):
-            return (
-                f"has {row[place][:40]!r} for {heads[place]}, which is not a number: correct the"
-                " line, or delete it"
-            )
-    return ""
+    for row, line in enumerate(table.lines):
+        wind = wind_velocity(float(speeds[row]), float(directions[row]))
+        yield line, float(times[row]), float(heights[row]), *wind
 
 
 def _on_grid(path: Path, rows: list[tuple[int, float, float, float, float]]) -> TabledWind:
@@ -325,17 +311,11 @@ _PLACES = ("latitude", "longitude")
 _OTHER_NAMES = {"lat": "latitude", "lon": "longitude"}
 """What other files than ERA5's call places."""
 
-_METRES_PER_SECOND = {
-    "m s**-1",
-    "m s-1",
-    "m s^-1",
-    "m/s",
-    "ms-1",
-    "m.s-1",
-    "metre per second",
-    "meter per second",
-}
-"""Units of a wind that need no conversion, as netCDF files write them."""
+_CALENDARS = ("standard", "gregorian", "proleptic_gregorian")
+"""CF's names of the calendar that clocks have."""
+
+_STANDARD_NAMES = {"u": "eastward_wind", "v": "northward_wind"}
+"""CF's names of a wind, whatever its variables are called."""
 
 _CLOSED = 1e-3
 """What a grid that goes round the earth may lack to 360 deg after its last step [deg]: its
@@ -381,6 +361,7 @@ def read_netcdf(
 def _wind_at(
     path: Path, data: Any, latitude_deg: float, longitude_deg: float
 ) -> tuple[tuple[float, ...], tuple[float, ...], Array]:
+    data = _in_cf_names(_of_one_version(_along_steps(data)))
     time = next((name for name in _TIMES if name in data.dims), None)
     pairs = [(height, u, v) for height, u, v in _PAIRS if u in data and v in data]
     if time is None or not (pairs or {"u", "v", "height"} <= {*data.variables}):
@@ -395,8 +376,9 @@ def _wind_at(
             if other in data.dims and name not in data.variables
         }
     )
-    _check_wind(path, data, time, [name for _, *names in pairs for name in names] or ["u", "v"])
-    data = data.sortby(time)
+    names = [name for _, *pair in pairs for name in pair] or ["u", "v"]
+    _check_wind(path, data, time, names)
+    data = _in_metres_per_second(path, data, names).sortby(time)
     if set(_PLACES) <= set(data.dims):
         data = _at_place(path, data, latitude_deg, longitude_deg)
     if pairs:
@@ -412,7 +394,7 @@ def _wind_at(
             [data[name].transpose(time, "height").values for name in ("v", "u")], axis=-1
         )
     data_times = data[time].values.astype("datetime64[ms]").astype(np.int64) / 1000.0
-    if not np.isfinite(velocity).all():
+    if not np.isfinite(velocity).any():
         raise InputError(
             f"wind.table: {path}: it has no wind at {latitude_deg:.3f}, {longitude_deg:.3f} deg;"
             " give another place"
@@ -420,21 +402,77 @@ def _wind_at(
     return tuple(float(t) for t in data_times), heights, np.asarray(velocity, dtype=np.float64)
 
 
-def _check_wind(path: Path, data: Any, time: str, names: list[str]) -> None:
-    """Refuse a wind in another unit than m/s, without a time, or with dimensions that are neither
-    time nor place.
+def _of_one_version(data: Any) -> Any:
+    """Return the data of all versions as one: ERA5's final hours, and its first ones (ERA5T) where
+    there are none yet, as ``expver`` 1 and 5.
     """
+    if "expver" not in data.dims:
+        return data
+    whole = data.isel(expver=0, drop=True)
+    for number in range(1, data.sizes["expver"]):
+        whole = whole.combine_first(data.isel(expver=number, drop=True))
+    return whole
+
+
+def _along_steps(data: Any) -> Any:
+    """Return the data of a forecast over the times that it is for, not over its steps."""
+    if "step" not in data.dims or "time" in data.dims:
+        return data
+    valid = data["time"] + data["step"] if "time" in data.coords else data["step"]
+    return (
+        data.drop_vars("valid_time", errors="ignore")
+        .assign_coords(valid_time=("step", valid.values))
+        .swap_dims(step="valid_time")
+    )
+
+
+def _in_cf_names(data: Any) -> Any:
+    """Return the data with a wind of CF's standard names, over a height, as u and v."""
+    if any(u in data for _, u, _ in _PAIRS) or "u" in data:
+        return data
+    names = {
+        name: short
+        for short, standard in _STANDARD_NAMES.items()
+        for name in data.data_vars
+        if data[name].attrs.get("standard_name") == standard
+    }
+    data = data.rename(names)
+    if "u" in data and "height" in data.coords and "height" not in data.dims:
+        data = data.expand_dims("height")
+    return data
+
+
+def _in_metres_per_second(path: Path, data: Any, names: list[str]) -> Any:
+    """Return the data with a wind in m/s."""
     for name in names:
         unit = str(data[name].attrs.get("units", "m/s")).strip()
-        if unit not in _METRES_PER_SECOND:
-            raise InputError(
-                f"wind.table: {path}: {name} is in {unit!r}; it has to be in m/s: convert it"
-            )
+        try:
+            factor = unit_factor(unit, "m/s")
+        except TableError as error:
+            raise InputError(f"wind.table: {path}: {name}: {error}") from None
+        if factor != 1.0:
+            data = data.assign({name: factor * data[name]})
+    return data
+
+
+def _check_wind(path: Path, data: Any, time: str, names: list[str]) -> None:
+    """Refuse a wind without a time, of a calendar that no clock has, or with dimensions that are
+    neither time nor place.
+    """
+    for name in names:
         if others := [str(of) for of in data[name].dims if of not in (time, "height", *_PLACES)]:
             raise InputError(
                 f"wind.table: {path}: {name} has the dimension '{others[0]}' beside time and place;"
                 f" select one of its {data.sizes[others[0]]} values, and write that to a file"
             )
+    calendar = data[time].encoding.get("calendar") or getattr(
+        data[time].values.flat[0] if data.sizes[time] else None, "calendar", "standard"
+    )
+    if calendar not in _CALENDARS:
+        raise InputError(
+            f"wind.table: {path}: its times are of the calendar '{calendar}', and a flight's are of the"
+            " Gregorian one; convert them"
+        )
     if not np.issubdtype(data[time].dtype, np.datetime64):
         raise InputError(
             f"wind.table: {path}: its times have no unit and origin, as 'hours since 2026-06-01';"

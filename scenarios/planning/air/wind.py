@@ -3,6 +3,8 @@ of the wind is set, and by how much the wind changes until its estimate has foll
 """
 
 import math
+import statistics
+from functools import lru_cache
 
 import numpy as np
 
@@ -18,6 +20,7 @@ from gnc.estimation.navigation import (
     SensorReadings,
     WindFilter,
 )
+from innerloop.flight.weave import INTERVAL, Samples, Weave
 from scenarios.planning.limits import omega_max, plan_interval, plan_period
 from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
@@ -136,6 +139,9 @@ _UNTIL_ORBIT = 120.0
 alone [s]; earlier the guard may act on it.
 """
 
+_UNTIL_SETTLED = 200.0
+"""Time after which the variance of an estimated wind no longer changes in still air [s]."""
+
 WIND_FOLLOWED = 20.0
 """Time within which the estimated wind follows a change [s]: of a wind that turns steadily it is
 behind by less.
@@ -185,6 +191,66 @@ def wind_bias(scenario: Scenario) -> float:
     return _wrong_by(scenario, airspeed, scenario.sensors.heading_bias_deg)
 
 
+def wind_error_in_weaves(scenario: Scenario, setup: VehicleSetup) -> float:
+    """Return by how much the estimated wind is wrong at most while the vehicle weaves in still air,
+    besides what is allowed for a first measurement [m/s]: its crab angles are not those of steady
+    turns at V_r.
+    """
+    parameters = navigation_parameters(scenario, setup)
+    return max((_largest_error(weave, parameters) for weave in setup.weaves), default=0.0)
+
+
+@lru_cache(maxsize=64)
+def _largest_error(weave: Weave, parameters: NavigationParameters) -> float:
+    """Return the largest error of a wind that is estimated in a weave that goes on and on, beyond
+    that of the first measurement [m/s].
+
+    The estimate begins in straight flight, before the first turn. It is also looked at when the
+    filter has settled: an error decays to its mean over the weave then, about which it moves within
+    each period. So it begins at the mean of single measurements.
+    """
+    wind, largest, first_variance = _wind_filter(parameters), 0.0, 0.0
+    for measured in _triangles(weave.entry, parameters):
+        wind.update(*measured, INTERVAL)
+        variance = wind.sigma**2
+        first_variance = first_variance or variance
+        allowed = parameters.first_wind_error * variance / first_variance
+        largest = max(largest, math.hypot(wind.north, wind.east) - allowed)
+    period = _triangles(weave.period, parameters)
+    wind = _wind_filter(parameters)
+    for _ in range(math.ceil(_UNTIL_SETTLED / (INTERVAL * len(period)))):
+        for measured in period:
+            wind.update(*measured, INTERVAL)
+    wind.north = statistics.fmean(v - speed * math.cos(course) for speed, course, v, _ in period)
+    wind.east = statistics.fmean(v - speed * math.sin(course) for speed, course, _, v in period)
+    for measured in 2 * period:
+        wind.update(*measured, INTERVAL)
+        largest = max(largest, math.hypot(wind.north, wind.east))
+    return largest
+
+
+def _triangles(
+    samples: Samples, parameters: NavigationParameters
+) -> list[tuple[float, float, float, float]]:
+    """Return what the wind's filter takes of some samples: airspeed, course through the air, and
+    velocity over the ground.
+    """
+    rolls = [sample.roll for sample in samples]
+    crabs = np.interp(rolls, parameters.crab_banks, parameters.crab_offsets).tolist()
+    return [
+        (sample.airspeed, sample.heading + crab, sample.velocity_north, sample.velocity_east)
+        for sample, crab in zip(samples, crabs, strict=True)
+    ]
+
+
+def _wind_filter(parameters: NavigationParameters) -> WindFilter:
+    return WindFilter(
+        airspeed_sigma=parameters.airspeed_sigma,
+        course_sigma=parameters.course_sigma,
+        drift=parameters.wind_drift,
+    )
+
+
 def wind_noise_left(scenario: Scenario) -> float:
     """Return the deviation of the estimated wind by that noise in the end [m/s]: sqrt(k/2) of it,
     by the filter's gain k.
@@ -226,11 +292,7 @@ def wind_known_on_orbit(scenario: Scenario, setup: VehicleSetup) -> WindErrorByG
         return None
     airspeed, period = scenario.guidance.airspeed_mps, plan_period(scenario.guidance)
     known = WindErrorByGusts(parameters.turbulence)
-    wind = WindFilter(
-        airspeed_sigma=parameters.airspeed_sigma,
-        course_sigma=parameters.course_sigma,
-        drift=parameters.wind_drift,
-    )
+    wind = _wind_filter(parameters)
     for _ in range(math.ceil(_UNTIL_ORBIT / period)):
         wind.update(airspeed, 0.0, airspeed, 0.0, period)
         known.measure(wind.gain, period)

@@ -2,26 +2,24 @@
 (``!AIVDM,...``, decoded by pyais). Unusable rows are left out and counted.
 """
 
-import bisect
-import csv
 import math
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from itertools import islice, pairwise
 from numbers import Integral
 from pathlib import Path
-from typing import Any, NamedTuple, TextIO
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from common.geodesy import cartesian
 from common.physics import METRES_PER_SECOND_PER_KNOT
+from common.tables import Table, TableError, longitude_within, read_table
 from common.text import install_words, other_units
-from measurement.tables import decimal_commas, other_separator
 from scenarios.errors import InputError
 from scenarios.scenario.sections.world import GAP_MAX
 
@@ -45,23 +43,46 @@ class AisRow(NamedTuple):
     course: float
 
 
-def seconds_of(text: str) -> float:
-    """Return seconds since 1970 of a time in ISO 8601, in UTC unless it names its zone.
+@dataclass(frozen=True, slots=True)
+class ShipSize:
+    """A ship's size as its reports say it.
 
-    Raises
-    ------
-    ValueError : it is not such a time
+    Attributes
+    ----------
+    length, beam : [m]
+    to_bow, to_port : from the antenna whose place is reported, or None where it is not said [m]
     """
-    time = datetime.fromisoformat(text.strip())
-    return (time if time.tzinfo else time.replace(tzinfo=UTC)).timestamp()
+
+    length: float
+    beam: float
+    to_bow: float | None = None
+    to_port: float | None = None
+
+    def described(self) -> str:
+        """Return the size in words."""
+        size = f"{self.length:g} m by {self.beam:g} m"
+        return size if self.to_bow is None else f"{size}, antenna {self.to_bow:g} m from the bow"
 
 
-def number_of(text: str | None) -> float:
-    """Return a number, with a point or a comma; NaN if there is none."""
-    try:
-        return float((text or "").strip().replace(",", "."))
-    except ValueError:
-        return math.nan
+def ship_size(
+    *,
+    length: float = math.nan,
+    width: float = math.nan,
+    a: float = math.nan,
+    b: float = math.nan,
+    c: float = math.nan,
+    d: float = math.nan,
+) -> ShipSize | None:
+    """Return the size by the distances of the antenna from bow, stern, port and starboard (``a`` to
+    ``d`` of ITU-R M.1371-5, figure 41), or by length and width [m]; None where neither is said.
+
+    0 says nothing. With 0 to bow and port the antenna's place is not known.
+    """
+    along, across = a + b, c + d
+    if along > 0.0 and across > 0.0:
+        placed = a > 0.0 or c > 0.0
+        return ShipSize(along, across, a if placed else None, c if placed else None)
+    return ShipSize(length, width) if length > 0.0 and width > 0.0 else None
 
 
 Array = npt.NDArray[np.float64]
@@ -87,6 +108,18 @@ NO_TIME, NO_PLACE, NO_SPEED, DUPLICATE, OUT_OF_ORDER, OUT_OF_REACH = (
 )
 """Why rows are not used."""
 
+_DROPPED_MOST = 0.1
+"""Share of a vessel's rows that may be dropped without a warning; duplicates do not count."""
+
+_METRES_PER_DEGREE = 111_195.0
+"""Of latitude, on a sphere."""
+
+_ALONE = 3600.0
+"""Time to the nearest report of a vessel from which on a clock may be wrong [s]."""
+
+_SECTORS, _SECTOR_ROWS = 12, 3
+"""Directions of travel that are told apart, and dropped rows of one that are no chance."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class AisReports:
@@ -100,7 +133,9 @@ class AisReports:
     latitude, longitude : [rad]
     speed, course : over the ground, course from true north [m/s, rad]
     rows : of the vessel in the file
-    dropped : number of rows that are not used, by the reason
+    dropped : number of rows of no use, by why they are
+    size : of the vessel, where the file says it
+    lost_directions : directions of travel [deg], by sectors, of which all rows were dropped
     """
 
     path: Path
@@ -113,12 +148,44 @@ class AisReports:
     course: Array
     rows: int
     dropped: dict[str, int]
+    size: ShipSize | None = None
+    lost_directions: tuple[int, ...] = ()
+
+    @property
+    def warning(self) -> str:
+        """What a reader of results has to know of the reports that were dropped; else empty."""
+        if self.lost_directions:
+            towards = ", ".join(f"{course} deg" for course in self.lost_directions)
+            return (
+                f"{self.path.name}: all reports of MMSI {self.mmsi} on the way towards {towards} were"
+                " dropped: its track there is not known"
+            )
+        lost = sum(count for why, count in self.dropped.items() if why != DUPLICATE)
+        share = lost / self.rows
+        if share <= _DROPPED_MOST:
+            return ""
+        return f"{self.path.name}: {share:.0%} of the reports of MMSI {self.mmsi} were dropped"
+
+    def lines(self) -> list[str]:
+        """Return what a console says of the file: how it was used, and a warning if there is one."""
+        return [self.described(), *([f"warning: {self.warning}"] if self.warning else [])]
+
+    def record(self) -> dict[str, Any]:
+        """Return for JSON how the file was used, and the ship's size where it says one."""
+        return {
+            "rows": self.rows,
+            "used": len(self.time),
+            "dropped": self.dropped,
+            "warning": self.warning,
+            "size": asdict(self.size) if self.size else None,
+        }
 
     def described(self) -> str:
         """Return how many rows were used and dropped, in a line."""
         dropped = ", ".join(f"{count} {why}" for why, count in self.dropped.items())
         used = f"{self.path.name}: {len(self.time)} of {self.rows} rows of MMSI {self.mmsi} used"
-        return f"{used}; dropped: {dropped}" if dropped else used
+        size = f"; {self.size.described()}" if self.size else ""
+        return f"{used}{size}; dropped: {dropped}" if dropped else f"{used}{size}"
 
 
 def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
@@ -137,29 +204,26 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
     path = Path(path)
     if mmsi is not None and (isinstance(mmsi, bool) or not isinstance(mmsi, Integral)):
         raise InputError(f"{path}: mmsi is {mmsi!r}; give a whole number, as in mmsi=219999001")
-    identity, rows = rows_of(path, mmsi)
+    identity, rows, size = rows_of(path, mmsi)
     dropped: Counter[str] = Counter()
     first: dict[str, int] = {}
     kept = rows
-    for sorted_out in (_by_what_they_say, _by_their_times, _by_their_places):
+    for sorted_out in (_by_what_they_say, _by_their_clock, _by_their_times, _by_their_places):
         reasons = sorted_out(kept)
         for row, reason in zip(kept, reasons, strict=True):
             if reason:
                 dropped[reason] += 1
                 first.setdefault(reason, row.line)
         kept = [row for row, reason in zip(kept, reasons, strict=True) if not reason]
+        if sorted_out is _by_their_clock:
+            kept.sort(key=lambda row: row.time)
     if len(kept) < 2:
         why = ", ".join(
             f"{count} {reason} (first in line {first[reason]})" for reason, count in dropped.items()
         )
-        remedy = (
-            "sort the file by time"
-            if dropped[OUT_OF_ORDER]
-            else "correct the rows, or give another file"
-        )
         raise InputError(
-            f"{path}: {len(kept)} of {len(rows)} rows of MMSI {identity} used, two are"
-            f" needed;{f' dropped: {why};' if why else ''} {remedy}"
+            f"{path}: {len(kept)} of {len(rows)} rows of MMSI {identity} used, two are needed;{f' dropped: {why};' if why else ''}"
+            " correct the rows, or give another file"
         )
     columns = np.array(kept).T
     directed = np.isfinite(columns[5]) & (columns[5] < 360.0)
@@ -175,6 +239,8 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
         course=np.radians(np.where(directed, columns[5], 0.0)),
         rows=len(rows),
         dropped=dict(dropped),
+        size=size,
+        lost_directions=_lost_directions(rows, kept),
     )
     check_units(
         path, reports.time, reports.latitude, reports.longitude, reports.speed, reports.course
@@ -199,33 +265,52 @@ def _by_what_they_say(rows: Sequence[AisRow]) -> list[str]:
     return reasons
 
 
-def _by_their_times(rows: Sequence[AisRow]) -> list[str]:
-    """Return why a row is not used by its time: the longest run of rows whose times rise is
-    kept.
+def _by_their_clock(rows: Sequence[AisRow]) -> list[str]:
+    """Return why each row is of no use by its clock: it is far before or after all others in time,
+    and stands among them in the file.
     """
-    last: list[int] = []
-    times: list[float] = []
-    before = [-1] * len(rows)
-    for i, row in enumerate(rows):
-        at = bisect.bisect_left(times, row.time)
-        before[i] = last[at - 1] if at else -1
-        if at < len(times):
-            # Of rows with the same time the first one stays.
-            if times[at] > row.time:
-                times[at], last[at] = row.time, i
-        else:
-            times.append(row.time)
-            last.append(i)
-    kept = set()
-    i = last[-1] if last else -1
-    while i >= 0:
-        kept.add(i)
-        i = before[i]
-    known = {rows[i].time for i in kept}
+    lines = {row.line for row in rows}
+    ends = (min(lines), max(lines)) if lines else ()
+    by_time = sorted(rows, key=lambda row: row.time)
+    alone = set()
+    for run in (by_time, by_time[::-1]):
+        for row, following in pairwise(run):
+            if abs(following.time - row.time) <= _ALONE or row.line in ends:
+                break
+            alone.add(row.line)
+    return [OUT_OF_ORDER if row.line in alone else "" for row in rows]
+
+
+def _by_their_times(rows: Sequence[AisRow]) -> list[str]:
+    """Return why each row is of no use by its time: of rows at the same time the first one stays."""
     return [
-        "" if i in kept else DUPLICATE if row.time in known else OUT_OF_ORDER
-        for i, row in enumerate(rows)
+        DUPLICATE if number and row.time == rows[number - 1].time else ""
+        for number, row in enumerate(rows)
     ]
+
+
+def _lost_directions(rows: Sequence[AisRow], kept: Sequence[AisRow]) -> tuple[int, ...]:
+    """Return the directions of travel in which rows were dropped, and none was kept [deg].
+
+    The direction is that of the way to the next place, whatever the row says of its course.
+    """
+    used = {row.line for row in kept}
+    taken: Counter[int] = Counter()
+    lost: Counter[int] = Counter()
+    timed = sorted((row for row in rows if math.isfinite(row.time)), key=lambda row: row.time)
+    placed = [row for row in timed if abs(row.latitude) <= 90.0 and abs(row.longitude) <= 180.0]
+    for row, after in pairwise(placed):
+        north = after.latitude - row.latitude
+        east = (after.longitude - row.longitude) * math.cos(math.radians(row.latitude))
+        if math.hypot(north, east) > _WAY_MIN / _METRES_PER_DEGREE:
+            course = math.degrees(math.atan2(east, north)) % 360.0
+            sector = round(course * _SECTORS / 360.0) % _SECTORS
+            (taken if row.line in used else lost)[sector] += 1
+    return tuple(
+        sector * 360 // _SECTORS
+        for sector, count in sorted(lost.items())
+        if count >= _SECTOR_ROWS and not taken[sector]
+    )
 
 
 def _by_their_places(rows: Sequence[AisRow]) -> list[str]:
@@ -261,8 +346,15 @@ _SHOWN = 60
 """Letters of a header that a message quotes at most."""
 
 
-def _danish_time(text: str) -> float:
-    return datetime.strptime(text.strip(), "%d/%m/%Y %H:%M:%S").replace(tzinfo=UTC).timestamp()
+_LOOKED_AT = 200
+"""Lines of a file in which a sentence of AIS is looked for."""
+
+_SENTENCE = re.compile(r"![A-Z]{2}VD[MO],\d,\d,[^*]*\*[0-9A-Fa-f]{2}")
+"""A sentence of AIS of any talker: AI of a ship, BS of a base station, AB, AN, SA and others."""
+
+_SIGNED_SPEED, _SIGNED_COURSE = 102.4, 409.6
+"""What negative speeds and courses lack in Marine Cadastre's files of 2015 to 2017: their ten and
+twelve bits were read as signed numbers [kt, deg]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -274,33 +366,31 @@ class Layout:
     name : of the layout
     columns : heads of time, identity, latitude, longitude, speed [kt] and course [deg], in lower
         case
-    seconds : time since 1970 of what the first of them holds [s]
-    time : how that is written
+    time_format : of the first of them, empty for ISO 8601
+    signed : whether speeds and courses may have been read as signed numbers
     """
 
     name: str
     columns: tuple[str, ...]
-    seconds: Callable[[str], float]
-    time: str = "2026-06-01T10:00:00Z"
+    time_format: str = ""
+    signed: bool = False
 
 
 LAYOUTS = (
-    Layout("plain", ("time_utc", "mmsi", "lat_deg", "lon_deg", "sog_kn", "cog_deg"), seconds_of),
+    Layout("plain", ("time_utc", "mmsi", "lat_deg", "lon_deg", "sog_kn", "cog_deg")),
     Layout(
         "Danish Maritime Authority",
         ("timestamp", "mmsi", "latitude", "longitude", "sog", "cog"),
-        _danish_time,
-        "01/06/2026 10:00:00",
+        "%d/%m/%Y %H:%M:%S",
     ),
     Layout(
         "Marine Cadastre up to 2024",
         ("basedatetime", "mmsi", "lat", "lon", "sog", "cog"),
-        seconds_of,
+        signed=True,
     ),
     Layout(
         "Marine Cadastre from 2025",
         ("base_date_time", "mmsi", "latitude", "longitude", "sog", "cog"),
-        seconds_of,
     ),
 )
 """The project's own; that of the Danish Maritime Authority ("# Timestamp,Type of mobile,MMSI,...");
@@ -308,8 +398,89 @@ and those of NOAA's Marine Cadastre ("MMSI,BaseDateTime,LAT,LON,...", and
 "mmsi,base_date_time,longitude,latitude,...")."""
 
 
-def rows_of(path: Path, mmsi: int | None) -> tuple[int, list[AisRow]]:
-    """Return the vessel's identity and its rows, in the order of the file.
+class _Said(NamedTuple):
+    """What a line of a file says of a vessel: a report, its size, or both."""
+
+    mmsi: int
+    row: AisRow | None = None
+    size: ShipSize | None = None
+
+
+def _all_said(path: Path, mmsi: int | None) -> Iterator[_Said]:
+    """Yield what a file says of vessels, in its order; of others than the given one not all.
+
+    Raises
+    ------
+    InputError : the file cannot be read, or its layout is unknown
+    """
+    try:
+        with path.open("rb") as file:
+            begin = b"".join(islice(file, _LOOKED_AT))
+        if not begin.strip():
+            raise InputError(f"{path}: the file is empty; give a file of AIS reports")
+        # Whatever the file is called, and whatever other receivers write above the first report.
+        if _SENTENCE.search(begin.decode("latin-1")) or path.suffix.lower() == ".nmea":
+            with path.open(encoding="utf-8-sig", errors="replace") as lines:
+                yield from _from_sentences(lines, path)
+        else:
+            yield from _from_table(path, mmsi)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}; check the path") from None
+    except TableError as error:
+        raise InputError(f"{path}: {error}") from None
+
+
+def _from_table(path: Path, mmsi: int | None) -> Iterator[_Said]:
+    identifier = "" if mmsi is None else str(mmsi)
+    names = [name for layout in LAYOUTS for name in layout.columns]
+    # Files of a day have millions of lines: those of other vessels are passed over as they are.
+    table = read_table(path, head=names, keep=lambda line: identifier in line)
+    heads = {name.lower(): name for name in reversed(table.names)}
+    layout = next((layout for layout in LAYOUTS if set(layout.columns) <= set(heads)), None)
+    if layout is None:
+        plain = LAYOUTS[0].columns
+        remedy = other_units(heads, plain) or "rename the columns to these"
+        raise InputError(
+            f"{path}, line {table.head_line}: the header is {','.join(table.names)[:_SHOWN]!r}; known"
+            " are those of the Danish Maritime Authority and of Marine Cadastre, and"
+            f" {','.join(plain)}: {remedy}"
+        )
+    lower = [name.lower() for name in table.names]
+    if twice := [column for column in layout.columns if lower.count(column) > 1]:
+        raise InputError(
+            f"{path}, line {table.head_line}: the header has '{twice[0]}' twice; leave one of the"
+            " columns out"
+        )
+    time, identities, *others = (heads[column] for column in layout.columns)
+    latitude, longitude, speed, course = (table.numbers(name, words=True) for name in others)
+    if layout.signed:
+        speed = np.where(speed < 0.0, speed + _SIGNED_SPEED, speed)
+        course = np.where(course < 0.0, course + _SIGNED_COURSE, course)
+    seconds = table.times(time, usual=layout.time_format).seconds
+    columns = seconds, latitude, longitude_within(longitude), speed, course
+    size_of = _sizes(table, heads)
+    for number, (line, identity) in enumerate(
+        zip(table.lines, table.column(identities), strict=True)
+    ):
+        # Tables that had a gap in this column have whole numbers with decimals.
+        digits = identity.removesuffix(".0")
+        if digits.isdigit():
+            row = AisRow(line, *(float(column[number]) for column in columns))
+            yield _Said(int(digits), row, size_of(number))
+
+
+def _sizes(table: Table, heads: Mapping[str, str]) -> Callable[[int], ShipSize | None]:
+    """Return the size that each row of a table says by its number, None where it says none."""
+    known = {
+        key: table.numbers(heads[key], words=True)
+        for key in ("length", "width", "a", "b", "c", "d")
+        if key in heads
+    }
+    return lambda number: ship_size(**{key: float(of[number]) for key, of in known.items()})
+
+
+def rows_of(path: Path, mmsi: int | None) -> tuple[int, list[AisRow], ShipSize | None]:
+    """Return the vessel's identity, its rows in the order of the file, and its size if it is said.
 
     Parameters
     ----------
@@ -320,113 +491,38 @@ def rows_of(path: Path, mmsi: int | None) -> tuple[int, list[AisRow]]:
     ------
     InputError : the file cannot be read, its layout is unknown, or it has no rows of the vessel
     """
-    try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            found = _of_one(path, mmsi, _all_rows(path, file, mmsi))
-            if found is None:
-                file.seek(0)
-                lines = list(islice((line for line in file if line.strip()), 2))
-                if len(lines) == 1 and "!AI" not in lines[0]:
-                    raise InputError(
-                        f"{path}: it has a header, and no rows below it; give a file of AIS reports"
-                    )
-                file.seek(0)
-                raise _no_row(path, mmsi, islice(_all_rows(path, file, None), _COUNTED))
-            return found
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}; check the path") from None
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise InputError(
-            f"{path}: not a table or NMEA sentences as text ({error}); unpack it, or save it in"
-            " UTF-8"
-        ) from None
-
-
-def _all_rows(path: Path, file: TextIO, mmsi: int | None) -> Iterator[tuple[int, AisRow]]:
-    above, head = next(((above, line) for above, line in enumerate(file) if line.strip()), (0, ""))
-    if not head:
-        raise InputError(f"{path}: the file is empty; give a file of AIS reports")
-    if "!AI" in head or path.suffix.lower() == ".nmea":
-        file.seek(0)
-        return nmea_rows(file, path)
-    return _table_rows(path, above + 1, head, file, mmsi)
-
-
-def _table_rows(
-    path: Path, first: int, head: str, file: TextIO, mmsi: int | None
-) -> Iterator[tuple[int, AisRow]]:
-    """Return the rows below a header, which stands in line ``first``."""
-    heads = [name.strip().removeprefix("#").strip().lower() for name in next(csv.reader([head]))]
-    layout = next((layout for layout in LAYOUTS if set(layout.columns) <= set(heads)), None)
-    if layout is None:
-        if words := other_separator(head):
-            raise InputError(f"{path} {words}")
-        plain = LAYOUTS[0].columns
-        remedy = other_units(heads, plain) or "rename the columns to these"
-        raise InputError(
-            f"{path}, line {first}: the header is {head.strip()[:_SHOWN]!r}; known are those of the"
-            f" Danish Maritime Authority and of Marine Cadastre, and {','.join(plain)}: {remedy}"
-        )
-    if twice := [column for column in layout.columns if heads.count(column) > 1]:
-        raise InputError(
-            f"{path}, line {first}: the header has '{twice[0]}' twice; leave one of the columns out"
-        )
-    places = [heads.index(column) for column in layout.columns]
-    identifier = "" if mmsi is None else str(mmsi)
-    # Files of a day have millions of lines: those of other vessels are passed over as they are.
-    lines = (
-        (number, line) for number, line in enumerate(file, start=first + 1) if identifier in line
-    )
-    for number, line in lines:
-        cells = next(csv.reader([line]), [])
-        if words := decimal_commas(cells, heads, places[2:]):
-            raise InputError(f"{path}, line {number} {words}")
-        # What a row that is cut off does not have it does not say.
-        time, identity, *others = (cells[place] if place < len(cells) else "" for place in places)
-        # Tables that had a gap in this column have whole numbers with decimals.
-        identity = identity.strip().removesuffix(".0")
-        if not identity.isdigit():
-            continue
-        try:
-            seconds = layout.seconds(time) if places[0] < len(cells) else math.nan
-        except ValueError:
-            raise InputError(
-                f"{path}, line {number}: {time[:40]!r} is no time of the layout {layout.name}, as"
-                f" in {layout.time}; correct it, or delete the line"
-            ) from None
-        yield int(identity), AisRow(number, seconds, *map(number_of, others))
-
-
-def _of_one(
-    path: Path, mmsi: int | None, rows: Iterable[tuple[int, AisRow]]
-) -> tuple[int, list[AisRow]] | None:
-    """Return the rows of the given vessel, or of the only one; an empty list if there are none."""
     found: list[AisRow] = []
     counts: Counter[int] = Counter()
-    for identity, row in rows:
-        counts[identity] += 1
-        if mmsi is None or identity == mmsi:
-            found.append(row)
+    sizes: dict[int, ShipSize] = {}
+    for said in _all_said(path, mmsi):
+        if said.size is not None:
+            sizes.setdefault(said.mmsi, said.size)
+        if said.row is not None:
+            counts[said.mmsi] += 1
+            if mmsi is None or said.mmsi == mmsi:
+                found.append(said.row)
     if mmsi is None and len(counts) > 1:
         raise InputError(
             f"{path}: it has {len(counts)} vessels, {_most(counts)}; name one of them by its MMSI"
             " (vessel.mmsi)"
         )
     if not found:
-        return None
-    return mmsi if mmsi is not None else next(iter(counts)), found
+        raise _no_row(path, mmsi)
+    identity = mmsi if mmsi is not None else next(iter(counts))
+    return identity, found, sizes.get(identity)
 
 
-def _no_row(path: Path, mmsi: int | None, rows: Iterable[tuple[int, AisRow]]) -> InputError:
+def _no_row(path: Path, mmsi: int | None) -> InputError:
     """Return what says that the file has no row of the vessel, and whose rows it has."""
-    counts = Counter(identity for identity, _ in rows)
-    if not counts:
+    said = islice(_all_said(path, None), _COUNTED)
+    counts = Counter(of.mmsi for of in said if of.row is not None)
+    if counts:
         return InputError(
-            f"{path}: no row has an MMSI in digits, as 219999001, in the column of its name; give a"
-            " file of AIS reports"
+            f"{path}: no row of MMSI {mmsi}; it has {_most(counts)}: check the number (vessel.mmsi)"
         )
     return InputError(
-        f"{path}: no row of MMSI {mmsi}; it has {_most(counts)}: check the number (vessel.mmsi)"
+        f"{path}: no row below the header has an MMSI in digits, as 219999001, in the column of its"
+        " name; give a file of AIS reports"
     )
 
 
@@ -441,6 +537,9 @@ def _most(counts: Counter[int]) -> str:
 _TAG_TIME = re.compile(r"[\\,]c:(\d+)")
 """Time of reception in a tag block of NMEA 4.10: seconds since 1970, or milliseconds."""
 
+_AROUND_TIMES = " \t\r\n,;"
+"""What may stand between a time and its sentence."""
+
 _POSITION_REPORTS = (1, 2, 3, 18, 19)
 """Message types with position, speed and course (ITU-R M.1371-5): class A, and class B."""
 
@@ -450,9 +549,8 @@ which on they are no time, but a date without its marks, as 20260601100000, of m
 year 2286 on."""
 
 
-def nmea_rows(lines: Iterable[str], path: Path) -> Iterator[tuple[int, AisRow]]:
-    """Yield the vessel's identity and the row of each position report; lines that cannot be decoded
-    are passed over.
+def _from_sentences(lines: Iterable[str], path: Path) -> Iterator[_Said]:
+    """Yield what each sentence says; lines that cannot be decoded are passed over.
 
     Raises
     ------
@@ -466,24 +564,37 @@ def nmea_rows(lines: Iterable[str], path: Path) -> Iterator[tuple[int, AisRow]]:
         ) from None
     others: set[int] = set()
     read = False
+    parts: dict[tuple[str, str], list[str]] = {}
     for number, line in enumerate(lines, start=1):
-        head, mark, sentence = line.strip().partition("!")
-        if not mark:
+        found = _SENTENCE.search(line)
+        if found is None:
             continue
+        whole = [found[0]]
+        _, count, _, group, channel, *_ = found[0].split(",")
+        if count != "1":
+            # The last sentence of a message completes it.
+            whole = parts.setdefault((group, channel), [])
+            whole.append(found[0])
+            if len(whole) < int(count):
+                continue
+            del parts[group, channel]
         try:
-            said: dict[str, Any] = pyais.decode(mark + sentence).asdict()
+            said: dict[str, Any] = pyais.decode(*whole).asdict()
         except Exception:  # noqa: BLE001 - whatever radio and decoder make of a line, it is one that says nothing
             continue
-        if said.get("msg_type") not in _POSITION_REPORTS:
-            others.add(int(said["msg_type"]))
-        else:
+        identity = int(said["mmsi"])
+        if said["msg_type"] in _POSITION_REPORTS:
             read = True
-            speed, course = _value(said, "speed"), _value(said, "course")
-            time = _time_of(head, path, number)
-            yield (
-                int(said["mmsi"]),
-                AisRow(number, time, _value(said, "lat"), _value(said, "lon"), speed, course),
+            time = _time_of(line[: found.start()], line[found.end() :], path, number)
+            values = (_value(said, name) for name in ("lat", "lon", "speed", "course"))
+            yield _Said(identity, AisRow(number, time, *values))
+        else:
+            others.add(int(said["msg_type"]))
+        if "to_bow" in said:
+            a, b, c, d = (
+                _value(said, f"to_{end}") for end in ("bow", "stern", "port", "starboard")
             )
+            yield _Said(identity, size=ship_size(a=a, b=b, c=c, d=d))
     if not read:
         types = (
             f"messages of type {', '.join(map(str, sorted(others)))} alone"
@@ -502,14 +613,14 @@ def _value(said: dict[str, Any], name: str) -> float:
     return math.nan if value is None else float(value)
 
 
-def _time_of(head: str, path: Path, number: int) -> float:
+def _time_of(before: str, after: str, path: Path, number: int) -> float:
     """Return the time of reception: of the tag block, or a time in ISO 8601 or seconds since 1970
-    before the sentence.
+    before the sentence or after its checksum.
     """
-    found = _TAG_TIME.search(head)
-    text = found[1] if found else head.strip(" \t,;")
+    found = _TAG_TIME.search(before)
+    text = found[1] if found else before.strip(_AROUND_TIMES) or after.strip(_AROUND_TIMES)
     try:
-        time = float(text) if text.replace(".", "", 1).isdigit() else seconds_of(text)
+        time = float(text) if text.replace(".", "", 1).isdigit() else _seconds_of(text)
     except ValueError:
         raise InputError(
             f"{path}, line {number}: the sentence has no time; give each its time of reception, as"
@@ -522,6 +633,17 @@ def _time_of(head: str, path: Path, number: int) -> float:
             " seconds since 1970, as 1780315200, or 2026-06-01T12:00:00Z"
         )
     return time / 1000.0 if time >= _MILLISECONDS_FROM else time
+
+
+def _seconds_of(text: str) -> float:
+    """Return seconds since 1970 of a time in ISO 8601, in UTC unless it names its zone.
+
+    Raises
+    ------
+    ValueError : it is not such a time
+    """
+    time = datetime.fromisoformat(text)
+    return (time if time.tzinfo else time.replace(tzinfo=UTC)).timestamp()
 
 
 _PAIRS_MIN = 10

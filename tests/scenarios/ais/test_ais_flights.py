@@ -7,9 +7,9 @@ from flight_cases import fly, plan, scenario
 
 from gnc.errors import InfeasibleError
 from scenarios.errors import InputError
-from scenarios.scenario.load import CATALOG, load_study
+from scenarios.scenario.files import CATALOG, load_study
 from scenarios.scenario.scenario import Scenario
-from scenarios.studies.flight_study import FlightStudy
+from scenarios.studies.base import FlightStudy
 from scenarios.world.ais.reports import read_ais
 
 DANISH = {"track": str(CATALOG / "ais" / "synthetic_danish.csv"), "mmsi": 219999001}

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from scenarios.errors import InputError
-from scenarios.scenario.load import CATALOG
+from scenarios.scenario.files import CATALOG
 from scenarios.scenario.sections.world import VesselConfig
 from scenarios.world.ais.synthetic import SYNTHETIC
 from scenarios.world.ais.track import (

@@ -10,9 +10,9 @@ from measurement.estimate.verdict import GUARD
 from scenarios.engine.task import Task
 from scenarios.experiment.requests import Experiment
 from scenarios.flight.ending import LEFT_BY
-from scenarios.flight_runner import FlightWork
+from scenarios.flight_runner import FlightRunner
 from scenarios.planning.spreads import PredictedSpreads
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from tests.run_tables import history_in
 
 QUICK = (
@@ -37,13 +37,13 @@ QUICK = (
 
 def flown(*overrides):
     scenario = load_study("sulphur", (*QUICK, *overrides))
-    work = FlightWork(
+    work = FlightRunner(
         experiments=(Experiment("sulphur", scenario),),
         histories=1,
         setup=None,
         spreads=PredictedSpreads(),
     )
-    result = work.fly(Task(number=0))
+    result = work.run(Task(number=0))
     (row,) = result.tables["summary.csv"]
     return row, history_in(result)
 

@@ -11,7 +11,7 @@ from reports.output import write_report
 from reports.run.run_data import read_run
 from scenarios.errors import InputError
 from scenarios.experiment.points import points_of
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.checks import check_without_design
 from scenarios.world.plume import emission
 from tests.in_process import run_command

@@ -14,7 +14,7 @@ from measurement.sniffer.spec import sensor_preset, sensor_presets
 from scenarios.errors import InputError
 from scenarios.planning.missions import plan_flight
 from scenarios.planning.plume import additional_distance, co2_sensor, information, plume_axis
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.scenario.sections.flight import ALTITUDE_MARGIN
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 from scenarios.world.plume import emission

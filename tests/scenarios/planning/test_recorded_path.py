@@ -9,7 +9,7 @@ from gnc.errors import InfeasibleError
 from scenarios.errors import InputError
 from scenarios.measures.keepout import bezier_points
 from scenarios.planning.limits import check_recorded, path_error_max
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.checks import check_without_design
 
 RAM = ("fidelity=kinematic", "guidance.approach=false", "guidance.heading_rate_max_rad_s=6")

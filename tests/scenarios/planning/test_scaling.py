@@ -19,7 +19,7 @@ from scenarios.flight.record import COLUMNS
 from scenarios.planning import scaling
 from scenarios.planning.missions import plan_flight
 from scenarios.planning.scaling import scaled, units
-from scenarios.scenario.load import load_study, with_values
+from scenarios.scenario.files import load_study, with_values
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 
 SPEED, GRAVITY = 19.42, 9.80665

@@ -5,7 +5,7 @@ import pytest
 
 from gnc.errors import InfeasibleError
 from scenarios.planning.missions import VesselCircle, vessel_circle
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 
 SPEED = 19.42
 

@@ -13,7 +13,7 @@ from gnc.guard.guard import GuardParameters
 from scenarios.experiment.requests import Experiment
 from scenarios.planning.guidance import farthest_start
 from scenarios.planning.missions import Start, check_start
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
 
 

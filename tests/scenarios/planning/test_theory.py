@@ -11,7 +11,7 @@ from scenarios.planning.theory import (
     crossing_limit,
     theory_over_speed_ratio,
 )
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.scenario.sections.guidance import GuidanceConfig
 
 GUIDANCE = GuidanceConfig()

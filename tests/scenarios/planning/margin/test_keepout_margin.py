@@ -34,7 +34,7 @@ from scenarios.planning.margin.tracking_spread import (
     tracking_spreads,
 )
 from scenarios.planning.missions import plan_flight
-from scenarios.scenario.load import load_study, with_values
+from scenarios.scenario.files import load_study, with_values
 from scenarios.vehicles.jsbsim import JsbsimVehicle
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 

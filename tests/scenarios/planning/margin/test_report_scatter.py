@@ -18,7 +18,7 @@ from scenarios.planning.margin.keepout_margin import (
     vessel_limits,
     widest_tube,
 )
-from scenarios.scenario.load import load_study, with_values
+from scenarios.scenario.files import load_study, with_values
 from scenarios.world.ais.track import received_reports
 from scenarios.world.vessel import SteadyVessel
 

@@ -17,7 +17,7 @@ from scenarios.planning.margin.keepout_margin import (
     noise_allowance,
     position_scatter,
 )
-from scenarios.scenario.load import load_study, with_values
+from scenarios.scenario.files import load_study, with_values
 from scenarios.vehicles.sensors import NAVIGATION_TIME
 from scenarios.vehicles.vehicle_setup import KINEMATIC_BANDWIDTH, kinematic_setup
 
