@@ -31,7 +31,7 @@ from gnc.mission.mission import Centre
 from gnc.mission.standoff import StandoffParameters
 from gnc.mission.track import DirectParameters, Joining
 from gnc.paper import PlumeAxis, centre_of_oscillation
-from gnc.reference.reference import PeriodicPath
+from gnc.reference.reference import Orbit, PeriodicPath
 from innerloop.flight.part_failure import glide_airspeed
 from scenarios.planning.air.wind import (
     check_not_outrun,
@@ -192,20 +192,15 @@ def _tracking_flight(
     disc = radius
     if scenario.keepout.shape == "sphere":
         disc = math.sqrt(max(0.0, radius**2 - lowest**2))
+    known = Tube(0.0, 0.0, 0.0, v_north, v_east)
     guard = None
     if g.keepout_guard and disc > 0.0:
         guard = guard_parameters(scenario, setup, disc)
-        known = Tube(0.0, 0.0, 0.0, v_north, v_east)
-        # The guard must leave the orbit alone, and what the UAV may stray from it: an orbit that
-        # lies nearer moves off.
-        nearest = math.hypot(ahead, right) - orbit.half_widths()[0] - g.tracking_allowance_m
-        direction = math.cos(axis.heading), math.sin(axis.heading)
-        needed = orbit_distance(guard, known, orbit, direction)
-        distance += max(0.0, needed - nearest) / math.cos(axis.elevation)
+        distance += _missing_distance(guard, known, orbit, axis, distance, g.tracking_allowance_m)
         ahead, right, above = centre_of_oscillation(distance, axis)
-        check_start(
-            start, guard, (known,), wind=(0.0, 0.0), airspeed=g.airspeed_mps, keepout_radius=radius
-        )
+    check_start(
+        start, guard, (known,), wind=(0.0, 0.0), airspeed=g.airspeed_mps, keepout_radius=radius
+    )
     joined = joined_orbit(scenario, orbit, course)
     joining = None
     if g.approach:
@@ -248,6 +243,24 @@ def _tracking_flight(
         oscillation=orbit,
         centre_distance=distance,
     )
+
+
+def _missing_distance(
+    guard: GuardParameters,
+    vessel: Tube,
+    orbit: Orbit,
+    axis: PlumeAxis,
+    distance: float,
+    allowance: float,
+) -> float:
+    """Return how much farther along the plume's axis an orbit has to lie than at a distance [m] for
+    the guard to leave it alone, and what the UAV may stray from it [m].
+    """
+    ahead, right, _ = centre_of_oscillation(distance, axis)
+    nearest = math.hypot(ahead, right) - orbit.half_widths()[0] - allowance
+    direction = math.cos(axis.heading), math.sin(axis.heading)
+    needed = orbit_distance(guard, vessel, orbit, direction)
+    return max(0.0, needed - nearest) / math.cos(axis.elevation)
 
 
 def _tracking_guidance(
