@@ -100,7 +100,7 @@ def test_a_choice_takes_as_much_of_its_distribution_as_it_weighs():
         ({"normal": [5.0, 1.0], "within": [6.0, 4.0]}, "within of the draw of 'wind.speed_mps' is"),
         (
             {"uniform": [0.0, 1.0], "within": [0.0, 1.0]},
-            "has within beside uniform; it cuts off a normal or a weibull",
+            "has within beside uniform; it cuts off normal or weibull",
         ),
         ({"normal": [5.0, 0.0]}, "greater than 0"),
         ({"weibull": [0.0, 8.0]}, "greater than 0"),

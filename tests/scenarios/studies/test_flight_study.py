@@ -160,8 +160,8 @@ def test_a_run_is_resumed_with_the_same_trials_only(tmp_path):
         ('trials = ["paper"]', "'paper' is a study of paper; list scenarios of flights"),
         ('trials = ["sea_trial"]', "'sea_trial' is a study of trials; list scenarios of flights"),
         ('trials = ["sea_wind", "sea_wind"]', "two are called 'sea_wind'; list each once"),
-        ("trials = []", "trials: value is"),
-        ('trials = ["sea_wind"]\nset = 5', "set: value is 5; give a list in brackets"),
+        ("trials = []", r"trials is \[\]; tuple should"),
+        ('trials = ["sea_wind"]\nset = 5', "set is 5; input should be a valid tuple"),
         (
             'trials = ["sea_wind"]\nset = "share=1"',
             "set is 'share=1'; input should be a valid tuple",

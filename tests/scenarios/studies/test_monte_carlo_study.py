@@ -214,7 +214,7 @@ def test_copies_of_flights_are_refused_as_no_probability_follows_from_them(tmp_p
     ("override", "words"),
     [
         ("sampling=halton", ["sampling", "'halton'", "sobol"]),
-        ("statistics.confidence=1.5", ["statistics.confidence", "1.5", "below 1"]),
+        ("statistics.confidence=1.5", ["statistics.confidence", "1.5", "less than 1"]),
         ("flights=0", ["flights is 0; input should be greater than or equal to 1"]),
     ],
 )
