@@ -3,6 +3,7 @@
 from scenarios.experiment.requests import FlightRequest
 from scenarios.scenario.effect import unused
 from scenarios.scenario.sections.experiment import SweepConfig
+from scenarios.scenario.study_keys import ADDED
 
 
 def scenario_file(request: FlightRequest, *, title: str) -> bytes:
@@ -41,6 +42,7 @@ def scenario_file(request: FlightRequest, *, title: str) -> bytes:
         "arena",
         "patrol",
         "report",
+        *(name for keys in ADDED for name in keys.names()),
     ):
         document.pop(experiment, None)
     # It is of the experiment, and not of this flight.

@@ -13,8 +13,12 @@ from gnc.laws import STEERING_LAWS
 from scenarios.scenario.extension_points import PAYLOADS, PLUME_MODELS
 from scenarios.scenario.keys import line, split_unit
 from scenarios.scenario.sections.guidance import GuidanceConfig
+from scenarios.scenario.study_keys import ADDED
 
-FLIGHT_STUDIES = ("flights", "paper", "monte_carlo", "falsify", "arena", "patrol", "premises")
+FLIGHT_STUDIES = (
+    *("flights", "paper", "monte_carlo", "falsify", "arena", "patrol", "premises"),
+    *(keys.STUDY for keys in ADDED),
+)
 """Studies whose scenario files are those of flights."""
 
 DIMENSIONLESS = "-"

@@ -43,6 +43,8 @@ def study_of(scenario: AnyStudy, name: str, overrides: Sequence[str] = ()) -> St
         made = STUDIES.get(scenario.study)
     except PluginError as error:
         raise InputError(str(error)) from None
+    if not isinstance(scenario, Scenario):
+        return made(scenario, name, overrides=overrides)
     with plugins_explained(f"study '{scenario.study}'", [scenario]):
         return made(scenario, name, {name: scenario}, overrides=overrides)
 
