@@ -2,8 +2,6 @@
 
 import json
 import math
-import os
-import subprocess
 import sys
 import zipfile
 from pathlib import Path
@@ -18,7 +16,7 @@ from reports.errors import ReportError
 from reports.export.geographic import recorded_flights
 from reports.run.run_data import read_run
 from tests.in_process import assert_refused, run_command
-from tests.reports.export.placed_flight import START, TOLERANCE, exported, off, track
+from tests.reports.export.placed_flight import TOLERANCE, exported, off, track
 
 
 def test_a_kmz_is_valid_by_the_schema_of_the_ogc_and_has_the_places(run_path, truth):
@@ -53,38 +51,6 @@ def test_a_kmz_is_valid_by_the_schema_of_the_ogc_and_has_the_places(run_path, tr
         place.getparent().remove(place)
     assert schema.validate(root), schema.error_log
     assert [name.text for name in root.findall(".//k:Folder/k:name", names)] == ["a, <b>"]
-
-
-def test_netcdf_has_the_places(run_path, truth):
-    h5netcdf = pytest.importorskip("h5netcdf", reason="h5netcdf is an extra")
-    pytest.importorskip("xarray", reason="xarray is an extra")
-    path = exported(run_path, "netcdf")
-    with h5netcdf.File(path, "r") as data:
-        assert off(np.column_stack([data["lat"][:], data["lon"][:]]), truth[0]) < TOLERANCE
-        assert (
-            off(np.column_stack([data["vessel_lat"][:], data["vessel_lon"][:]]), truth[1])
-            < TOLERANCE
-        )
-        assert data["row_size"][:].tolist() == [601]
-        assert data["time"][0] == START
-        assert data.attrs["history"] == "2026-06-02T08:00:00Z: plume-flight run made.toml"
-
-
-@pytest.mark.parametrize("run_path", ["date line"], indirect=True)
-def test_netcdf_keeps_to_the_conventions(run_path, tmp_path):
-    pytest.importorskip("xarray", reason="xarray is an extra")
-    pytest.importorskip("compliance_checker", reason="compliance-checker is for developers")
-    path = exported(run_path, "netcdf")
-    # In a process of its own: the checker's own packages warn as they are imported.
-    checker = Path(sys.executable).with_name("compliance-checker")
-    checked = subprocess.run(
-        [checker, "-t", "cf:1.8", path],
-        capture_output=True,
-        text=True,
-        check=False,
-        env={**os.environ, "HOME": str(tmp_path)},
-    )
-    assert "All tests passed!" in checked.stdout, checked.stdout + checked.stderr
 
 
 def test_geojson_has_the_places_in_pieces_that_keep_to_one_side_of_the_date_line(run_path, truth):
