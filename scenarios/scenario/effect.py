@@ -5,7 +5,7 @@ would use it.
 import functools
 from collections.abc import Iterable, Iterator, Mapping
 
-from common.registry import PluginError
+from common.errors import PluginError
 from scenarios.errors import InputError
 from scenarios.scenario.effect_rules import OPERATIONAL, RULES, Rule
 from scenarios.scenario.experiment_checks import unsteady

@@ -10,8 +10,9 @@ from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
+from common.errors import PluginError
 from common.files import is_file
-from common.registry import PluginError, announced, announced_folders, is_file_part
+from common.registry import announced, announced_folders, is_file_part
 from common.run_layout import FLIGHTS, MANIFEST
 from common.text import did_you_mean
 from scenarios.errors import InputError

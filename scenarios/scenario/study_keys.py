@@ -5,7 +5,8 @@ from typing import Any, ClassVar
 
 from pydantic import BaseModel
 
-from common.registry import PluginError, announced, load_announced
+from common.errors import PluginError
+from common.registry import announced, load_announced
 from scenarios.scenario.sections.report import ReportConfig
 from scenarios.scenario.sections.section import Section, Seed, Title
 

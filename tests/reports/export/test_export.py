@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from common.registry import PluginError
+from common.errors import PluginError
 from reports.build import export_run
 from reports.errors import ReportError
 from reports.export import EXPORTERS
