@@ -34,7 +34,7 @@ class Meter:
 
 STUDY = """
 from reports.document.blocks import Section, Text
-from scenarios.studies.flight_study import FlightStudy
+from scenarios.studies.base import FlightStudy
 
 
 class Counting(FlightStudy):
