@@ -169,7 +169,7 @@ class Replay(SingleFlight):
         flight_id = original.row["flight_id"]
         if viewer and original.row.get("fidelity") != "six_dof":
             raise InputError(
-                f"--flightgear shows aircraft in six degrees of freedom; '{flight_id}' is a kinematic flight"
+                f"aircraft in six degrees of freedom can be shown, no others; '{flight_id}' is a kinematic flight"
             )
         try:
             if aircraft_dir:
