@@ -18,10 +18,11 @@ import numpy as np
 import pandas as pd
 
 from common.columns import Column, Table
+from common.plugins import call_plugin
 from common.run_layout import CROSSINGS, DRAWS, INTERVENTIONS
 from scenarios.engine.task import Result, Row, Task
 from scenarios.experiment.requests import Experiment, FlightRequest, table_of
-from scenarios.flight.closed_loop import fly, release
+from scenarios.flight.closed_loop import Viewer, fly, release
 from scenarios.flight.ending import failure, unflown
 from scenarios.flight.guard_belief import GuardBelief
 from scenarios.flight.onboard import BELIEF_COLUMNS
@@ -48,7 +49,6 @@ from scenarios.scenario.extension_points import PAYLOADS
 from scenarios.scenario.sections.experiment import STUDY
 from scenarios.vehicles.vehicle_setup import VehicleSetup, kinematic_setup
 from scenarios.world.noise import PAYLOAD, own_generator
-from scenarios.world.own_part import asked
 
 _GONE = (Outcome.DIVERGED.value, Outcome.AIRCRAFT_LOST.value)
 
@@ -186,7 +186,7 @@ class FlightRunner:
     setup : of the aircraft, if there is one
     spreads : predicted for flights in turbulence
     refusal : why flights in six degrees of freedom cannot be flown, or nothing
-    viewer : host and port of a FlightGear that shows flights in real time, or none
+    viewer : shows flights in real time, or none
     """
 
     experiments: tuple[Experiment, ...]
@@ -194,7 +194,7 @@ class FlightRunner:
     setup: VehicleSetup | None
     spreads: PredictedSpreads
     refusal: str = ""
-    viewer: tuple[str, int] | None = None
+    viewer: Viewer | None = None
 
     def run(self, task: Task) -> Result:
         """Return the result of one flight, whatever becomes of it."""
@@ -402,10 +402,8 @@ def payload_of(request: FlightRequest, plan: FlightPlan) -> list[Instrument | Ev
     InputError : one fills a column, a figure or a table that the flight or another one fills
     """
     given = request.scenario, plan.world, own_generator(request.noise, PAYLOAD)
-    called_with = "the scenario, the world and a random generator"
-    instruments = [
-        asked(f"payload '{name}'", "cannot be made", called_with, PAYLOADS.get(name), *given)
-        for name in plan.payload
+    instruments: list[Any] = [
+        call_plugin(f"payload '{name}'", PAYLOADS.get(name), *given) for name in plan.payload
     ]
     check_instruments(zip(plan.payload, instruments, strict=True))
     return instruments

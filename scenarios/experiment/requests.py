@@ -27,6 +27,7 @@ from scenarios.scenario.files import with_values
 from scenarios.scenario.overrides import displaced
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.experiment import STUDY, SweepConfig, swept_key
+from scenarios.scenario.study_keys import ADDED
 from scenarios.world.noise import Noise
 
 _PLANNED_FOR = ("guidance.", "turbulence.level", "reference.shape", "following.margin_law")
@@ -298,6 +299,7 @@ def scenario_file(request: FlightRequest, *, title: str) -> bytes:
         "arena",
         "patrol",
         "report",
+        *(name for keys in ADDED for name in keys.names()),
     ):
         document.pop(experiment, None)
     # It is of the experiment, and not of this flight.

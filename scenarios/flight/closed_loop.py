@@ -4,8 +4,9 @@ closed here only.
 
 import math
 from collections.abc import Generator, Sequence
-from typing import Any
+from typing import Any, Protocol
 
+from aircraft.fdm import Fdm
 from aircraft.wind import CALM
 from gnc.guard.guard import GuardStatus
 from gnc.guidance import Guidance
@@ -216,6 +217,18 @@ def _early_stop(
     return EarlyStop(reader, mission, settling)
 
 
+class Viewer(Protocol):
+    """Another program that shows an aircraft while its flight is replayed, in real time.
+
+    Its class is called with the address that the user gives, and an installed package announces it
+    in the group ``plume_flight_study.viewer``. Its name becomes an option of ``plume-flight run``.
+    An address that is none is refused by an ``InputError``.
+    """
+
+    def show(self, fdm: Fdm) -> None:
+        """Show an aircraft from now on; it is placed next."""
+
+
 def failable(plan: FlightPlan) -> bool:
     """Return whether a part of the aircraft may fail in a flight."""
     return plan.world is not None and plan.world.fault.of_aircraft()
@@ -224,7 +237,7 @@ def failable(plan: FlightPlan) -> bool:
 def release(
     plan: FlightPlan,
     setup: VehicleSetup,
-    viewer: tuple[str, int] | None = None,
+    viewer: Viewer | None = None,
     *,
     flown: AutopilotedAircraft | None = None,
 ) -> Vehicle:
@@ -234,8 +247,7 @@ def release(
     ----------
     plan : the flight
     setup : of the aircraft, or of the kinematic vehicle
-    viewer : host and port of a FlightGear that is to show the aircraft, in real time; none if not
-        given
+    viewer : shows the aircraft, in real time; none if not given
     flown : an aircraft that has flown before, to be used again; a fresh one if not given
     """
     start, world = plan.start, plan.world
@@ -253,7 +265,7 @@ def release(
         )
     flown = flown or AutopilotedAircraft(aircraft.spec, aircraft.model, failable=failable(plan))
     if viewer is not None:
-        flown.fdm.stream_to_flightgear(*viewer)
+        viewer.show(flown.fdm)
     # Still air needs no weather of its own.
     weather = world.weather if world and plan.sensing else None
     return JsbsimVehicle(

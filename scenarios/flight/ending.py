@@ -10,10 +10,9 @@ import traceback
 from enum import Enum
 from pathlib import Path
 
-from aircraft.spec import AircraftError
-from common.registry import PluginError
+from common.errors import RefusedError
 from common.text import one_line
-from gnc.errors import InfeasibleError, LawError
+from gnc.errors import InfeasibleError
 from gnc.estimation.health import Fault
 from gnc.estimation.navigation import MeasuredMotion
 from gnc.estimation.plume.passes import SensorState
@@ -26,7 +25,6 @@ from measurement.estimate.estimator import estimate
 from measurement.estimate.repeated import RepeatedVerdict
 from measurement.estimate.verdict import OPEN
 from scenarios.engine.task import Row
-from scenarios.errors import InputError
 from scenarios.flight.outcome import Outcome
 from scenarios.instruments.instrument import GasReader
 from scenarios.planning.flight_plan import FlightPlan
@@ -446,7 +444,7 @@ def failure(error: Exception | SystemExit) -> Row:
     if isinstance(error, InfeasibleError | MeasurementError):
         return unflown(Outcome.INFEASIBLE, str(error))
     message = str(error)
-    if not isinstance(error, AircraftError | InputError | LawError | PluginError):
+    if not isinstance(error, RefusedError):
         frames = traceback.extract_tb(error.__traceback__)
         # Methods of dataclasses are made from text, and have no file: what called them has.
         in_files = [frame for frame in frames if not frame.filename.startswith("<")]

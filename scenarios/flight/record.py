@@ -4,7 +4,7 @@ when the keep-out guard changed commands.
 
 import math
 import struct
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from common.columns import described
+from common.plugins import call_plugin, numbers
 from common.text import did_you_mean
 from gnc.estimation.navigation import MeasuredMotion
 from gnc.guidance import Guidance
@@ -20,7 +21,6 @@ from scenarios.flight.ending import Settling
 from scenarios.flight.outcome import Outcome
 from scenarios.instruments.instrument import Instrument
 from scenarios.vehicles.vehicle import Vehicle
-from scenarios.world.own_part import are_numbers, asked, refuse_answer
 from scenarios.world.world import World
 
 if TYPE_CHECKING:
@@ -299,8 +299,7 @@ class Recorder:
         sample = self._sample()
         read: Sequence[Any] = ()
         if self._payload:
-            read_all = _read_all if self._rows else _read_first
-            read = read_all(self._payload, time, motion, sample)
+            read = _read_all(self._payload, time, motion, sample)
         self._rows.append(
             self._pack(
                 time,
@@ -350,37 +349,13 @@ class Recorder:
 
 def _read_all(
     payload: Sequence[Any], time: float, motion: MeasuredMotion, sample: tuple[float, ...]
-) -> list[Any]:
+) -> list[float]:
     """Return what instruments read, one after the other."""
-    return [value for instrument in payload for value in instrument.read(time, motion, sample)]
-
-
-def _read_first(
-    payload: Sequence[Any], time: float, motion: MeasuredMotion, sample: tuple[float, ...]
-) -> list[Any]:
-    """Return what instruments read first; an error says which of them reads something unusable."""
-    values: list[Any] = []
+    values: list[float] = []
     for instrument in payload:
         part = f"payload: instrument of class {type(instrument).__qualname__}"
-        count = len(instrument.COLUMNS)
-        read = asked(
-            part,
-            "failed in read()",
-            "time, motion and sample",
-            instrument.read,
-            time,
-            motion,
-            sample,
-        )
-        read = read if isinstance(read, str) or not isinstance(read, Iterable) else tuple(read)
-        if not are_numbers(read, count, finite=False):
-            refuse_answer(
-                part,
-                "read()",
-                read,
-                f"a tuple of {count} number{'s' * (count != 1)}, one for each of its COLUMNS",
-            )
-        values.extend(read)
+        read = numbers(len(instrument.COLUMNS), "one for each of COLUMNS", finite=False)
+        values += call_plugin(part, instrument.read, time, motion, sample, result=read)
     return values
 
 

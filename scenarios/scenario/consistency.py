@@ -17,6 +17,7 @@ from scenarios.scenario.sections.guidance import law_refusal
 from scenarios.scenario.sections.needs import STEADY
 from scenarios.scenario.sections.section import check_divides, check_ordered
 from scenarios.scenario.sections.world import SOURCE_HEIGHT_MIN
+from scenarios.scenario.study_keys import ADDED
 
 if TYPE_CHECKING:
     from scenarios.scenario.scenario import Scenario
@@ -30,6 +31,7 @@ ONE_POINT = {
     "falsify": "it searches one point",
     "arena": "what differs are the laws (laws) and the conditions (arena.conditions)",
     "patrol": "give each value a run of its own",
+    **{keys.STUDY: keys.ONE_POINT for keys in ADDED if keys.ONE_POINT},
 }
 """Studies of one point, and why."""
 
@@ -56,6 +58,7 @@ _WITHOUT_EFFECT = (
     "comparison.",
     "sweep.",
     "cases.",
+    *(name for keys in ADDED for name in keys.prefixes() if name.endswith(".")),
 )
 """Sections on which no flight depends: to sweep or sample them would count the same flights several
 times.
@@ -72,9 +75,11 @@ flights, or are refused elsewhere; each with a dot behind it.
 _SET_IN = {
     "comparison": _SET_ANYWHERE,
     "case": (*_SET_ANYWHERE, "sweep.nu.", "speed_ratio."),
-    "condition": (*_SET_ANYWHERE, "draws.", "speed_ratio."),
 }
 """The same for each kind of table that sets keys."""
+
+_SET_IN_ADDED = (*_SET_ANYWHERE, "draws.", "speed_ratio.")
+"""The same for tables of sections that studies add, and for conditions of an arena."""
 
 _UNSTEADY = (
     "wind.speed_mps",
@@ -309,7 +314,9 @@ def _check_tables(scenario: "Scenario") -> None:
             )
     for kind, name, keys in _tables_of(scenario):
         for key in keys:
-            if _is_of_run(scenario, key) and not f"{key}.".startswith(_SET_IN[kind]):
+            if _is_of_run(scenario, key) and not f"{key}.".startswith(
+                _SET_IN.get(kind, _SET_IN_ADDED)
+            ):
                 raise ValueError(
                     f"{kind} '{name}' sets '{key}', on which its flights do not depend; set it for"
                     " the whole scenario"
@@ -321,6 +328,8 @@ def _tables_of(scenario: "Scenario") -> Iterator[tuple[str, str, Collection[str]
     yield from (("case", case.name, {**case.set, **case.set_kinematic}) for case in scenario.cases)
     yield from (("comparison", of.name, of.set) for of in scenario.comparison.variants)
     yield from (("condition", of.name, of.set) for of in scenario.arena.conditions)
+    for keys in ADDED:
+        yield from keys.tables(scenario)
 
 
 def _is_of_run(scenario: "Scenario", key: str) -> bool:

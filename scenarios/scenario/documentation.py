@@ -26,8 +26,12 @@ from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.convergence import ConvergenceScenario
 from scenarios.scenario.sections.experiment import DrawConfig, TrialList
 from scenarios.scenario.sections.guidance import GuidanceConfig
+from scenarios.scenario.study_keys import ADDED, study_files
 
-FLIGHT_STUDIES = ("flights", "paper", "monte_carlo", "falsify", "arena", "patrol", "premises")
+FLIGHT_STUDIES = (
+    *("flights", "paper", "monte_carlo", "falsify", "arena", "patrol", "premises"),
+    *(keys.STUDY for keys in ADDED),
+)
 """Studies whose scenario files are those of flights."""
 
 DIMENSIONLESS = "-"
@@ -61,11 +65,18 @@ class DocumentedKey:
     conditions: tuple[str, ...] = ()
 
 
-_KINDS: tuple[tuple[type[BaseModel], tuple[str, ...]], ...] = (
-    (Scenario, FLIGHT_STUDIES),
-    (TrialList, ("trials",)),
-    (ConvergenceScenario, ("convergence",)),
-)
+_KINDS: dict[type[BaseModel], tuple[str, ...]] = {
+    Scenario: FLIGHT_STUDIES,
+    TrialList: ("trials",),
+    ConvergenceScenario: ("convergence",),
+    **{file: (study,) for study, file in study_files().items()},
+}
+"""Kinds of scenario files, and the studies of each."""
+
+
+def file_kinds() -> tuple[type[BaseModel], ...]:
+    """Return the kinds of scenario files, first that of flights."""
+    return tuple(_KINDS)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,7 +112,7 @@ def documented_sections(kind: type[BaseModel] = Scenario) -> tuple[DocumentedSec
     """Return the sections of a kind of scenario file, in their order; first the keys outside of any
     section.
     """
-    studies = dict(_KINDS)[kind]
+    studies = _KINDS[kind]
     return tuple(_sections(kind, "", kind.__doc__ or "", studies, listed=False))
 
 
@@ -110,7 +121,7 @@ def documented_keys() -> list[DocumentedKey]:
     that parts bring.
     """
     of_schemas = [
-        key for kind, _ in _KINDS for section in documented_sections(kind) for key in section.keys
+        key for kind in _KINDS for section in documented_sections(kind) for key in section.keys
     ]
     # What a part brings needs the part, and perhaps more.
     of_parts = [
@@ -126,7 +137,7 @@ def similar_key(name: str) -> str | None:
     """
     documented = documented_keys()
     keys = [each.key for each in documented]
-    of_flights = [each.key for each in documented if each.studies != ("convergence",)]
+    of_flights = [each.key for each in documented if {*each.studies} <= {*FLIGHT_STUDIES, "trials"}]
     for known in ([*(section.name for section in documented_sections()), *of_flights], keys):
         if close := nearest(name, known):
             return close

@@ -8,12 +8,13 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from common.registry import PluginError
+from common.errors import PluginError
 from scenarios.errors import InputError
 from scenarios.scenario.consistency import unsteady
 from scenarios.scenario.errors import fields_along, known_keys, models_in
 from scenarios.scenario.scenario import Scenario
-from scenarios.scenario.sections.needs import Need
+from scenarios.scenario.sections.needs import Need, of_others, of_study
+from scenarios.scenario.study_keys import ADDED
 
 _DISPLACED_BY = {
     "start.distance_m": ("start.range_m", "start.place_m"),
@@ -122,12 +123,30 @@ def unused(scenario: Scenario, key: str) -> str:
     return ""
 
 
+def _needs_by_study(key: str) -> Iterator[Need]:
+    """Yield what a key needs that a study adds, or that a study which adds keys does not use."""
+    for keys in ADDED:
+        study = keys.STUDY
+        if named_by(key, keys.prefixes()):
+            yield of_study(study, keys.USED_BY)
+        for names, instead in keys.UNUSED.items():
+            if named_by(key, (names,)):
+                yield of_others(study, instead)
+
+
+def named_by(key: str, names: Iterable[str]) -> bool:
+    """Return whether a dotted key is among the names, of which those that end in a dot are
+    beginnings of keys.
+    """
+    return any(key == name or (name.endswith(".") and key.startswith(name)) for name in names)
+
+
 @functools.lru_cache(maxsize=1024)
 def needs_of(key: str) -> tuple[Need, ...]:
     """Return what a dotted key needs to act: first what stands at the key, then what stands at the
     section that it is in.
     """
-    needs: list[Need] = []
+    needs = list(_needs_by_study(key))
     section: Any = Scenario
     parts = [part for part in key.split(".") if not part.isdecimal()]
     for depth, field in enumerate(fields_along(Scenario, parts)):
@@ -178,6 +197,9 @@ def differing(scenario: Scenario) -> Iterator[Mapping[str, object]]:
     if scenario.study == "arena":
         yield {"guidance.law": None, "guidance.mission": None}
         yield from (of.set for of in scenario.arena.conditions)
+    for keys in ADDED:
+        if scenario.study == keys.STUDY:
+            yield from keys.differing(scenario)
 
 
 def compares(scenario: Scenario) -> bool:

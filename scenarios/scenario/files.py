@@ -11,8 +11,9 @@ from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
+from common.errors import PluginError
 from common.files import is_file
-from common.registry import announced, is_file_part
+from common.registry import announced, announced_folders, is_file_part
 from common.run_layout import FLIGHTS, MANIFEST
 from common.text import did_you_mean
 from scenarios.errors import InputError
@@ -33,10 +34,11 @@ from scenarios.scenario.sections.convergence import ConvergenceScenario
 from scenarios.scenario.sections.experiment import TrialList
 from scenarios.scenario.sections.report import read_logo
 from scenarios.scenario.sections.section import Section
+from scenarios.scenario.study_keys import ADDED, StudyFile, check_study, study_files
 
 Study = TypeVar("Study", bound=Section)
 
-AnyStudy = Scenario | ConvergenceScenario | TrialList
+AnyStudy = Scenario | ConvergenceScenario | TrialList | StudyFile
 
 KINDS: dict[str, type[Any]] = {
     "flights": Scenario,
@@ -48,6 +50,8 @@ KINDS: dict[str, type[Any]] = {
     "arena": Scenario,
     "patrol": Scenario,
     "premises": Scenario,
+    **{keys.STUDY: Scenario for keys in ADDED},
+    **study_files(),
 }
 """What a file may say of ``study``, and the scenario that it then holds."""
 
@@ -60,14 +64,17 @@ OPERATIONAL_STUDIES = ("monte_carlo", "falsify")
 
 CATALOG, BASES = Path(__file__).parents[1] / "catalog", "bases"
 """The directory of the catalog, whose folders hold a kind of scenario each, and the one of them
-with bases.
+with bases. An installed package that is announced in the group ``plume_flight_study.catalog`` adds
+the scenarios in its own folder ``catalog``.
 """
 
 
 @functools.cache
 def catalog() -> dict[str, Path]:
-    """Return the scenarios that come with the project, by name."""
-    files = [path for path in CATALOG.glob("*/*.toml") if path.parent.name != BASES]
+    """Return the scenarios of the project and of installed packages, by name."""
+    added = [folder / CATALOG.name for folder in announced_folders("catalog").values()]
+    files = [path for folder in added for path in folder.glob("*.toml")]
+    files += [path for path in CATALOG.glob("*/*.toml") if path.parent.name != BASES]
     return {path.stem: path for path in sorted(files, key=lambda path: path.stem)}
 
 
@@ -303,6 +310,10 @@ def _kind(document: Document) -> type[Any]:
     study = document.get("study", "flights")
     if not isinstance(study, str):
         raise InputError(f"study is {shown(study)}; it must be one of {', '.join(KINDS)}")
+    try:
+        check_study(study)
+    except PluginError as error:
+        raise InputError(str(error)) from None
     if study in KINDS or is_file_part(study) or study in announced("study"):
         return KINDS.get(study, Scenario)
     raise InputError(

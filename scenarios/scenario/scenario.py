@@ -2,7 +2,7 @@
 experiment on them.
 """
 
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field, model_validator
 
@@ -43,11 +43,19 @@ from scenarios.scenario.sections.world import (
     VesselConfig,
     WindConfig,
 )
+from scenarios.scenario.study_keys import ADDED
 
 DEFAULT_AIRCRAFT = "x8"
 
 
-class Scenario(Section):
+if TYPE_CHECKING:
+    _AddedKeys = Section
+else:
+    _AddedKeys = type("_AddedKeys", (*ADDED, Section), {"__module__": __name__})
+    """The keys that studies of installed packages add."""
+
+
+class Scenario(_AddedKeys):
     """A whole scenario file of flights, and what follows from its keys."""
 
     study: str = "flights"

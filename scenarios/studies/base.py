@@ -17,10 +17,11 @@ import pandas as pd
 
 from aircraft.spec import AircraftError, Envelope
 from common.columns import Column, Declared, Table, described
+from common.errors import PluginError
 from common.intervals import CONFIDENCE
 from common.physics import bank_for_heading_rate
 from common.provenance import without_folders
-from common.registry import PluginError, Registry, is_file_part
+from common.registry import Registry, is_file_part
 from common.run_layout import (
     COMPARISON,
     CROSSINGS,

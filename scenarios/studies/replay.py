@@ -13,6 +13,7 @@ from scenarios.engine.runner import Study, StudySummary
 from scenarios.engine.task import Row, Task, Work
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
+from scenarios.flight.closed_loop import Viewer
 from scenarios.flight_runner import FlightRunner
 from scenarios.scenario.files import checked, folder_of
 from scenarios.scenario.parts import names_folder
@@ -152,7 +153,7 @@ class Replay(SingleFlight):
     Parameters
     ----------
     name : ``RUN_DIR/flights/ID``, with or without the suffix of one of its files
-    viewer : host and port of a FlightGear that is to show it, in real time; none if not given
+    viewer : shows it in real time; none if not given
     aircraft_dir : directory in which the folder of the user's own aircraft is now, if it was moved
         since
 
@@ -162,13 +163,13 @@ class Replay(SingleFlight):
     """
 
     def __init__(
-        self, name: str, viewer: tuple[str, int] | None = None, *, aircraft_dir: Path | None = None
+        self, name: str, viewer: Viewer | None = None, *, aircraft_dir: Path | None = None
     ) -> None:
         original = OriginalFlight.read(name)
         flight_id = original.row["flight_id"]
         if viewer and original.row.get("fidelity") != "six_dof":
             raise InputError(
-                f"--flightgear shows aircraft in six degrees of freedom; '{flight_id}' is a kinematic flight"
+                f"aircraft in six degrees of freedom can be shown, no others; '{flight_id}' is a kinematic flight"
             )
         try:
             if aircraft_dir:
@@ -194,7 +195,7 @@ class Replay(SingleFlight):
         }
 
     def work(self, run: RunDirectory) -> Work:
-        """Return the work of the original study, shown by FlightGear if there is a viewer."""
+        """Return the work of the original study, shown if there is a viewer."""
         work = super().work(run)
         return (
             replace(work, viewer=self._viewer)

@@ -1,6 +1,7 @@
 """Every column of the tables and time histories of a run, from the code that writes them."""
 
 from common.columns import Table, described
+from common.registry import announced, load_announced
 from measurement.log.run_files import SAMPLE_MEANINGS
 from reference_pages.markdown import literal, plain, table
 from reports.compare.figures import COMPARED
@@ -68,6 +69,11 @@ def tables() -> dict[str, Table]:
         "export/NAME.tracks.csv": {
             "flight_id": FLIGHT_COLUMNS["flight_id"],
             **{name: histories[name] for name in TRACK_COLUMNS},
+        },
+        **{
+            title: columns
+            for name in sorted(announced("columns"))
+            for title, columns in load_announced("columns", name).items()
         },
     }
 

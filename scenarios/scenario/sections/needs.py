@@ -43,9 +43,19 @@ def when(key: str, *values: str, user: str) -> Need:
     )
 
 
+def of_study(study: str, user: str) -> Need:
+    """Return the need of one study."""
+    return Need(lambda s: s.study == study, f"{user}: set study to '{study}'")
+
+
+def of_others(study: str, user: str) -> Need:
+    """Return the need of any study but one."""
+    return Need(lambda s: s.study != study, f"other studies; {user}")
+
+
 def not_patrol(user: str) -> Need:
     """Return the need of any study but a patrol."""
-    return Need(lambda s: s.study != "patrol", f"other studies; {user}")
+    return of_others("patrol", user)
 
 
 STEADY = (
