@@ -39,7 +39,7 @@ class PatrolConfig(Section):
     """Longest flight beside a ship [s]."""
     service_s: Positive = 165.0
     """Expected duration of a flight beside a ship, from start.distance_m to the verdict and away
-    from her [s].
+    from it [s].
     """
     service_deviation_s: NonNegative = 40.0
     """Standard deviation of that duration from ship to ship [s]."""

@@ -10,7 +10,7 @@ import numpy as np
 from scenarios.errors import InputError
 from scenarios.experiment.draws import sampled_flight
 from scenarios.scenario.scenario import Scenario
-from scenarios.studies.patrol.legs import Air, Mover, least_distance
+from extensions.patrol.route import Air, Mover, least_distance
 from scenarios.world.exhaust import fuel_of
 from scenarios.world.place import given_place
 from scenarios.world.vessel import check_manoeuvres
@@ -29,8 +29,8 @@ class Ship:
 
     Attributes
     ----------
-    mover : where she is and goes
-    scenario : of a flight beside her, without random variables and with the seed of its noise
+    mover : where it is and goes
+    scenario : of a flight beside it, without random variables and with the seed of its noise
     """
 
     mover: Mover
@@ -38,12 +38,12 @@ class Ship:
 
     @property
     def course(self) -> float:
-        """Return her course [rad]."""
+        """Return its course [rad]."""
         return math.radians(self.scenario.vessel.course_deg)
 
     @property
     def sulphur_percent(self) -> float:
-        """Return the sulphur in her fuel by mass [%]."""
+        """Return the sulphur in its fuel by mass [%]."""
         return fuel_of(self.scenario).sulphur_percent
 
 
@@ -148,7 +148,8 @@ def _placed(
                 break
         else:
             raise InputError(
-                f"patrol.separation_m is {p.separation_m:g} m, which patrol.ships = {p.ships} in a square of {p.area_m:g} m cannot"
-                f" keep for {p.endurance_s:g} s: let it be less, or patrol.area_m more"
+                f"patrol.separation_m is {p.separation_m:g} m, which patrol.ships = {p.ships} in a"
+                f" square of {p.area_m:g} m cannot keep for {p.endurance_s:g} s: let it be less,"
+                " or patrol.area_m more"
             )
     return placed

@@ -6,32 +6,39 @@ from typing import Any
 
 from common.columns import Column, described
 from common.physics import SECONDS_PER_HOUR
+from extensions.patrol.route import Leg
+from extensions.patrol.ships import Patrol
 from scenarios.engine.task import Row
 from scenarios.experiment.draws import speed_ratios
 from scenarios.flight.outcome import Outcome
-from scenarios.studies.patrol.legs import Leg
-from scenarios.studies.patrol.ships import Patrol
+from scenarios.instruments.fuel_estimate import FIGURES as FUEL_COLUMNS
+from scenarios.measures.columns import FINDING_COLUMNS, SUMMARY_COLUMNS
 
 LOST = (Outcome.AIRCRAFT_LOST.value, Outcome.DIVERGED.value)
 """Outcomes of flights whose aircraft does not come back."""
 
-_CLOSEST = Column(
-    "closest approach to the ship that is served",
-    title="Closest approach",
-    digits=1,
-    worse="lower",
-)
+_FLIGHT = SUMMARY_COLUMNS | FINDING_COLUMNS | FUEL_COLUMNS
+
+
+def _as_flights(*names: str) -> dict[str, Column]:
+    """Return columns that mean the same as those of any flight."""
+    return {name: _FLIGHT[name] for name in names}
+
+
+_NAMED: dict[str, Column | str] = {
+    "flight_id": Column(
+        "name of the patrol, or of the flight beside a ship", title="Flight", kind="text"
+    ),
+    "patrol": Column("name of the patrol", kind="text"),
+    "ship": "number of the ship, from 0",
+}
 
 PATROL_COLUMNS = described(
     {
-        "flight_id": Column(
-            "name of the patrol, or of the flight beside a ship", title="Flight", kind="text"
-        ),
+        **_as_flights("flight_id"),
         "seed": Column("seed of the patrol", digits=0),
         "wind_speed_mps": Column("mean wind", title="Wind speed", digits=1),
-        "wind_from_deg": Column(
-            "direction that the wind comes from, clockwise from north", title="Wind from", digits=0
-        ),
+        **_as_flights("wind_from_deg"),
         "ships": "number of ships",
         "served": "ships that the UAV flew beside",
         "verdicts": "served ships with a verdict",
@@ -39,111 +46,64 @@ PATROL_COLUMNS = described(
         "wrong": "verdicts that do not agree with the fuel",
         "open": "served ships without a verdict",
         "oracle_verdicts": "correct verdicts of an oracle, which knows how long each ship takes",
-        "told_verdicts": "ships with a correct verdict if each is served alone and the UAV is given the plume's true axis",
+        "known_axis_verdicts": "ships with a correct verdict if each is served alone and the UAV"
+        " knows the plume's true axis",
         "served_per_hour": "ships served in an hour",
         "duration_s": Column("duration of the patrol", title="Flight time", digits=1, adds_up=True),
         "transit_s": "time on the way between ships",
         "beside_s": "time beside ships",
         "unused_s": "endurance left at the end",
-        "keepout_violations": Column(
-            "number of times that it entered the keep-out area of the ship served, and number of ships beside which, or on the way to which, it came nearer than r_min to another ship",
-            title="Keep-out violations",
-            digits=0,
-            worse="higher",
-            adds_up=True,
-        ),
-        "min_distance_m": _CLOSEST,
+        **_as_flights("keepout_violations", "min_distance_m"),
         "others_distance_min_m": "closest approach to any other ship, including on the way",
-        "kept_out": Column(
-            "whether the UAV kept out of the keep-out areas and was observed to the end",
-            kind="truth",
-        ),
+        **_as_flights("kept_out"),
         "aircraft_lost": Column("whether the aircraft was lost", kind="truth"),
         "outcome": Column("completed or aircraft_lost", kind="text"),
         "message": Column(
-            "why no ship was served, or which keep-out area was entered, or how the aircraft was lost",
+            "why no ship was served, or which keep-out area was entered, or how the aircraft was"
+            " lost",
             kind="text",
         ),
         "criteria_met": Column(
             "whether it kept out everywhere and the aircraft was not lost", kind="truth"
         ),
-        "wall_time_s": Column("computing time", title="Computing time", adds_up=True),
+        **_as_flights("wall_time_s"),
     }
 )
-"""Of ``summary.csv``: a row per patrol. Distances are those beside the ship that is served, and to
-every other ship.
+"""Of ``summary.csv``: a row per patrol. Its violations are those of the areas of the ships that it
+serves and, once each, of the ships that it passes nearer than r_min beside one or on the way to
+one; it has kept out if it did so of all. ``min_distance_m`` is that to ships that are served.
 """
 
 SHIP_COLUMNS = described(
     {
-        "flight_id": Column(
-            "name of the patrol, or of the flight beside a ship", title="Flight", kind="text"
-        ),
-        "patrol": Column("name of the patrol", kind="text"),
-        "ship": "number of the ship, from 0",
-        "position": "place in the order in which ships were served, from 0; empty for a ship that was not",
+        **_NAMED,
+        "position": "place in the order in which ships were served, from 0; empty for a ship that"
+        " was not",
         "north_m": "place of the ship at the start of the patrol",
         "east_m": "place of the ship at the start of the patrol",
         "vessel_speed_mps": "its speed",
         "vessel_course_deg": "its course",
         "plume_source_height_m": "height of its funnel",
         "emission_load": "load of its engine",
-        "nu": Column(
-            "speed ratio through the air: its speed over the UAV's", title="Speed ratio", symbol="ν"
-        ),
-        "fsc_fuel_percent": Column(
-            "sulphur in its fuel, by mass", title="Sulphur in the fuel", digits=4
-        ),
+        **_as_flights("nu", "fsc_fuel_percent"),
         "truth": Column("above or below the limit", kind="text"),
         "verdict": Column("above, below or open", kind="text"),
         "correct": Column("whether the verdict agrees with the fuel", kind="any"),
-        "fsc_percent": Column(
-            "fuel sulphur content that was measured", title="Sulphur content found", digits=4
-        ),
+        **_as_flights("fsc_percent"),
         "leaves_s": "time of the patrol at which the UAV set out for it",
         "reached_s": "time of the patrol at which the flight beside it began",
-        "orbit_at_s": "time of that flight at which the UAV reached the orbit",
-        "time_to_find_s": Column(
-            "time on the orbit until the plume was first detected",
-            title="Time to find the plume",
-            digits=1,
-            worse="higher",
-            missing="not found",
-        ),
-        "settling_time_s": Column(
-            "time of that flight from which it had settled",
-            title="Settling time",
-            digits=1,
-            worse="higher",
-            missing="not settled",
-        ),
+        **_as_flights("orbit_at_s", "time_to_find_s", "settling_time_s"),
         "ended_s": "time of the patrol at which the UAV left it",
-        "enough": Column("why the flight beside it ended early, or empty", kind="text"),
-        "outcome": Column("outcome of the flight beside it, as in other studies", kind="text"),
-        "message": Column("the reason of an outcome other than completed", kind="text"),
-        "keepout_violations": Column(
-            "number of times that it entered the keep-out area of the ship that it served",
-            title="Keep-out violations",
-            digits=0,
-            worse="higher",
-            adds_up=True,
-        ),
-        "min_distance_m": _CLOSEST,
-        "kept_out": Column(
-            "whether the UAV kept out of the keep-out areas and was observed to the end",
-            kind="truth",
+        **_as_flights(
+            "enough", "outcome", "message", "keepout_violations", "min_distance_m", "kept_out"
         ),
         "others_distance_min_m": "closest approach to any other ship, including on the way",
-        "altitude_outside_s": Column(
-            "time outside the limits of the altitude",
-            title="Time outside the altitudes of the scenario",
-            digits=1,
-            worse="higher",
-            adds_up=True,
-        ),
-        "told_service_s": "duration of the flight beside it if the UAV is given the plume's true axis",
-        "told_verdict": Column("verdict of that flight", kind="text"),
-        "oracle_position": "place in the order of the oracle, from 0; empty for a ship that it leaves out",
+        **_as_flights("altitude_outside_s"),
+        "known_axis_service_s": "duration of the flight beside it if the UAV knows the plume's true"
+        " axis",
+        "known_axis_verdict": Column("verdict of that flight", kind="text"),
+        "oracle_position": "place in the order of the oracle, from 0; empty for a ship that it"
+        " leaves out",
         "oracle_ended_s": "time of the patrol at which the oracle leaves it",
     }
 )
@@ -153,11 +113,7 @@ flight from that of the flight.
 
 PHASE_COLUMNS = described(
     {
-        "flight_id": Column(
-            "name of the patrol, or of the flight beside a ship", title="Flight", kind="text"
-        ),
-        "patrol": Column("name of the patrol", kind="text"),
-        "ship": "number of the ship, from 0",
+        **_NAMED,
         "phase": Column("transit, approach, searching, measuring or leaving", kind="text"),
         "begins_s": "time of the patrol at which it begins",
         "ends_s": "time of the patrol at which it ends",
@@ -176,7 +132,7 @@ TRANSIT, APPROACH, SEARCHING, MEASURING, LEAVING = (
     "measuring",
     "leaving",
 )
-"""Phases: the way to a ship; beside her to the orbit; until the plume is found; until there is a
+"""Phases: the way to a ship; beside it to the orbit; until the plume is found; until there is a
 verdict; and away.
 """
 
@@ -250,7 +206,7 @@ def patrol_figures(
     passed = [row["others_distance_min_m"] for row in served if "others_distance_min_m" in row]
     others = min(passed, default=math.inf)
     lost = any(row["outcome"] in LOST for row in served)
-    # On each way to a ship and beside her, that of other ships counts once.
+    # On each way to a ship and beside it, that of other ships counts once.
     violations = sum(int(row.get("keepout_violations", 0)) for row in served) + sum(
         int(near < keepout_radius) for near in passed
     )

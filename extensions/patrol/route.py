@@ -18,7 +18,7 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 
 _CORNERS = 8
-"""Corners of the polygon round a ship by which she is avoided."""
+"""Corners of the polygon round a ship by which it is avoided."""
 
 _ROOM = 1.001
 """Size of that polygon over the one whose sides touch the circle that is kept."""

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from scipy.special import ndtr
 
-from scenarios.studies.patrol.legs import Air, Mover, straight_leg
+from extensions.patrol.route import Air, Mover, straight_leg
 
 _SOONER = 1e-3
 """Verdicts that an end sooner by the whole endurance is worth: of orders with as many verdicts the
@@ -56,10 +56,10 @@ class Prospect:
     Attributes
     ----------
     ships : where they are and go
-    service : how long each takes from the end of the way to her to the verdict [s]
-    deviation : of that time, of each ship by herself; 0 where it is known [s]
+    service : how long each takes from the end of the way to it to the verdict [s]
+    deviation : of that time, of each ship by itself; 0 where it is known [s]
     chance : of a verdict, of each ship [-]
-    radius : from a ship at which the way to her ends [m]
+    radius : from a ship at which the way to it ends [m]
     air : wind and airspeed
     endurance : when everything has to be done [s]
     """
@@ -73,7 +73,7 @@ class Prospect:
     endurance: float
 
     def after(self, state: _State, ship: int) -> _State:
-        """Return what one more ship makes of a part of a patrol; its end is infinite where she
+        """Return what one more ship makes of a part of a patrol; its end is infinite where it
         cannot be reached.
         """
         leg = straight_leg(state.place, state.time, self.ships[ship], self.radius, self.air)
