@@ -133,16 +133,8 @@ class Registry(Generic[Part]):
             importlib.import_module(f"{self._folder}.{name}")
         if name in self._parts or name in self._known():
             return self._parts[name]
-        if (found := announced(self.kind).get(name)) is not None:
-            try:
-                return self.checked(name, self._callable(name, found.load()))
-            except PluginError:
-                raise
-            except Exception as error:
-                raise PluginError(
-                    f"{self.words} '{name}' of package {found.value}: "
-                    f"{type(error).__name__}: {error}"
-                ) from error
+        if name in announced(self.kind):
+            return self.checked(name, self._callable(name, load_announced(self.kind, name)))
         names = self.names()
         raise PluginError(
             f"unknown {self.words} '{name}'{did_you_mean(name, names) or ';'} "
@@ -191,6 +183,38 @@ def announced(kind: str) -> dict[str, importlib.metadata.EntryPoint]:
         point.name: point
         for point in _points(f"{ENTRY_POINTS}.{kind}", importlib.metadata.entry_points, _places())
     }
+
+
+def load_announced(kind: str, name: str) -> Any:
+    """Return the part that an installed package announces.
+
+    Raises
+    ------
+    PluginError : it does not load
+    """
+    point = announced(kind)[name]
+    try:
+        return point.load()
+    except PluginError:
+        raise
+    except Exception as error:
+        raise PluginError(
+            f"{kind.replace('_', ' ')} '{name}' of package {point.value}: "
+            f"{type(error).__name__}: {error}"
+        ) from error
+
+
+def announced_folders(kind: str) -> dict[str, Path]:
+    """Return the folders of the packages that installed packages announce for a kind, by name.
+
+    The packages are not imported.
+    """
+    found = {}
+    for name, point in announced(kind).items():
+        spec = importlib.util.find_spec(point.module)
+        if spec is not None and spec.submodule_search_locations:
+            found[name] = Path(next(iter(spec.submodule_search_locations)))
+    return found
 
 
 @functools.lru_cache(maxsize=64)

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 from common.provenance import without_folders
-from common.registry import announced, is_file_part
+from common.registry import PluginError, announced, is_file_part, load_announced
 from common.run_layout import MANIFEST
 from reports.arena.content import arena_content
 from reports.convergence.content import convergence_content
@@ -41,7 +41,9 @@ STUDIES: dict[str, Callable[[RunData], Findings]] = {
     "design": design_content,
     "measurement": measurement_content,
 }
-"""A study, as its manifest names it, and what makes the findings of its report."""
+"""A study, as its manifest names it, and what makes the findings of its report. An installed package
+announces more of them in the group ``plume_flight_study.report``, by the name of their study.
+"""
 
 FLIGHT_ENTRIES = ("title", "trials", "trial_parameters", "modes")
 """What reports on flights need of a manifest."""
@@ -61,15 +63,7 @@ def content(run: RunData, settings: Mapping[str, str] | None = None) -> Content:
     ReportError : the manifest names a study that has no report, or is of another version; or the
         logo is no picture
     """
-    study = run.manifest.get("study")
-    if not isinstance(study, str) or not (
-        study in STUDIES or is_file_part(study) or study in announced("study")
-    ):
-        raise ReportError(
-            f"'{run.path}': study is {study!r}, which has no report; those that have one: {', '.join(STUDIES)}"
-        )
-    # Studies of flights that others add have the report of any flights.
-    made = STUDIES.get(study, flights_content)
+    made = _findings_of(run)
     needed = FLIGHT_ENTRIES if made in (flights_content, paper_content, arena_content) else ()
     refuse_other_version(run, needed)
     head = letterhead(run, settings or {})
@@ -90,6 +84,28 @@ def content(run: RunData, settings: Mapping[str, str] | None = None) -> Content:
         picture=picture,
         sections=sections,
         facts=found.facts,
+    )
+
+
+def _findings_of(run: RunData) -> Callable[[RunData], Findings]:
+    """Return what makes the findings of a run's report; of a study of flights that others add
+    without a report, that of any flights.
+    """
+    study = run.manifest.get("study")
+    if isinstance(study, str):
+        if study in STUDIES:
+            return STUDIES[study]
+        if study in announced("report"):
+            try:
+                made: Callable[[RunData], Findings] = load_announced("report", study)
+            except PluginError as error:
+                raise ReportError(str(error)) from error
+            return made
+        if is_file_part(study) or study in announced("study"):
+            return flights_content
+    known = sorted({*STUDIES, *announced("report")})
+    raise ReportError(
+        f"'{run.path}': study is {study!r}, which has no report; those that have one: {', '.join(known)}"
     )
 
 

@@ -8,6 +8,7 @@ from reference_pages.commands import commands_page
 from reference_pages.frames import frames_svg
 from reference_pages.keys import keys_page
 from reference_pages.modules import module_pages
+from repository_links import extension_pages
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
@@ -19,24 +20,22 @@ FOLDER = "generated"
 def pages() -> dict[str, str]:
     """Return the texts of the files by their names."""
     modules = dict(module_pages())
-    contents = [
-        "# Modules",
-        "",
-        "```{toctree}",
-        ":maxdepth: 1",
-        "",
-        *(f"modules/{name}" for name in modules),
-        "```",
-        "",
-    ]
+    extensions = extension_pages(Path(__file__).resolve().parents[1])
     return {
         "keys.md": keys_page(),
         "columns.md": columns_page(),
         "command_line.md": commands_page(),
         "frames.svg": frames_svg(),
-        "modules.md": "\n".join(contents),
+        "modules.md": _contents("Modules", [f"modules/{name}" for name in modules]),
         **{f"modules/{name}.md": text for name, text in modules.items()},
+        "extensions.md": _contents("Extensions", [f"extensions/{name}" for name in extensions]),
+        **{f"extensions/{name}.md": text for name, text in extensions.items()},
     }
+
+
+def _contents(title: str, pages: list[str]) -> str:
+    """Return a page that lists others."""
+    return "\n".join([f"# {title}", "", "```{toctree}", ":maxdepth: 1", "", *pages, "```", ""])
 
 
 def _write(app: "Sphinx") -> None:

@@ -9,10 +9,41 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
 
-_LINK = re.compile(r"\[(?P<text>[^\]]+)\]\((?P<target>(?:\.\./)+[^)#\s]+)\)")
+_LINK = re.compile(r"\[(?P<text>[^\]]+)\]\((?P<target>(?:\.\./)+[^)#\s]+)(?P<part>#[^)\s]+)?\)")
 
 PAGES = {"gnc/EQUATIONS.md": "equations.md", "CHANGELOG.md": "changelog.md"}
 """Files of the repository that are pages of the documentation."""
+
+_EXTENSION = re.compile(r"extensions/(?P<name>\w+)/page\.md")
+
+
+def page_of(path: str) -> str | None:
+    """Return the page of the documentation that a file of the repository is, or None."""
+    extension = _EXTENSION.fullmatch(path)
+    return f"generated/extensions/{extension['name']}.md" if extension else PAGES.get(path)
+
+
+def extension_pages(root: Path) -> dict[str, str]:
+    """Return the pages of the extensions by their names, with links as in the documentation.
+
+    Parameters
+    ----------
+    root : of the documentation
+    """
+    found = {}
+    for path in sorted((root.parent / "extensions").glob("*/page.md")):
+        folder = path.parent
+
+        def link(found: re.Match[str], folder: Path = folder) -> str:
+            target = (folder / found["target"]).resolve()
+            if target.is_relative_to(root):
+                there = f"/{target.relative_to(root).as_posix()}"
+            else:
+                there = f"../../../{target.relative_to(root.parent).as_posix()}"
+            return f"[{found['text']}]({there}{found['part'] or ''})"
+
+        found[folder.name] = _LINK.sub(link, path.read_text(encoding="utf-8"))
+    return found
 
 
 def with_links(text: str, folder: Path, root: Path) -> str:
@@ -30,11 +61,11 @@ def with_links(text: str, folder: Path, root: Path) -> str:
         if target.is_dir() and not target.is_relative_to(root):
             return found["text"]
         page = (
-            PAGES.get(target.relative_to(root.parent).as_posix())
+            page_of(target.relative_to(root.parent).as_posix())
             if target.is_relative_to(root.parent)
             else None
         )
-        return f"[{found['text']}](/{page})" if page else found[0]
+        return f"[{found['text']}](/{page}{found['part'] or ''})" if page else found[0]
 
     return _LINK.sub(link, text)
 

@@ -13,6 +13,7 @@ from typing import Annotated
 import typer
 
 from common.command_line import PROGRAM, refuse, run_command
+from common.registry import announced, load_announced
 
 
 def export(
@@ -138,7 +139,9 @@ def new(
 
 
 def commands() -> dict[str, Callable[..., None]]:
-    """Return the commands by their words."""
+    """Return the commands by their words, last those that installed packages announce in the group
+    ``plume_flight_study.command``; each is a function with options as typer has them.
+    """
     from innerloop.design import command as design
     from reports.build import command as report
     from scenarios.run import command as run
@@ -152,7 +155,8 @@ def commands() -> dict[str, Callable[..., None]]:
     }
     if importlib.util.find_spec("reports.compare"):
         found["compare"] = importlib.import_module("reports.compare.__main__").command
-    return {**found, "describe": describe, "new": new}
+    added = {word: load_announced("command", word) for word in sorted(announced("command"))}
+    return {**found, "describe": describe, "new": new, **added}
 
 
 def main() -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 from common.files import files_hash
 
 _PACKAGES = ("jsbsim", "numpy", "scipy", "control", "slycot", "pydantic", "cma")
-SOURCE = ("aircraft", "common", "gnc", "innerloop", "measurement", "scenarios")
+SOURCE = ("aircraft", "common", "extensions", "gnc", "innerloop", "measurement", "scenarios")
 """Packages of the project that results depend on: all that flies or measures; ``reports`` only
 shows it.
 """
@@ -19,8 +19,8 @@ shows it.
 _SUFFIXES = (".json", ".py", ".toml", ".xml")
 """Source, and the data that it reads: aircraft models, presets and tables."""
 
-_CATALOG = "scenarios/catalog/"
-"""Left out: a run is compared by what its scenario contains, wherever that was read from."""
+_CATALOG = "catalog"
+"""Folders that are left out: a run is compared by what its scenario contains, wherever that was read from."""
 
 
 @functools.cache
@@ -46,9 +46,7 @@ def source_hash(project: Path) -> str:
         for path in sorted((project / package).rglob("*.*"))
         if path.suffix in _SUFFIXES
     )
-    counted = (
-        path for path in found if not path.relative_to(project).as_posix().startswith(_CATALOG)
-    )
+    counted = (path for path in found if _CATALOG not in path.relative_to(project).parts)
     return files_hash(project, counted)[:16]
 
 

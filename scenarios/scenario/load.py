@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from common.files import is_file
-from common.registry import announced, is_file_part
+from common.registry import announced, announced_folders, is_file_part
 from common.run_layout import FLIGHTS, MANIFEST
 from common.text import did_you_mean
 from scenarios.errors import InputError
@@ -62,14 +62,17 @@ OPERATIONAL_STUDIES = ("sea", "monte_carlo", "falsify")
 
 CATALOG, BASES = Path(__file__).parents[1] / "catalog", "bases"
 """The directory of the catalog, whose folders hold a kind of scenario each, and the one of them
-with bases.
+with bases. An installed package that is announced in the group ``plume_flight_study.catalog`` adds
+the scenarios in its own folder ``catalog``.
 """
 
 
 @functools.cache
 def catalog() -> dict[str, Path]:
-    """Return the scenarios that come with the project, by name."""
-    files = [path for path in CATALOG.glob("*/*.toml") if path.parent.name != BASES]
+    """Return the scenarios of the project and of installed packages, by name."""
+    added = [folder / CATALOG.name for folder in announced_folders("catalog").values()]
+    files = [path for folder in added for path in folder.glob("*.toml")]
+    files += [path for path in CATALOG.glob("*/*.toml") if path.parent.name != BASES]
     return {path.stem: path for path in sorted(files, key=lambda path: path.stem)}
 
 

@@ -5,8 +5,8 @@ import math
 import gymnasium
 import numpy as np
 
+from extensions.gym import ENVIRONMENT
 from scenarios import fly
-from scenarios.gym import ENVIRONMENT
 
 
 def test_flights_of_a_monte_carlo_study_have_the_points_that_the_run_has():

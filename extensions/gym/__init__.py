@@ -3,7 +3,7 @@ Needs the extra ``gym``.
 
 Importing this package makes the environment known. Gymnasium has no entry points since its version
 1.0: a package registers what it has when it is imported, by the user or by
-``gymnasium.make("scenarios.gym:PlumeCrossing-v0")``.
+``gymnasium.make("extensions.gym:PlumeCrossing-v0")``.
 """
 
 from common.text import install_words
@@ -14,11 +14,11 @@ except ModuleNotFoundError as error:
     if (error.name or "").partition(".")[0] != "gymnasium":
         raise
     raise ImportError(
-        f"scenarios.gym needs gymnasium; install the extra: {install_words('gym')}",
+        f"extensions.gym needs gymnasium; install the extra: {install_words('gym')}",
         name="gymnasium",
     ) from None
 
 ENVIRONMENT = "PlumeCrossing-v0"
 
 if ENVIRONMENT not in registry:
-    register(ENVIRONMENT, entry_point="scenarios.gym.environment:PlumeCrossing")
+    register(ENVIRONMENT, entry_point="extensions.gym.environment:PlumeCrossing")

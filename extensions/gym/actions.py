@@ -5,11 +5,11 @@ from collections.abc import Iterator
 import numpy as np
 from gymnasium import spaces
 
+from extensions.gym.observation import Array
 from scenarios.engine.task import Task
 from scenarios.errors import InputError
 from scenarios.experiment.draws import value_at
 from scenarios.flight_runner import FlightWork
-from scenarios.gym.observation import Array
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.planning.limits import omega_max
 from scenarios.scenario.load import with_values

@@ -14,6 +14,9 @@ from typing import Any, SupportsFloat
 import gymnasium
 import numpy as np
 
+from extensions.gym.actions import action_box, limits_of
+from extensions.gym.observation import Array, Observer, observation_space
+from extensions.gym.reward import LOST, VIOLATION, CrossingReward
 from gnc.errors import InfeasibleError
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from measurement.errors import MeasurementError
@@ -27,9 +30,6 @@ from scenarios.flight.outcome import Outcome
 from scenarios.flight.record import FlightRecord
 from scenarios.flight.release import failable, release
 from scenarios.flight_runner import FlightWork, payload_of, reader_of
-from scenarios.gym.actions import action_box, limits_of
-from scenarios.gym.observation import Array, Observer, observation_space
-from scenarios.gym.reward import LOST, VIOLATION, CrossingReward
 from scenarios.instruments.instrument import Instrument
 from scenarios.scenario.sections.experiment import STUDY
 
@@ -92,8 +92,8 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
     around her.
 
     Actions are heading rate [rad/s] and airspeed [m/s] that the autopilot is commanded for one step
-    of the guidance; observations are those of ``scenarios.gym.observation.MEANINGS``, rewards those
-    of ``scenarios.gym.reward``. An episode is terminated when the keep-out area is entered, the
+    of the guidance; observations are those of ``extensions.gym.observation.MEANINGS``, rewards those
+    of ``extensions.gym.reward``. An episode is terminated when the keep-out area is entered, the
     aircraft is lost, or every crossing is flown; it is truncated when its time is up.
 
     Parameters

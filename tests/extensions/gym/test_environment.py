@@ -14,11 +14,11 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
+from extensions.gym import ENVIRONMENT
+from extensions.gym.observation import MEANINGS
+from extensions.gym.reward import VIOLATION, CrossingReward
 from scenarios import fly
 from scenarios.errors import InputError
-from scenarios.gym import ENVIRONMENT
-from scenarios.gym.observation import MEANINGS
-from scenarios.gym.reward import VIOLATION, CrossingReward
 
 PROJECT = Path(__file__).parents[3]
 SHORT = {"sweep.nu": [0.3, 0.6], "flight.crossings": 4}
@@ -56,22 +56,22 @@ def column(env, name):
 def test_gymnasium_finds_it_in_a_process_of_its_own_as_the_page_says():
     # By its module and name alone; the other tests' environments are made after an import, the
     # page's other way.
-    name = f"scenarios.gym:{ENVIRONMENT}"
+    name = f"extensions.gym:{ENVIRONMENT}"
     script = f"import gymnasium; print(gymnasium.make({name!r}, keys={{'fidelity': 'kinematic'}}).spec.id)"
     found = subprocess.run(
         [sys.executable, "-c", script], cwd=PROJECT, capture_output=True, text=True, check=False
     )
     assert (found.stdout.split(), found.returncode) == ([ENVIRONMENT], 0), found.stderr
-    page = (PROJECT / "docs" / "howto" / "gym.md").read_text(encoding="utf-8")
+    page = (PROJECT / "extensions" / "gym" / "page.md").read_text(encoding="utf-8")
     assert all(
         words in page
-        for words in (name, f'"{ENVIRONMENT}"', "import gymnasium", "import scenarios.gym")
+        for words in (name, f'"{ENVIRONMENT}"', "import gymnasium", "import extensions.gym")
     )
 
 
 def test_it_passes_gymnasiums_check(kinematic):
     with warnings.catch_warnings():
-        # Actions are in SI, not normalised: docs/howto/gym.md says how to rescale them.
+        # Actions are in SI, not normalised: extensions/gym/page.md says how to rescale them.
         warnings.filterwarnings(
             "ignore", message=".*we recommend using a symmetric and normalized space"
         )
@@ -314,14 +314,14 @@ def test_flights_without_a_solution_are_passed_over_at_random_and_refused_by_nam
         make(**KINEMATIC | {"sweep.nu": [0.9], "wind.speed_mps": 5.0})
     # Of this seed the first flight is the one that has none.
     assert np.random.default_rng(0).integers(2) == 1
-    monkeypatch.setattr("scenarios.gym.environment._TRIES", 1)
+    monkeypatch.setattr("extensions.gym.environment._TRIES", 1)
     with pytest.raises(InputError, match=r"^1 flights at random had no solution; the last one: "):
         env.reset(seed=0)
 
 
 @pytest.mark.usefixtures("x8_design")
 def test_the_example_of_the_page_runs_as_it_stands(capsys):
-    page = (PROJECT / "docs" / "howto" / "gym.md").read_text(encoding="utf-8")
+    page = (PROJECT / "extensions" / "gym" / "page.md").read_text(encoding="utf-8")
     (example,) = re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)
     exec(compile(example, "gym.md", "exec"), {})
     printed = capsys.readouterr().out
@@ -330,16 +330,16 @@ def test_the_example_of_the_page_runs_as_it_stands(capsys):
 
 
 def test_every_entry_of_the_observation_is_documented_with_its_unit():
-    page = (PROJECT / "docs" / "howto" / "gym.md").read_text(encoding="utf-8")
+    page = (PROJECT / "extensions" / "gym" / "page.md").read_text(encoding="utf-8")
     for name, (meaning, unit, _) in MEANINGS.items():
         assert f"| `{name}` | {unit} | {meaning} |" in page
 
 
 def test_without_its_extra_the_package_names_it_in_a_line():
-    code = "import sys; sys.modules['gymnasium'] = None; import scenarios.gym"
+    code = "import sys; sys.modules['gymnasium'] = None; import extensions.gym"
     ended = subprocess.run(
         [sys.executable, "-c", code], cwd=PROJECT, capture_output=True, text=True, check=False
     )
-    needed = "scenarios.gym needs gymnasium; install the extra: in the clone, pip install -c constraints.txt -e '.[gym]'"
+    needed = "extensions.gym needs gymnasium; install the extra: in the clone, pip install -c constraints.txt -e '.[gym]'"
     assert ended.stderr.splitlines()[-1] == f"ImportError: {needed}"
     assert "During handling" not in ended.stderr
