@@ -9,10 +9,10 @@ import time
 
 import numpy as np
 
+from extensions.patrol.order import Order, Prospect, exact_order, inserted_order
+from extensions.patrol.ships import Patrol, sampled_patrol
 from scenarios.scenario.load import load_study
 from scenarios.scenario.scenario import Scenario
-from scenarios.studies.patrol.order import Order, Prospect, exact_order, inserted_order
-from scenarios.studies.patrol.ships import Patrol, sampled_patrol
 
 _ALIKE = 0.02
 """Expected verdicts that make no difference [-]."""

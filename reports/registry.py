@@ -6,8 +6,6 @@ from dataclasses import replace
 from common.provenance import without_folders
 from common.registry import PluginError, announced, is_file_part, load_announced
 from common.run_layout import MANIFEST
-from reports.arena.content import arena_content
-from reports.convergence.content import convergence_content
 from reports.design.content import design_content
 from reports.document.blocks import (
     FAILURES_MAX,
@@ -28,16 +26,12 @@ from reports.errors import ReportError
 from reports.flights.content import flights_content
 from reports.measurement.content import measurement_content
 from reports.paper.content import paper_content
-from reports.patrol.content import patrol_content
 from reports.run.letterhead import letterhead, title
 from reports.run.run_data import RunData
 
 STUDIES: dict[str, Callable[[RunData], Findings]] = {
     **dict.fromkeys(("flights", "trials", "monte_carlo", "falsify", "premises"), flights_content),
     "paper": paper_content,
-    "arena": arena_content,
-    "patrol": patrol_content,
-    "convergence": convergence_content,
     "design": design_content,
     "measurement": measurement_content,
 }
@@ -64,7 +58,7 @@ def content(run: RunData, settings: Mapping[str, str] | None = None) -> Content:
         logo is no picture
     """
     made = _findings_of(run)
-    needed = FLIGHT_ENTRIES if made in (flights_content, paper_content, arena_content) else ()
+    needed = FLIGHT_ENTRIES if made in (flights_content, paper_content) else ()
     refuse_other_version(run, needed)
     head = letterhead(run, settings or {})
     found = made(run)

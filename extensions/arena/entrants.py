@@ -5,15 +5,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from common.registry import PluginError, is_file_part
+from extensions.arena import STANDOFF, TRACKING
 from gnc.laws import ON_CIRCLE, ON_OSCILLATION, STEERING_LAWS
 from scenarios.errors import InputError
 from scenarios.scenario.keys import displaced
 from scenarios.scenario.load import with_values
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.guidance import GuidanceConfig, law_refusal
-
-TRACKING, STANDOFF = "tracking", "standoff"
-"""The tasks: to track the oscillating reference, and to circle the vessel."""
 
 TUNING = "tuning"
 """Name of the trial whose flights the tuner flies: seeds follow from it, and are none of the
@@ -32,14 +30,14 @@ class Entrant:
     ----------
     name : of the entrant, part of the names of its flights
     law, task : its steering law, and ``TRACKING`` or ``STANDOFF``
-    given : what of the reference and of the air the law makes use of
+    inputs : what of the reference and of the air the law makes use of
     defaults : its parameters that are numbers, whole ones apart, by their keys in ``[guidance]``
     """
 
     name: str
     law: str
     task: str
-    given: str
+    inputs: str
     defaults: Mapping[str, float]
 
     def values(self, parameters: Mapping[str, float]) -> dict[str, object]:
@@ -89,7 +87,8 @@ def entrants_of(scenario: Scenario) -> tuple[list[Entrant], list[Refused]]:
         for task, laws in listed.items():
             if laws.count(law) > 1:
                 raise InputError(
-                    f"laws: '{law}' is named {laws.count(law)} times for {task}; laws adds to arena.{task}: name each law once"
+                    f"laws: '{law}' is named {laws.count(law)} times for {task}; laws adds to"
+                    f" arena.{task}: name each law once"
                 )
             if reasons[task]:
                 refused.append(Refused(law=law, task=task, reason=reasons[task]))
@@ -102,7 +101,7 @@ def entrants_of(scenario: Scenario) -> tuple[list[Entrant], list[Refused]]:
                         name=_name(law, task),
                         law=law,
                         task=task,
-                        given=str(inputs),
+                        inputs=str(inputs),
                         defaults=defaults,
                     )
                 )
@@ -142,7 +141,8 @@ def conditions_of(scenario: Scenario, name: str, entrants: list[Entrant]) -> dic
             )
         if condition.name == TUNING:
             raise InputError(
-                f"arena.conditions: '{TUNING}' is what the tuner's flights are called; give it another name"
+                f"arena.conditions: '{TUNING}' is what the tuner's flights are called; give it"
+                " another name"
             )
         bare = {
             "study": "flights",

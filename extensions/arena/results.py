@@ -12,27 +12,28 @@ import numpy as np
 import numpy.typing as npt
 
 from common.intervals import CONFIDENCE
+from extensions.arena import ALL, TRACKING
+from extensions.arena.entrants import Entrant
+from extensions.arena.paired_bootstrap import paired_estimates
+from extensions.arena.window import MEASURED_COLUMNS, WINDOW_COLUMNS
 from scenarios.engine.task import Row
-from scenarios.measures.window import MEASURED_COLUMNS
 from scenarios.planning.theory.speed_ratio import crossing_limit
 from scenarios.scenario.sections.experiment import ArenaConfig
 from scenarios.scenario.sections.guidance import GuidanceConfig
 from scenarios.statistics.estimates import without_nan
-from scenarios.statistics.paired_bootstrap import paired_estimates
-from scenarios.studies.arena.entrants import TRACKING, Entrant
 
 Array = npt.NDArray[np.float64]
 
-ALL = "all"
-"""Stands for all conditions together."""
-
-LOWER_IS_BETTER = (
-    "error_rms_m", "effort_rms_rad_s", "excess_rms_rad_s", "saturated_share", "crossing_distance_mean_m",
-)  # fmt: skip
-"""Figures of a flight's end of which less is better."""
-
-GREATER_IS_BETTER = ("crossings_per_minute", *MEASURED_COLUMNS)
-"""And of which more is."""
+FIGURES = (
+    "error_rms_m",
+    "effort_rms_rad_s",
+    "excess_rms_rad_s",
+    "saturated_share",
+    "crossing_distance_mean_m",
+    "crossings_per_minute",
+    *MEASURED_COLUMNS,
+)
+"""Figures of a flight's end by which laws are compared; their columns say which way is worse."""
 
 _TRACKING_ONLY = ("error_rms_m", "effort_rms_rad_s", "excess_rms_rad_s", "saturated_share")
 """Figures that compare laws of one task alone: their references differ between the tasks."""
@@ -84,7 +85,8 @@ def estimates(
     """
     found: list[dict[str, Any]] = []
     conditions = [(name, [name]) for name in rows] + ([(ALL, list(rows))] if len(rows) > 1 else [])
-    for figure in (*LOWER_IS_BETTER, *GREATER_IS_BETTER):
+    columns = WINDOW_COLUMNS | MEASURED_COLUMNS
+    for figure in FIGURES:
         for group in _groups(entrants, figure):
             for condition, members in conditions:
                 tables = [_table(rows[name], figure, len(entrants))[group] for name in members]
@@ -94,7 +96,7 @@ def estimates(
                     paired_estimates(
                         np.concatenate(tables, axis=1),
                         strata,
-                        greater_is_better=figure in GREATER_IS_BETTER,
+                        greater_is_better=columns[figure].worse == "lower",
                         resamples=arena.resamples,
                         confidence=CONFIDENCE,
                         seed=seed,

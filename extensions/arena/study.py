@@ -2,28 +2,37 @@
 in the same air.
 """
 
+import time
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, fields, replace
-from typing import Any
+from dataclasses import asdict, dataclass, fields, replace
+from typing import Any, ClassVar
 
-from common.columns import Column, described
-from common.run_layout import ARENA, DRAWS, TUNING_TABLE, WINDOW_TABLE
+from common.columns import Column, Table, described
+from common.run_layout import DRAWS
+from extensions.arena import ARENA, TUNING_TABLE, WINDOW_TABLE
+from extensions.arena.entrants import Entrant, cases_of, conditions_of, entrants_of
+from extensions.arena.results import estimates, limits, tuned_record
+from extensions.arena.tuning import Tuner
+from extensions.arena.window import (
+    MEASURED_COLUMNS,
+    WINDOW_COLUMNS,
+    measured_figures,
+    window_figures,
+)
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary
-from scenarios.engine.task import Row, Task
+from scenarios.engine.task import Result, Row, Task
 from scenarios.errors import InputError
+from scenarios.experiment.requests import FlightRequest
+from scenarios.flight.record import FlightRecord
 from scenarios.flight_runner import FlightWork
 from scenarios.measures.columns import ANY_KEY, FLIGHT_COLUMNS
-from scenarios.measures.window import MEASURED_COLUMNS, WINDOW_COLUMNS
+from scenarios.planning.flight_plan import FlightPlan
+from scenarios.scenario.load import with_values
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.experiment import CaseConfig
-from scenarios.studies.arena.entrants import cases_of, conditions_of, entrants_of
-from scenarios.studies.arena.results import estimates, limits, tuned_record
-from scenarios.studies.arena.tuning import Tuner
-from scenarios.studies.arena.work import ArenaWork
 from scenarios.studies.flight_study import FlightStudy
-from scenarios.studies.study import study
 
 TUNING_COLUMNS = described(
     {
@@ -40,7 +49,62 @@ TUNING_COLUMNS = described(
 """Of ``tuning.csv``: a row per setting that the tuner of an arena tried."""
 
 
-@study("arena")
+_GUIDANCE = "guidance."
+
+
+@dataclass(frozen=True, kw_only=True)
+class ArenaWork(FlightWork):
+    """Tunes laws, and flies them; other attributes are those of ``FlightWork``.
+
+    Attributes
+    ----------
+    entrants : tasks beyond the last flight tune one after the other of these
+    tuner : tunes them
+    """
+
+    entrants: tuple[Entrant, ...]
+    tuner: Tuner
+
+    def fly(self, task: Task) -> Result:
+        """Tune a law, or fly a flight."""
+        entrant = self._tuned(task)
+        if entrant is None:
+            return super().fly(task)
+        began = time.perf_counter()
+        rows = list(self.tuner.rows(entrant))
+        for row in rows:
+            row["wall_time_s"] = (time.perf_counter() - began) / len(rows)
+        return Result(task=task, tables={TUNING_TABLE: rows}, items=0)
+
+    def lost(self, task: Task, reason: str) -> Result:
+        """Return the result of a task whose process was lost."""
+        if (entrant := self._tuned(task)) is None:
+            return super().lost(task, reason)
+        # Without parameters and cost: nothing was tried.
+        row = {"entrant": entrant.name, "evaluation": 0, "message": reason}
+        return replace(Result(task=task, tables={TUNING_TABLE: [row]}, items=0), lost=True)
+
+    def request(self, task: Task) -> FlightRequest:
+        """Return the flight of a task, with the parameters in its labels."""
+        request = super().request(task)
+        chosen = {key: float(value) for key, value in task.labels if key.startswith(_GUIDANCE)}
+        return replace(request, scenario=with_values(request.scenario, chosen))
+
+    def more_tables(
+        self, request: FlightRequest, plan: FlightPlan, record: FlightRecord, row: Row
+    ) -> dict[str, list[Row]]:
+        """Return the figures of the end of a flight."""
+        window = self.tuner.arena.window_s
+        figures = window_figures(plan, record, window=window) | measured_figures(row, window=window)
+        named = {"flight_id": request.flight_id, "trial": request.trial}
+        return {WINDOW_TABLE: [named | figures]}
+
+    def _tuned(self, task: Task) -> Entrant | None:
+        """Return the law that a task tunes; none for a flight."""
+        flights = self._ends[-1]
+        return self.entrants[task.number - flights] if task.number >= flights else None
+
+
 class ArenaStudy(FlightStudy):
     """Laws in the tasks that they can do, each condition a trial and each law in a task a case of
     it.
@@ -58,6 +122,13 @@ class ArenaStudy(FlightStudy):
 
     chooses_flights = True
 
+    DOCUMENTED: ClassVar[Mapping[str, Table]] = {
+        WINDOW_TABLE: {name: FLIGHT_COLUMNS[name] for name in ("flight_id", "trial")}
+        | WINDOW_COLUMNS
+        | MEASURED_COLUMNS,
+        TUNING_TABLE: TUNING_COLUMNS,
+    }
+
     def __init__(
         self,
         scenario: Scenario,
@@ -71,12 +142,7 @@ class ArenaStudy(FlightStudy):
         keys = dict.fromkeys(
             f"guidance.{key}" for entrant in self.entrants for key in entrant.defaults
         )
-        self.tables |= {
-            WINDOW_TABLE: {name: FLIGHT_COLUMNS[name] for name in ("flight_id", "trial")}
-            | WINDOW_COLUMNS
-            | MEASURED_COLUMNS,
-            TUNING_TABLE: TUNING_COLUMNS,
-        }
+        self.tables |= {name: dict(table) for name, table in self.DOCUMENTED.items()}
         self.tables[DRAWS] |= described(dict.fromkeys(keys, ANY_KEY))
         self._chosen: dict[str, Mapping[str, float]] = {}
 
@@ -85,7 +151,8 @@ class ArenaStudy(FlightStudy):
         ((name, self._scenario),) = trials.items()
         if self._scenario.flight.measured_s is not None:
             raise InputError(
-                "flight.measured_s is given; an arena measures the last arena.window_s of each flight: set that"
+                "flight.measured_s is given; an arena measures the last arena.window_s of each"
+                " flight: set that"
             )
         for key, duration in (
             ("flight.duration_max_s", self._scenario.flight.duration_max_s),
@@ -93,8 +160,8 @@ class ArenaStudy(FlightStudy):
         ):
             if self._arena.window_s > duration:
                 raise InputError(
-                    f"arena.window_s is {self._arena.window_s:g} s, and {key} {duration:g} s; a flight is measured on its end: make"
-                    " the window shorter, or fly longer"
+                    f"arena.window_s is {self._arena.window_s:g} s, and {key} {duration:g} s; a"
+                    " flight is measured on its end: make the window shorter, or fly longer"
                 )
         self.entrants, self._refused = entrants_of(self._scenario)
         return conditions_of(self._scenario, name, self.entrants)
@@ -150,8 +217,9 @@ class ArenaStudy(FlightStudy):
             name, reason = next(iter(lost.items()))
             more = f" and {len(lost) - 1} more" if len(lost) > 1 else ""
             raise InputError(
-                f"the tuning of '{name}'{more} was lost ({reason}), and a law that is not tuned is not compared: continue with"
-                " --resume, with a larger --time-limit or --memory-limit if that ended it"
+                f"the tuning of '{name}'{more} was lost ({reason}), and a law that is not tuned is"
+                " not compared: continue with --resume, with a larger --time-limit or"
+                " --memory-limit if that ended it"
             )
 
     def _take_tuned(self, journal: Journal) -> None:

@@ -15,17 +15,17 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import minimize
 
+from extensions.arena.entrants import TUNING, Entrant, draws_left
+from extensions.arena.window import window_figures
 from scenarios.engine.task import Row
 from scenarios.experiment.requests import Experiment
 from scenarios.flight.closed_loop import fly
 from scenarios.flight.failure import failure
 from scenarios.flight.release import release
-from scenarios.measures.window import window_figures
 from scenarios.planning.planner import plan_flight
 from scenarios.scenario.load import with_values
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.experiment import ArenaConfig
-from scenarios.studies.arena.entrants import TUNING, Entrant, draws_left
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 
 _STEP = 0.15
@@ -105,7 +105,7 @@ class Tuner:
                 figures = window_figures(plan, record, window=arena.window_s)
                 errors.append(figures["error_rms_m"])
                 excesses.append(figures["excess_rms_rad_s"])
-        except Exception as failed:  # noqa: BLE001 - a setting that fails is one to stay away from, with its reason
+        except Exception as failed:  # noqa: BLE001 - one to stay away from, with its reason
             return {"cost_m": _FAILED, "message": failure(failed)["message"]}
         error, excess = float(np.mean(errors)), float(np.mean(excesses))
         counted = float(np.mean(np.minimum(errors, arena.error_max_m)))

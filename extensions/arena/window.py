@@ -17,18 +17,37 @@ from scenarios.planning.flight_plan import FlightPlan
 WINDOW_COLUMNS = described(
     {
         "window_s": "time before the end of the flight over which it is evaluated",
-        "error_rms_m": "root mean square distance to the reference",
+        "error_rms_m": Column(
+            "root mean square distance to the reference", title="Error rms", worse="higher"
+        ),
         "error_mean_m": "mean distance to the reference",
         "error_max_m": "largest distance to the reference",
-        "effort_rms_rad_s": "root mean square commanded heading rate",
-        "excess_rms_rad_s": "root mean square of the commanded heading rate less that of the reference",
-        "saturated_share": "share of the time in which the demand was limited to omega_max",
+        "effort_rms_rad_s": Column(
+            "root mean square commanded heading rate", title="Effort rms", digits=3, worse="higher"
+        ),
+        "excess_rms_rad_s": Column(
+            "root mean square of the commanded heading rate less that of the reference",
+            title="Excess effort",
+            digits=3,
+            worse="higher",
+        ),
+        "saturated_share": Column(
+            "share of the time in which the demand was limited to omega_max",
+            title="Cut commands",
+            unit="%",
+            scale=100.0,
+            digits=1,
+            worse="higher",
+        ),
         "guard_share": "share of the time in which the keep-out guard changed commands",
-        "crossings_per_minute": "crossings of the plume's axis in a minute",
+        "crossings_per_minute": Column(
+            "crossings of the plume's axis in a minute", title="Crossings", worse="lower"
+        ),
         "crossing_distance_mean_m": Column(
             "mean distance of the crossings from the funnel",
-            title="Mean crossing distance",
-            digits=1,
+            title="Crossing distance",
+            digits=0,
+            worse="higher",
         ),
         "window_distance_min_m": "closest approach, at the recorded samples",
         "speed_ratio_mean": "mean speed ratio through the air",
@@ -38,9 +57,13 @@ WINDOW_COLUMNS = described(
 
 MEASURED_COLUMNS = described(
     {
-        "plume_s_per_minute": "seconds in the plume in a minute",
+        "plume_s_per_minute": Column(
+            "seconds in the plume in a minute", title="In the plume", worse="lower"
+        ),
         "sulphur_information_per_minute": Column(
-            "1/sigma^2 of the sulphur content by noise, in a minute", unit="1/((% m/m)² min)"
+            "1/sigma^2 of the sulphur content by noise, in a minute",
+            unit="1/((% m/m)² min)",
+            worse="lower",
         ),
     }
 )

@@ -10,8 +10,8 @@ from enum import Enum
 import numpy as np
 import numpy.typing as npt
 
-from gnc.analysis.ensemble_motion import MOTIONS, RelativeMotion, Steering, Vehicle
-from gnc.analysis.turning_reference import Array, TurningReferences
+from extensions.convergence.motion import MOTIONS, RelativeMotion, Steering, Vehicle
+from extensions.convergence.references import Array, TurningReferences
 
 DISTANCE_CONVERGED = 0.02
 """Distance within which a vehicle is on its reference [m]."""

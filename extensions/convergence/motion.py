@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 import numpy.typing as npt
 
-from gnc.analysis.turning_reference import Array, TurningReferences
+from extensions.convergence.references import Array, TurningReferences
 from gnc.numeric import wrapped
 from gnc.paper import LookAhead
 

@@ -13,7 +13,8 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
-from common.run_layout import COUNTEREXAMPLES, HISTORY_SUFFIX, TRAJECTORIES
+from common.run_layout import HISTORY_SUFFIX
+from extensions.convergence import COUNTEREXAMPLES, TRAJECTORIES, trajectory_path
 from reports.document.blocks import Block, Card, Findings, Heading, Section, Table, Text, Verdict
 from reports.document.chart import Chart, Line, Panel, Style
 from reports.document.tables import number, parameter_table
@@ -543,7 +544,7 @@ def _histories(data: Convergence, law: Law, *, converged: bool) -> list[Line]:
     )
     lines = []
     for reference, trajectory in zip(chosen["reference"], chosen["trajectory"], strict=True):
-        if (history := data.run.trajectory(law.key, int(trajectory))) is not None:
+        if (history := data.run.parquet(trajectory_path(law.key, int(trajectory)))) is not None:
             known = history[np.isfinite(history["distance_m"])]
             known = known.iloc[_thinned(len(known), HISTORY_POINTS)]
             distance = np.maximum(column(known, "distance_m"), DISTANCE_SHOWN_MIN_M)

@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from scenarios.scenario.sections.report import ReportConfig
-from scenarios.scenario.sections.section import Positive, Section, Title
+from scenarios.scenario.sections.report import StudyFile
+from scenarios.scenario.sections.section import Positive, Section
 
 LawName = Literal["lyapunov", "cascade", "cascade_cut"]
 
@@ -66,19 +66,14 @@ class EnsembleGuidance(Section):
         return self
 
 
-class ConvergenceScenario(Section):
+class ConvergenceScenario(StudyFile):
     """A whole scenario file of a convergence study."""
 
     study: Literal["convergence"]
     """Many kinematic pursuits from random initial states."""
-    title: Title
-    """Title of the study in reports and lists."""
-    description: str = ""
-    """One or two sentences at the top of the report."""
     fidelity: Literal["kinematic"] = "kinematic"
     """The paper's vehicle, eq. (1)."""
     seed: Annotated[int, Field(ge=0, le=2**63 - 1)] = 1
     """Seed of the initial states and of the references [-]."""
     ensemble: Ensemble = Ensemble()
     guidance: EnsembleGuidance = EnsembleGuidance()
-    report: ReportConfig = ReportConfig()

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from common.physics import wind_towards
-from common.run_layout import PHASES, SHIPS
+from extensions.patrol import PHASES, SHIPS
 from extensions.patrol.counts import PatrolCounts
 from measurement.gases import MASS_PERCENT
 from reports.design.section import innerloop_section

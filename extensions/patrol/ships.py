@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from extensions.patrol.route import Air, Mover, least_distance
 from scenarios.errors import InputError
 from scenarios.experiment.draws import sampled_flight
 from scenarios.scenario.scenario import Scenario
-from extensions.patrol.route import Air, Mover, least_distance
 from scenarios.world.exhaust import fuel_of
 from scenarios.world.place import given_place
 from scenarios.world.vessel import check_manoeuvres

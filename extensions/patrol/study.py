@@ -9,12 +9,14 @@ import math
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 import pandas as pd
 
+from common.columns import Table
 from common.run_layout import HISTORY_SUFFIX, SUMMARY
+from extensions.patrol import PHASES, SHIPS
 from extensions.patrol.counts import PatrolCounts
 from extensions.patrol.order import Prospect, best_order, ends_of
 from extensions.patrol.route import Air, Leg, Mover, nearest_on, route
@@ -26,10 +28,8 @@ from extensions.patrol.tables import (
     MEASURING,
     PATROL_COLUMNS,
     PHASE_COLUMNS,
-    PHASES,
     SEARCHING,
     SHIP_COLUMNS,
-    SHIPS,
     TRANSIT,
     patrol_figures,
     phase_row,
@@ -75,6 +75,12 @@ class PatrolStudy(FlightStudy):
 
     what = "patrols"
     chooses_flights = True
+
+    DOCUMENTED: ClassVar[Mapping[str, Table]] = {
+        "summary.csv, of patrols": PATROL_COLUMNS,
+        SHIPS: SHIP_COLUMNS,
+        PHASES: PHASE_COLUMNS,
+    }
 
     def __init__(
         self,
@@ -243,7 +249,8 @@ class PatrolWork(FlightWork):
             patrol = sampled_patrol(experiment.name, experiment.scenario, task.number)
             row |= {"seed": patrol.seed} | wind_row(patrol)
             ships = [
-                ship_row(patrol, i, _limit_percent(self._scenario)) for i in range(len(patrol.ships))
+                ship_row(patrol, i, _limit_percent(self._scenario))
+                for i in range(len(patrol.ships))
             ]
             stretches = self._patrolled(patrol, ships).stretches
             row |= self._oracle(patrol, ships)
@@ -251,8 +258,7 @@ class PatrolWork(FlightWork):
             row |= patrol_figures(
                 ships, stretches, endurance=self._endurance, keepout_radius=radius
             )
-        except Exception as error:  # noqa: BLE001 - a patrol that fails is a row with its reason,
-        and the study goes on
+        except Exception as error:  # noqa: BLE001 - a row with its reason; the study goes on
             row |= failure(error)
         row["wall_time_s"] = time.perf_counter() - began
         return Result(task=task, tables={SUMMARY: [row], SHIPS: ships, PHASES: stretches})

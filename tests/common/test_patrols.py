@@ -3,7 +3,6 @@
 import math
 
 import pytest
-
 from common.patrols import PatrolCounts
 
 # A patrol of six ships of which five were served, as the catalog's criteria have it: 80 % of the

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import pandas as pd
 import pytest
-
 from reports.arena.charts import clusters, crossing_chart, effort_charts, track_charts, worth_chart
 from reports.arena.content import arena_content
 from reports.arena.data import Estimate, read_arena
@@ -19,13 +18,14 @@ from reports.arena.tables import (
     plume_table,
     tracking_table,
 )
+from scenarios.studies.arena.entrants import Entrant
+from scenarios.studies.arena.results import estimates
+
 from reports.document.blocks import Table
 from reports.document.chart import Chart
 from reports.registry import content
 from reports.run.run_data import read_run
 from scenarios.scenario.load import load_study
-from scenarios.studies.arena.entrants import Entrant
-from scenarios.studies.arena.results import estimates
 from tests.reports.report_parts import blocks_of, built, flown
 
 QUICK = (

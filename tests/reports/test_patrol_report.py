@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
-
 from reports.patrol.charts import patrol_chart, time_lines
 from reports.patrol.content import patrol_content
 from reports.patrol.data import read_patrols
 from reports.patrol.tables import oracle_table, ship_table
+
 from reports.run.run_data import read_run
 from tests.reports.report_parts import flown
 

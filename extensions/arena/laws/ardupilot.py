@@ -10,9 +10,9 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from gnc.laws import ONLY_CIRCLES, ONLY_MOVING_POINTS, steering_law
+from extensions.arena.laws.path import PathLaw, PathMotion, path_motion, turn_rate
+from gnc.laws import ONLY_CIRCLES, ONLY_MOVING_POINTS
 from gnc.numeric import clip, wrap
-from gnc.path_laws.path import PathLaw, PathMotion, path_motion, turn_rate
 from gnc.reference.reference import Reference
 from gnc.steering import Air, Motion
 from gnc.vectors import Vector, along, course_of, cross, dot, minus, norm, plus, scaled
@@ -218,7 +218,6 @@ class _L1Flight:
         return rate
 
 
-@steering_law("ardupilot_l1")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArduPilotL1TangentLaw(ArduPilotL1Law):
     """ArduPilot's L1 on the reference's tangent (M1); attributes of ``ArduPilotL1Law``."""
@@ -230,7 +229,6 @@ class ArduPilotL1TangentLaw(ArduPilotL1Law):
         return scaled(motion.tangent, -500.0), scaled(motion.tangent, 5000.0)
 
 
-@steering_law("ardupilot_l1_point")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArduPilotL1PointLaw(ArduPilotL1Law):
     """ArduPilot's L1 with the reference itself as waypoint (M3).
@@ -298,7 +296,6 @@ def update_loiter(
     return circle
 
 
-@steering_law("ardupilot_loiter")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArduPilotLoiterLaw(PathLaw):
     """ArduPilot's loiter about a moving centre, with the velocity over the ground as ArduPilot has.
@@ -331,7 +328,6 @@ class ArduPilotLoiterLaw(PathLaw):
         return turn_rate(acceleration, motion.airspeed)
 
 
-@steering_law("ardupilot_loiter_relative")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArduPilotRelativeLoiterLaw(ArduPilotLoiterLaw):
     """ArduPilot's loiter with the velocity relative to the centre (M2).

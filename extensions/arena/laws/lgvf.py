@@ -8,26 +8,13 @@ and the feedback of the heading are additions of this project.
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
-from gnc.errors import InfeasibleError
-from gnc.laws import ONLY_CIRCLES, steering_law
+from extensions.arena.laws.path import PathLaw, PathMotion
+from gnc.laws import ONLY_CIRCLES
 from gnc.numeric import wrap
-from gnc.path_laws.path import PathLaw, PathMotion
-from gnc.vectors import Vector, along, course_of, cross, dot, minus, norm, plus, scaled
-
-
-class Field(NamedTuple):
-    """A field of courses, or of headings, at the place of the vehicle.
-
-    Attributes
-    ----------
-    course : chi_d over the ground, or psi_d through the air [rad]
-    rate : its rate as the vehicle moves [rad/s]
-    """
-
-    course: float
-    rate: float
+from gnc.steering import DesiredCourse, heading_for
+from gnc.vectors import Vector, along, course_of, cross, dot, minus, norm, scaled
 
 
 def circle_course(from_centre: Vector, radius: float, side: int) -> float:
@@ -51,7 +38,7 @@ def lgvf(
     side: int,
     centre_velocity: Vector,
     wind: Vector,
-) -> Field:
+) -> DesiredCourse:
     """Return the heading of the field, and its rate.
 
     Parameters
@@ -77,40 +64,11 @@ def lgvf(
     return heading_for(course, course_rate, airspeed, drift)
 
 
-def heading_for(course: float, course_rate: float, airspeed: float, drift: Vector) -> Field:
-    """Return the heading that gives a course relative to a centre, and its rate.
-
-    It follows from the triangle of velocities.
-
-    Parameters
-    ----------
-    course, course_rate : of the velocity relative to the centre [rad, rad/s]
-    airspeed : V_a [m/s]
-    drift : velocity of the centre through the air [m/s]
-
-    Raises
-    ------
-    InfeasibleError : the centre is as fast through the air as the vehicle
-    """
-    if norm(drift) >= airspeed:
-        raise InfeasibleError(
-            f"the centre moves through the air at {norm(drift):.2f} m/s, the vehicle at"
-            f" {airspeed:.2f} m/s; no circle about it can be flown: follow a slower vessel, or fly"
-            " faster"
-        )
-    direction = along(course)
-    back = dot(direction, drift)
-    speed = -back + math.sqrt(back * back + airspeed * airspeed - dot(drift, drift))
-    heading = course_of(plus(scaled(direction, speed), drift))
-    return Field(heading, course_rate * speed / (airspeed * math.cos(heading - course)))
-
-
-def heading_rate(field: Field, heading: float, gain: float) -> float:
+def heading_rate(field: DesiredCourse, heading: float, gain: float) -> float:
     """Return the heading rate that turns a vehicle into the field [rad/s]; gain [1/s]."""
     return field.rate + gain * wrap(field.course - heading)
 
 
-@steering_law("lgvf")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LgvfLaw(PathLaw):
     """The Lyapunov guidance vector field on a circle in the frame of its centre (M2).
@@ -130,7 +88,7 @@ class LgvfLaw(PathLaw):
         A centre that is as fast as the vehicle is followed, not circled.
         """
         if norm(motion.wind) >= motion.airspeed:
-            field = Field(course_of(motion.wind) + math.pi, 0.0)
+            field = DesiredCourse(course_of(motion.wind) + math.pi, 0.0)
         else:
             field = lgvf(
                 motion.position,

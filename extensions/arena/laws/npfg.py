@@ -13,9 +13,8 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from gnc.laws import steering_law
+from extensions.arena.laws.path import PathLaw, PathMotion, turn_rate
 from gnc.numeric import clip
-from gnc.path_laws.path import PathLaw, PathMotion, turn_rate
 from gnc.vectors import Vector, course_of, cross, dot, minus, norm, plus, right_of, scaled
 
 _EPSILON = 1e-6
@@ -222,7 +221,6 @@ def _feed_forward(
     return airspeed * (1.0 + dot(wind, tangent) / max(along, _EPSILON)) * path_rate
 
 
-@steering_law("npfg")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NpfgLaw(PathLaw):
     """NPFG on the reference's tangent (M1), or on a circle in the frame of its centre (M2).

@@ -9,9 +9,9 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from gnc.laws import ONLY_CIRCLES, ONLY_MOVING_POINTS, steering_law
+from extensions.arena.laws.path import PathLaw, PathMotion, turn_rate
+from gnc.laws import ONLY_CIRCLES, ONLY_MOVING_POINTS
 from gnc.numeric import clip, wrap
-from gnc.path_laws.path import PathLaw, PathMotion, turn_rate
 from gnc.vectors import Vector, along, course_of, cross, dot, minus, norm, plus, scaled
 
 
@@ -99,7 +99,6 @@ class ParkL1Law(PathLaw):
         return turn_rate(acceleration, motion.airspeed)
 
 
-@steering_law("park_l1")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ParkL1TangentLaw(ParkL1Law):
     """Park's law on the reference's tangent (M1); attributes are those of ``ParkL1Law``."""
@@ -111,7 +110,6 @@ class ParkL1TangentLaw(ParkL1Law):
         return point_on_line(motion.position, course_of(motion.tangent), self.l1_distance_m)
 
 
-@steering_law("park_l1_ahead")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ParkL1AheadLaw(ParkL1Law):
     """Park's law to the point L1 ahead of the reference, on its tangent (M3).
@@ -127,7 +125,6 @@ class ParkL1AheadLaw(ParkL1Law):
         return scaled(motion.tangent, self.l1_distance_m)
 
 
-@steering_law("park_l1_point")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ParkL1PointLaw(ParkL1Law):
     """Park's law to the reference itself (M3), with L1 as the floor of the range.
@@ -148,7 +145,6 @@ class ParkL1PointLaw(ParkL1Law):
         return self.l1_distance_m
 
 
-@steering_law("park_l1_orbit")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ParkL1OrbitLaw(ParkL1Law):
     """Park's law on a circle in the frame of its centre (M2); attributes of ``ParkL1Law``."""

@@ -10,9 +10,9 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from gnc.laws import ONLY_CIRCLES, ONLY_MOVING_POINTS, CheckedLaw, steering_law
+from extensions.arena.laws.path import PathLaw, PathMotion, turn_rate
+from gnc.laws import ONLY_CIRCLES, ONLY_MOVING_POINTS, CheckedLaw
 from gnc.numeric import limited, wrap
-from gnc.path_laws.path import PathLaw, PathMotion, turn_rate
 from gnc.reference.reference import Reference
 from gnc.steering import Air, Motion
 from gnc.vectors import Vector, along, course_of, cross, dot, minus, norm, plus, scaled
@@ -69,7 +69,6 @@ def collision_course(to_target: Vector, target_course: float, speed_ratio: float
     return sight + math.asin(limited(speed_ratio * math.sin(target_course - sight), 1.0))
 
 
-@steering_law("pure_pursuit")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PurePursuitLaw(CheckedLaw):
     """Pure pursuit of the reference itself (M3).
@@ -89,7 +88,6 @@ class PurePursuitLaw(CheckedLaw):
         return pure_pursuit(to_target, own.course, own.speed, range_min=self.range_min_m)
 
 
-@steering_law("proportional_navigation")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProportionalNavigationLaw(CheckedLaw):
     """Proportional navigation to the reference itself (M3). Its demand is unbounded close by.
@@ -112,7 +110,6 @@ class ProportionalNavigationLaw(CheckedLaw):
         return self.navigation_constant * sight_rate(to_target, relative_velocity)
 
 
-@steering_law("constant_bearing")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConstantBearingLaw(CheckedLaw):
     """Constant bearing to the reference itself (M3).
@@ -197,7 +194,6 @@ def plos(
     return chase(position, velocity, target, pursuit_gain) - sight_gain * norm(velocity) * error
 
 
-@steering_law("carrot")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CarrotLaw(PathLaw):
     """Carrot chasing on the reference's tangent (M1).
@@ -219,7 +215,6 @@ class CarrotLaw(PathLaw):
         return turn_rate(acceleration, motion.airspeed)
 
 
-@steering_law("carrot_orbit")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CarrotOrbitLaw(PathLaw):
     """Carrot chasing on a circle (M2).
@@ -242,7 +237,6 @@ class CarrotOrbitLaw(PathLaw):
         return turn_rate(acceleration, motion.airspeed)
 
 
-@steering_law("plos")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlosLaw(PathLaw):
     """Pursuit of a point of the reference's tangent, and of the tangent itself (M1).
@@ -304,7 +298,6 @@ def look_ahead_line_of_sight(
     return feed_forward + gain * wrap(demanded - course)
 
 
-@steering_law("look_ahead_line_of_sight")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LookAheadLineOfSightLaw(CheckedLaw):
     """Line-of-sight guidance of marine craft on the reference's tangent (M1).

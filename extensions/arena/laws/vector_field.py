@@ -10,12 +10,11 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from gnc.laws import ONLY_CIRCLES, CheckedLaw, steering_law
+from extensions.arena.laws.path import PathLaw, PathMotion
+from gnc.laws import ONLY_CIRCLES, CheckedLaw
 from gnc.numeric import limited, wrap
-from gnc.path_laws.lgvf import Field, heading_for
-from gnc.path_laws.path import PathLaw, PathMotion
 from gnc.reference.reference import Reference
-from gnc.steering import Air, Motion
+from gnc.steering import Air, DesiredCourse, Motion, heading_for
 from gnc.vectors import Vector, along, course_of, cross, dot, minus, norm, scaled
 
 _HALF_PI = 0.5 * math.pi
@@ -32,7 +31,7 @@ def line_field(
     gain: float,
     approach: float,
     line_rate: float = 0.0,
-) -> Field:
+) -> DesiredCourse:
     """Return the field of a line that may turn about one of its points.
 
     Parameters
@@ -47,7 +46,7 @@ def line_field(
     error = cross(tangent, position)
     error_rate = cross(tangent, velocity) - line_rate * dot(tangent, position)
     slope = approach / _HALF_PI
-    return Field(
+    return DesiredCourse(
         course=line_course - slope * math.atan(gain * error),
         rate=line_rate - slope * gain * error_rate / (1.0 + (gain * error) ** 2),
     )
@@ -55,7 +54,7 @@ def line_field(
 
 def orbit_field(
     position: Vector, velocity: Vector, centre: Vector, radius: float, side: int, *, gain: float
-) -> Field:
+) -> DesiredCourse:
     """Return the field of a circle, a course of the velocity relative to its centre.
 
     Parameters
@@ -72,13 +71,13 @@ def orbit_field(
     outward = along(bearing)
     bearing_rate = cross(outward, velocity) / distance if distance > 0.0 else 0.0
     error = gain * (distance - radius)
-    return Field(
+    return DesiredCourse(
         course=bearing + side * (_HALF_PI + math.atan(error)),
         rate=bearing_rate + side * gain * dot(outward, velocity) / (1.0 + error * error),
     )
 
 
-def field_heading_rate(field: Field, course: float, *, kappa: float, width: float) -> float:
+def field_heading_rate(field: DesiredCourse, course: float, *, kappa: float, width: float) -> float:
     """Return the heading rate that turns the vehicle into a field, u of the paper [rad/s].
 
     Parameters
@@ -91,7 +90,6 @@ def field_heading_rate(field: Field, course: float, *, kappa: float, width: floa
     return field.rate - kappa * limited(wrap(course - field.course) / width, 1.0)
 
 
-@steering_law("vector_field")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VectorFieldLaw(CheckedLaw):
     """The vector field of the reference's tangent, which turns with the reference (M1).
@@ -126,7 +124,6 @@ class VectorFieldLaw(CheckedLaw):
         )
 
 
-@steering_law("vector_field_orbit")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OrbitFieldLaw(PathLaw):
     """The vector field of a circle in the frame of its centre (M2).
@@ -156,7 +153,7 @@ class OrbitFieldLaw(PathLaw):
             )
             field = heading_for(relative.course, relative.rate, motion.airspeed, drift)
         else:
-            field = Field(course_of(drift), 0.0)
+            field = DesiredCourse(course_of(drift), 0.0)
         return field_heading_rate(
             field, motion.heading, kappa=self.field_rate_rad_s, width=self.field_width_rad
         )
@@ -220,7 +217,6 @@ def orbit_roll(airspeed: float, radius: float, side: int, course: float, heading
     return side * math.atan(airspeed * airspeed / (_G * radius * math.cos(course - heading)))
 
 
-@steering_law("rosplane_field")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RosplaneFieldLaw(PathLaw):
     """ROSplane's course command for the reference's tangent (M1).
@@ -250,7 +246,6 @@ class RosplaneFieldLaw(PathLaw):
         return self.course_gain_per_s * wrap(command - course)
 
 
-@steering_law("rosplane_orbit")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RosplaneOrbitLaw(PathLaw):
     """ROSplane's course command for a circle in its centre's frame (M2), with its roll fed forward.

@@ -5,7 +5,6 @@ ArduPilot's code in single precision.
 import math
 
 import pytest
-
 from gnc.path_laws.ardupilot import (
     FRESH,
     L1State,

@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 import pytest
-
 from gnc.path_laws.npfg import NpfgParameters, bearing_feasibility, npfg, track_error_bound
 
 NORTH, CALM = (1.0, 0.0), (0.0, 0.0)

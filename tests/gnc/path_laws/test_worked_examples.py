@@ -3,9 +3,6 @@
 import math
 
 import pytest
-
-from gnc.errors import InfeasibleError
-from gnc.laws import line_of_sight_law
 from gnc.path_laws.lgvf import circle_course, heading_rate, lgvf
 from gnc.path_laws.park import park_l1, point_on_circle, point_on_line
 from gnc.path_laws.pursuit import (
@@ -26,6 +23,9 @@ from gnc.path_laws.vector_field import (
     orbit_field,
     orbit_roll,
 )
+
+from gnc.errors import InfeasibleError
+from gnc.laws import line_of_sight_law
 from gnc.vectors import along, course_of, minus, scaled
 
 ORIGIN = (0.0, 0.0)

@@ -5,7 +5,6 @@ import pandas as pd
 import pytest
 from convergence_runs import LAWS, REFERENCES
 from report_parts import assert_axes_read_quantity_and_unit, named_charts
-
 from reports.convergence.charts import (
     CURVE_POINTS,
     DISTANCE_BINS,
@@ -13,6 +12,7 @@ from reports.convergence.charts import (
     HISTORY_POINTS,
     cumulative,
 )
+
 from reports.document.chart import Chart, Line, Panel
 from reports.render import matplotlib_charts, plotly_charts
 

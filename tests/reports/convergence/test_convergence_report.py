@@ -7,10 +7,10 @@ import pandas as pd
 import pytest
 from convergence_runs import LAWS, REFERENCES, TRAJECTORIES, write_convergence_run
 from report_parts import blocks_of, built, draw_all_but, named_charts
-
-from reports.build import build_reports
 from reports.convergence.tables import FAILED_ROWS, settled_time
 from reports.convergence.verdict import FAILURES_NAMED, percentage
+
+from reports.build import build_reports
 from reports.document.blocks import Table, Text
 from reports.errors import ReportError
 from reports.registry import content

@@ -3,7 +3,6 @@
 import math
 
 import pytest
-
 from scenarios.measures.window import measured_figures
 
 MEASURED = {

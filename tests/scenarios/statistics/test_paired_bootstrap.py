@@ -1,6 +1,5 @@
 import numpy as np
 import pytest
-
 from scenarios.statistics.paired_bootstrap import paired_estimates
 
 OPTIONS = {"greater_is_better": False, "resamples": 500, "confidence": 0.95, "seed": 1}

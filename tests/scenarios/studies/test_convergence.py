@@ -7,14 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
 from gnc.analysis.ensemble_motion import Vehicle
 from gnc.analysis.turning_reference import averaged_settling_time
-from gnc.paper import look_ahead
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.engine.local_executor import LocalExecutor
-from scenarios.engine.task import Limits, Task
-from scenarios.errors import InputError
 from scenarios.studies.convergence.cases import REFERENCES, draw_case, references_of
 from scenarios.studies.convergence.ensemble import (
     COLUMNS,
@@ -24,6 +18,12 @@ from scenarios.studies.convergence.ensemble import (
     trajectory_of,
 )
 from scenarios.studies.convergence.study import ConvergenceWork
+
+from gnc.paper import look_ahead
+from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.local_executor import LocalExecutor
+from scenarios.engine.task import Limits, Task
+from scenarios.errors import InputError
 
 # The paper's vehicle (reference/paper-notes.md) and the guidance of the catalogue's scenarios.
 SPEED, HEADING_RATE_MAX, BAND = 19.42, 0.503, 5.0

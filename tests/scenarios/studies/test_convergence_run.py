@@ -4,15 +4,15 @@ import shutil
 
 import pandas as pd
 import pytest
-
 from gnc.analysis.ensemble import DISTANCE_CONVERGED, PHI_CONVERGED
+from scenarios.scenario.sections.convergence import ConvergenceScenario
+
 from reports.output import write_report
 from reports.run.run_data import read_run
 from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.errors import InputError
 from scenarios.scenario.load import load_study
-from scenarios.scenario.sections.convergence import ConvergenceScenario
 from scenarios.studies.registry import run_study
 from tests.run_tables import manifest_of
 

@@ -5,6 +5,9 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
+from scenarios.studies.patrol.ships import sampled_patrol
+from scenarios.studies.patrol.tables import patrol_figures, ship_row, wind_row
+from scenarios.studies.patrol.work import PatrolWork
 
 from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.engine.task import Task
@@ -12,9 +15,6 @@ from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
 from scenarios.planning.spreads import PredictedSpreads
 from scenarios.scenario.load import load_study, with_values
-from scenarios.studies.patrol.ships import sampled_patrol
-from scenarios.studies.patrol.tables import patrol_figures, ship_row, wind_row
-from scenarios.studies.patrol.work import PatrolWork
 from scenarios.studies.registry import run_study
 from scenarios.studies.replay import Replay
 from scenarios.world.world import mean_wind, vessel_of
