@@ -9,12 +9,12 @@ from scenarios.errors import InputError
 from scenarios.scenario.documented import (
     DocumentedSection,
     documented_keys,
-    documented_kinds,
     documented_sections,
     similar_key,
 )
 from scenarios.scenario.documented_parts import PART_SECTIONS, DocumentedKey, documented_part_keys
 from scenarios.scenario.overrides import as_toml
+from scenarios.scenario.sections.convergence import ConvergenceScenario
 
 _WIDTH = 100
 _INDENT = 10
@@ -56,7 +56,7 @@ def described(name: str | None = None) -> list[str]:
         for key in documented_keys()
         if key.key.replace(".0", "") == plain or (plain == "nu" and key.key == "sweep")
     ]
-    kinds = map(documented_sections, documented_kinds())
+    kinds = (documented_sections(), documented_sections(ConvergenceScenario))
     sections = next(
         filter(
             None,

@@ -14,29 +14,21 @@ from pydantic import BaseModel, RootModel
 from pydantic.fields import FieldInfo
 from pydantic_core import to_jsonable_python
 
-from common.registry import announced
 from common.text import nearest
-from scenarios.scenario.documented_parts import (
-    DocumentedKey,
-    documented_part_keys,
-    flight_studies,
-)
+from scenarios.scenario.documented_parts import FLIGHT_STUDIES, DocumentedKey, documented_part_keys
 from scenarios.scenario.effect import named_by
 from scenarios.scenario.effect_rules import RULES
 from scenarios.scenario.experiment_checks import ONE_POINT
-from scenarios.scenario.extension_points import study_file
 from scenarios.scenario.keys import line, models_in, split_unit
 from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.convergence import ConvergenceScenario
 from scenarios.scenario.sections.experiment import DrawConfig, TrialList
 
-
-def documented_kinds() -> dict[type[BaseModel], tuple[str, ...]]:
-    """Return the kinds of scenario files, each with its studies."""
-    kinds: dict[type[BaseModel], tuple[str, ...]] = {
-        Scenario: flight_studies(),
-        TrialList: ("trials",),
-    }
-    return kinds | {study_file(study): (study,) for study in announced("scenario")}
+_KINDS: tuple[tuple[type[BaseModel], tuple[str, ...]], ...] = (
+    (Scenario, FLIGHT_STUDIES),
+    (TrialList, ("trials",)),
+    (ConvergenceScenario, ("convergence",)),
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,7 +64,7 @@ def documented_sections(kind: type[BaseModel] = Scenario) -> tuple[DocumentedSec
     """Return the sections of a kind of scenario file, in their order; first the keys outside of any
     section.
     """
-    studies = documented_kinds()[kind]
+    studies = dict(_KINDS)[kind]
     return tuple(_sections(kind, "", kind.__doc__ or "", studies, listed=False))
 
 
@@ -81,14 +73,11 @@ def documented_keys() -> list[DocumentedKey]:
     that parts bring.
     """
     of_schemas = [
-        key
-        for kind in documented_kinds()
-        for section in documented_sections(kind)
-        for key in section.keys
+        key for kind, _ in _KINDS for section in documented_sections(kind) for key in section.keys
     ]
     # What a part brings needs the part, and perhaps more.
     of_parts = [
-        replace(key, conditions=(*key.conditions, *_conditions(key.key, flight_studies())))
+        replace(key, conditions=(*key.conditions, *_conditions(key.key, FLIGHT_STUDIES)))
         for key in documented_part_keys()
     ]
     return [*of_schemas, *of_parts]
@@ -100,8 +89,7 @@ def similar_key(name: str) -> str | None:
     """
     documented = documented_keys()
     keys = [each.key for each in documented]
-    others = [(study,) for study in announced("scenario")]
-    of_flights = [each.key for each in documented if each.studies not in others]
+    of_flights = [each.key for each in documented if each.studies != ("convergence",)]
     for known in ([*(section.name for section in documented_sections()), *of_flights], keys):
         if close := nearest(name, known):
             return close
@@ -167,7 +155,7 @@ def _free_table(key: str, model: type[BaseModel], studies: tuple[str, ...]) -> D
 
 def _studies(key: str, studies: tuple[str, ...]) -> tuple[str, ...]:
     """Return the studies in which a key can have an effect."""
-    if studies != flight_studies():
+    if studies != FLIGHT_STUDIES:
         return studies
     if refusing := _REFUSING.get(key.partition(".")[0]):
         return tuple(study for study in studies if study not in refusing)
@@ -200,7 +188,7 @@ def _plain_scenarios(study: str) -> tuple[Scenario, ...]:
 
 
 def _conditions(key: str, studies: tuple[str, ...]) -> tuple[str, ...]:
-    if studies != flight_studies():
+    if studies != FLIGHT_STUDIES:
         return ()
     # What a message says of the scenario at hand is not said of every one.
     return tuple(

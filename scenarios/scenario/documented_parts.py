@@ -8,20 +8,14 @@ import re
 from dataclasses import Field, dataclass, fields, replace
 from typing import Any
 
-from common.registry import Registry, announced
+from common.registry import Registry
 from gnc.laws import STEERING_LAWS
 from scenarios.scenario.extension_points import PAYLOADS, PLUME_MODELS
 from scenarios.scenario.keys import line, split_unit
 from scenarios.scenario.sections.guidance import GuidanceConfig
 
-
-def flight_studies() -> tuple[str, ...]:
-    """Return the studies whose scenario files are those of flights, also those of installed
-    packages.
-    """
-    own = ("flights", "paper", "monte_carlo", "falsify", "premises")
-    return (*own, *sorted({*announced("study")} - {*announced("scenario")}))
-
+FLIGHT_STUDIES = ("flights", "paper", "monte_carlo", "falsify", "arena", "patrol", "premises")
+"""Studies whose scenario files are those of flights."""
 
 DIMENSIONLESS = "-"
 """Unit of a number without one."""
@@ -67,13 +61,13 @@ PART_SECTIONS = tuple(key.partition(".")[0] for key in _REGISTRIES)
 
 @functools.cache
 def documented_part_keys() -> tuple[DocumentedKey, ...]:
-    """Return the keys that the parts of the project and of installed packages bring, as far as they
-    are not those of the schema.
+    """Return the keys that the project's own parts bring, as far as they are not those of the
+    schema.
     """
     found: dict[tuple[str, str], tuple[DocumentedKey, list[str]]] = {}
     for key_of_part, registry in _REGISTRIES.items():
         section = key_of_part.partition(".")[0]
-        for name in registry.installed_names():
+        for name in registry.builtin_names():
             part = registry.get(name)
             made = part if section == "guidance" else getattr(part, "SETTINGS", None)
             for key in _part_keys(section, made) if made else ():
@@ -109,7 +103,7 @@ def _part_key(key: str, of: "Field[Any]", described: str) -> DocumentedKey:
         range=" or ".join(choices) or ranges.get(type(of.default), limits),
         default=of.default,
         required=False,
-        studies=flight_studies(),
+        studies=FLIGHT_STUDIES,
     )
 
 

@@ -5,8 +5,7 @@ world and the vehicles make.
 from collections.abc import Callable
 from typing import Any
 
-from common.registry import Registry, load_announced
-from scenarios.scenario.sections.report import StudyFile
+from common.registry import Registry
 
 VESSEL_TRACKS: Registry[Callable[..., Any]] = Registry(
     "vessel_track", folder="scenarios.world", methods=("motion", "course")
@@ -25,15 +24,3 @@ PAYLOADS: Registry[Callable[..., Any]] = Registry(
 )
 """Instruments by name. Each is called with the flight's scenario, its world and a random generator.
 """
-
-
-def study_file(study: str) -> type[StudyFile]:
-    """Return what the scenario file of a study holds that does not fly scenarios of flights: an
-    installed package announces it in the group ``plume_flight_study.scenario``, by the study's name.
-
-    Raises
-    ------
-    PluginError : it does not load
-    """
-    found: type[StudyFile] = load_announced("scenario", study)
-    return found

@@ -11,12 +11,11 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from common.files import is_file
-from common.registry import PluginError, announced, announced_folders, is_file_part
+from common.registry import announced, announced_folders, is_file_part
 from common.run_layout import FLIGHTS, MANIFEST
 from common.text import did_you_mean
 from scenarios.errors import InputError
 from scenarios.scenario.effect import refuse_unused
-from scenarios.scenario.extension_points import study_file
 from scenarios.scenario.keys import explanation, key_of
 from scenarios.scenario.overrides import (
     Document,
@@ -30,24 +29,26 @@ from scenarios.scenario.overrides import (
 )
 from scenarios.scenario.parts import refuse_missing, with_absolute_files
 from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.convergence import ConvergenceScenario
 from scenarios.scenario.sections.experiment import TrialList
-from scenarios.scenario.sections.report import StudyFile, read_logo
+from scenarios.scenario.sections.report import read_logo
 
-Study = TypeVar("Study", Scenario, TrialList, StudyFile)
+Study = TypeVar("Study", Scenario, ConvergenceScenario, TrialList)
 
-AnyStudy = Scenario | TrialList | StudyFile
+AnyStudy = Scenario | ConvergenceScenario | TrialList
 
 KINDS: dict[str, type[Any]] = {
     "flights": Scenario,
     "paper": Scenario,
+    "convergence": ConvergenceScenario,
     "trials": TrialList,
     "monte_carlo": Scenario,
     "falsify": Scenario,
+    "arena": Scenario,
+    "patrol": Scenario,
     "premises": Scenario,
 }
-"""What a file may say of ``study``, and the scenario that it then holds; installed packages announce
-others, whose files are those of flights or of a kind of their own (``study_file``).
-"""
+"""What a file may say of ``study``, and the scenario that it then holds."""
 
 FORMER_WORDS = {"sea": "flights", "sea_trial": "trials"}
 """What files made for earlier versions say of ``study``."""
@@ -292,20 +293,12 @@ def _with_absolute_file(override: object, folder: Path) -> object:
 def _kind(document: Document) -> type[Any]:
     """Return the schema of a document."""
     study = document.get("study", "flights")
-    if isinstance(study, str):
-        if study in KINDS:
-            return KINDS[study]
-        if study in announced("scenario"):
-            try:
-                return study_file(study)
-            except PluginError as error:
-                raise InputError(str(error)) from None
-        if is_file_part(study) or study in announced("study"):
-            return Scenario
-    known = [*KINDS, *announced("study")]
+    if not isinstance(study, str):
+        raise InputError(f"study is {study!r}; it must be one of {', '.join(KINDS)}")
+    if study in KINDS or is_file_part(study) or study in announced("study"):
+        return KINDS.get(study, Scenario)
     raise InputError(
-        f"study is {study!r}{did_you_mean(str(study), known) or ';'} it must be one of"
-        f" {', '.join(known)}, or FILE.py:NAME"
+        f"study is {study!r}{did_you_mean(study, KINDS) or ';'} it must be one of {', '.join(KINDS)}, or FILE.py:NAME"
     )
 
 

@@ -13,6 +13,7 @@ from scenarios.engine.task import Work
 from scenarios.errors import InputError
 from scenarios.scenario.load import AnyStudy
 from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.convergence import ConvergenceScenario
 from scenarios.scenario.sections.experiment import TrialList
 from scenarios.studies.checks import plugins_explained
 from scenarios.studies.study import STUDIES
@@ -34,11 +35,15 @@ def study_of(scenario: AnyStudy, name: str, overrides: Sequence[str] = ()) -> St
         from scenarios.studies.trials import TrialStudy
 
         return TrialStudy(scenario, name, overrides=overrides)
+    if isinstance(scenario, ConvergenceScenario):
+        from scenarios.studies.convergence.study import ConvergenceStudy
+
+        return ConvergenceStudy(scenario, name, overrides=overrides)
     try:
         made = STUDIES.get(scenario.study)
     except PluginError as error:
         raise InputError(str(error)) from None
-    with plugins_explained(f"study '{scenario.study}'", _of_flights(scenario)):
+    with plugins_explained(f"study '{scenario.study}'", [scenario]):
         return made(scenario, name, {name: scenario}, overrides=overrides)
 
 
@@ -82,7 +87,7 @@ def run_study(
     progress("preparing", 0, 1)
     study = study_of(scenario, name, overrides)
     factory = executor_factory or ExecutorFactory()
-    own = _of_flights(scenario) if is_file_part(scenario.study) else []
+    own = [scenario] if isinstance(scenario, Scenario) and is_file_part(scenario.study) else []
     with plugins_explained(f"study '{scenario.study}'", own) if own else nullcontext():
         return fly_study(
             study,
@@ -93,8 +98,3 @@ def run_study(
             command=command,
             launched=launched,
         )
-
-
-def _of_flights(scenario: AnyStudy) -> list[Scenario]:
-    """Return the scenario if it is one of flights, which may take parts from files."""
-    return [scenario] if isinstance(scenario, Scenario) else []

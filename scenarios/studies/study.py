@@ -11,8 +11,7 @@ STUDIES: Registry[Callable[..., Study]] = Registry(
 """Studies by the word that a scenario file has for them.
 
 Each is called as ``scenarios.studies.flight_study.FlightStudy`` is: with the scenario, its name,
-the scenarios to fly by name, and the overrides. One that has ``DOCUMENTED``, columns by the titles
-of tables, has them on the page of columns of the documentation.
+the scenarios to fly by name, and the overrides.
 """
 
 study = STUDIES.register

@@ -4,18 +4,15 @@ from collections.abc import Iterator
 
 from reference_pages.markdown import literal, plain, table
 from scenarios.cli.describe import value_text
-from scenarios.scenario.documented import (
-    DocumentedSection,
-    documented_kinds,
-    documented_sections,
-)
+from scenarios.scenario.documented import DocumentedSection, documented_sections
 from scenarios.scenario.documented_parts import (
     DIMENSIONLESS,
+    FLIGHT_STUDIES,
     DocumentedKey,
     documented_part_keys,
-    flight_studies,
 )
 from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.convergence import ConvergenceScenario
 from scenarios.scenario.sections.experiment import TrialList
 
 _HEAD = ("key", "default", "value", "meaning")
@@ -31,14 +28,17 @@ A key is a number in the unit that stands beside its default. *Acts with* names 
 where it has none it is refused.
 """
 
-_TITLES = {Scenario: "Studies of flights", TrialList: "Lists of trials"}
+_KINDS = (
+    (Scenario, "Studies of flights"),
+    (TrialList, "Lists of trials"),
+    (ConvergenceScenario, "Studies of convergence"),
+)
 
 
 def keys_page() -> str:
     """Return the page."""
     lines = [_INTRODUCTION]
-    for kind, studies in documented_kinds().items():
-        title = _TITLES.get(kind) or f"Studies of {' and '.join(studies)}"
+    for kind, title in _KINDS:
         lines += [f"## {title}", ""]
         for section in documented_sections(kind):
             lines += _section(section)
@@ -75,7 +75,7 @@ def _row(key: DocumentedKey) -> tuple[str, ...]:
     )
     range_unit = f" [{plain(key.unit)}]" if unit else ""
     about = [plain(key.meaning)]
-    if key.studies and {*key.studies} < {*flight_studies()}:
+    if key.studies and key.studies != FLIGHT_STUDIES and set(key.studies) < set(FLIGHT_STUDIES):
         about.append(f"*Studies:* {', '.join(map(plain, key.studies))}.")
     if key.conditions:
         about.append(f"*Acts with:* {plain('; '.join(key.conditions))}.")

@@ -8,7 +8,7 @@ from pydantic import Field
 from common.picture import Picture, PictureError, read_picture
 from common.run_layout import LOGO
 from scenarios.errors import InputError
-from scenarios.scenario.sections.section import Section, Title
+from scenarios.scenario.sections.section import Section
 
 Words = Annotated[str, Field(max_length=200, coerce_numbers_to_str=True)]
 
@@ -27,18 +27,6 @@ class ReportConfig(Section):
     logo: Annotated[str, Field(max_length=4096)] = ""
     """A picture for page 1: a PNG, JPEG or SVG file, whose path is relative to the scenario file.
     """
-
-
-class StudyFile(Section):
-    """A whole scenario file of a study that does not fly scenarios of flights."""
-
-    study: str
-    """The study."""
-    title: Title
-    """Title of the study in reports and lists."""
-    description: str = ""
-    """One or two sentences at the top of the report."""
-    report: ReportConfig = ReportConfig()
 
 
 def read_logo(report: ReportConfig) -> Picture | None:
