@@ -88,9 +88,6 @@ _SLOW_STEP_RATIO = 8
 They are still short against the second that a piston engine takes to change its speed.
 """
 
-_FLIGHTGEAR = '<output name="{host}" type="FLIGHTGEAR" port="{port}" protocol="UDP" rate="30"/>'
-"""JSBSim's output of FlightGear's packets, 30 a second."""
-
 
 class Fdm:
     """One aircraft in JSBSim.
@@ -328,25 +325,27 @@ class Fdm:
         for _ in range(count):
             self.run()
 
-    def stream_to_flightgear(self, host: str, port: int) -> None:
-        """Send the aircraft to FlightGear from now on, and run no faster than the clock.
+    def stream(self, output: str) -> None:
+        """Send the aircraft to another program from now on, and run no faster than the clock.
 
         The flight stays the same to the last bit. Place the aircraft next: JSBSim's outputs begin
         with its initial conditions.
 
+        Parameters
+        ----------
+        output : JSBSim's XML element ``<output>``, which says where to and what
+
         Raises
         ------
-        AircraftError : JSBSim does not take the address
+        AircraftError : JSBSim does not take it
         """
         with tempfile.TemporaryDirectory() as folder, silenced():
-            path = Path(folder) / "flightgear.xml"
-            path.write_text(_FLIGHTGEAR.format(host=host, port=port), encoding="utf-8")
+            path = Path(folder) / "output.xml"
+            path.write_text(output, encoding="utf-8")
             accepted = self._exec.set_output_directive(str(path))
             self._exec.enable_output()
         if not accepted:
-            raise AircraftError(
-                f"JSBSim does not send to FlightGear at {host}:{port}; check the address"
-            )
+            raise AircraftError(f"JSBSim does not take the output {output}; check its address")
         self.run = paced(self._exec.run, self.time_step)
 
     @contextlib.contextmanager

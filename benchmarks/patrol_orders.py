@@ -9,6 +9,7 @@ import time
 
 import numpy as np
 
+from extensions.patrol.keys import PatrolKeys
 from extensions.patrol.order import Order, Prospect, exact_order, inserted_order
 from extensions.patrol.ships import Patrol, sampled_patrol
 from scenarios.scenario.load import load_study
@@ -44,7 +45,7 @@ def main() -> None:
 
 def expected(patrol: Patrol, scenario: Scenario) -> Prospect:
     """Return what a patrol expects before it begins."""
-    config, count = scenario.patrol, len(patrol.ships)
+    config, count = PatrolKeys.of(scenario).patrol, len(patrol.ships)
     return Prospect(
         ships=patrol.movers,
         service=[config.service_s] * count,

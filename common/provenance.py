@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from common.command_line import PROGRAM
+from common.registry import announced
 
 _PACKAGES = (
     "jsbsim",
@@ -27,9 +28,6 @@ _PACKAGES = (
     "typst",
 )
 
-
-_HOSTS = ("--scheduler", "--flightgear")
-"""Options whose values name a host."""
 
 _FOLDERS = re.compile(r"""(?<![^\s=,'"\[({])(?:~|[A-Za-z]:)?[/\\](?:[^,'"\])}]*[/\\])?""")
 """The folders of an absolute path, up to its last name."""
@@ -48,6 +46,8 @@ def command_line(module: str, given: Sequence[str]) -> str:
     module : that was run, if it was not the console command
     given : ``sys.argv``: the program, and its arguments
     """
+    # The address of a cluster, and of a program that shows a flight.
+    hosts = ("--scheduler", *(f"--{name.replace('_', '-')}" for name in announced("viewer")))
     program = PROGRAM if Path(given[0]).stem == PROGRAM else f"python -m {module}"
     shown = []
     is_host = False
@@ -55,12 +55,12 @@ def command_line(module: str, given: Sequence[str]) -> str:
         option, equals, _ = argument.partition("=")
         if is_host:
             text = "HOST:PORT"
-        elif equals and option in _HOSTS:
+        elif equals and option in hosts:
             text = f"{option}=HOST:PORT"
         else:
             text = without_folders(argument)
         shown.append(shlex.quote(text))
-        is_host = argument in _HOSTS
+        is_host = argument in hosts
     return " ".join([program, *shown])
 
 

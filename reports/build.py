@@ -166,27 +166,29 @@ def made_exporter(name: str) -> "Exporter":
 def stream_run(
     directory: Path, address: str, flight_id: str | None = None
 ) -> tuple[str, int, float]:
-    """Send a flight of a run to ``udp://HOST:PORT`` in real time; return its name, the number of
-    messages, its duration [s].
+    """Send a flight of a run to an address in real time; return its name, the number of messages,
+    its duration [s].
 
     Raises
     ------
-    ReportError : the run cannot be read, or has no such flight, or the address is not of that form
+    ReportError : the run cannot be read, or has no such flight, or nothing can be sent to the
+        address
+    PluginError : what sends there does not load
     """
+    from reports.export.exporter import stream_to
     from reports.export.geographic import recorded_flights
-    from reports.export.stream import stream_address, stream_flight
     from reports.run.files import damage_named
 
-    host = stream_address(address)
+    stream = stream_to(address)
     run = _run_of(directory, flight_id)
     with damage_named(directory):
         flight = next(recorded_flights(run))
-        seconds = flight.time[-1] - flight.time[0]
+        seconds = float(flight.time[-1] - flight.time[0])
         print(
             f"streaming {flight.flight_id}, {seconds:.0f} s of flight, to {address}; Ctrl-C ends it",
             file=sys.stderr,
         )
-        return stream_flight(flight, host)
+        return flight.flight_id, stream.send(flight), seconds
 
 
 def _run_of(directory: Path, flight_id: str | None) -> "RunData":
@@ -244,8 +246,8 @@ def command(
     stream: Annotated[
         str | None,
         typer.Option(
-            metavar="udp://HOST:PORT",
-            help="Send a flight to a ground station in real time, as MAVLink.",
+            metavar="SCHEME://ADDRESS",
+            help="Send a flight to another program in real time, as to udp://HOST:PORT.",
         ),
     ] = None,
     overrides: Annotated[

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 from common.provenance import without_folders
 from common.registry import PluginError, announced, is_file_part, load_announced
-from common.run_layout import MANIFEST
 from reports.design.content import design_content
 from reports.document.blocks import (
     FAILURES_MAX,
@@ -39,9 +38,6 @@ STUDIES: dict[str, Callable[[RunData], Findings]] = {
 announces more of them in the group ``plume_flight_study.report``, by the name of their study.
 """
 
-FLIGHT_ENTRIES = ("title", "trials", "trial_parameters", "modes")
-"""What reports on flights need of a manifest."""
-
 
 def content(run: RunData, settings: Mapping[str, str] | None = None) -> Content:
     """Return everything that a report of ``run`` shows.
@@ -58,10 +54,8 @@ def content(run: RunData, settings: Mapping[str, str] | None = None) -> Content:
         logo is no picture
     """
     made = _findings_of(run)
-    needed = FLIGHT_ENTRIES if made in (flights_content, paper_content) else ()
-    refuse_other_version(run, needed)
-    head = letterhead(run, settings or {})
     found = made(run)
+    head = letterhead(run, settings or {})
     figures = Section(anchor="figures", title="Key figures", blocks=_figures(found.verdict))
     # What is missing is known once everything has been asked for; it stands first.
     shown = [_without(found.picture, section) for section in found.sections]
@@ -97,7 +91,7 @@ def _findings_of(run: RunData) -> Callable[[RunData], Findings]:
             return made
         if is_file_part(study) or study in announced("study"):
             return flights_content
-    known = sorted({*STUDIES, *announced("report")})
+    known = [*STUDIES, *sorted(announced("report"))]
     raise ReportError(
         f"'{run.path}': study is {study!r}, which has no report; those that have one: {', '.join(known)}"
     )
@@ -122,20 +116,6 @@ def _without(picture: Chart | None, section: Section) -> Section:
             if not (picture and isinstance(of, Chart) and of.name == picture.name)
         ],
     )
-
-
-def refuse_other_version(run: RunData, needed: Sequence[str]) -> None:
-    """Refuse a run whose manifest lacks an entry.
-
-    Raises
-    ------
-    ReportError : it names the first one that is missing
-    """
-    if missing := [entry for entry in needed if entry not in run.manifest]:
-        raise ReportError(
-            f"'{run.path}' was flown by another version: its {MANIFEST} has no '{missing[0]}'; report on it with that version, or"
-            " run the scenario again in another --out"
-        )
 
 
 def _figures(verdict: Verdict) -> list[Block]:

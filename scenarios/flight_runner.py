@@ -26,7 +26,7 @@ from scenarios.flight.guard_belief import GuardBelief
 from scenarios.flight.outcome import Outcome
 from scenarios.flight.plume_readings import BELIEF_COLUMNS
 from scenarios.flight.record import HISTORY_COLUMNS, FlightRecord
-from scenarios.flight.release import release
+from scenarios.flight.release import Viewer, release
 from scenarios.flight.time_history import history_files
 from scenarios.instruments.fuel_estimate import repeated_figures, with_verdict
 from scenarios.instruments.instrument import (
@@ -67,7 +67,7 @@ class FlightWork:
     setup : of the aircraft, if there is one
     spreads : predicted for flights in turbulence
     refusal : why flights in six degrees of freedom cannot be flown, or nothing
-    viewer : host and port of a FlightGear that shows flights in real time, or none
+    viewer : shows flights in real time, or none
     """
 
     experiments: tuple[Experiment, ...]
@@ -75,7 +75,7 @@ class FlightWork:
     setup: VehicleSetup | None
     spreads: PredictedSpreads
     refusal: str = ""
-    viewer: tuple[str, int] | None = None
+    viewer: Viewer | None = None
 
     @cached_property
     def columns(self) -> Table:

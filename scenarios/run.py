@@ -2,32 +2,72 @@
 needed.
 """
 
+import functools
+import inspect
 import os
-import re
 import shlex
 import sys
+from collections.abc import Callable, Mapping
 from datetime import datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
 from common.command_line import INTERRUPTED, refuse, run_command
 from common.interrupt import terminated_like_interrupted
+from common.registry import PluginError, announced, load_announced
 from common.run_layout import REPORT_HTML, REPORT_PDF, flight_of
 
 if TYPE_CHECKING:
     from scenarios.engine.executors import ExecutorFactory
     from scenarios.engine.runner import Launch, RunResult
+    from scenarios.flight.release import Viewer
 
 MET, NOT_MET, UNEXPLAINED = 0, 1, 3
 
 _WATCHED_TIME_LIMIT = 1e6
 """Longest computing time of a flight that is shown in real time [s]."""
 
-_PORT_MAX = 65535
+VIEWER = "viewer"
+"""Group of entry points, ``plume_flight_study.viewer``: what shows a flight that is replayed, a
+``scenarios.flight.release.Viewer``. Its name is an option of the command.
+"""
 
 
+def _option(viewer: str) -> str:
+    return f"--{viewer.replace('_', '-')}"
+
+
+def with_viewers(command: Callable[..., None]) -> Callable[..., None]:
+    """Return a command with an option for each viewer that an installed package announces."""
+    given = inspect.signature(command)
+    parameters = [of for of in given.parameters.values() if of.kind is not of.VAR_KEYWORD]
+    for name in sorted(announced(VIEWER)):
+        option = typer.Option(
+            _option(name),
+            metavar="ADDRESS",
+            help=f"Replay a flight in real time, shown by {name} at this address.",
+        )
+        parameters.append(
+            inspect.Parameter(
+                name,
+                inspect.Parameter.KEYWORD_ONLY,
+                default=None,
+                annotation=Annotated[str | None, option],
+            )
+        )
+
+    @functools.wraps(command)
+    def with_options(*args: Any, **options: Any) -> None:
+        command(*args, **options)
+
+    with_options.__signature__ = given.replace(parameters=parameters)  # type: ignore[attr-defined]
+    with_options.__annotations__ = {of.name: of.annotation for of in parameters}
+    return with_options
+
+
+@with_viewers
 def command(
     name: Annotated[
         str | None,
@@ -83,16 +123,10 @@ def command(
             help="Directory with JSBSim models of your own, DIR/NAME/NAME.xml, to choose from.",
         ),
     ] = None,
-    flightgear: Annotated[
-        str | None,
-        typer.Option(
-            metavar="HOST:PORT",
-            help="Replay a flight in real time, shown by FlightGear at this address.",
-        ),
-    ] = None,
     list_scenarios: Annotated[
         bool, typer.Option("--list", help="List the scenarios of the catalog and exit.")
     ] = False,
+    **addresses: str | None,
 ) -> None:
     """Fly a scenario and write a report.
 
@@ -111,7 +145,7 @@ def command(
         else:
             # A replay that is watched takes as long as the flight.
             limits = Limits.given(
-                time_limit if flightgear is None else _WATCHED_TIME_LIMIT, memory_limit
+                _WATCHED_TIME_LIMIT if any(addresses.values()) else time_limit, memory_limit
             )
             executor_factory = ExecutorFactory(
                 jobs=jobs or os.cpu_count() or 1,
@@ -127,7 +161,7 @@ def command(
                 overrides or [],
                 resume,
                 no_report,
-                flightgear,
+                addresses,
                 aircraft_dir,
             )
     except InputError as error:
@@ -157,7 +191,7 @@ def _run(
     overrides: list[str],
     resume: bool,
     no_report: bool,
-    flightgear: str | None,
+    addresses: Mapping[str, str | None],
     aircraft_dir: Path | None,
 ) -> int:
     from scenarios.errors import InputError
@@ -180,7 +214,7 @@ def _run(
         raise InputError(
             f"'{name}' is a flight, which is replayed unchanged; leave out --set and --seed, or fly its scenario instead"
         )
-    viewer = _viewer(flightgear, replayed=replayed)
+    viewer = _viewer(addresses, replayed=replayed)
     if aircraft_dir is not None and not replayed:
         from scenarios.scenario.aircraft_folder import aircraft_from
 
@@ -279,20 +313,24 @@ def _again(directory: Path, *, out: Path | None, resume: bool) -> str:
     return shlex.join([PROGRAM, "run", *typed, *there, *([] if resume else ["--resume"])])
 
 
-def _viewer(address: str | None, *, replayed: bool) -> tuple[str, int] | None:
-    """Return host and port of FlightGear, if a flight is to be shown there."""
+def _viewer(addresses: Mapping[str, str | None], *, replayed: bool) -> "Viewer | None":
+    """Return what shows the flight, if that is asked for."""
     from scenarios.errors import InputError
 
-    if address is None:
+    asked = {name: address for name, address in addresses.items() if address is not None}
+    if not asked:
         return None
-    if not replayed:
-        raise InputError("--flightgear shows the replay of a flight; give RUN_DIR/flights/ID")
-    host, _, port = address.rpartition(":")
-    if not (
-        re.fullmatch(r"[A-Za-z0-9.\-]+", host) and port.isdecimal() and 0 < int(port) <= _PORT_MAX
-    ):
-        raise InputError(f"--flightgear is '{address}'; give HOST:PORT, as in localhost:5550")
-    return host, int(port)
+    if len(asked) > 1 or not replayed:
+        raise InputError(
+            f"{' and '.join(map(_option, asked))}: one program at a time shows the replay of a flight;"
+            " give RUN_DIR/flights/ID"
+        )
+    (name, address), *_ = asked.items()
+    try:
+        made: Viewer = load_announced(VIEWER, name)(address)
+    except PluginError as error:
+        raise InputError(str(error)) from None
+    return made
 
 
 def _report(directory: Path, *, changed: bool, wanted: bool) -> int:

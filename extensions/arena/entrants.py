@@ -6,6 +6,7 @@ from typing import Any
 
 from common.registry import PluginError, is_file_part
 from extensions.arena import STANDOFF, TRACKING
+from extensions.arena.keys import ArenaKeys
 from gnc.laws import ON_CIRCLE, ON_OSCILLATION, STEERING_LAWS
 from scenarios.errors import InputError
 from scenarios.scenario.keys import displaced
@@ -72,10 +73,8 @@ def entrants_of(scenario: Scenario) -> tuple[list[Entrant], list[Refused]]:
     ------
     InputError : a law does not exist, or is named twice for a task, or none takes part
     """
-    listed = {
-        TRACKING: [*scenario.arena.tracking, *scenario.laws],
-        STANDOFF: [*scenario.arena.standoff, *scenario.laws],
-    }
+    arena, added = ArenaKeys.of(scenario).arena, ArenaKeys.of(scenario).laws
+    listed = {TRACKING: [*arena.tracking, *added], STANDOFF: [*arena.standoff, *added]}
     entrants: list[Entrant] = []
     refused: list[Refused] = []
     for law in dict.fromkeys([*listed[TRACKING], *listed[STANDOFF]]):
@@ -128,7 +127,7 @@ def conditions_of(scenario: Scenario, name: str, entrants: list[Entrant]) -> dic
     InputError : there is no condition, or one sets a key that does not exist or a value out of
         range
     """
-    conditions = scenario.arena.conditions
+    conditions = ArenaKeys.of(scenario).arena.conditions
     if not conditions:
         raise InputError(
             'arena.conditions is empty; give one at least, as in [[arena.conditions]] name = "calm", title = "Calm"'
@@ -150,7 +149,7 @@ def conditions_of(scenario: Scenario, name: str, entrants: list[Entrant]) -> dic
             "arena": {},
             "laws": (),
             "cases": cases_of(entrants, {}),
-            "flight.measured_s": scenario.arena.window_s,
+            "flight.measured_s": ArenaKeys.of(scenario).arena.window_s,
         }
         try:
             trials[condition.name] = with_values(

@@ -5,12 +5,13 @@ in the same air.
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
-from typing import Any, ClassVar
+from typing import Any
 
 from common.columns import Column, Table, described
 from common.run_layout import DRAWS
 from extensions.arena import ARENA, TUNING_TABLE, WINDOW_TABLE
 from extensions.arena.entrants import Entrant, cases_of, conditions_of, entrants_of
+from extensions.arena.keys import ArenaKeys
 from extensions.arena.results import estimates, limits, tuned_record
 from extensions.arena.tuning import Tuner
 from extensions.arena.window import (
@@ -48,6 +49,13 @@ TUNING_COLUMNS = described(
 )
 """Of ``tuning.csv``: a row per setting that the tuner of an arena tried."""
 
+
+TABLES: Mapping[str, Table] = {
+    WINDOW_TABLE: {name: FLIGHT_COLUMNS[name] for name in ("flight_id", "trial")}
+    | WINDOW_COLUMNS
+    | MEASURED_COLUMNS,
+    TUNING_TABLE: TUNING_COLUMNS,
+}
 
 _GUIDANCE = "guidance."
 
@@ -122,13 +130,6 @@ class ArenaStudy(FlightStudy):
 
     chooses_flights = True
 
-    DOCUMENTED: ClassVar[Mapping[str, Table]] = {
-        WINDOW_TABLE: {name: FLIGHT_COLUMNS[name] for name in ("flight_id", "trial")}
-        | WINDOW_COLUMNS
-        | MEASURED_COLUMNS,
-        TUNING_TABLE: TUNING_COLUMNS,
-    }
-
     def __init__(
         self,
         scenario: Scenario,
@@ -137,12 +138,12 @@ class ArenaStudy(FlightStudy):
         *,
         overrides: Sequence[str] = (),
     ) -> None:
-        self._arena, self._seed = scenario.arena, scenario.seed
+        self._arena, self._seed = ArenaKeys.of(scenario).arena, scenario.seed
         super().__init__(scenario, name, trials, overrides=overrides)
         keys = dict.fromkeys(
             f"guidance.{key}" for entrant in self.entrants for key in entrant.defaults
         )
-        self.tables |= {name: dict(table) for name, table in self.DOCUMENTED.items()}
+        self.tables |= {name: dict(table) for name, table in TABLES.items()}
         self.tables[DRAWS] |= described(dict.fromkeys(keys, ANY_KEY))
         self._chosen: dict[str, Mapping[str, float]] = {}
 

@@ -16,6 +16,7 @@ import numpy.typing as npt
 from scipy.optimize import minimize
 
 from extensions.arena.entrants import TUNING, Entrant, draws_left
+from extensions.arena.keys import ArenaConfig
 from extensions.arena.window import window_figures
 from scenarios.engine.task import Row
 from scenarios.experiment.requests import Experiment
@@ -25,7 +26,6 @@ from scenarios.flight.release import release
 from scenarios.planning.planner import plan_flight
 from scenarios.scenario.load import with_values
 from scenarios.scenario.scenario import Scenario
-from scenarios.scenario.sections.experiment import ArenaConfig
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 
 _STEP = 0.15

@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from scenarios.scenario.sections.report import StudyFile
 from scenarios.scenario.sections.section import Positive, Section
+from scenarios.scenario.study_keys import StudyFile
 
 LawName = Literal["lyapunov", "cascade", "cascade_cut"]
 
@@ -73,7 +73,5 @@ class ConvergenceScenario(StudyFile):
     """Many kinematic pursuits from random initial states."""
     fidelity: Literal["kinematic"] = "kinematic"
     """The paper's vehicle, eq. (1)."""
-    seed: Annotated[int, Field(ge=0, le=2**63 - 1)] = 1
-    """Seed of the initial states and of the references [-]."""
     ensemble: Ensemble = Ensemble()
     guidance: EnsembleGuidance = EnsembleGuidance()

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -91,6 +91,10 @@ COLUMNS = described(
     }
 )
 """Columns of the table, in order; a trajectory that did not settle has no settling time."""
+
+TABLES: Mapping[str, Table] = {
+    "summary.csv and counterexamples.csv, of a study of convergence": COLUMNS
+}
 
 Array = npt.NDArray[np.float64]
 
@@ -395,15 +399,10 @@ class ConvergenceStudy:
 
     what = "trajectories"
 
-    DOCUMENTED: ClassVar[Mapping[str, Table]] = {
-        "summary.csv and counterexamples.csv, of a study of convergence": COLUMNS
-    }
-
     def __init__(
         self,
         scenario: ConvergenceScenario,
         name: str,
-        _trials: Mapping[str, ConvergenceScenario],
         *,
         overrides: Sequence[str] = (),
     ) -> None:
@@ -427,6 +426,7 @@ class ConvergenceStudy:
     def initial_manifest(self) -> dict[str, Any]:
         """Return the manifest as written before the first trajectory."""
         return self._manifest | {
+            "not_compared": "which has no flights to compare",
             "trajectories_planned": self.planned,
             "converged_distance_m": DISTANCE_CONVERGED,
             "converged_phi_rad": PHI_CONVERGED,

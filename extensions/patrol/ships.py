@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from extensions.patrol.keys import PatrolKeys
 from extensions.patrol.route import Air, Mover, least_distance
 from scenarios.errors import InputError
 from scenarios.experiment.draws import sampled_flight
@@ -100,7 +101,7 @@ def sampled_patrol(study: str, scenario: Scenario, number: int) -> Patrol:
             air.scenario.model_copy(update={"draws": by_ship, "speed_ratio": scenario.speed_ratio}),
             i,
         )
-        for i in range(scenario.patrol.ships)
+        for i in range(PatrolKeys.of(scenario).patrol.ships)
     ]
     generator = np.random.default_rng(
         np.random.SeedSequence([scenario.seed, zlib.crc32(b"places"), number])
@@ -134,7 +135,7 @@ def _placed(
     velocities: Sequence[complex], scenario: Scenario, generator: np.random.Generator
 ) -> list[Mover]:
     """Return ships at random places that stay apart from each other."""
-    p = scenario.patrol
+    p = PatrolKeys.of(scenario).patrol
     placed: list[Mover] = []
     for velocity in velocities:
         for _ in range(_TRIES):

@@ -9,15 +9,15 @@ import math
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
 
-from common.columns import Table
 from common.run_layout import HISTORY_SUFFIX, SUMMARY
 from extensions.patrol import PHASES, SHIPS
 from extensions.patrol.counts import PatrolCounts
+from extensions.patrol.keys import PatrolKeys
 from extensions.patrol.order import Prospect, best_order, ends_of
 from extensions.patrol.route import Air, Leg, Mover, nearest_on, route
 from extensions.patrol.ships import Patrol, sampled_patrol
@@ -76,12 +76,6 @@ class PatrolStudy(FlightStudy):
     what = "patrols"
     chooses_flights = True
 
-    DOCUMENTED: ClassVar[Mapping[str, Table]] = {
-        "summary.csv, of patrols": PATROL_COLUMNS,
-        SHIPS: SHIP_COLUMNS,
-        PHASES: PHASE_COLUMNS,
-    }
-
     def __init__(
         self,
         scenario: Scenario,
@@ -95,6 +89,11 @@ class PatrolStudy(FlightStudy):
         ((_, self._patrols),) = self.trials.items()
         sampled_patrol(name, self._patrols, 0)
         self.tables = {SUMMARY: PATROL_COLUMNS, SHIPS: SHIP_COLUMNS, PHASES: PHASE_COLUMNS}
+
+    def initial_manifest(self) -> dict[str, Any]:
+        """Return the manifest as written before the first patrol."""
+        reason = "whose rows are patrols of several ships and not single flights"
+        return super().initial_manifest() | {"not_compared": reason}
 
     def work(self, run: RunDirectory) -> "PatrolWork":
         """Return the work on its patrols, after writing the aircraft's autopilot into the run
@@ -112,7 +111,7 @@ class PatrolStudy(FlightStudy):
 
     def summary(self, journal: Journal) -> StudySummary:
         """Return the result so far."""
-        rows, config = list(journal.rows(SUMMARY)), self._patrols.patrol
+        rows, config = list(journal.rows(SUMMARY)), PatrolKeys.of(self._patrols).patrol
         counts = PatrolCounts.of(
             rows,
             planned=self.planned,
@@ -178,7 +177,7 @@ def _check(scenario: Scenario) -> None:
             f"study is 'patrol' beside {' and '.join(placed)}; a flight beside a ship begins where"
             " the way to it ends, start.distance_m away: remove them"
         )
-    config, reach = scenario.patrol, scenario.start.distance_m[1]
+    config, reach = PatrolKeys.of(scenario).patrol, scenario.start.distance_m[1]
     if scenario.keepout.radius_m + config.clearance_m > reach:
         raise InputError(
             "keepout.radius_m and patrol.clearance_m are"
@@ -278,7 +277,7 @@ class PatrolWork(FlightWork):
 
     @property
     def _endurance(self) -> float:
-        return self._scenario.patrol.endurance_s
+        return PatrolKeys.of(self._scenario).patrol.endurance_s
 
     @property
     def _reach(self) -> float:
@@ -308,7 +307,7 @@ class PatrolWork(FlightWork):
 
     def _patrolled(self, patrol: Patrol, ships: list[Row]) -> _Uav:
         """Serve ships until none can be served any more; their rows are completed."""
-        config = self._scenario.patrol
+        config = PatrolKeys.of(self._scenario).patrol
         uav, left = _Uav(), list(range(len(ships)))
         count = len(ships)
         prospect = self._prospect(
@@ -352,7 +351,7 @@ class PatrolWork(FlightWork):
             uav.go(leg, named, TRANSIT)
         near = [leg.distance(other) for leg in legs for other in others]
         start = _start_beside(target, patrol.ships[ship].course, legs[-1], patrol.air)
-        duration = min(self._scenario.patrol.patience_s, self._endurance - uav.time)
+        duration = min(PatrolKeys.of(self._scenario).patrol.patience_s, self._endurance - uav.time)
         flown = self._flown(
             patrol, ship, row["flight_id"], start | {"flight.duration_max_s": duration}
         )
@@ -405,7 +404,7 @@ class PatrolWork(FlightWork):
         service, chance = [], []
         known_axis = {
             "following.plume": "told",
-            "flight.duration_max_s": self._scenario.patrol.patience_s,
+            "flight.duration_max_s": PatrolKeys.of(self._scenario).patrol.patience_s,
             "start.range_m": self._reach,
         }
         for ship, row in enumerate(ships):

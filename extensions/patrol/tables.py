@@ -1,11 +1,12 @@
 """Tables of a patrol: their files, their columns, and what a patrol's row says."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from common.columns import Column, described
+from common.columns import Column, Table, described
 from common.physics import SECONDS_PER_HOUR
+from extensions.patrol import PHASES, SHIPS
 from extensions.patrol.route import Leg
 from extensions.patrol.ships import Patrol
 from scenarios.engine.task import Row
@@ -124,6 +125,12 @@ PHASE_COLUMNS = described(
     }
 )
 """Of ``phases.csv``: a row per stretch of a patrol, in its order."""
+
+TABLES: Mapping[str, Table] = {
+    "summary.csv, of patrols": PATROL_COLUMNS,
+    SHIPS: SHIP_COLUMNS,
+    PHASES: PHASE_COLUMNS,
+}
 
 TRANSIT, APPROACH, SEARCHING, MEASURING, LEAVING = (
     "transit",

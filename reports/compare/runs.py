@@ -7,19 +7,17 @@ from typing import Any
 
 from common.run_layout import SUMMARY
 from reports.errors import ReportError
-from reports.registry import FLIGHT_ENTRIES, refuse_other_version
 from reports.run.files import damage_named
-from reports.run.run_data import RunData, read_run
+from reports.run.run_data import FLIGHT_ENTRIES, RunData, read_run, refuse_other_version
 from reports.run.trials import Trial, read_trials
 
 RUNS_MAX = 6
 """Runs that fit side by side."""
 
 _NOT_COMPARED = {
-    **dict.fromkeys(("design", "measurement", "convergence"), "which has no flights to compare"),
-    "patrol": "whose rows are patrols of several ships and not single flights",
+    **dict.fromkeys(("design", "measurement"), "which has no flights to compare"),
 }
-"""Studies whose runs are not compared, and why."""
+"""Studies whose runs are not compared, and why; a study that others add says it in its manifest."""
 
 _ENTRIES = (
     *FLIGHT_ENTRIES, "name", "overrides", "config_hash", "fingerprint", "packages", "git_revision", "python", "platform",
@@ -90,7 +88,8 @@ def read_runs(paths: Sequence[Path]) -> list[Run]:
 
 def _read(letter: str, path: Path) -> Run:
     data = read_run(path)
-    if reason := _NOT_COMPARED.get(str(study := data.manifest.get("study"))):
+    study = str(data.manifest.get("study"))
+    if reason := data.manifest.get("not_compared") or _NOT_COMPARED.get(study):
         raise ReportError(f"'{path}' is of the study '{study}', {reason}; name a run of flights")
     refuse_other_version(data, _ENTRIES)
     if missing := [name for name in _COLUMNS if name not in data.summary]:

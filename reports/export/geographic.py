@@ -83,8 +83,10 @@ class GeographicFlight:
     heading, pitch, roll : of the aircraft, heading from true north [deg]
     airspeed, climb_rate : [m/s]
     throttle : [-]
+    wind_north, wind_east : velocity of the air by true north, as estimated on board [m/s]
     readings : of the sniffer at each sample, by the name of their column of ``READINGS``; none
         without a sniffer
+    history, row : everything that was recorded at each sample, and its row of the summary
     vessel, vessel_heading : the ship, or none, and where her bow points from true north, at rest as
         before [deg]
     plume_end : a point of the plume's axis, ``PLUME_LENGTH`` from the funnel, or none
@@ -104,7 +106,11 @@ class GeographicFlight:
     airspeed: Array
     climb_rate: Array
     throttle: Array
+    wind_north: Array
+    wind_east: Array
     readings: Mapping[str, Array]
+    history: pd.DataFrame
+    row: Mapping[str, object]
     vessel: Body | None
     vessel_heading: Array
     plume_end: Body | None
@@ -198,7 +204,11 @@ def _flight(run: RunData, row: dict[str, object], history: pd.DataFrame) -> Geog
     )
     north, east = of("north_m"), of("east_m")
     uav = _body(frame, north, east, altitude, of("velocity_north_mps"), of("velocity_east_mps"))
-    turned = np.degrees(frame.true_north(np.radians(uav.latitude), np.radians(uav.longitude)))
+    north_of_frame = frame.true_north(np.radians(uav.latitude), np.radians(uav.longitude))
+    turned = np.degrees(north_of_frame)
+    wind_north, wind_east = _by_true_north(
+        north_of_frame, of("wind_north_mps", math.nan), of("wind_east_mps", math.nan)
+    )
     heading = column(history, "heading_rad") if "heading_rad" in history else of("course_rad")
     config = flight_config(run, row)
     funnel = source_height(config) if "plume" in config else float(commanded[0])
@@ -237,11 +247,15 @@ def _flight(run: RunData, row: dict[str, object], history: pd.DataFrame) -> Geog
         airspeed=of("airspeed_mps"),
         climb_rate=of("climb_rate_mps"),
         throttle=of("throttle"),
+        wind_north=wind_north,
+        wind_east=wind_east,
         readings={
             name: column(history, name)
             for name in READINGS
             if name in history and history[name].notna().any()
         },
+        history=history,
+        row=row,
         vessel=vessel,
         vessel_heading=bow,
         plume_end=plume_end,
@@ -256,13 +270,21 @@ def _body(
 ) -> Body:
     """Return a body from what it is in a local frame [m, m/s]."""
     latitude, longitude = frame.to_geodetic(north, east)
-    turned = frame.true_north(latitude, longitude)
+    true_north, true_east = _by_true_north(frame.true_north(latitude, longitude), v_north, v_east)
     return Body(
         latitude=np.degrees(latitude),
         longitude=np.degrees(longitude),
         altitude=altitude,
-        north=np.cos(turned) * v_north + np.sin(turned) * v_east,
-        east=np.cos(turned) * v_east - np.sin(turned) * v_north,
+        north=true_north,
+        east=true_east,
+    )
+
+
+def _by_true_north(turned: Array, north: Array, east: Array) -> tuple[Array, Array]:
+    """Return a velocity of a local frame by true north, given the angle between both [rad]."""
+    return (
+        np.cos(turned) * north + np.sin(turned) * east,
+        np.cos(turned) * east - np.sin(turned) * north,
     )
 
 

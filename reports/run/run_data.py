@@ -1,7 +1,7 @@
 """A run directory as read from disk."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -39,6 +39,10 @@ WITHOUT_SUMMARY = ("design", "measurement")
 
 WITH_SECTIONS = ("sniffer",)
 """Instruments that have sections of their own in reports; the figures of others share one."""
+
+
+FLIGHT_ENTRIES = ("title", "trials", "trial_parameters", "modes")
+"""What reports on flights need of a manifest."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -166,6 +170,20 @@ class RunData:
     def crossings_of(self, flight_id: str) -> pd.DataFrame:
         """Return the crossings of a flight."""
         return self.crossings[self.crossings["flight_id"] == flight_id]
+
+
+def refuse_other_version(run: RunData, needed: Sequence[str] = FLIGHT_ENTRIES) -> None:
+    """Refuse a run whose manifest lacks an entry, by default one that reports on flights need.
+
+    Raises
+    ------
+    ReportError : it names the first one that is missing
+    """
+    if missing := [entry for entry in needed if entry not in run.manifest]:
+        raise ReportError(
+            f"'{run.path}' was flown by another version: its {MANIFEST} has no '{missing[0]}'; report on it with that version, or"
+            " run the scenario again in another --out"
+        )
 
 
 def read_run(path: Path) -> RunData:

@@ -13,7 +13,7 @@ from common.text import at_or_below
 from reports.errors import ReportError
 from reports.run.columns import Array, column, flights_flown
 from reports.run.flight_config import Config, flight_config, keepout_shape
-from reports.run.run_data import RunData
+from reports.run.run_data import RunData, refuse_other_version
 from reports.run.table_file import REMEDY
 
 Parameters = dict[str, Any]
@@ -231,8 +231,9 @@ def read_trials(run: RunData) -> list[Trial]:
 
     Raises
     ------
-    KeyError : the manifest names no trials
+    ReportError : the manifest is of another version, and names no trials
     """
+    refuse_other_version(run)
     return [
         Trial(
             run=run,

@@ -10,11 +10,12 @@ from scenarios.scenario.documented import (
     DocumentedSection,
     documented_keys,
     documented_sections,
+    file_kinds,
     similar_key,
 )
 from scenarios.scenario.documented_parts import PART_SECTIONS, DocumentedKey, documented_part_keys
 from scenarios.scenario.overrides import as_toml
-from scenarios.scenario.sections.convergence import ConvergenceScenario
+from scenarios.scenario.sections.experiment import TrialList
 
 _WIDTH = 100
 _INDENT = 10
@@ -56,7 +57,7 @@ def described(name: str | None = None) -> list[str]:
         for key in documented_keys()
         if key.key.replace(".0", "") == plain or (plain == "nu" and key.key == "sweep")
     ]
-    kinds = (documented_sections(), documented_sections(ConvergenceScenario))
+    kinds = (documented_sections(kind) for kind in file_kinds() if kind is not TrialList)
     sections = next(
         filter(
             None,

@@ -24,7 +24,7 @@ def export(
         list[str] | None,
         typer.Option(
             metavar="NAME,...",
-            help="Formats: kmz, acmi, czml, mcap, netcdf, tlog, geojson, tracks_csv, or FILE.py:NAME.",
+            help="Formats, as kmz, geojson, netcdf or tracks_csv, those of extensions, or FILE.py:NAME.",
         ),
     ] = None,
     flight: Annotated[
@@ -33,8 +33,8 @@ def export(
     stream: Annotated[
         str | None,
         typer.Option(
-            metavar="udp://HOST:PORT",
-            help="Send a flight to a ground station in real time, as MAVLink.",
+            metavar="SCHEME://ADDRESS",
+            help="Send a flight to another program in real time, as to udp://HOST:PORT.",
         ),
     ] = None,
 ) -> None:

@@ -3,6 +3,7 @@
 from scenarios.experiment.requests import FlightRequest
 from scenarios.scenario.effect import unused
 from scenarios.scenario.sections.experiment import SweepConfig
+from scenarios.scenario.study_keys import ADDED
 
 
 def scenario_file(request: FlightRequest, *, title: str) -> bytes:
@@ -38,9 +39,8 @@ def scenario_file(request: FlightRequest, *, title: str) -> bytes:
         "cases",
         "draws",
         "laws",
-        "arena",
-        "patrol",
         "report",
+        *(name for keys in ADDED for name in keys.names()),
     ):
         document.pop(experiment, None)
     # It is of the experiment, and not of this flight.

@@ -1,5 +1,8 @@
 """The vehicle at the start of a flight."""
 
+from typing import Protocol
+
+from aircraft.fdm import Fdm
 from aircraft.wind import CALM
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from scenarios.planning.flight_plan import FlightPlan
@@ -7,6 +10,19 @@ from scenarios.vehicles.jsbsim import JsbsimVehicle
 from scenarios.vehicles.kinematic import KinematicVehicle
 from scenarios.vehicles.vehicle import Vehicle
 from scenarios.vehicles.vehicle_setup import VehicleSetup
+
+
+class Viewer(Protocol):
+    """Another program that shows an aircraft while its flight is replayed, in real time.
+
+    Its class is called with the address that the user gives, and an installed package announces it
+    in the group ``plume_flight_study.viewer``. Its name becomes an option of ``plume-flight run``.
+    An address that is none is refused by an ``InputError``.
+    """
+
+    def show(self, fdm: Fdm) -> None:
+        """Show an aircraft from now on; it is placed next."""
+        ...
 
 
 def failable(plan: FlightPlan) -> bool:
@@ -17,7 +33,7 @@ def failable(plan: FlightPlan) -> bool:
 def release(
     plan: FlightPlan,
     setup: VehicleSetup,
-    viewer: tuple[str, int] | None = None,
+    viewer: Viewer | None = None,
     *,
     flown: AutopilotedAircraft | None = None,
 ) -> Vehicle:
@@ -27,8 +43,7 @@ def release(
     ----------
     plan : the flight
     setup : of the aircraft, or of the kinematic vehicle
-    viewer : host and port of a FlightGear that is to show the aircraft, in real time; none if not
-        given
+    viewer : shows the aircraft, in real time; none if not given
     flown : an aircraft that has flown before, to be used again; a fresh one if not given
     """
     start, world = plan.start, plan.world
@@ -46,7 +61,7 @@ def release(
         )
     flown = flown or AutopilotedAircraft(aircraft.spec, aircraft.model, failable=failable(plan))
     if viewer is not None:
-        flown.fdm.stream_to_flightgear(*viewer)
+        viewer.show(flown.fdm)
     # Still air needs no weather of its own.
     weather = world.weather if world and plan.sensing else None
     return JsbsimVehicle(

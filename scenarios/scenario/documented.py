@@ -21,14 +21,20 @@ from scenarios.scenario.effect_rules import RULES
 from scenarios.scenario.experiment_checks import ONE_POINT
 from scenarios.scenario.keys import line, models_in, split_unit
 from scenarios.scenario.scenario import Scenario
-from scenarios.scenario.sections.convergence import ConvergenceScenario
 from scenarios.scenario.sections.experiment import DrawConfig, TrialList
+from scenarios.scenario.study_keys import study_files
 
-_KINDS: tuple[tuple[type[BaseModel], tuple[str, ...]], ...] = (
-    (Scenario, FLIGHT_STUDIES),
-    (TrialList, ("trials",)),
-    (ConvergenceScenario, ("convergence",)),
-)
+_KINDS: dict[type[BaseModel], tuple[str, ...]] = {
+    Scenario: FLIGHT_STUDIES,
+    TrialList: ("trials",),
+    **{file: (study,) for study, file in study_files().items()},
+}
+"""Kinds of scenario files, and the studies of each."""
+
+
+def file_kinds() -> tuple[type[BaseModel], ...]:
+    """Return the kinds of scenario files, first that of flights."""
+    return tuple(_KINDS)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,7 +70,7 @@ def documented_sections(kind: type[BaseModel] = Scenario) -> tuple[DocumentedSec
     """Return the sections of a kind of scenario file, in their order; first the keys outside of any
     section.
     """
-    studies = dict(_KINDS)[kind]
+    studies = _KINDS[kind]
     return tuple(_sections(kind, "", kind.__doc__ or "", studies, listed=False))
 
 
@@ -73,7 +79,7 @@ def documented_keys() -> list[DocumentedKey]:
     that parts bring.
     """
     of_schemas = [
-        key for kind, _ in _KINDS for section in documented_sections(kind) for key in section.keys
+        key for kind in _KINDS for section in documented_sections(kind) for key in section.keys
     ]
     # What a part brings needs the part, and perhaps more.
     of_parts = [
@@ -89,7 +95,7 @@ def similar_key(name: str) -> str | None:
     """
     documented = documented_keys()
     keys = [each.key for each in documented]
-    of_flights = [each.key for each in documented if each.studies != ("convergence",)]
+    of_flights = [each.key for each in documented if {*each.studies} <= {*FLIGHT_STUDIES, "trials"}]
     for known in ([*(section.name for section in documented_sections()), *of_flights], keys):
         if close := nearest(name, known):
             return close

@@ -13,8 +13,12 @@ from gnc.laws import STEERING_LAWS
 from scenarios.scenario.extension_points import PAYLOADS, PLUME_MODELS
 from scenarios.scenario.keys import line, split_unit
 from scenarios.scenario.sections.guidance import GuidanceConfig
+from scenarios.scenario.study_keys import ADDED
 
-FLIGHT_STUDIES = ("flights", "paper", "monte_carlo", "falsify", "arena", "patrol", "premises")
+FLIGHT_STUDIES = (
+    *("flights", "paper", "monte_carlo", "falsify", "premises"),
+    *(keys.STUDY for keys in ADDED),
+)
 """Studies whose scenario files are those of flights."""
 
 DIMENSIONLESS = "-"
@@ -61,13 +65,13 @@ PART_SECTIONS = tuple(key.partition(".")[0] for key in _REGISTRIES)
 
 @functools.cache
 def documented_part_keys() -> tuple[DocumentedKey, ...]:
-    """Return the keys that the project's own parts bring, as far as they are not those of the
-    schema.
+    """Return the keys that the parts of the project and of installed packages bring, as far as they
+    are not those of the schema.
     """
     found: dict[tuple[str, str], tuple[DocumentedKey, list[str]]] = {}
     for key_of_part, registry in _REGISTRIES.items():
         section = key_of_part.partition(".")[0]
-        for name in registry.builtin_names():
+        for name in registry.installed_names():
             part = registry.get(name)
             made = part if section == "guidance" else getattr(part, "SETTINGS", None)
             for key in _part_keys(section, made) if made else ():

@@ -11,6 +11,7 @@ from scenarios.scenario.effect_rules import OPERATIONAL, RULES, Rule
 from scenarios.scenario.experiment_checks import unsteady
 from scenarios.scenario.keys import known_keys
 from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.study_keys import ADDED
 
 _DISPLACED_BY = {
     "start.distance_m": ("start.range_m", "start.place_m"),
@@ -124,9 +125,9 @@ def differing(scenario: Scenario) -> Iterator[Mapping[str, object]]:
         for variant in scenario.comparison.variants:
             yield variant.set
     yield from (case.set | case.set_kinematic for case in scenario.cases)
-    if scenario.study == "arena":
-        yield {"guidance.law": None, "guidance.mission": None}
-        yield from (of.set for of in scenario.arena.conditions)
+    for keys in ADDED:
+        if scenario.study == keys.STUDY:
+            yield from keys.differing(scenario)
 
 
 def compares(scenario: Scenario) -> bool:

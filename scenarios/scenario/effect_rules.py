@@ -2,12 +2,13 @@
 would use them.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields
 
 from measurement.plume.spread import PlumeSettings
 from scenarios.scenario.experiment_checks import FOLLOWING, UNSTEADY
 from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.study_keys import ADDED, StudyKeys
 
 Test = Callable[[Scenario], bool]
 
@@ -71,6 +72,18 @@ def _smoke(key: str) -> Test:
 
 def _law(*laws: str) -> Test:
     return lambda s: s.guidance.law in laws
+
+
+def _rules_of(keys: type[StudyKeys]) -> Iterator[Rule]:
+    """Yield the rules of the keys that a study adds, and of those that it does not use."""
+    study = keys.STUDY
+    yield Rule(
+        keys=keys.prefixes(),
+        acts=lambda s: s.study == study,
+        user=f"{keys.USED_BY}: set study to '{study}'",
+    )
+    for key, instead in keys.UNUSED.items():
+        yield Rule(keys=(key,), acts=lambda s: s.study != study, user=f"other studies; {instead}")
 
 
 LAW_KEYS: tuple[tuple[str, str, Test], ...] = (
@@ -294,16 +307,7 @@ RULES = (
          user="methods that may become stuck: put 'local' or 'cma' into search.methods"),
     Rule(keys=("flights",), acts=lambda s: s.study != "falsify", user="other studies; a search flies search.population times one"
          " more than search.generations, at most, and then search.confirmations of each of search.kept flights: set these"),
-    Rule(keys=("laws", "arena."), acts=lambda s: s.study == "arena", user="laws side by side: set study to 'arena'"),
-    Rule(keys=("patrol.",), acts=lambda s: s.study == "patrol", user="several ships one after the other: set study to 'patrol'"),
-    Rule(keys=("flight.duration_max_s",), acts=lambda s: s.study != "patrol",
-         user="other studies; flights of a patrol are as long as patrol.patience_s allows: set that"),
-    Rule(keys=("flight.crossings",), acts=lambda s: s.study != "patrol",
-         user="other studies; a flight of a patrol ends with a verdict or its patience: leave it out"),
-    Rule(keys=("criteria.",), acts=lambda s: s.study != "patrol",
-         user="other studies; a patrol is judged by patrol.oracle_share_min and patrol.wrong_share_max: set these"),
-    Rule(keys=("histories",), acts=lambda s: s.study != "patrol",
-         user="other studies; a patrol keeps no time histories: leave it out"),
+    *(rule for added in ADDED for rule in _rules_of(added)),
     Rule(keys=("speed_ratio",), acts=lambda s: bool(s.draws), user="random variables: give draws"),
     Rule(keys=("comparison.nu",),
          acts=lambda s: not s.comparison.nu or (bool(s.comparison.variants) and {*s.comparison.nu} <= {*s.sweep.nu}),

@@ -11,6 +11,7 @@ from measurement.plume.spread import SOURCE_HEIGHT_MAX
 from scenarios.scenario.scenario_keys import ScenarioKeys
 from scenarios.scenario.sections.experiment import FLIGHTS_MAX, STUDY
 from scenarios.scenario.sections.world import SOURCE_HEIGHT_MIN
+from scenarios.scenario.study_keys import ADDED
 
 DESIGNED_FOR = ("aircraft", "guidance.airspeed_mps", "flight.altitude_m")
 """Keys for which the autopilot is worked out once for a run: they cannot be sampled or swept."""
@@ -28,8 +29,7 @@ the second without the first.
 
 ONE_POINT = {
     "falsify": "it searches one point",
-    "arena": "what differs are the laws (laws) and the conditions (arena.conditions)",
-    "patrol": "give each value a run of its own",
+    **{keys.STUDY: keys.ONE_POINT for keys in ADDED if keys.ONE_POINT},
 }
 """Studies of one point, and why."""
 
@@ -39,11 +39,10 @@ _WITHOUT_EFFECT = (
     "statistics.",
     "search.",
     "subset.",
-    "arena.",
-    "patrol.",
     "comparison.",
     "sweep.",
     "cases.",
+    *(name for keys in ADDED for name in keys.prefixes() if name.endswith(".")),
 )
 """Sections on which no flight depends: to sweep or sample them would count the same flights several
 times.
@@ -63,9 +62,11 @@ flights, or are refused elsewhere; each with a dot behind it.
 _SET_IN = {
     "comparison": _SET_ANYWHERE,
     "case": (*_SET_ANYWHERE, "sweep.nu.", "speed_ratio."),
-    "condition": (*_SET_ANYWHERE, "draws.", "speed_ratio."),
 }
 """The same for each kind of table that sets keys."""
+
+_SET_IN_ADDED = (*_SET_ANYWHERE, "draws.", "speed_ratio.")
+"""The same for tables of sections that studies add."""
 
 
 def check_together(scenario: ScenarioKeys) -> None:
@@ -193,7 +194,9 @@ def check_tables(scenario: ScenarioKeys) -> None:
         )
     for kind, name, keys in _tables_of(scenario):
         for key in keys:
-            if _is_of_run(scenario, key) and not f"{key}.".startswith(_SET_IN[kind]):
+            if _is_of_run(scenario, key) and not f"{key}.".startswith(
+                _SET_IN.get(kind, _SET_IN_ADDED)
+            ):
                 raise ValueError(
                     f"{kind} '{name}' sets '{key}', on which its flights do not depend; set it for the whole scenario, and here"
                     " keys of flights, as wind.speed_mps"
@@ -212,7 +215,8 @@ def _tables_of(scenario: ScenarioKeys) -> Iterator[tuple[str, str, Collection[st
     """Yield the tables that set keys for some flights: the kind, the name, and the keys."""
     yield from (("case", case.name, {**case.set, **case.set_kinematic}) for case in scenario.cases)
     yield from (("comparison", of.name, of.set) for of in scenario.comparison.variants)
-    yield from (("condition", of.name, of.set) for of in scenario.arena.conditions)
+    for keys in ADDED:
+        yield from keys.tables(scenario)
 
 
 def check_subset(scenario: ScenarioKeys) -> None:

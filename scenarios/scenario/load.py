@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from common.files import is_file
-from common.registry import announced, announced_folders, is_file_part
+from common.registry import PluginError, announced, announced_folders, is_file_part
 from common.run_layout import FLIGHTS, MANIFEST
 from common.text import did_you_mean
 from scenarios.errors import InputError
@@ -29,24 +29,24 @@ from scenarios.scenario.overrides import (
 )
 from scenarios.scenario.parts import refuse_missing, with_absolute_files
 from scenarios.scenario.scenario import Scenario
-from scenarios.scenario.sections.convergence import ConvergenceScenario
 from scenarios.scenario.sections.experiment import TrialList
 from scenarios.scenario.sections.report import read_logo
+from scenarios.scenario.sections.section import Section
+from scenarios.scenario.study_keys import ADDED, StudyFile, check_study, study_files
 
-Study = TypeVar("Study", Scenario, ConvergenceScenario, TrialList)
+Study = TypeVar("Study", bound=Section)
 
-AnyStudy = Scenario | ConvergenceScenario | TrialList
+AnyStudy = Scenario | TrialList | StudyFile
 
 KINDS: dict[str, type[Any]] = {
     "flights": Scenario,
     "paper": Scenario,
-    "convergence": ConvergenceScenario,
     "trials": TrialList,
     "monte_carlo": Scenario,
     "falsify": Scenario,
-    "arena": Scenario,
-    "patrol": Scenario,
     "premises": Scenario,
+    **{keys.STUDY: Scenario for keys in ADDED},
+    **study_files(),
 }
 """What a file may say of ``study``, and the scenario that it then holds."""
 
@@ -295,6 +295,10 @@ def _kind(document: Document) -> type[Any]:
     study = document.get("study", "flights")
     if not isinstance(study, str):
         raise InputError(f"study is {study!r}; it must be one of {', '.join(KINDS)}")
+    try:
+        check_study(study)
+    except PluginError as error:
+        raise InputError(str(error)) from None
     if study in KINDS or is_file_part(study) or study in announced("study"):
         return KINDS.get(study, Scenario)
     raise InputError(

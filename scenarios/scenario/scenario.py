@@ -1,6 +1,7 @@
 """A scenario file: whether its keys go together."""
 
 import math
+from typing import TYPE_CHECKING
 
 from pydantic import model_validator
 
@@ -10,6 +11,7 @@ from scenarios.scenario.scenario_keys import DEFAULT_AIRCRAFT, ScenarioKeys
 from scenarios.scenario.sections.equipment import REPORTS_MAX
 from scenarios.scenario.sections.guidance import law_refusal
 from scenarios.scenario.sections.section import check_divides, check_ordered
+from scenarios.scenario.study_keys import ADDED
 
 POINTS_MAX = 10_000
 """Most points of an experiment: all are checked before the first flight, in a millisecond and 20 kB
@@ -17,7 +19,14 @@ each.
 """
 
 
-class Scenario(ScenarioKeys):
+if TYPE_CHECKING:
+    _AllKeys = ScenarioKeys
+else:
+    _AllKeys = type("_AllKeys", (*ADDED, ScenarioKeys), {"__module__": __name__})
+    """The project's keys, and those that studies of installed packages add."""
+
+
+class Scenario(_AllKeys):
     """A whole scenario file of flights."""
 
     @model_validator(mode="after")

@@ -16,7 +16,6 @@ from scenarios.scenario.sections.equipment import (
 )
 from scenarios.scenario.sections.experiment import (
     FLIGHTS_MAX,
-    ArenaConfig,
     CaseConfig,
     ComparisonConfig,
     DrawConfig,
@@ -28,7 +27,6 @@ from scenarios.scenario.sections.experiment import (
 )
 from scenarios.scenario.sections.flight import CriteriaConfig, FlightConfig, StartConfig
 from scenarios.scenario.sections.guidance import FollowingConfig, GuidanceConfig, ReferenceConfig
-from scenarios.scenario.sections.patrol import PatrolConfig
 from scenarios.scenario.sections.report import ReportConfig
 from scenarios.scenario.sections.section import Range, Section, Seed, Title
 from scenarios.scenario.sections.world import (
@@ -99,10 +97,6 @@ class ScenarioKeys(Section):
     statistics: StatisticsConfig = StatisticsConfig()
     subset: SubsetConfig = SubsetConfig()
     search: SearchConfig = SearchConfig()
-    laws: tuple[str, ...] = ()
-    """Laws that take part in an arena in addition to its own, each by its name or FILE.py:NAME."""
-    arena: ArenaConfig = ArenaConfig()
-    patrol: PatrolConfig = PatrolConfig()
     place: PlaceConfig = PlaceConfig()
     vessel: VesselConfig = VesselConfig()
     plume: PlumeConfig = PlumeConfig()

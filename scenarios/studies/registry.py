@@ -13,7 +13,6 @@ from scenarios.engine.task import Work
 from scenarios.errors import InputError
 from scenarios.scenario.load import AnyStudy
 from scenarios.scenario.scenario import Scenario
-from scenarios.scenario.sections.convergence import ConvergenceScenario
 from scenarios.scenario.sections.experiment import TrialList
 from scenarios.studies.checks import plugins_explained
 from scenarios.studies.study import STUDIES
@@ -35,14 +34,12 @@ def study_of(scenario: AnyStudy, name: str, overrides: Sequence[str] = ()) -> St
         from scenarios.studies.trials import TrialStudy
 
         return TrialStudy(scenario, name, overrides=overrides)
-    if isinstance(scenario, ConvergenceScenario):
-        from scenarios.studies.convergence.study import ConvergenceStudy
-
-        return ConvergenceStudy(scenario, name, overrides=overrides)
     try:
         made = STUDIES.get(scenario.study)
     except PluginError as error:
         raise InputError(str(error)) from None
+    if not isinstance(scenario, Scenario):
+        return made(scenario, name, overrides=overrides)
     with plugins_explained(f"study '{scenario.study}'", [scenario]):
         return made(scenario, name, {name: scenario}, overrides=overrides)
 

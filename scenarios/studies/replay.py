@@ -13,6 +13,7 @@ from scenarios.engine.runner import Study, StudySummary
 from scenarios.engine.task import Row, Task, Work
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
+from scenarios.flight.release import Viewer
 from scenarios.flight_runner import FlightWork
 from scenarios.scenario.aircraft_folder import folder_of
 from scenarios.scenario.load import checked
@@ -38,7 +39,7 @@ class Replay(SingleFlight):
     Parameters
     ----------
     name : ``RUN_DIR/flights/ID``, with or without the suffix of one of its files
-    viewer : host and port of a FlightGear that is to show it, in real time; none if not given
+    viewer : shows it in real time; none if not given
     aircraft_dir : directory in which the folder of the user's own aircraft is now, if it was moved
         since
 
@@ -48,7 +49,7 @@ class Replay(SingleFlight):
     """
 
     def __init__(
-        self, name: str, viewer: tuple[str, int] | None = None, *, aircraft_dir: Path | None = None
+        self, name: str, viewer: Viewer | None = None, *, aircraft_dir: Path | None = None
     ) -> None:
         self._viewer = viewer
         self._flight_id = flight_of(name)
@@ -65,7 +66,7 @@ class Replay(SingleFlight):
             )
         if viewer and self._row.get("fidelity") != "six_dof":
             raise InputError(
-                f"--flightgear shows aircraft in six degrees of freedom; '{self._flight_id}' is a kinematic flight"
+                f"aircraft in six degrees of freedom can be shown, no others; '{self._flight_id}' is a kinematic flight"
             )
         try:
             study = self._restored(

@@ -1,6 +1,7 @@
 """Every column of the tables and time histories of a run, from the code that writes them."""
 
 from common.columns import Table, described
+from common.registry import announced, load_announced
 from measurement.log.run_files import SAMPLE_MEANINGS
 from reference_pages.markdown import literal, plain, table
 from reports.compare.figures import COMPARED
@@ -19,11 +20,7 @@ from scenarios.measures.columns import (
     SEARCH_COLUMNS,
     SUMMARY_COLUMNS,
 )
-from scenarios.measures.window import MEASURED_COLUMNS, WINDOW_COLUMNS
 from scenarios.statistics.premises import TABLE_COLUMNS as PREMISE_COLUMNS
-from scenarios.studies.arena.study import TUNING_COLUMNS
-from scenarios.studies.convergence.ensemble import COLUMNS as CONVERGENCE_COLUMNS
-from scenarios.studies.patrol.tables import PATROL_COLUMNS, PHASE_COLUMNS, SHIP_COLUMNS
 
 _INTRODUCTION = """\
 # Every column
@@ -43,7 +40,6 @@ def tables() -> dict[str, Table]:
     """Return the columns by the titles of the tables."""
     ((sulphur, of_sulphur),) = SnifferOnBoard.TABLES.items()
     histories = HISTORY_COLUMNS | SnifferOnBoard.COLUMNS
-    named = {name: FLIGHT_COLUMNS[name] for name in ("flight_id", "trial")}
     return {
         "summary.csv and comparison.csv": SUMMARY_COLUMNS,
         SNIFFER_TITLE: SnifferOnBoard.FIGURES,
@@ -53,21 +49,20 @@ def tables() -> dict[str, Table]:
         "interventions.csv": INTERVENTION_COLUMNS,
         "draws.csv": INPUT_COLUMNS | SEARCH_COLUMNS,
         sulphur: FLIGHT_COLUMNS | of_sulphur,
-        "window.csv": named | WINDOW_COLUMNS | MEASURED_COLUMNS,
-        "tuning.csv": TUNING_COLUMNS,
         "flights/ID.parquet": HISTORY_COLUMNS,
         "flights/ID.parquet, of flights with a sniffer": SnifferOnBoard.COLUMNS,
         "flights/ID.parquet, of flights with a keep-out guard": GuardBelief.COLUMNS,
         "flights/ID.parquet, of flights that search for the plume": BELIEF_COLUMNS,
-        "summary.csv and counterexamples.csv, of a study of convergence": CONVERGENCE_COLUMNS,
-        "summary.csv, of patrols": PATROL_COLUMNS,
-        "ships.csv, of patrols": SHIP_COLUMNS,
-        "phases.csv, of patrols": PHASE_COLUMNS,
         "premises.csv": PREMISE_COLUMNS,
         "samples.csv of the log of a flight": described(SAMPLE_MEANINGS),
         "export/NAME.tracks.csv": {
             "flight_id": FLIGHT_COLUMNS["flight_id"],
             **{name: histories[name] for name in TRACK_COLUMNS},
+        },
+        **{
+            title: columns
+            for name in sorted(announced("columns"))
+            for title, columns in load_announced("columns", name).items()
         },
     }
 

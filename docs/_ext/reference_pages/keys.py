@@ -2,9 +2,11 @@
 
 from collections.abc import Iterator
 
+from pydantic import BaseModel
+
 from reference_pages.markdown import literal, plain, table
 from scenarios.cli.describe import value_text
-from scenarios.scenario.documented import DocumentedSection, documented_sections
+from scenarios.scenario.documented import DocumentedSection, documented_sections, file_kinds
 from scenarios.scenario.documented_parts import (
     DIMENSIONLESS,
     FLIGHT_STUDIES,
@@ -12,7 +14,6 @@ from scenarios.scenario.documented_parts import (
     documented_part_keys,
 )
 from scenarios.scenario.scenario import Scenario
-from scenarios.scenario.sections.convergence import ConvergenceScenario
 from scenarios.scenario.sections.experiment import TrialList
 
 _HEAD = ("key", "default", "value", "meaning")
@@ -28,23 +29,24 @@ A key is a number in the unit that stands beside its default. *Acts with* names 
 where it has none it is refused.
 """
 
-_KINDS = (
-    (Scenario, "Studies of flights"),
-    (TrialList, "Lists of trials"),
-    (ConvergenceScenario, "Studies of convergence"),
-)
+_TITLES = {Scenario: "Studies of flights", TrialList: "Lists of trials"}
 
 
 def keys_page() -> str:
     """Return the page."""
     lines = [_INTRODUCTION]
-    for kind, title in _KINDS:
-        lines += [f"## {title}", ""]
+    for kind in file_kinds():
+        lines += [f"## {_TITLES.get(kind) or _title(kind)}", ""]
         for section in documented_sections(kind):
             lines += _section(section)
         if kind is Scenario:
             lines += _of_parts()
     return "\n".join(lines)
+
+
+def _title(kind: type[BaseModel]) -> str:
+    """Return the title of a kind of files that a study brings."""
+    return f"Studies of {documented_sections(kind)[0].keys[0].studies[0]}"
 
 
 def _section(section: DocumentedSection) -> Iterator[str]:

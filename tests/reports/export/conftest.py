@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from common.geodesy import LocalFrame
-from tests.reports.export.placed_flight import PLACES, track
+from tests.reports.export.placed_flight import PLACES, read, track
 from tests.run_tables import write_manifest
 
 
@@ -52,3 +52,10 @@ def truth(run_path):
         )
         for of in ("", "vessel_")
     ]
+
+
+@pytest.fixture
+def sniffed(run_path):
+    more = {"no2_reading_ppb": math.nan, "so2_ppb": 1.0}
+    track().assign(**read(), **more).to_parquet(run_path / "flights" / "a, <b>.parquet")
+    return run_path

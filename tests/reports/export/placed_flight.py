@@ -44,3 +44,25 @@ def exported(run_path, name):
     (path,) = export_run(run_path, name)
     assert path.parent == run_path / "export"
     return path
+
+
+READ = {"so2_reading_ppb": 12.3, "co2_reading_ppm": 431.25, "no_reading_ppb": 80.0}
+"""Columns of a sniffer that has no NO2, and by how much each rises over the flight; before 1 s
+there is no reading.
+"""
+
+
+def read():
+    """Return what was read at each sample, as a time history has it."""
+    time = track()["time_s"].to_numpy()
+    return {
+        name: np.where(time < 1.0, math.nan, rise * np.floor(time) / 60.0)
+        for name, rise in READ.items()
+    }
+
+
+def assert_read(found, name):
+    """Readings are exported to six digits, or to a thousandth."""
+    np.testing.assert_allclose(
+        np.array(found, dtype=float), read()[name], rtol=1e-5, atol=1e-3, err_msg=name
+    )

@@ -5,38 +5,9 @@ import math
 import zipfile
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from tests.reports.export.placed_flight import exported, track
-
-READ = {"so2_reading_ppb": 12.3, "co2_reading_ppm": 431.25, "no_reading_ppb": 80.0}
-"""Columns of a sniffer that has no NO2, and by how much each rises over the flight; before 1 s
-there is no reading.
-"""
-
-
-def read():
-    """Return what was read at each sample, as a time history has it."""
-    time = track()["time_s"].to_numpy()
-    return {
-        name: np.where(time < 1.0, math.nan, rise * np.floor(time) / 60.0)
-        for name, rise in READ.items()
-    }
-
-
-@pytest.fixture
-def sniffed(run_path):
-    more = {"no2_reading_ppb": math.nan, "so2_ppb": 1.0}
-    track().assign(**read(), **more).to_parquet(run_path / "flights" / "a, <b>.parquet")
-    return run_path
-
-
-def assert_read(found, name):
-    """Readings are exported to six digits, or to a thousandth."""
-    np.testing.assert_allclose(
-        np.array(found, dtype=float), read()[name], rtol=1e-5, atol=1e-3, err_msg=name
-    )
+from tests.reports.export.placed_flight import READ, assert_read, exported
 
 
 def test_kmz_has_an_array_of_readings_beside_the_track_and_is_valid(sniffed):
@@ -85,24 +56,7 @@ def test_geojson_has_an_array_of_readings_for_the_times_of_the_track(sniffed):
     )
 
 
-def test_czml_has_readings_as_properties_of_the_uav_over_time(sniffed):
-    packets = {
-        packet["id"]: packet
-        for packet in json.loads(exported(sniffed, "czml").read_text(encoding="utf-8"))
-    }
-    properties = packets["uav"]["properties"]
-    assert set(properties) == set(READ)
-    for name, sampled in properties.items():
-        assert sampled["epoch"] == packets["uav"]["position"]["epoch"] == "2026-06-01T10:00:00.000Z"
-        samples = np.array(sampled["number"]).reshape(-1, 2)
-        known = np.isfinite(read()[name])
-        np.testing.assert_allclose(samples[:, 0], track()["time_s"][known], atol=1e-9)
-        np.testing.assert_allclose(samples[:, 1], read()[name][known], atol=1e-3)
-    assert "properties" not in packets["vessel"]
-
-
 def test_flights_without_a_sniffer_have_no_word_of_readings(run_path):
-    for name in ("geojson", "czml"):
-        assert "reading" not in exported(run_path, name).read_text(encoding="utf-8")
+    assert "reading" not in exported(run_path, "geojson").read_text(encoding="utf-8")
     with zipfile.ZipFile(exported(run_path, "kmz")) as archive:
         assert b"reading" not in archive.read("doc.kml")

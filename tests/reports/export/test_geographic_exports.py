@@ -2,8 +2,6 @@
 
 import json
 import math
-import os
-import subprocess
 import sys
 import zipfile
 from pathlib import Path
@@ -18,7 +16,7 @@ from reports.errors import ReportError
 from reports.export.geographic import recorded_flights
 from reports.run.run_data import read_run
 from tests.in_process import assert_refused, run_command
-from tests.reports.export.placed_flight import START, TOLERANCE, exported, off, track
+from tests.reports.export.placed_flight import TOLERANCE, exported, off, track
 
 
 def test_a_kmz_is_valid_by_the_schema_of_the_ogc_and_has_the_places(run_path, truth):
@@ -53,109 +51,6 @@ def test_a_kmz_is_valid_by_the_schema_of_the_ogc_and_has_the_places(run_path, tr
         place.getparent().remove(place)
     assert schema.validate(root), schema.error_log
     assert [name.text for name in root.findall(".//k:Folder/k:name", names)] == ["a, <b>"]
-
-
-def test_an_acmi_file_is_read_by_another_reader(run_path, truth):
-    pyacmi = pytest.importorskip("pyacmi", reason="pyacmi is a reader for developers")
-    path = exported(run_path, "acmi")
-    reader = pyacmi.Acmi()
-    reader.load_acmi(str(path))
-    assert (reader.file_type, float(reader.file_version)) == ("text/acmi/tacview", 2.2)
-    times = track()["time_s"].round(3)
-    for identity, true in zip(("a1", "b2"), truth, strict=True):
-        body = reader.objects[identity]
-        assert (
-            off([(body.latitude(time), body.longitude(time)) for time in times], true) < TOLERANCE
-        )
-    text = path.read_text(encoding="utf-8-sig")
-    assert "0,ReferenceTime=2026-06-01T10:00:00.000Z" in text
-    assert "EngagementRange=200" in text
-    assert "0,Title=a\\, <b>" in text
-
-
-def test_czml_positions_interpolate_to_the_places(run_path, truth):
-    packets = json.loads(exported(run_path, "czml").read_text(encoding="utf-8"))
-    assert packets[0]["id"] == "document"
-    assert packets[0]["version"] == "1.0"
-    by_name = {packet["id"]: packet for packet in packets}
-    for name, true in (("uav", truth[0]), ("vessel", truth[1])):
-        position = by_name[name]["position"]
-        assert (position["epoch"], position["interpolationDegree"]) == (
-            "2026-06-01T10:00:00.000Z",
-            1,
-        )
-        samples = np.array(position["cartographicDegrees"]).reshape(-1, 4)
-        between = samples[0, 0] + np.linspace(0.0, 60.0, 1201)
-        longitude, latitude = np.unwrap(samples[:, 1], period=360.0), samples[:, 2]
-        found = np.column_stack(
-            [np.interp(between, samples[:, 0], values) for values in (latitude, longitude)]
-        )
-        recorded = [
-            np.interp(between, track()["time_s"], np.unwrap(true[:, k], period=360.0))
-            for k in (0, 1)
-        ]
-        assert off(found, np.column_stack(recorded)) < TOLERANCE
-    assert by_name["plume_end"]["polyline"]["positions"]["references"] == [
-        "funnel#position",
-        "plume_end#position",
-    ]
-    assert by_name["funnel"]["ellipse"]["semiMajorAxis"] == 200.0
-
-
-def test_mcap_is_read_by_its_own_reader(run_path, truth):
-    reader = pytest.importorskip("mcap.reader", reason="mcap is an extra")
-    with exported(run_path, "mcap").open("rb") as file:
-        found = {"/uav/fix": [], "/vessel/fix": []}
-        schemas = set()
-        for schema, channel, message in reader.make_reader(file).iter_messages():
-            schemas.add((schema.name, schema.encoding))
-            said = json.loads(message.data)
-            assert json.loads(schema.data)["properties"].keys() == said.keys()
-            if channel.topic in found:
-                found[channel.topic].append((said["latitude"], said["longitude"]))
-                assert (
-                    message.log_time == said["timestamp"]["sec"] * 10**9 + said["timestamp"]["nsec"]
-                )
-    assert off(found["/uav/fix"], truth[0]) < TOLERANCE
-    assert off(found["/vessel/fix"], truth[1]) < TOLERANCE
-    assert {name for name, _ in schemas} >= {
-        "foxglove.LocationFix",
-        "foxglove.PoseInFrame",
-        "foxglove.GeoJSON",
-    }
-    assert {encoding for _, encoding in schemas} == {"jsonschema"}
-
-
-def test_netcdf_has_the_places(run_path, truth):
-    h5netcdf = pytest.importorskip("h5netcdf", reason="h5netcdf is an extra")
-    pytest.importorskip("xarray", reason="xarray is an extra")
-    path = exported(run_path, "netcdf")
-    with h5netcdf.File(path, "r") as data:
-        assert off(np.column_stack([data["lat"][:], data["lon"][:]]), truth[0]) < TOLERANCE
-        assert (
-            off(np.column_stack([data["vessel_lat"][:], data["vessel_lon"][:]]), truth[1])
-            < TOLERANCE
-        )
-        assert data["row_size"][:].tolist() == [601]
-        assert data["time"][0] == START
-        assert data.attrs["history"] == "2026-06-02T08:00:00Z: plume-flight run made.toml"
-
-
-@pytest.mark.parametrize("run_path", ["date line"], indirect=True)
-def test_netcdf_keeps_to_the_conventions(run_path, tmp_path):
-    pytest.importorskip("xarray", reason="xarray is an extra")
-    pytest.importorskip("compliance_checker", reason="compliance-checker is for developers")
-    path = exported(run_path, "netcdf")
-    # In a process of its own: the checker's own packages warn as they are imported.
-    checker = Path(sys.executable).with_name("compliance-checker")
-    checked = subprocess.run(
-        [checker, "-t", "cf:1.8", path],
-        capture_output=True,
-        text=True,
-        check=False,
-        env={**os.environ, "HOME": str(tmp_path)},
-    )
-    assert "All tests passed!" in checked.stdout, checked.stdout + checked.stderr
 
 
 def test_geojson_has_the_places_in_pieces_that_keep_to_one_side_of_the_date_line(run_path, truth):
@@ -278,9 +173,7 @@ def test_one_flight_can_be_chosen_and_another_name_is_refused(run_path):
         export_run(run_path, "kmz", "nu")
 
 
-@pytest.mark.parametrize(
-    ("name", "package"), [("mcap", "mcap"), ("netcdf", "xarray"), ("netcdf", "h5netcdf")]
-)
+@pytest.mark.parametrize(("name", "package"), [("netcdf", "xarray"), ("netcdf", "h5netcdf")])
 def test_a_package_that_is_missing_is_one_line_with_the_extra(run_path, monkeypatch, name, package):
     monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(

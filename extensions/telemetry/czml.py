@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from reports.export.exporter import EXPORTERS
 from reports.export.geographic import Body, GeographicFlight, recorded_flights
 from reports.run.run_data import RunData
 
@@ -19,7 +18,6 @@ _UAV_COLOUR, _VESSEL_COLOUR, _PLUME_COLOUR, _KEEPOUT_COLOUR = (
 _LINEAR = {"interpolationAlgorithm": "LAGRANGE", "interpolationDegree": 1}
 
 
-@EXPORTERS.register("czml")
 class Czml:
     """UAV, vessel, plume and keep-out area, each moving with its flight."""
 

@@ -7,7 +7,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from reports.export.exporter import EXPORTERS, need_packages
+from reports.export.exporter import need_packages
 from reports.export.geographic import Body, GeographicFlight, recorded_flights
 from reports.run.run_data import RunData
 
@@ -49,7 +49,6 @@ _DRAWN_EVERY = 1.0
 """Time between drawings of plume and keep-out area [s]."""
 
 
-@EXPORTERS.register("mcap")
 class Mcap:
     """Places, attitude and motion of one flight, and the plume with the keep-out area as GeoJSON."""
 

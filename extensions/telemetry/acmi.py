@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-from reports.export.exporter import EXPORTERS
 from reports.export.geographic import Body, GeographicFlight, recorded_flights
 from reports.run.run_data import RunData
 
@@ -10,7 +9,6 @@ _UAV, _VESSEL = "a1", "b2"
 """Numbers of the objects, in hexadecimal."""
 
 
-@EXPORTERS.register("acmi")
 class Acmi:
     """UAV and vessel; the keep-out area is drawn as the vessel's engagement range."""
 

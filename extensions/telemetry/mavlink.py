@@ -1,12 +1,19 @@
 """MAVLink 2 messages of a flight, packed as the protocol has them
-(https://mavlink.io/en/guide/serialization.html).
+(https://mavlink.io/en/guide/serialization.html): as the telemetry log that Mission Planner and
+QGroundControl record, and as a stream to a ground station.
 """
 
 import math
+import re
+import socket
 import struct
 from collections.abc import Iterator
+from pathlib import Path
+from time import monotonic, sleep
 
-from reports.export.geographic import Body, GeographicFlight
+from reports.errors import ReportError
+from reports.export.geographic import Body, GeographicFlight, recorded_flights
+from reports.run.run_data import RunData
 
 _MAGIC, _SYSTEM, _COMPONENT = 0xFD, 1, 1
 
@@ -46,6 +53,73 @@ _MESSAGES: dict[str, tuple[int, int, str]] = {
 """Number, seed of the checksum, and fields in the order in which they are sent, of the common
 message set.
 """
+
+
+_ADDRESS = re.compile(r"udp://([A-Za-z0-9.\-]+):(\d{1,5})")
+
+_PORT_MAX = 65535
+
+
+class Tlog:
+    """Messages of one flight, each after its time in microseconds since 1970."""
+
+    suffix = ".tlog"
+    one_flight = True
+
+    def write(self, run: RunData, path: Path) -> None:
+        """Write one flight."""
+        flight = next(recorded_flights(run))
+        with path.open("wb") as file:
+            for at, message in messages(flight):
+                file.write(struct.pack(">Q", round(1e6 * (flight.start + at))) + message)
+
+
+class UdpStream:
+    """A recorded flight, sent to a ground station over UDP.
+
+    Parameters
+    ----------
+    address : ``udp://HOST:PORT``
+
+    Raises
+    ------
+    ReportError : it is not of that form
+    """
+
+    def __init__(self, address: str) -> None:
+        found = _ADDRESS.fullmatch(address)
+        if found is None or not 0 < int(found[2]) <= _PORT_MAX:
+            raise ReportError(
+                f"--stream is '{address}'; give udp://HOST:PORT, as in udp://127.0.0.1:14550"
+            )
+        self._host = found[1], int(found[2])
+
+    def send(self, flight: GeographicFlight) -> int:
+        """Send a flight in real time; return the number of messages.
+
+        Raises
+        ------
+        ReportError : nothing can be sent to the address
+        """
+        sent = 0
+        began = monotonic()
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
+            for at, message in messages(flight):
+                ahead = (at - float(flight.time[0])) - (monotonic() - began)
+                if ahead > 0.0:
+                    sleep(ahead)
+                try:
+                    link.sendto(message, self._host)
+                except ConnectionRefusedError:
+                    # Nobody listens yet: a ground station may come later.
+                    continue
+                except OSError as error:
+                    host, port = self._host
+                    raise ReportError(
+                        f"--stream: cannot send to {host}:{port}: {error.strerror}; check the address"
+                    ) from None
+                sent += 1
+        return sent
 
 
 class Packer:

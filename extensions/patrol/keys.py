@@ -2,11 +2,13 @@
 expected of serving them.
 """
 
-from typing import Annotated
+from collections.abc import Mapping
+from typing import Annotated, ClassVar
 
 from pydantic import Field
 
 from scenarios.scenario.sections.section import NonNegative, Positive, Section
+from scenarios.scenario.study_keys import StudyKeys
 
 SHIPS_MAX = 12
 """Most ships of a patrol: the order of as many takes a second."""
@@ -49,3 +51,21 @@ class PatrolConfig(Section):
     """
     wrong_share_max: Annotated[float, Field(ge=0.0, le=1.0)] = 0.05
     """Criterion: largest fraction of wrong verdicts [-]."""
+
+
+class PatrolKeys(StudyKeys):
+    """Keys of a patrol."""
+
+    STUDY = "patrol"
+    USED_BY = "several ships one after the other"
+    ONE_POINT = "give each value a run of its own"
+    UNUSED: ClassVar[Mapping[str, str]] = {
+        "flight.duration_max_s": "flights of a patrol are as long as patrol.patience_s allows: set"
+        " that",
+        "flight.crossings": "a flight of a patrol ends with a verdict or its patience: leave it out",
+        "criteria.": "a patrol is judged by patrol.oracle_share_min and patrol.wrong_share_max: set"
+        " these",
+        "histories": "a patrol keeps no time histories: leave it out",
+    }
+
+    patrol: PatrolConfig = PatrolConfig()

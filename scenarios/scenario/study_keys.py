@@ -1,0 +1,128 @@
+"""Keys that studies of installed packages add to a scenario file."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar, Self
+
+from pydantic import BaseModel
+
+from common.registry import PluginError, announced, load_announced
+from scenarios.scenario.sections.report import ReportConfig
+from scenarios.scenario.sections.section import Section, Seed, Title
+
+KEYS, FILES = "keys", "scenario"
+"""Groups of entry points, ``plume_flight_study.keys`` and ``plume_flight_study.scenario``."""
+
+
+class StudyKeys(Section):
+    """Keys that a study adds to the scenario files of flights: its fields.
+
+    A field that is a ``Section`` is a section of the file, any other one a key outside of sections.
+    Each has a default and a description. An installed package announces a subclass in the group
+    ``plume_flight_study.keys`` by the name of its study. The subclass's module imports of this
+    project only ``scenarios.scenario.study_keys`` and ``scenarios.scenario.sections``::
+
+        class WeavingKeys(StudyKeys):
+            STUDY = "weaving"
+            USED_BY = "flights that weave"
+            weaving: WeavingSection = WeavingSection()
+
+    Attributes
+    ----------
+    STUDY : the study that uses the keys
+    USED_BY : what the study does, as messages say it of a key that another study does not use
+    ONE_POINT : why the study refuses a sweep, cases and comparisons; empty if it takes them
+    UNUSED : keys of other sections that the study does not use, or beginnings of keys that end in a
+        dot, each with what it uses instead
+    LAW_KEYS : its keys that name steering laws
+    """
+
+    STUDY: ClassVar[str]
+    USED_BY: ClassVar[str]
+    ONE_POINT: ClassVar[str] = ""
+    UNUSED: ClassVar[Mapping[str, str]] = {}
+    LAW_KEYS: ClassVar[tuple[str, ...]] = ()
+
+    @classmethod
+    def of(cls, scenario: Any) -> Self:
+        """Return a scenario, whose keys these are among."""
+        keys: Self = scenario
+        return keys
+
+    @classmethod
+    def differing(cls, scenario: Any) -> Iterator[Mapping[str, object]]:
+        """Yield what the study sets for some of its flights, by dotted keys; None stands for values
+        that are not known yet.
+        """
+        for _, _, values in cls.tables(scenario):
+            yield values
+
+    @classmethod
+    def tables(cls, scenario: Any) -> Iterator[tuple[str, str, Mapping[str, Any]]]:  # noqa: ARG003
+        """Yield the tables of the study's own sections that set keys for some of its flights: what
+        such a table is, its name, and the values by dotted keys.
+        """
+        yield from ()
+
+    @classmethod
+    def names(cls) -> tuple[str, ...]:
+        """Return the names of the fields."""
+        return tuple(name for name in cls.model_fields if name not in StudyKeys.model_fields)
+
+    @classmethod
+    def prefixes(cls) -> tuple[str, ...]:
+        """Return the names of the fields; those of sections end in a dot."""
+        return tuple(
+            f"{name}." if isinstance(cls.model_fields[name].default, BaseModel) else name
+            for name in cls.names()
+        )
+
+
+def _loaded(kind: str) -> Iterator[tuple[str, Any]]:
+    """Yield what installed packages announce in a group, by the names of studies."""
+    for name in sorted(announced(kind)):
+        try:
+            yield name, load_announced(kind, name)
+        except PluginError:
+            # Other studies are flown without it; `check_study` says why to whoever names this one.
+            continue
+
+
+def check_study(study: str) -> None:
+    """Load what a package announces for a study.
+
+    Raises
+    ------
+    PluginError : it does not load
+    """
+    for kind in (KEYS, FILES):
+        if study in announced(kind):
+            load_announced(kind, study)
+
+
+ADDED: tuple[type[StudyKeys], ...] = tuple(keys for _, keys in _loaded(KEYS))
+"""The keys that installed packages add."""
+
+
+class StudyFile(Section):
+    """What every scenario file has, also of a study that flies nothing that ``Scenario`` describes.
+
+    An installed package announces a subclass in the group ``plume_flight_study.scenario`` by the
+    name of its study, whose class is called with it, its name, and the overrides.
+    """
+
+    study: str
+    """Name of the study."""
+    title: Title
+    """What reports and lists call it."""
+    description: str = ""
+    """One or two sentences at the top of the report."""
+    seed: Seed = 1
+    """Seed of everything that is sampled at random [-]."""
+    report: ReportConfig = ReportConfig()
+
+
+def study_files() -> dict[str, type[StudyFile]]:
+    """Return the schemas of scenario files that are not of flights, by the studies of installed
+    packages: those announced in the group ``plume_flight_study.scenario``.
+    """
+    return dict(_loaded(FILES))
