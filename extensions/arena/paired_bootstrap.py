@@ -47,15 +47,15 @@ class Estimate:
     as_good : whether it is compared, and the flights do not show that another is better
     """
 
-    mean: float
-    low: float
-    high: float
-    whole: bool
-    best: bool
-    behind_low: float
-    behind_high: float
-    flights: int
-    as_good: bool
+    mean: float = math.nan
+    low: float = math.nan
+    high: float = math.nan
+    whole: bool = False
+    best: bool = False
+    behind_low: float = math.nan
+    behind_high: float = math.nan
+    flights: int = 0
+    as_good: bool = False
 
 
 def paired_estimates(

@@ -58,18 +58,6 @@ _SULPHUR_ERROR = Column(title="Sulphur error of a minute", unit=MASS_PERCENT, di
 _WHOSE = ("figure", "condition", "entrant")
 """What an entry of ``arena.json`` is about, beside the estimate itself."""
 
-_NOT_COMPARED = Estimate(
-    mean=math.nan,
-    low=math.nan,
-    high=math.nan,
-    whole=False,
-    best=False,
-    behind_low=math.nan,
-    behind_high=math.nan,
-    flights=0,
-    as_good=False,
-)
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Entrant:
@@ -158,7 +146,7 @@ class Arena:
         return replace(found, mean=shown(found.mean), low=low, high=high)
 
     def _recorded(self, figure: str, entrant: Entrant, condition: str) -> Estimate:
-        return self._estimates.get((figure, condition, entrant.name), _NOT_COMPARED)
+        return self._estimates.get((figure, condition, entrant.name), Estimate())
 
     def text(self, figure: str, entrant: Entrant) -> str:
         """Return the mean of a figure over all conditions as text."""

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from common import run_layout
-from common.run_layout import time_history_path, trajectory_path
+from common.run_layout import time_history_path
 
 PROJECT = Path(__file__).parents[2]
 

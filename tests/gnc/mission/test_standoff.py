@@ -2,12 +2,12 @@ import itertools
 import math
 
 import pytest
-from gnc.path_laws.lgvf import LgvfLaw
-from gnc.path_laws.npfg import NpfgLaw
 from gnc_cases import SPEED, TIME_STEP
 from hypothesis import given
 from hypothesis import strategies as st
 
+from extensions.arena.laws.lgvf import LgvfLaw
+from extensions.arena.laws.npfg import NpfgLaw
 from gnc.estimation.health import Fault
 from gnc.estimation.navigation import TrueNavigation
 from gnc.estimation.vessel import SteadyTarget

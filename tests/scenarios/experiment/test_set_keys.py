@@ -3,9 +3,9 @@ all others start alike.
 """
 
 import pytest
-from scenarios.studies.arena.entrants import draws_left, entrants_of
-from scenarios.studies.arena.tuning import Tuner
 
+from extensions.arena.entrants import draws_left, entrants_of
+from extensions.arena.tuning import Tuner
 from scenarios.experiment.draws import sampled_flight
 from scenarios.experiment.requests import Experiment
 from scenarios.scenario.load import load_study

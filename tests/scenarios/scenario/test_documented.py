@@ -5,8 +5,8 @@ import re
 
 import pytest
 from pydantic import RootModel
-from scenarios.scenario.sections.convergence import ConvergenceScenario
 
+from extensions.convergence.scenario import ConvergenceScenario
 from scenarios.scenario.documented import documented_keys, documented_sections, similar_key
 from scenarios.scenario.documented_parts import FLIGHT_STUDIES
 from scenarios.scenario.keys import known_keys

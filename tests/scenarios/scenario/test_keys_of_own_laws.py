@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import pytest
-from scenarios.studies.arena.entrants import entrants_of
 
+from extensions.arena.entrants import entrants_of
 from scenarios import load
 from scenarios.errors import InputError
 from scenarios.planning.bounded_steering import steering_law

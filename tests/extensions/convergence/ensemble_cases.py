@@ -5,11 +5,12 @@ once.
 import math
 
 import numpy as np
-from gnc.analysis.ensemble import Tolerances, fly_ensemble
-from gnc.analysis.ensemble_motion import Vehicle
-from gnc.analysis.turning_reference import TurningReferences
 from gnc_cases import HEADING_RATE_MAX, LOOK_AHEAD, OSCILLATION, SPEED
 from lyapunov_cases import K_1
+
+from extensions.convergence.ensemble import Tolerances, fly_ensemble
+from extensions.convergence.motion import Vehicle
+from extensions.convergence.references import TurningReferences
 
 GAIN, STEERING_MAX = 1.5, 0.4
 VEHICLE = Vehicle(

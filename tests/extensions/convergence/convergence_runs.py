@@ -64,7 +64,7 @@ def law_rows(law, count, rng):
     phi = starts.uniform(-np.pi, np.pi, count)
     kind = np.arange(count) % 3
     predicted = distance * np.array([0.9, 1.0, 1.2])[kind]
-    # As a trial with gnc.analysis.ensemble: medians near a second per metre, a long tail about
+    # As a trial with extensions.convergence.ensemble: medians near a second per metre, a long tail about
     # references that turn at random. They end at 20,000 s at the latest.
     settling = np.minimum(
         predicted * rng.lognormal(0.0, np.array([0.2, 0.25, 0.35])[kind]), 19_000.0

@@ -4,9 +4,10 @@ import shutil
 
 import pandas as pd
 import pytest
-from gnc.analysis.ensemble import DISTANCE_CONVERGED, PHI_CONVERGED
-from scenarios.scenario.sections.convergence import ConvergenceScenario
 
+from extensions.convergence import study as convergence_study
+from extensions.convergence.ensemble import DISTANCE_CONVERGED, PHI_CONVERGED
+from extensions.convergence.scenario import ConvergenceScenario
 from reports.output import write_report
 from reports.run.run_data import read_run
 from scenarios.engine.executors import ExecutorFactory
@@ -72,11 +73,9 @@ def test_its_report_says_what_happened(directory, tmp_path):
 def test_those_that_do_not_converge_are_kept_with_their_time_histories(tmp_path):
     # Circles at more than 99 % of omega_max hold a vehicle with cut commands off; here it is given
     # no time: one second, and no patience, is too short for anything.
-    from scenarios.studies.convergence import ensemble as convergence
-
     scenario = study("ensemble.time_max_s=1.0", 'guidance.laws=["cascade"]', "ensemble.samples=0")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(convergence, "TIME_FACTOR", 1e-6)
+        patch.setattr(convergence_study, "TIME_FACTOR", 1e-6)
         result = run(scenario, tmp_path / "run")
     failed = pd.read_csv(tmp_path / "run" / "counterexamples.csv")
     assert not result.all_met
@@ -163,7 +162,7 @@ def test_an_interrupt_while_time_histories_are_kept_leaves_a_run_that_can_be_res
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
-        patch.setattr("scenarios.studies.convergence.study.trajectory_of", interrupt)
+        patch.setattr("extensions.convergence.study.trajectory_of", interrupt)
         first = run(few, tmp_path / "run")
     assert first.interrupted
     assert first.summary.done == first.planned

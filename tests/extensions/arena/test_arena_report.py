@@ -7,20 +7,25 @@ from dataclasses import replace
 
 import pandas as pd
 import pytest
-from reports.arena.charts import clusters, crossing_chart, effort_charts, track_charts, worth_chart
-from reports.arena.content import arena_content
-from reports.arena.data import Estimate, read_arena
-from reports.arena.figures import CROSSINGS, ERROR, PLUME_TIME, SULPHUR
-from reports.arena.tables import (
-    _interval,
-    by_condition_table,
-    condition_table,
-    plume_table,
-    tracking_table,
-)
-from scenarios.studies.arena.entrants import Entrant
-from scenarios.studies.arena.results import estimates
 
+from extensions.arena.entrants import Entrant
+from extensions.arena.paired_bootstrap import Estimate
+from extensions.arena.record import CROSSINGS, ERROR, PLUME_TIME, SULPHUR, Figure, read_arena
+from extensions.arena.report import (
+    _interval,
+    arena_content,
+    by_condition_table,
+    clusters,
+    condition_table,
+    crossing_chart,
+    effort_charts,
+    plume_table,
+    track_charts,
+    tracking_table,
+    worth_chart,
+)
+from extensions.arena.results import estimates
+from extensions.arena.window import WINDOW_COLUMNS
 from reports.document.blocks import Table
 from reports.document.chart import Chart
 from reports.registry import content
@@ -54,7 +59,7 @@ def arena(run):
 
 def test_both_reports_are_built_with_a_place_for_each_part(path):
     text = built(path)
-    for anchor in ("tracking", "standoff", "plume", "given"):
+    for anchor in ("tracking", "standoff", "plume", "tuning"):
         assert f'id="{anchor}"' in text
     assert "<b>" in text.partition('id="tracking"')[2]
 
@@ -88,7 +93,7 @@ def test_there_is_one_mark_a_law_numbered_as_in_the_tables(arena):
 def test_a_law_that_does_not_say_what_it_makes_use_of_is_not_said_to_leave_the_turn_out(arena):
     first, *others = arena.entrants
     unsaid = replace(
-        arena, entrants=[replace(first, given="its class does not say (given)"), *others]
+        arena, entrants=[replace(first, inputs="its class does not say (inputs)"), *others]
     )
     (panel,) = effort_charts(unsaid)[0].panels
     labels = {line.label: len(line.x) for line in panel.lines}
@@ -150,7 +155,7 @@ def test_numbers_that_would_hide_each_other_are_written_together():
 
 def test_what_each_law_was_given_and_what_it_cannot_do_is_said(run):
     report = content(run)
-    given, refused = blocks_of(report, Table, "given")
+    given, refused = blocks_of(report, Table, "tuning")
     assert "tangent and curvature" in given.rows[0][2]
     assert "npfg_period_s 10 → " in given.rows[0][3]
     assert refused.rows[0][:2] == ["circle the vessel", "pure pursuit"]
@@ -172,7 +177,7 @@ def test_the_headline_names_the_best_of_each_task(run):
 
 def test_of_one_flight_in_each_condition_no_law_is_called_best(run, monkeypatch):
     once = replace(read_arena(run), flights=1)
-    monkeypatch.setattr("reports.arena.content.read_arena", lambda _: once)
+    monkeypatch.setattr("extensions.arena.report.read_arena", lambda _: once)
     found = arena_content(run)
     assert ", each flown once in each of " in found.flown
     assert re.match(
@@ -182,9 +187,10 @@ def test_of_one_flight_in_each_condition_no_law_is_called_best(run, monkeypatch)
 
 
 def test_a_mean_of_single_flights_stands_without_an_interval():
-    assert _interval(Estimate(mean=0.12, flights=2), ERROR) == "0.12"
+    error = Figure(column=WINDOW_COLUMNS[ERROR], greater_first=False, shown=float)
+    assert _interval(Estimate(mean=0.12, flights=2), error) == "0.12"
     assert (
-        _interval(Estimate(mean=0.12, low=0.1, high=0.15, flights=4), ERROR)
+        _interval(Estimate(mean=0.12, low=0.1, high=0.15, flights=4), error)
         == "0.12 (0.10\N{EN DASH}0.15)"
     )
 
@@ -219,7 +225,7 @@ def of_a_few_flights(run, path, missing):
         ]
         for name, of in rows.groupby("trial")
     }
-    named = ("name", "law", "task", "given", "defaults")
+    named = ("name", "law", "task", "inputs", "defaults")
     entrants = [Entrant(**{key: entry[key] for key in named}) for entry in record["entrants"]]
     record["estimates"] = estimates(entrants, figures, load_study("arena", QUICK).arena, 1)
     (path / "arena.json").write_text(json.dumps(record), encoding="utf-8")

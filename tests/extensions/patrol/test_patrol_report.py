@@ -7,11 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
-from reports.patrol.charts import patrol_chart, time_lines
-from reports.patrol.content import patrol_content
-from reports.patrol.data import read_patrols
-from reports.patrol.tables import oracle_table, ship_table
 
+from extensions.patrol.report import (
+    counts_of,
+    oracle_table,
+    patrol_chart,
+    patrol_content,
+    read_patrols,
+    ship_table,
+    time_lines,
+)
 from reports.run.run_data import read_run
 from tests.reports.report_parts import flown
 
@@ -100,13 +105,13 @@ def test_names_that_a_spreadsheet_would_compute_are_found_in_every_table(run, tm
         named = table.assign(patrol="'=p_00000", flight_id="'=p_00000_" + table["ship"].astype(str))
         named.to_csv(tmp_path / name, index=False)
     renamed = replace(run, path=tmp_path, summary=run.summary.assign(flight_id="=p_00000"))
-    (patrol,) = read_patrols(renamed).patrols
+    (patrol,) = read_patrols(renamed)
     assert (len(patrol.ships), len(patrol.phases)) == (2, len(pd.read_csv(run.path / "phases.csv")))
 
 
 def test_bars_are_as_long_as_the_stretches_and_stand_in_the_ships_rows(run):
     patrols = read_patrols(run)
-    (patrol,) = patrols.patrols
+    (patrol,) = patrols
     _, times = patrol_chart(patrol).panels
     for line in (line for line in times.lines if line.style == "broad"):
         own = patrol.phases[patrol.phases["phase"] == line.label]
@@ -122,7 +127,7 @@ def test_bars_are_as_long_as_the_stretches_and_stand_in_the_ships_rows(run):
 
 
 def test_the_map_has_every_ship_and_marks_those_that_are_not_served(run):
-    (patrol,) = read_patrols(run).patrols
+    (patrol,) = read_patrols(run)
     shown, _ = patrol_chart(patrol).panels
     assert sum(line.label == "ship" for line in shown.lines) == 2
     assert (
@@ -166,4 +171,4 @@ def test_one_verdict_is_told_as_one_and_the_report_is_judged_as_the_study_is(run
     )
     # The study's exit status is of the same sums: a patrol that did not come through fails both.
     fallen = replace(run, summary=run.summary.assign(criteria_met=False))
-    assert (patrol_content(fallen).verdict.holds, read_patrols(fallen).counts.met) == (False, False)
+    assert (patrol_content(fallen).verdict.holds, counts_of(fallen).met) == (False, False)

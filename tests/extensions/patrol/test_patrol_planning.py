@@ -6,7 +6,16 @@ import math
 
 import numpy as np
 import pytest
-from scenarios.studies.patrol.legs import (
+
+from extensions.patrol.order import (
+    EXACT_MAX,
+    Prospect,
+    best_order,
+    ends_of,
+    exact_order,
+    inserted_order,
+)
+from extensions.patrol.route import (
     Air,
     Leg,
     Mover,
@@ -15,14 +24,6 @@ from scenarios.studies.patrol.legs import (
     route,
     straight_leg,
     time_to_reach,
-)
-from scenarios.studies.patrol.order import (
-    EXACT_MAX,
-    Prospect,
-    best_order,
-    ends_of,
-    exact_order,
-    inserted_order,
 )
 
 V_R = 20.0
@@ -248,7 +249,7 @@ def test_of_few_ships_every_order_is_tried_and_of_many_some(monkeypatch):
     )
     expected = inserted_order(many, 0j, 0.0, range(EXACT_MAX + 1))
     monkeypatch.setattr(
-        "scenarios.studies.patrol.order.exact_order",
+        "extensions.patrol.order.exact_order",
         lambda *_: pytest.fail("every order of many is tried"),
     )
     assert best_order(many, 0j, 0.0, range(EXACT_MAX + 1)) == expected

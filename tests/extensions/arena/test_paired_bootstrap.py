@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
-from scenarios.statistics.paired_bootstrap import paired_estimates
+
+from extensions.arena.paired_bootstrap import paired_estimates
 
 OPTIONS = {"greater_is_better": False, "resamples": 500, "confidence": 0.95, "seed": 1}
 

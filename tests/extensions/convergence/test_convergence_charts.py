@@ -5,14 +5,14 @@ import pandas as pd
 import pytest
 from convergence_runs import LAWS, REFERENCES
 from report_parts import assert_axes_read_quantity_and_unit, named_charts
-from reports.convergence.charts import (
+
+from extensions.convergence.report import (
     CURVE_POINTS,
     DISTANCE_BINS,
     HISTORIES_PER_LAW,
     HISTORY_POINTS,
     cumulative,
 )
-
 from reports.document.chart import Chart, Line, Panel
 from reports.render import matplotlib_charts, plotly_charts
 

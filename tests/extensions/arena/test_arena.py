@@ -4,8 +4,8 @@ import json
 
 import pandas as pd
 import pytest
-from scenarios.studies.arena.entrants import conditions_of, entrants_of
 
+from extensions.arena.entrants import conditions_of, entrants_of
 from gnc.laws import STEERING_LAWS
 from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.errors import InputError

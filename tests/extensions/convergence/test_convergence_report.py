@@ -7,9 +7,8 @@ import pandas as pd
 import pytest
 from convergence_runs import LAWS, REFERENCES, TRAJECTORIES, write_convergence_run
 from report_parts import blocks_of, built, draw_all_but, named_charts
-from reports.convergence.tables import FAILED_ROWS, settled_time
-from reports.convergence.verdict import FAILURES_NAMED, percentage
 
+from extensions.convergence.report import FAILED_ROWS, FAILURES_NAMED, percentage, settled_time
 from reports.build import build_reports
 from reports.document.blocks import Table, Text
 from reports.errors import ReportError

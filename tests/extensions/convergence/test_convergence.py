@@ -3,27 +3,29 @@ import math
 import multiprocessing
 import signal
 import time
-from dataclasses import replace
 
 import numpy as np
 import pytest
-from gnc.analysis.ensemble_motion import Vehicle
-from gnc.analysis.turning_reference import averaged_settling_time
-from scenarios.studies.convergence.cases import REFERENCES, draw_case, references_of
-from scenarios.studies.convergence.ensemble import (
+
+from extensions.convergence.motion import Vehicle
+from extensions.convergence.references import (
+    REFERENCES,
+    averaged_settling_time,
+    draw_case,
+    references_of,
+)
+from extensions.convergence.study import (
     COLUMNS,
+    ConvergenceWork,
     convergence_blocks,
     convergence_table,
     counterexamples,
     trajectory_of,
 )
-from scenarios.studies.convergence.study import ConvergenceWork
-
 from gnc.paper import look_ahead
 from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.engine.local_executor import LocalExecutor
 from scenarios.engine.task import Limits, Task
-from scenarios.errors import InputError
 
 # The paper's vehicle (reference/paper-notes.md) and the guidance of the catalogue's scenarios.
 SPEED, HEADING_RATE_MAX, BAND = 19.42, 0.503, 5.0
@@ -189,7 +191,7 @@ def test_a_block_whose_process_was_lost_is_a_row_for_each_of_its_trajectories():
 
 
 def test_a_trajectory_that_has_too_little_time_is_a_counterexample(monkeypatch):
-    monkeypatch.setattr("scenarios.studies.convergence.ensemble.TIME_FACTOR", 0.1)
+    monkeypatch.setattr("extensions.convergence.study.TIME_FACTOR", 0.1)
     rows = study(time_max=1.0, laws=("cascade",))
     missed = counterexamples(rows)
     assert len(missed) > 0
@@ -294,22 +296,3 @@ def test_the_rows_hold_what_the_prediction_is_made_from(small):
     assert averaged_settling_time(LOOK_AHEAD, SPEED, refs, begin, BAND) == pytest.approx(
         [row["settling_time_predicted_s"]], rel=1e-9
     )
-
-
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        (
-            {"laws": ("pursuit",)},
-            "law 'pursuit' is unknown; choose from lyapunov, cascade, cascade_cut",
-        ),
-        ({"trajectories": 0}, "trajectories is 0; it must be above 0"),
-        (
-            {"vehicle": replace(VEHICLE, heading_rate_max=0.4)},
-            "heading_rate_max is 0.4 rad/s; circles turn at up to 0.5: raise it",
-        ),
-    ],
-)
-def test_a_study_that_cannot_be_flown_is_refused(changes, words):
-    with pytest.raises(InputError, match=words):
-        study(**changes)

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
-from scenarios.studies.patrol.ships import sampled_patrol
-from scenarios.studies.patrol.tables import patrol_figures, ship_row, wind_row
-from scenarios.studies.patrol.work import PatrolWork
 
+from extensions.patrol.ships import sampled_patrol
+from extensions.patrol.study import PatrolWork
+from extensions.patrol.tables import patrol_figures, ship_row, wind_row
 from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.engine.task import Task
 from scenarios.errors import InputError
@@ -303,7 +303,7 @@ def test_a_study_without_any_verdict_of_an_oracle_either_is_not_met(tmp_path):
         ("vessel.manoeuvres=[{at_s=20.0,turn_deg=30.0}]", ("vessel.manoeuvres",)),
         (
             "start.range_m=500",
-            ("beside start.range_m; a flight beside a ship begins where the way to her ends",),
+            ("beside start.range_m; a flight beside a ship begins where the way to it ends",),
         ),
         ("start.place_m=[-500,10]", ("beside start.place_m",)),
         ('draws=[{key="start.aspect_deg",uniform=[0.0,30.0]}]', ("beside start.aspect_deg",)),
@@ -349,7 +349,7 @@ def test_flights_of_a_patrol_know_the_plume_as_the_scenario_says_and_those_of_th
         known.append(flown.following.plume)
         return flown
 
-    monkeypatch.setattr("scenarios.studies.patrol.work.with_values", recorded)
+    monkeypatch.setattr("extensions.patrol.study.with_values", recorded)
     one = patrol("patrol.ships=1", "following.plume=predicted")
     run_study(one, "patrol", tmp_path / "run", executor_factory=InProcessExecutor)
     assert known == ["predicted", "told"]

@@ -15,8 +15,6 @@ from ensemble_cases import (
     references,
     wandering,
 )
-from gnc.analysis.ensemble import DISTANCE_CONVERGED, Outcome, Tolerances
-from gnc.analysis.ensemble_motion import MOTIONS, Steering
 from gnc_cases import (
     HEADING_RATE_MAX,
     LOOK_AHEAD,
@@ -33,6 +31,8 @@ from hypothesis import strategies as st
 from lyapunov_cases import K_1
 from scipy.integrate import solve_ivp
 
+from extensions.convergence.ensemble import DISTANCE_CONVERGED, Outcome, Tolerances
+from extensions.convergence.motion import MOTIONS, Steering
 from gnc.numeric import wrap
 from gnc.paper import cascade_law, lyapunov_law, relative_velocity, state_rates, v_2
 

@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from gnc.path_laws.npfg import NpfgParameters, bearing_feasibility, npfg, track_error_bound
+
+from extensions.arena.laws.npfg import NpfgParameters, bearing_feasibility, npfg, track_error_bound
 
 NORTH, CALM = (1.0, 0.0), (0.0, 0.0)
 # PX4 computes in single precision: 1e-7 relative at each of some ten operations.

@@ -5,7 +5,8 @@ ArduPilot's code in single precision.
 import math
 
 import pytest
-from gnc.path_laws.ardupilot import (
+
+from extensions.arena.laws.ardupilot import (
     FRESH,
     L1State,
     decided,

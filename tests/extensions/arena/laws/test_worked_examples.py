@@ -3,9 +3,10 @@
 import math
 
 import pytest
-from gnc.path_laws.lgvf import circle_course, heading_rate, lgvf
-from gnc.path_laws.park import park_l1, point_on_circle, point_on_line
-from gnc.path_laws.pursuit import (
+
+from extensions.arena.laws.lgvf import circle_course, heading_rate, lgvf
+from extensions.arena.laws.park import park_l1, point_on_circle, point_on_line
+from extensions.arena.laws.pursuit import (
     carrot_on_circle,
     carrot_on_line,
     chase,
@@ -15,7 +16,7 @@ from gnc.path_laws.pursuit import (
     pure_pursuit,
     sight_rate,
 )
-from gnc.path_laws.vector_field import (
+from extensions.arena.laws.vector_field import (
     field_heading_rate,
     line_course,
     line_field,
@@ -23,7 +24,6 @@ from gnc.path_laws.vector_field import (
     orbit_field,
     orbit_roll,
 )
-
 from gnc.errors import InfeasibleError
 from gnc.laws import line_of_sight_law
 from gnc.vectors import along, course_of, minus, scaled

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from gnc.path_laws.path import path_motion
 
+from extensions.arena.laws.path import path_motion
 from gnc.laws import ON_CIRCLE, ON_OSCILLATION, STEERING_LAWS
 from gnc.steering import Air, Motion, started
 from gnc.vectors import along, course_of, norm, plus, scaled

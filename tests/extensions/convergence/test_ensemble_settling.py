@@ -14,11 +14,12 @@ from ensemble_cases import (
     references,
     wandering,
 )
-from gnc.analysis.ensemble import Outcome, Tolerances, fly_ensemble
-from gnc.analysis.ensemble_motion import Steering, Vehicle
-from gnc.analysis.turning_reference import averaged_settling_time
 from gnc_cases import LOOK_AHEAD, SPEED
 from lyapunov_cases import K_1
+
+from extensions.convergence.ensemble import Outcome, Tolerances, fly_ensemble
+from extensions.convergence.motion import Steering, Vehicle
+from extensions.convergence.references import averaged_settling_time
 
 
 def test_a_circle_that_spends_almost_all_of_omega_max_is_never_reached_under_cut_commands():

@@ -3,7 +3,8 @@
 import math
 
 import pytest
-from scenarios.measures.window import measured_figures
+
+from extensions.arena.window import measured_figures
 
 MEASURED = {
     "seconds_in_plume_s": 20.0,

@@ -3,7 +3,8 @@
 import math
 
 import pytest
-from common.patrols import PatrolCounts
+
+from extensions.patrol.counts import PatrolCounts
 
 # A patrol of six ships of which five were served, as the catalog's criteria have it: 80 % of the
 # oracle's, 5 % wrong.
