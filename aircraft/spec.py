@@ -19,6 +19,7 @@ from pathlib import Path
 from reprlib import repr as shortened
 from typing import Any
 
+from common.errors import RefusedError
 from common.physics import RAD_S_PER_RPM
 
 MODELS = Path(__file__).parent / "models"
@@ -59,7 +60,7 @@ _REQUIRED_INPUTS = ("elevator", "aileron", "throttle")
 _OPTIONAL_INPUTS = ("rudder",)
 
 
-class AircraftError(ValueError):
+class AircraftError(RefusedError):
     """An aircraft cannot be found, loaded, trimmed or linearised; the message is one line."""
 
 

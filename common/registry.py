@@ -7,23 +7,20 @@ import importlib.metadata
 import importlib.util
 import pkgutil
 import sys
-import traceback
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from types import FunctionType
+from types import FunctionType, ModuleType
 from typing import Any, Generic, TypeVar
 
+from common.errors import PluginError
+from common.plugins import call_plugin
 from common.text import did_you_mean
 
 Part = TypeVar("Part")
 
 ENTRY_POINTS = "plume_flight_study"
 """Prefix of the groups of entry points, as in ``plume_flight_study.steering_law``."""
-
-
-class PluginError(ValueError):
-    """A part is unknown, does not load, or is not what it should be. The message is one line."""
 
 
 class Registry(Generic[Part]):
@@ -127,7 +124,7 @@ class Registry(Generic[Part]):
                 f"give {name.removesuffix(':')}:NAME"
             )
         if is_file_part(name):
-            return self.checked(name, self._callable(name, part_in_file(name)))
+            return self._class(name, part_in_file(name))
         if (
             name not in self._parts
             and name.isidentifier()
@@ -138,20 +135,20 @@ class Registry(Generic[Part]):
         if name in self._parts or name in self._known():
             return self._parts[name]
         if name in announced(self.kind):
-            return self.checked(name, self._callable(name, load_announced(self.kind, name)))
+            return self._class(name, load_announced(self.kind, name))
         names = self.names()
         raise PluginError(
             f"unknown {self.words} '{name}'{did_you_mean(name, names) or ';'} "
             f"known are {', '.join(names)}, or FILE.py:NAME"
         )
 
-    def _callable(self, name: str, part: Any) -> Any:
+    def _class(self, name: str, part: Any) -> Part:
         if self._methods and not callable(part):
             raise PluginError(
                 f"{self.words} '{name}' is an object of class {type(part).__name__}; "
                 "give the class itself"
             )
-        return part
+        return self.checked(name, part)
 
     def _known(self) -> dict[str, Part]:
         if not self._complete:
@@ -173,14 +170,16 @@ class Registry(Generic[Part]):
         ------
         PluginError : it lacks one
         """
-        if not isinstance(part, FunctionType):
-            for method in self._methods:
-                alternatives = method.split("|")
-                if not any(callable(getattr(part, each, None)) for each in alternatives):
-                    raise PluginError(
-                        f"{self.words} '{name}' has no method {'() or '.join(alternatives)}(); "
-                        f"see the Protocol in {self._protocol}"
-                    )
+        lacking = [
+            method
+            for method in self._methods
+            if not any(callable(getattr(part, each, None)) for each in method.split("|"))
+        ]
+        if lacking and not isinstance(part, FunctionType):
+            raise PluginError(
+                f"{self.words} '{name}' has no method {lacking[0].replace('|', '() or ')}(); "
+                f"see the Protocol in {self._protocol}"
+            )
         found: Part = part
         return found
 
@@ -201,15 +200,8 @@ def load_announced(kind: str, name: str) -> Any:
     PluginError : it does not load
     """
     point = announced(kind)[name]
-    try:
-        return point.load()
-    except PluginError:
-        raise
-    except Exception as error:
-        raise PluginError(
-            f"{kind.replace('_', ' ')} '{name}' of package {point.value}: "
-            f"{type(error).__name__}: {error}"
-        ) from error
+    words = kind.replace("_", " ")
+    return call_plugin(f"{words} '{name}' of package {point.value}", point.load)
 
 
 def announced_folders(kind: str) -> dict[str, Path]:
@@ -293,40 +285,19 @@ def part_in_file(name: str) -> Any:
 def _module_in(path: Path, digest: str) -> Any:
     """Return the module in a file, loaded once while its hash stays the same."""
     name = f"plume_flight_study_{path.stem}_{digest}"
-    spec = importlib.util.spec_from_file_location(name, path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    # Dataclasses look their module up.
-    sys.modules[name] = module
-    try:
+
+    def load() -> ModuleType:
+        spec = importlib.util.spec_from_file_location(name, path)
+        assert spec is not None
+        assert spec.loader is not None
+        module = importlib.util.module_from_spec(spec)
+        # Dataclasses look their module up.
+        sys.modules[name] = module
         spec.loader.exec_module(module)
-    # A script that exits when it is imported must not end the command without a message.
-    except (Exception, SystemExit) as error:
-        del sys.modules[name]
-        raise PluginError(
-            f"{path} does not load: {type(error).__name__}: {error}"
-            f"{_line_of(path, error)}{_hint(path, error)}"
-        ) from error
-    return module
+        return module
 
-
-def _line_of(path: Path, error: BaseException) -> str:
-    """Return the line of a file at which loading failed, where the error does not say it."""
-    lines = [
-        frame.lineno
-        for frame in traceback.extract_tb(error.__traceback__)
-        if frame.filename == str(path.absolute())
-    ]
-    return f" ({path.name}:{lines[-1]})" if lines else ""
-
-
-def _hint(path: Path, error: BaseException) -> str:
-    """Return a hint where a part imports a module that lies next to its file."""
-    name = (error.name or "").partition(".")[0] if isinstance(error, ModuleNotFoundError) else ""
-    if name and ((path.parent / f"{name}.py").is_file() or (path.parent / name).is_dir()):
-        return (
-            f"; '{name}' lies beside it, but a part is one file, or an installed package: "
-            f"put it into {path.name}"
-        )
-    return ""
+    try:
+        return call_plugin(str(path), load)
+    except PluginError:
+        sys.modules.pop(name, None)
+        raise

@@ -10,7 +10,8 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from gnc.errors import InfeasibleError, LawError
+from common.plugins import call_plugin, explained, rejected_result
+from gnc.errors import InfeasibleError
 from gnc.paper import LookAhead, RelativeState, relative_state, relative_velocity
 from gnc.reference.reference import Reference
 from gnc.vectors import Vector, along, course_of, dot, norm, plus, scaled
@@ -167,11 +168,7 @@ def relative_motion(
 
 # ---------------------------------------------------------------- A law in flight
 
-_HEADING_RATE = "its method heading_rate(reference, own, air) has to return a number [rad/s]"
-_START = (
-    "its method start(time_step) has to return the law of one flight, with a method heading_rate,"
-    " or itself"
-)
+_HEADING_RATE = "a number, the heading rate [rad/s]"
 
 
 def started(law: SteeringLaw, time_step: float) -> SteeringLaw:
@@ -184,19 +181,19 @@ def started(law: SteeringLaw, time_step: float) -> SteeringLaw:
 
     Raises
     ------
-    LawError : its ``start`` cannot be called so, or returns no law
+    PluginError : its ``start`` fails, or returns no law
     """
     start: Callable[[float], SteeringLaw] | None = getattr(law, "start", None)
     if start is None:
         return law
-    name = type(law).__qualname__
-    try:
-        flown = start(time_step)
-    except TypeError as error:
-        raise _call_error(name, error, _START) from None
-    if not callable(getattr(flown, "heading_rate", None)):
-        raise LawError(f"steering law '{name}' returned {flown!r} from start(): {_START}")
-    return flown
+    return call_plugin(f"steering law '{type(law).__qualname__}'", start, time_step, result=_law)
+
+
+def _law(found: Any) -> SteeringLaw:
+    if not callable(getattr(found, "heading_rate", None)):
+        raise TypeError("the law of one flight, with a method heading_rate, or itself")
+    law: SteeringLaw = found
+    return law
 
 
 class LimitedLaw:
@@ -210,7 +207,7 @@ class LimitedLaw:
     """
 
     def __init__(self, law: SteeringLaw, limit: float, time_step: float) -> None:
-        self._name = type(law).__qualname__
+        self._part = f"steering law '{type(law).__qualname__}'"
         self._steer = started(law, time_step).heading_rate
         self._limit = limit
 
@@ -221,12 +218,12 @@ class LimitedLaw:
 
         Raises
         ------
-        LawError : the law cannot be called so, or returns no number although all inputs are finite
+        PluginError : the law fails, or returns no number although all inputs are finite
         """
         try:
             rate: Any = self._steer(reference, own, air)
-        except TypeError as error:
-            raise _call_error(self._name, error, _HEADING_RATE) from None
+        except Exception as error:
+            raise explained(self._part, self._steer, error) from error
         if type(rate) is not float:
             rate = self._number(rate)
         if math.isnan(rate) and _is_finite(reference, own):
@@ -244,20 +241,11 @@ class LimitedLaw:
             raise self._no_number(rate)
         return float(number)
 
-    def _no_number(self, rate: object) -> LawError:
-        shown = repr(rate) if isinstance(rate, str) else " ".join(str(rate).split())
-        return LawError(f"steering law '{self._name}' returned {shown}: {_HEADING_RATE}")
+    def _no_number(self, rate: object) -> BaseException:
+        return rejected_result(f"{self._part}: heading_rate() returned", rate, _HEADING_RATE)
 
 
 def _is_finite(reference: Reference, own: Motion) -> bool:
     """Return whether a law's inputs are finite; after an aircraft has diverged they are not."""
     inputs = (reference.north, reference.east, own.north, own.east, own.course, own.speed)
     return all(math.isfinite(value) for value in inputs)
-
-
-def _call_error(name: str, error: TypeError, must: str) -> Exception:
-    """Return the error if it comes from inside the law, else one that says how to call it."""
-    raised = error.__traceback__
-    if raised is not None and raised.tb_next is not None:
-        return error
-    return LawError(f"steering law '{name}' cannot be called ({error}): {must}")

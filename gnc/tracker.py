@@ -85,7 +85,7 @@ class ReferenceTracker:
 
         Raises
         ------
-        LawError : the law cannot be called, or returned no number
+        PluginError : the law failed, or returned no number
         """
         raise NotImplementedError
 

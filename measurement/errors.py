@@ -5,10 +5,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from common.errors import RefusedError
 from common.text import did_you_mean
 
 
-class MeasurementError(ValueError):
+class MeasurementError(RefusedError):
     """The input cannot be used; its one-line message names quantity, value, limit and remedy."""
 
 

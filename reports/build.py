@@ -271,7 +271,7 @@ def command(
 
     Exit status: 0 written, 1 written but pieces of the run are missing, 2 bad input.
     """
-    from common.registry import PluginError
+    from common.errors import PluginError
     from reports.errors import ReportError
 
     missing: dict[str, None] = {}

@@ -3,8 +3,9 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
+from common.errors import PluginError
 from common.provenance import without_folders
-from common.registry import PluginError, announced, is_file_part, load_announced
+from common.registry import announced, is_file_part, load_announced
 from reports.design.content import design_content
 from reports.document.blocks import (
     FAILURES_MAX,

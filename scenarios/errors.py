@@ -1,7 +1,9 @@
 """Bad input to a run."""
 
+from common.errors import RefusedError
 
-class InputError(ValueError):
+
+class InputError(RefusedError):
     """The user asked for something that cannot be run. The message is one line: what, its value,
     the limit, the remedy.
     """

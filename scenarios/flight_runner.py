@@ -17,6 +17,7 @@ import numpy as np
 import pandas as pd
 
 from common.columns import Column, Table
+from common.plugins import call_plugin
 from common.run_layout import CROSSINGS, DRAWS, INTERVENTIONS
 from scenarios.engine.task import Result, Row, Task
 from scenarios.experiment.requests import Experiment, FlightRequest, table_of
@@ -48,7 +49,6 @@ from scenarios.scenario.extension_points import PAYLOADS
 from scenarios.scenario.sections.experiment import STUDY
 from scenarios.vehicles.vehicle_setup import VehicleSetup, kinematic_setup
 from scenarios.world.noise import PAYLOAD, own_generator
-from scenarios.world.own_part import asked
 
 _GONE = (Outcome.DIVERGED.value, Outcome.AIRCRAFT_LOST.value)
 
@@ -319,10 +319,8 @@ def payload_of(request: FlightRequest, plan: FlightPlan) -> list[Instrument | Ev
     InputError : one fills a column, a figure or a table that the flight or another one fills
     """
     given = request.scenario, plan.world, own_generator(request.noise, PAYLOAD)
-    called_with = "the scenario, the world and a random generator"
-    instruments = [
-        asked(f"payload '{name}'", "cannot be made", called_with, PAYLOADS.get(name), *given)
-        for name in plan.payload
+    instruments: list[Any] = [
+        call_plugin(f"payload '{name}'", PAYLOADS.get(name), *given) for name in plan.payload
     ]
     check_instruments(zip(plan.payload, instruments, strict=True))
     return instruments

@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from common.command_line import INTERRUPTED, refuse, run_command
+from common.errors import PluginError
 from common.interrupt import terminated_like_interrupted
-from common.registry import PluginError, announced, load_announced
+from common.registry import announced, load_announced
 from common.run_layout import REPORT_HTML, REPORT_PDF, flight_of
 
 if TYPE_CHECKING:

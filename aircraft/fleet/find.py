@@ -17,8 +17,9 @@ from aircraft.spec import (
     ModelFiles,
     check_spec,
 )
+from common.errors import PluginError
 from common.files import is_path
-from common.registry import PluginError, is_file_part
+from common.registry import is_file_part
 from common.text import did_you_mean
 
 _MODEL_TAG = "fdm_config"

@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from common.registry import PluginError, is_file_part
+from common.errors import PluginError
+from common.registry import is_file_part
 from extensions.arena import STANDOFF, TRACKING
 from extensions.arena.keys import ArenaKeys
 from gnc.laws import ON_CIRCLE, ON_OSCILLATION, STEERING_LAWS

@@ -3,6 +3,7 @@
 From a number of NumPy's single precision, all that follows would be computed in it.
 """
 
+import functools
 from typing import Any
 
 import numpy as np
@@ -31,6 +32,7 @@ class BuiltinFloats:
         if not callable(found):
             return _converted(found)
 
+        @functools.wraps(found)
         def method(*args: Any, **keywords: Any) -> Any:
             return _converted(found(*args, **keywords))
 

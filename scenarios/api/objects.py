@@ -10,10 +10,11 @@ from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
-from common.registry import PluginError, Registry
+from common.errors import PluginError
+from common.registry import Registry
 from scenarios.engine.task import Result, Task, Work
 from scenarios.errors import InputError
-from scenarios.scenario.study_keys import ADDED
+from scenarios.scenario.added_keys import ADDED
 from scenarios.world.ais import AisReports
 
 PLAIN = (bool, int, float, str)

@@ -305,7 +305,7 @@ def _cell(value: object, unit: str) -> object:
 @contextmanager
 def _one_line() -> Iterator[None]:
     """Raise what is wrong with a run, a format, or a file to be written, as an InputError."""
-    from common.registry import PluginError
+    from common.errors import PluginError
     from reports.errors import ReportError
 
     try:

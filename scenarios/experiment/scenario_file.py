@@ -1,9 +1,9 @@
 """Flights as scenario files, which anyone can fly, change, and pass on."""
 
 from scenarios.experiment.requests import FlightRequest
+from scenarios.scenario.added_keys import ADDED
 from scenarios.scenario.effect import unused
 from scenarios.scenario.sections.experiment import SweepConfig
-from scenarios.scenario.study_keys import ADDED
 
 
 def scenario_file(request: FlightRequest, *, title: str) -> bytes:

@@ -3,13 +3,11 @@
 import traceback
 from pathlib import Path
 
-from aircraft.spec import AircraftError
-from common.registry import PluginError
+from common.errors import RefusedError
 from common.text import one_line
-from gnc.errors import InfeasibleError, LawError
+from gnc.errors import InfeasibleError
 from measurement.errors import MeasurementError
 from scenarios.engine.task import Row
-from scenarios.errors import InputError
 from scenarios.flight.outcome import Outcome
 
 
@@ -25,7 +23,7 @@ def failure(error: Exception | SystemExit) -> Row:
     if isinstance(error, InfeasibleError | MeasurementError):
         return unflown(Outcome.INFEASIBLE, str(error))
     message = str(error)
-    if not isinstance(error, AircraftError | InputError | LawError | PluginError):
+    if not isinstance(error, RefusedError):
         frames = traceback.extract_tb(error.__traceback__)
         # Methods of dataclasses are made from text, and have no file: what called them has.
         where = next(

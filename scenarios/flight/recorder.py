@@ -2,11 +2,12 @@
 
 import math
 import struct
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
+from common.plugins import call_plugin, numbers
 from gnc.estimation.navigation import MeasuredMotion
 from gnc.guidance import Guidance
 from gnc.mission.mission import NO_CENTRE, OrbitStatus
@@ -14,7 +15,6 @@ from scenarios.flight.record import COLUMNS, Array
 from scenarios.flight.settling import Settling
 from scenarios.instruments.instrument import Instrument
 from scenarios.vehicles.vehicle import Vehicle
-from scenarios.world.own_part import are_numbers, asked, refuse_answer
 from scenarios.world.world import World
 
 _NO_ORBIT = OrbitStatus(NO_CENTRE, math.nan, in_place=False)
@@ -104,8 +104,7 @@ class Recorder:
         sample = self._sample()
         read: Sequence[Any] = ()
         if self._payload:
-            read_all = _read_all if self._rows else _read_first
-            read = read_all(self._payload, time, motion, sample)
+            read = _read_all(self._payload, time, motion, sample)
         self._rows.append(self._pack(
             time, *motion, math.atan2(v_east, v_north), *vessel, axis, north, east, course, heading_rate,
             seen_north + centre.x, seen_east + centre.y, centre_error, own.wind_north, own.wind_east,
@@ -128,39 +127,13 @@ class Recorder:
 
 def _read_all(
     payload: Sequence[Any], time: float, motion: MeasuredMotion, sample: tuple[float, ...]
-) -> list[Any]:
+) -> list[float]:
     """Return what instruments read, one after the other."""
-    return [value for instrument in payload for value in instrument.read(time, motion, sample)]
-
-
-def _read_first(
-    payload: Sequence[Any], time: float, motion: MeasuredMotion, sample: tuple[float, ...]
-) -> list[Any]:
-    """Return what instruments read first; an error says which of them reads what is of no use."""
-    values: list[Any] = []
+    values: list[float] = []
     for instrument in payload:
-        part, count = (
-            f"payload: instrument of class {type(instrument).__qualname__}",
-            len(instrument.COLUMNS),
-        )
-        read = asked(
-            part,
-            "failed in read()",
-            "time, motion and sample",
-            instrument.read,
-            time,
-            motion,
-            sample,
-        )
-        read = read if isinstance(read, str) or not isinstance(read, Iterable) else tuple(read)
-        if not are_numbers(read, count, finite=False):
-            refuse_answer(
-                part,
-                "read()",
-                read,
-                f"a tuple of {count} number{'s' * (count != 1)}, one for each of its COLUMNS",
-            )
-        values.extend(read)
+        part = f"payload: instrument of class {type(instrument).__qualname__}"
+        read = numbers(len(instrument.COLUMNS), "one for each of COLUMNS", finite=False)
+        values += call_plugin(part, instrument.read, time, motion, sample, result=read)
     return values
 
 

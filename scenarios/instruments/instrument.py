@@ -7,8 +7,10 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 import numpy.typing as npt
 
-from common.columns import Column, Declared, described
+from common.columns import Column, described
+from common.plugins import check_result
 from common.provenance import without_folders
+from common.run_layout import is_file_name
 from gnc.estimation.navigation import MeasuredMotion
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
@@ -128,20 +130,6 @@ class GasReader(Protocol):
         """Return what has been read since a time [s]."""
 
 
-def figures_of(instrument: Any) -> Declared:
-    """Return the columns of the summary that an instrument, or a class of instruments, declares."""
-    figures: Declared = getattr(instrument, "FIGURES", ())
-    return figures
-
-
-def tables_of(instrument: Any) -> Mapping[str, Declared]:
-    """Return the columns of the tables that an instrument, or a class of instruments, declares, by
-    file.
-    """
-    tables: Mapping[str, Declared] = getattr(instrument, "TABLES", {})
-    return tables
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Declarations:
     """What the instruments of some scenarios fill: columns that bear the instrument's name.
@@ -170,13 +158,48 @@ def declarations(scenarios: Iterable[Scenario]) -> Declarations:
     }
     found = Declarations()
     for name, instrument in named.items():
-        part = without_folders(name)
-        # Objects may have columns of their own: a property of a class says nothing yet.
-        columns = getattr(instrument, "COLUMNS", ())
-        if isinstance(columns, Collection):
-            found.histories.update(described(columns, part=part))
-        if hasattr(instrument, "evaluate"):
-            found.figures.update(described(figures_of(instrument), part=part))
-            for file, declared in tables_of(instrument).items():
-                found.tables[file] = described(declared, part=part)
+        of = declared_by(name, instrument)
+        found.histories.update(of.histories)
+        found.figures.update(of.figures)
+        found.tables.update(of.tables)
     return found
+
+
+def declared_by(name: str, instrument: Any) -> Declarations:
+    """Return what an instrument, or a class of instruments, fills.
+
+    Raises
+    ------
+    PluginError : it declares what are no columns, or tables that are no files of the run
+    """
+    part = without_folders(name)
+
+    def columns(declared: Any) -> dict[str, Column]:
+        if isinstance(declared, str) or not isinstance(declared, Collection):
+            raise TypeError("a tuple of names, or a mapping from each")
+        if not all(isinstance(column, str) and column for column in declared):
+            raise TypeError("names, each of them text")
+        try:
+            return described(declared, part=part)
+        except ValueError as error:
+            raise ValueError(f"names, each with its meaning or a Column ({error})") from None
+
+    def tables(declared: Any) -> dict[str, dict[str, Column]]:
+        if not isinstance(declared, Mapping):
+            raise TypeError("a mapping from files to the names of their columns")
+        for file in declared:
+            if not is_file_name(file) or not file.endswith(".csv"):
+                raise ValueError(f"names of files that end in .csv, without a folder; not {file!r}")
+        return {file: columns(of) for file, of in declared.items()}
+
+    # Objects may have columns of their own: a property of a class says nothing yet.
+    declared = {
+        what: {} if isinstance(of := getattr(instrument, what, {}), property) else of
+        for what in ("COLUMNS", "FIGURES", "TABLES")
+    }
+    what = f"payload '{name}':"
+    return Declarations(
+        histories=check_result(f"{what} COLUMNS is", declared["COLUMNS"], columns),
+        figures=check_result(f"{what} FIGURES is", declared["FIGURES"], columns),
+        tables=check_result(f"{what} TABLES is", declared["TABLES"], tables),
+    )

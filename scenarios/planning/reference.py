@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from common.registry import PluginError
+from common.plugins import call_plugin, passed
 from gnc.errors import InfeasibleError
 from gnc.paper import PlumeAxis, distance_by_paper, distance_exact, reach
 from gnc.reference.builtin_floats import BuiltinFloats, with_builtin_floats
@@ -22,7 +22,6 @@ from scenarios.planning.limits import omega_max
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.guidance import GuidanceConfig, ReferenceConfig
 from scenarios.scenario.sections.world import KeepoutConfig
-from scenarios.world.own_part import asked, is_number, is_own, refuse_answer
 
 STEPS_MIN = 6
 """Least steps of the guidance between two crossings [-]: fewer do not show the oscillation."""
@@ -51,15 +50,22 @@ def shape_of(reference: ReferenceConfig) -> ReferenceShape:
     ------
     PluginError : there is no such shape, or it cannot be made
     """
-    part, kind = _named(reference), REFERENCE_SHAPES.get(reference.shape)
-    made = asked(part, "cannot be made", "no arguments: its fields need defaults", kind)
-    if is_own(made) and not is_number(getattr(made, "turn_rate_fraction_until_tracked", None)):
-        raise PluginError(
-            f"{part} has no turn_rate_fraction_until_tracked, the part of its heading rate that the"
-            " reference takes until it is tracked [-]; give it one, 1.0 as the sinusoid has"
-        )
+    made = call_plugin(_named(reference), REFERENCE_SHAPES.get(reference.shape), result=_shape)
     shape: ReferenceShape = with_builtin_floats(made)
     return shape
+
+
+def _shape(made: Any) -> Any:
+    if not _is_number(getattr(made, "turn_rate_fraction_until_tracked", None)):
+        raise TypeError(
+            "a shape with a number turn_rate_fraction_until_tracked, the fraction of its heading rate"
+            " that the reference turns with until it is tracked [-], 1.0 as the sinusoid has"
+        )
+    return made
+
+
+def _is_number(found: object) -> bool:
+    return isinstance(found, int | float | np.number) and bool(np.isfinite(found))
 
 
 def _named(reference: ReferenceConfig) -> str:
@@ -75,11 +81,11 @@ def oscillation_at(guidance: GuidanceConfig, reference: ReferenceConfig, nu: flo
     PluginError : a shape of a user's own failed, or returned none
     """
     part, shape = _named(reference), shape_of(reference)
-    orbit = asked(
+    own = isinstance(shape, BuiltinFloats)
+    orbit: Orbit = call_plugin(
         part,
-        f"failed in design() at nu = {nu:.4g}",
-        "nu, speed, vessel_heading_rate, heading_rate_max, reserve and roll_rate_max, each by its name",
         shape.design,
+        result=_orbit if own else passed,
         nu=nu,
         speed=guidance.airspeed_mps,
         vessel_heading_rate=0.0,
@@ -87,8 +93,9 @@ def oscillation_at(guidance: GuidanceConfig, reference: ReferenceConfig, nu: flo
         reserve=guidance.reserve,
         roll_rate_max=math.radians(guidance.roll_rate_max_deg_s),
     )
-    if isinstance(shape, BuiltinFloats):
-        _check_own(orbit, part, f"design() at nu = {nu:.4g}")
+    if own:
+        call_plugin(part, orbit.offset, np.zeros(1))
+        call_plugin(part, orbit.half_widths)
     steps = orbit.crossing_interval * guidance.rate_hz
     if steps < STEPS_MIN:
         raise InfeasibleError(
@@ -99,25 +106,20 @@ def oscillation_at(guidance: GuidanceConfig, reference: ReferenceConfig, nu: flo
     return orbit
 
 
-def _check_own(orbit: Any, part: str, method: str) -> None:
-    """Refuse what is no orbit; ``part`` and ``method`` are the shape's whose answer it is.
+def _orbit(found: Any) -> Any:
+    """Return what a user's shape designs, which has to be an orbit."""
+    has_numbers = all(_is_number(getattr(found, name, None)) for name in _OF_ORBIT)
+    if not has_numbers or not isinstance(getattr(found, "symmetric", None), bool | np.bool_):
+        raise TypeError(
+            f"an orbit, with finite {', '.join(_OF_ORBIT)}, and symmetric, true or false"
+        )
+    return found
 
-    Raises
-    ------
-    PluginError : it lacks a number, says not whether its halves are alike, or cannot say where it
-        is
-    """
-    missing = [name for name in (*_OF_ORBIT, "symmetric") if not hasattr(orbit, name)]
-    if missing:
-        must = f"an orbit, with finite {', '.join(_OF_ORBIT)}, and symmetric, true or false"
-        refuse_answer(part, method, orbit, f"{must}: it has no {', '.join(missing)}")
-    for name in _OF_ORBIT:
-        if not is_number(found := getattr(orbit, name)):
-            refuse_answer(part, f"{name} of {method}", found, "a finite number")
-    if not isinstance(orbit.symmetric, bool | np.bool_):
-        refuse_answer(part, f"symmetric of {method}", orbit.symmetric, "true or false")
-    asked(part, f"failed in offset() of {method}", "times [s]", orbit.offset, np.zeros(1))
-    asked(part, f"failed in half_widths() of {method}", "no arguments", orbit.half_widths)
+
+def _swing(found: Any) -> Any:
+    if not all(callable(getattr(found, name, None)) for name in _OF_SWING):
+        raise TypeError(f"courses, with the methods {', '.join(_OF_SWING)}")
+    return found
 
 
 def swing_of(guidance: GuidanceConfig, reference: ReferenceConfig) -> Swing:
@@ -129,19 +131,14 @@ def swing_of(guidance: GuidanceConfig, reference: ReferenceConfig) -> Swing:
     PluginError : a shape of a user's own failed, or returned none
     """
     part, shape = _named(reference), shape_of(reference)
-    swing = asked(
+    swing: Swing = call_plugin(
         part,
-        "failed in swing()",
-        "speed, heading_rate and roll_rate_max, each by its name",
         shape.swing,
+        result=_swing,
         speed=guidance.airspeed_mps,
         heading_rate=(1.0 - guidance.reserve) * omega_max(guidance),
         roll_rate_max=math.radians(guidance.roll_rate_max_deg_s),
     )
-    if isinstance(shape, BuiltinFloats) and not all(
-        callable(getattr(swing, name, None)) for name in _OF_SWING
-    ):
-        refuse_answer(part, "swing()", swing, f"courses, with the methods {', '.join(_OF_SWING)}")
     return swing
 
 

@@ -15,6 +15,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import to_jsonable_python
 
 from common.text import nearest
+from scenarios.scenario.added_keys import study_files
 from scenarios.scenario.documented_parts import FLIGHT_STUDIES, DocumentedKey, documented_part_keys
 from scenarios.scenario.effect import named_by
 from scenarios.scenario.effect_rules import RULES
@@ -22,7 +23,6 @@ from scenarios.scenario.experiment_checks import ONE_POINT
 from scenarios.scenario.keys import line, models_in, split_unit
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.experiment import DrawConfig, TrialList
-from scenarios.scenario.study_keys import study_files
 
 _KINDS: dict[type[BaseModel], tuple[str, ...]] = {
     Scenario: FLIGHT_STUDIES,

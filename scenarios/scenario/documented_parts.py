@@ -10,10 +10,10 @@ from typing import Any
 
 from common.registry import Registry
 from gnc.laws import STEERING_LAWS
+from scenarios.scenario.added_keys import ADDED
 from scenarios.scenario.extension_points import PAYLOADS, PLUME_MODELS
 from scenarios.scenario.keys import line, split_unit
 from scenarios.scenario.sections.guidance import GuidanceConfig
-from scenarios.scenario.study_keys import ADDED
 
 FLIGHT_STUDIES = (
     *("flights", "paper", "monte_carlo", "falsify", "premises"),

@@ -5,13 +5,13 @@ would use it.
 import functools
 from collections.abc import Iterable, Iterator, Mapping
 
-from common.registry import PluginError
+from common.errors import PluginError
 from scenarios.errors import InputError
+from scenarios.scenario.added_keys import ADDED
 from scenarios.scenario.effect_rules import OPERATIONAL, RULES, Rule
 from scenarios.scenario.experiment_checks import unsteady
 from scenarios.scenario.keys import known_keys
 from scenarios.scenario.scenario import Scenario
-from scenarios.scenario.study_keys import ADDED
 
 _DISPLACED_BY = {
     "start.distance_m": ("start.range_m", "start.place_m"),

@@ -6,9 +6,10 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields
 
 from measurement.plume.spread import PlumeSettings
+from scenarios.scenario.added_keys import ADDED
 from scenarios.scenario.experiment_checks import FOLLOWING, UNSTEADY
 from scenarios.scenario.scenario import Scenario
-from scenarios.scenario.study_keys import ADDED, StudyKeys
+from scenarios.scenario.study_keys import StudyKeys
 
 Test = Callable[[Scenario], bool]
 

@@ -8,10 +8,10 @@ from pydantic import BaseModel
 
 from common.text import at_or_below
 from measurement.plume.spread import SOURCE_HEIGHT_MAX
+from scenarios.scenario.added_keys import ADDED
 from scenarios.scenario.scenario_keys import ScenarioKeys
 from scenarios.scenario.sections.experiment import FLIGHTS_MAX, STUDY
 from scenarios.scenario.sections.world import SOURCE_HEIGHT_MIN
-from scenarios.scenario.study_keys import ADDED
 
 DESIGNED_FOR = ("aircraft", "guidance.airspeed_mps", "flight.altitude_m")
 """Keys for which the autopilot is worked out once for a run: they cannot be sampled or swept."""

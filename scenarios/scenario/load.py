@@ -10,11 +10,13 @@ from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
+from common.errors import PluginError
 from common.files import is_file
-from common.registry import PluginError, announced, announced_folders, is_file_part
+from common.registry import announced, announced_folders, is_file_part
 from common.run_layout import FLIGHTS, MANIFEST
 from common.text import did_you_mean
 from scenarios.errors import InputError
+from scenarios.scenario.added_keys import ADDED, check_study, study_files
 from scenarios.scenario.effect import refuse_unused
 from scenarios.scenario.keys import explanation, key_of
 from scenarios.scenario.overrides import (
@@ -32,7 +34,7 @@ from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.experiment import TrialList
 from scenarios.scenario.sections.report import read_logo
 from scenarios.scenario.sections.section import Section
-from scenarios.scenario.study_keys import ADDED, StudyFile, check_study, study_files
+from scenarios.scenario.study_keys import StudyFile
 
 Study = TypeVar("Study", bound=Section)
 

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 from pydantic import model_validator
 
 from gnc.laws import ON_CIRCLE, ON_OSCILLATION
+from scenarios.scenario.added_keys import ADDED
 from scenarios.scenario.experiment_checks import check_together
 from scenarios.scenario.scenario_keys import DEFAULT_AIRCRAFT, ScenarioKeys
 from scenarios.scenario.sections.equipment import REPORTS_MAX
 from scenarios.scenario.sections.guidance import law_refusal
 from scenarios.scenario.sections.section import check_divides, check_ordered
-from scenarios.scenario.study_keys import ADDED
 
 POINTS_MAX = 10_000
 """Most points of an experiment: all are checked before the first flight, in a millisecond and 20 kB

@@ -1,11 +1,11 @@
 """A search by several methods that take turns."""
 
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 
-from common.registry import PluginError
+from common.plugins import call_plugin
 from scenarios.search.found import Found
 from scenarios.search.method import SEARCH_METHODS, SearchMethod, SearchSettings
 from scenarios.search.space import Array, Space
@@ -31,8 +31,8 @@ def methods_named(
     methods: dict[str, SearchMethod] = {}
     for name, of in zip(names, np.random.SeedSequence(seed).spawn(len(names)), strict=True):
         kind = SEARCH_METHODS.get(name)
-        with _explained(name, "when it was made"):
-            methods[name] = kind(space, settings, np.random.default_rng(of))
+        given = space, settings, np.random.default_rng(of)
+        methods[name] = call_plugin(_named(name), kind, *given)
     return methods
 
 
@@ -76,40 +76,38 @@ def search_in_turns(
             clearances = attempt(name, points)
             budgets[name] -= len(points)
             found.add(points, clearances)
-            with _explained(name, "in tell()"):
-                methods[name].tell(clearances)
-        with _explained(name, "when it was asked for 'exhausted'"):
-            exhausted = methods[name].exhausted
-        if not exhausted:
+            call_plugin(_named(name), methods[name].tell, clearances)
+        if not call_plugin(_named(name), exhausted, methods[name]):
             left.append(name)
     return found
 
 
 def _asked(name: str, method: SearchMethod, found: Found, room: int, dimension: int) -> Array:
     """Return the points that a method proposes, shape (n, dimension), at most ``room``."""
-    with _explained(name, "in ask()"):
-        points = np.asarray(method.ask(found, room), dtype=np.float64)
-    if points.size == 0:
-        return np.empty((0, dimension))
-    if points.ndim != 2 or points.shape[1] != dimension or len(points) > room:
-        raise PluginError(
-            f"search method '{name}' proposed points of shape {points.shape}; it was asked for at most {room} of {dimension}"
-            f" coordinates each: let ask(found, room) return an array of shape (n, {dimension}), n up to room"
-        )
-    # Not a number is outside, too.
-    if (outside := points[~((points >= -_ROUNDING) & (points <= 1.0 + _ROUNDING))]).size:
-        raise PluginError(
-            f"search method '{name}' proposed a coordinate of {outside[0]:g}; each lies from 0 to 1, over the range of its random"
-            " variable: let ask(found, room) return such points alone"
-        )
-    return points
+
+    def points(proposed: Any) -> Array:
+        try:
+            of = np.asarray(proposed, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise TypeError("points, an array of numbers") from None
+        if of.size == 0:
+            return np.empty((0, dimension))
+        if of.ndim != 2 or of.shape[1] != dimension or len(of) > room:
+            raise ValueError(f"up to {room} points, an array of shape (n, {dimension})")
+        # NaN is outside, too.
+        if not ((of >= -_ROUNDING) & (of <= 1.0 + _ROUNDING)).all():
+            raise ValueError(
+                "points whose coordinates lie from 0 to 1, over the range of a variable"
+            )
+        return of
+
+    return call_plugin(_named(name), method.ask, found, room, result=points)
 
 
-@contextmanager
-def _explained(name: str, where: str) -> Iterator[None]:
-    """Turn what a method raises into a PluginError of one line that names it, and where it did."""
-    try:
-        yield
-    except Exception as error:
-        what = " ".join(f"{type(error).__name__}: {error}".split())
-        raise PluginError(f"search method '{name}' failed {where}: {what}") from error
+def exhausted(method: SearchMethod) -> bool:
+    """Return whether a method has nothing left to propose."""
+    return method.exhausted
+
+
+def _named(name: str) -> str:
+    return f"search method '{name}'"

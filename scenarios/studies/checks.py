@@ -8,8 +8,9 @@ from aircraft.faults import fault_names
 from aircraft.fleet.find import find_spec
 from aircraft.spec import AircraftError, Envelope
 from aircraft.weather import TURBULENCE, low_altitude_turbulence
+from common.errors import PluginError
 from common.files import is_data_file
-from common.registry import PluginError, Registry
+from common.registry import Registry
 from common.run_layout import NAME_BYTES_MAX, is_file_name
 from common.text import did_you_mean
 from gnc.errors import InfeasibleError
@@ -241,9 +242,11 @@ def _check_parts(scenario: Scenario) -> None:
         except PluginError as error:
             raise InputError(f"{key}: {error}") from None
     # What another callable makes is checked before its flight.
-    check_instruments(
-        (name, part) for name, part in scenario.payload.parts().items() if isinstance(part, type)
-    )
+    classes = [of for of in scenario.payload.parts().items() if isinstance(of[1], type)]
+    try:
+        check_instruments(classes)
+    except PluginError as error:
+        raise InputError(str(error)) from None
     if (
         scenario.emission.ship is None
         or sampled

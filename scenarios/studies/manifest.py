@@ -11,8 +11,9 @@ from pydantic_core import to_jsonable_python
 from aircraft.fleet.find import find_spec
 from aircraft.model import model_hash
 from aircraft.spec import AircraftError
+from common.errors import PluginError
 from common.provenance import provenance
-from common.registry import PluginError, file_hash, file_of
+from common.registry import file_hash, file_of
 from common.run_layout import FORMAT, LOGO
 from measurement.emission import Ship
 from measurement.gases import UNITS

@@ -4,7 +4,8 @@ from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from pathlib import Path
 
-from common.registry import PluginError, is_file_part
+from common.errors import PluginError
+from common.registry import is_file_part
 from scenarios.engine.executor import Executor
 from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.run_directory import RunDirectory

@@ -9,14 +9,14 @@ import numpy.typing as npt
 
 from aircraft.weather import Weather
 from aircraft.wind import WindField
-from common.registry import PluginError
+from common.errors import PluginError
+from common.plugins import call_plugin, is_users, number, numbers
 from scenarios.scenario.extension_points import PLUME_MODELS, VESSEL_TRACKS
 from scenarios.scenario.scenario import Scenario
 from scenarios.world.ais.track import AisVessel, ais_vessel
 from scenarios.world.background import UNIFORM, Background
 from scenarios.world.exhaust import Exhaust
 from scenarios.world.faults import TimedFault
-from scenarios.world.own_part import are_numbers, asked, is_number, is_own, refuse_answer
 from scenarios.world.place import Place, given_place
 from scenarios.world.plume import Plume
 from scenarios.world.vessel import SteadyVessel, VesselTruth, sampled, track_times
@@ -67,6 +67,12 @@ class World:
     background: Background = UNIFORM
 
 
+_MOTION = numbers(4, "north, east [m] and their rates [m/s]")
+_COURSE = number("the course, clockwise from north [rad]")
+_AXIS = number("the course along which the plume trails [rad]")
+"""What a track and a plume of a user's own return."""
+
+
 def vessel_of(scenario: Scenario) -> VesselTruth:
     """Return the vessel's motion over the longest flight.
 
@@ -88,18 +94,15 @@ def vessel_of(scenario: Scenario) -> VesselTruth:
         )
     if config.track == "manoeuvres" and not config.manoeuvres:
         return SteadyVessel(scenario.vessel_speed, math.radians(config.course_deg))
-    part, made = f"vessel.track '{config.track}'", VESSEL_TRACKS.get(config.track)
-    called_with = "the [vessel] section, the speed [m/s] and the duration [s]"
-    track: VesselTruth = asked(
+    part = f"vessel.track '{config.track}'"
+    track: VesselTruth = call_plugin(
         part,
-        "cannot be made",
-        called_with,
-        made,
+        VESSEL_TRACKS.get(config.track),
         config,
         scenario.vessel_speed,
         duration + TRACK_MARGIN,
     )
-    if is_own(track):
+    if is_users(track):
         _check_track(part, track, duration)
     return track
 
@@ -108,28 +111,13 @@ def _check_track(part: str, track: VesselTruth, duration: float) -> None:
     """Raise a PluginError for a track of a user's own that is of no use; ``check_declared``
     compares place and velocity.
     """
-    if not is_number(getattr(track, "manoeuvres_end", None), finite=False):
+    if not isinstance(getattr(track, "manoeuvres_end", None), int | float | np.number):
         raise PluginError(
             f"{part} has no manoeuvres_end, the time at which its last manoeuvre ends [s]; give it one, math.nan without any"
         )
     for time in np.arange(0.0, duration, _LOOK_STEP).tolist():
-        motion = asked(part, f"failed in motion({time:g})", "the time [s]", track.motion, time)
-        if not are_numbers(motion, 4):
-            refuse_answer(
-                part,
-                f"motion({time:g})",
-                motion,
-                "four finite numbers: north, east [m] and their rates [m/s]",
-            )
-        course = asked(part, f"failed in course({time:g})", "the time [s]", track.course, time)
-        if not is_number(course):
-            refuse_answer(
-                part,
-                f"course({time:g})",
-                course,
-                "a finite number: the course, clockwise from north [rad]",
-            )
-        north, east, v_north, v_east = map(float, motion)
+        north, east, v_north, v_east = call_plugin(part, track.motion, time, result=_MOTION)
+        course = call_plugin(part, track.course, time, result=_COURSE)
         if time == 0.0 and math.hypot(north, east) > _ORIGIN_MAX:
             raise PluginError(
                 f"{part} begins at {north:g} m north and {east:g} m east; let it begin at the origin: motion(0)"
@@ -169,28 +157,14 @@ def plume_of(scenario: Scenario, vessel: VesselTruth) -> Plume:
     ------
     PluginError : there is no such plume model, or it cannot be made, or its axis is of no use
     """
-    part, called_with = (
-        f"plume.model '{scenario.plume.model}'",
-        "plume, vessel, wind, duration, by_wind=...",
-    )
-    model = PLUME_MODELS.get(scenario.plume.model)
+    part, model = f"plume.model '{scenario.plume.model}'", PLUME_MODELS.get(scenario.plume.model)
     duration = scenario.flight.duration_max_s + TRACK_MARGIN
     section = scenario.plume.model_copy(update={"source_height_m": scenario.source_height})
-    given, by_wind = (
-        (section, vessel, mean_wind(scenario, vessel), duration),
-        scenario.plume_by_wind,
-    )
-    plume: Plume = asked(part, "cannot be made", called_with, model, *given, by_wind=by_wind)
-    if is_own(plume):
+    given = section, vessel, mean_wind(scenario, vessel), duration
+    plume: Plume = call_plugin(part, model, *given, by_wind=scenario.plume_by_wind)
+    if is_users(plume):
         for time in np.arange(0.0, duration, _LOOK_STEP).tolist():
-            axis = asked(part, f"failed in axis({time:g})", "the time [s]", plume.axis, time)
-            if not is_number(axis):
-                refuse_answer(
-                    part,
-                    f"axis({time:g})",
-                    axis,
-                    "a finite number: the course along which the plume trails [rad]",
-                )
+            call_plugin(part, plume.axis, time, result=_AXIS)
     return plume
 
 

@@ -4,7 +4,8 @@ import sys
 
 import pytest
 
-from common.registry import PluginError, Registry
+from common.errors import PluginError
+from common.registry import Registry
 
 
 def test_a_module_that_does_not_load_hides_no_part_at_the_next_call(tmp_path, monkeypatch):

@@ -232,19 +232,19 @@ def test_files_may_be_swept_sampled_compared_and_set_in_cases(tmp_path):
         (
             "guidance.law",
             "import nowhere_to_be_found\n",
-            "own.py does not load: ModuleNotFoundError: No module named 'nowhere_to",
+            "own.py: load() failed: ModuleNotFoundError: No module named 'nowhere_to",
         ),
-        ("guidance.law", "class Part:\n", "own.py does not load: IndentationError"),
-        ("guidance.law", "import sys\nsys.exit(0)\n", "own.py does not load: SystemExit: 0"),
+        ("guidance.law", "class Part:\n", "own.py: load() failed: IndentationError"),
+        ("guidance.law", "import sys\nsys.exit(0)\n", "own.py: load() failed: SystemExit: 0"),
         (
             "guidance.law",
             "\n1 / 0\n",
-            "own.py does not load: ZeroDivisionError: division by zero (own.py:2)",
+            "own.py: load() failed: ZeroDivisionError: division by zero (own.py:2)",
         ),
         (
             "guidance.law",
             "import beside\n",
-            "(own.py:1); 'beside' lies beside it, but a part is one file, or an installed",
+            "load() failed: ModuleNotFoundError: No module named 'beside' (own.py:1)",
         ),
         (
             "vessel.track",
@@ -332,7 +332,10 @@ def test_a_part_that_raises_in_flight_makes_a_row_that_says_where(tmp_path):
     rows = rows_of(tmp_path / "run")
     line = text.splitlines().index('            raise RuntimeError("lost")') + 1
     assert [(row["outcome"], row["message"]) for row in rows] == [
-        ("failed", f"RuntimeError: lost (own.py:{line})")
+        (
+            "failed",
+            f"steering law 'Pursuit': heading_rate() failed: RuntimeError: lost (own.py:{line})",
+        )
     ] * 2
 
 
@@ -346,7 +349,7 @@ def test_a_part_that_raises_before_any_flight_is_refused_in_one_line(tmp_path):
         tmp_path / "run",
     )
     assert message.startswith(
-        f"a flight cannot be sampled: vessel.track '{tmp_path / 'own.py'}:Weaving' cannot be made: RuntimeError: no chart (own.py:"
+        f"a flight cannot be sampled: vessel.track '{tmp_path / 'own.py'}:Weaving': Weaving() failed: RuntimeError: no chart (own.py:"
     )
 
 

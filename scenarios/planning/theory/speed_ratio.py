@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+from common.errors import PluginError
 from common.physics import bank_for_heading_rate
-from common.registry import PluginError
 from gnc.errors import InfeasibleError
 from gnc.paper import PlumeAxis
 from scenarios.planning.limits import omega_max

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, RootModel, field_validator, model_validator
 
-from common.registry import PluginError
+from common.errors import PluginError
 from scenarios.scenario.sections.report import ReportConfig
 from scenarios.scenario.sections.section import (
     Fraction,

@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, field_validator, model_validator
 
-from common.registry import PluginError
+from common.errors import PluginError
 from common.text import did_you_mean, nearest
 from gnc.laws import ON_CIRCLE, ON_OSCILLATION, STEERING_LAWS
 from scenarios.scenario.sections.section import (

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError, model_validator
 
-from common.registry import PluginError
+from common.errors import PluginError
 from common.text import did_you_mean
 from scenarios.scenario.sections.section import Section, refuse_truth_values
 from scenarios.scenario.sections.wrong_value import must_be

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from common.registry import PluginError
+from common.errors import PluginError
 from common.run_layout import DRAWS, SUMMARY, WORST
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory

@@ -19,7 +19,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from gnc.errors import InfeasibleError, LawError
+from common.errors import PluginError
+from gnc.errors import InfeasibleError
 from gnc.laws import STEERING_LAWS, CascadeLaw, LineOfSightLaw, LyapunovLaw, line_of_sight_law
 from gnc.paper import RelativeState, cascade_law, equilibrium, h, lyapunov_law, relative_velocity
 from gnc.steering import STILL_AIR, LimitedLaw, Motion, started
@@ -212,7 +213,9 @@ def test_a_demand_is_a_plain_number_and_its_command_is_within_the_limit(demand):
 
 @pytest.mark.parametrize("demand", [math.nan, None, "0.3", np.array([0.1]), 1j])
 def test_a_law_that_returns_no_number_is_named(demand):
-    with pytest.raises(LawError, match=r"law 'Constant' returned .*: its method heading_rate\("):
+    with pytest.raises(
+        PluginError, match=r"law 'Constant': heading_rate\(\) returned .*; it has to be a number"
+    ):
         demanded(Constant(demand))
 
 
@@ -261,11 +264,15 @@ class FailsAtStart(Constant):
 
 
 def test_a_law_that_cannot_be_started_is_named():
-    must = r": its method start\(time_step\) has to return the law of one flight"
-    with pytest.raises(LawError, match=r"'StartsNothing' returned None from start\(\)" + must):
-        started(StartsNothing(0.0), 0.05)
-    with pytest.raises(LawError, match="'StartsWithoutTimeStep' cannot be called .*" + must):
-        started(StartsWithoutTimeStep(0.0), 0.05)
-    # The traceback of an error inside the law names its line.
-    with pytest.raises(TypeError, match="unsupported operand"):
-        started(FailsAtStart(0.0), 0.05)
+    must = "it has to be the law of one flight, with a method heading_rate, or itself"
+    for law, words in (
+        (StartsNothing, rf"'StartsNothing': start\(0\.05\) returned None; {must}"),
+        (
+            StartsWithoutTimeStep,
+            r"start\(0\.05\) failed: TypeError: .* takes 1 positional argument",
+        ),
+        # An error inside the law is told with its line.
+        (FailsAtStart, r"failed: TypeError: unsupported operand .*\(test_laws\.py:\d+\)"),
+    ):
+        with pytest.raises(PluginError, match=words):
+            started(law(0.0), 0.05)

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 from convergence_runs import write_convergence_run
 
-from common.registry import PluginError
+from common.errors import PluginError
 from reports.build import export_run
 from reports.errors import ReportError
 from reports.export import EXPORTERS

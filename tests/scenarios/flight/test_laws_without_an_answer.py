@@ -92,30 +92,20 @@ class Frozen:
         return 0.0
 
 
-MUST = "its method heading_rate(reference, own, air) has to return a number [rad/s]"
-
-
 @pytest.mark.parametrize("mission", ["track", "follow", "standoff"])
 @pytest.mark.parametrize(
     ("law", "words"),
     [
-        (NotANumber, ("steering law 'NotANumber' returned nan: ", MUST)),
-        (Nothing, ("steering law 'Nothing' returned None: ", MUST)),
-        (Word, ("steering law 'Word' returned '0.3': ", MUST)),
-        (ArrayOfOne, ("steering law 'ArrayOfOne' returned [0.1]: ", MUST)),
-        (ArrayOfTwo, ("steering law 'ArrayOfTwo' returned [[0.1] [0.2]]: ", MUST)),
-        (ComplexNumber, ("steering law 'ComplexNumber' returned (0.1+0j): ", MUST)),
-        (
-            TooFew,
-            (
-                "steering law 'TooFew' cannot be called (",
-                "takes 2 positional arguments but 4 were given",
-                MUST,
-            ),
-        ),
+        (NotANumber, "returned nan; it has to be a number, the heading rate [rad/s]"),
+        (Nothing, "returned None; it has to be a number"),
+        (Word, "returned '0.3'; it has to be a number"),
+        (ArrayOfOne, "returned array([0.1]); it has to be a number"),
+        (ArrayOfTwo, "returned array([[0.1], [0.2]]); it has to be a number"),
+        (ComplexNumber, "(0.1+0j)"),
+        (TooFew, "takes 2 positional arguments but 4 were given"),
         # An error inside the law is told where it is.
-        (Wrong, ("TypeError: ", "(test_laws_without_an_answer.py:")),
-        (Frozen, ("FrozenInstanceError: ", "(test_laws_without_an_answer.py:")),
+        (Wrong, "failed: TypeError: "),
+        (Frozen, "failed: FrozenInstanceError: "),
     ],
 )
 def test_a_law_without_an_answer_ends_its_flight_with_a_reason_that_names_it(mission, law, words):
@@ -126,9 +116,10 @@ def test_a_law_without_an_answer_ends_its_flight_with_a_reason_that_names_it(mis
             flight={"duration_max_s": 20.0},
         )
     assert (flown.row["outcome"], flown.row["criteria_met"]) == ("failed", False)
-    for word in words:
-        assert word in flown.row["message"]
-    assert "tracker.py" not in flown.row["message"]
+    message = flown.row["message"]
+    assert message.startswith(f"steering law '{law.__name__}': heading_rate() ")
+    assert words in message
+    assert ("(test_laws_without_an_answer.py:" in message) == (law in (Wrong, Frozen))
 
 
 NUMBERS = {
