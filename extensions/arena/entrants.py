@@ -54,7 +54,7 @@ class Refused:
 
     Attributes
     ----------
-    law, task : as of ``Entrant``
+    law, task : same as ``Entrant``
     reason : why not
     """
 
@@ -113,7 +113,8 @@ def entrants_of(scenario: Scenario) -> tuple[list[Entrant], list[Refused]]:
             )
     if not entrants:
         raise InputError(
-            'no law takes part; name some in arena.tracking, arena.standoff or laws, as in laws=["npfg"]'
+            "no law takes part; name some in arena.tracking, arena.standoff or laws, as in"
+            ' laws=["npfg"]'
         )
     entrants.sort(key=lambda entrant: entrant.task != TRACKING)
     return entrants, refused
@@ -131,7 +132,8 @@ def conditions_of(scenario: Scenario, name: str, entrants: list[Entrant]) -> dic
     conditions = ArenaKeys.of(scenario).arena.conditions
     if not conditions:
         raise InputError(
-            'arena.conditions is empty; give one at least, as in [[arena.conditions]] name = "calm", title = "Calm"'
+            "arena.conditions is empty; give one at least, as in [[arena.conditions]]"
+            ' name = "calm", title = "Calm"'
         )
     trials = {}
     for condition in conditions:

@@ -486,8 +486,8 @@ def by_condition_table(arena: Arena, figure: str, *, tracking: bool | None = Non
 
 
 def tuning_table(arena: Arena) -> Table:
-    """Return what each law was given: its way to the reference, its parameters, and what either set
-    costs the tuner.
+    """Return the tuning of each law: what it makes use of, its parameters, and what either set costs
+    the tuner.
     """
     rows = []
     for entrant in arena.entrants:
@@ -496,14 +496,16 @@ def tuning_table(arena: Arena) -> Table:
             f"{key} {value:.3g} → {tuned.get(key, value):.3g}"
             for key, value in entrant.defaults.items()
         )
-        costs = f"{number(entrant.cost_default, '{:.2f}')} → {number(entrant.cost_tuned, '{:.2f}')}"
+        before, after = (
+            number(cost, "{:.2f}") for cost in (entrant.cost_default, entrant.cost_tuned)
+        )
+        costs = f"{before} → {after}"
         rows.append(
             [str(entrant.number), entrant.title, entrant.inputs, parameters or "none", costs]
         )
     head = ["No.", "Law", "What it makes use of", "Parameters: default → tuned", "Cost [m]"]
     return Table(
-        caption="What each law was given: its way to the reference, its parameters, and what"
-        " either set costs the tuner.",
+        caption="What each law makes use of, its parameters, and what either set costs the tuner.",
         head=head,
         rows=rows,
         widths=[0.4, 1.6, 2.7, 3.4, 1.2],

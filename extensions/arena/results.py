@@ -1,5 +1,5 @@
-"""What an arena has shown: means with intervals by condition and over all of them, and what each
-law was given.
+"""What an arena has shown: means with intervals by condition and over all of them, and the
+tuning of each law.
 """
 
 import json
@@ -40,7 +40,7 @@ _TRACKING_ONLY = ("error_rms_m", "effort_rms_rad_s", "excess_rms_rad_s", "satura
 
 
 def tuned_record(entrants: Sequence[Entrant], rows: Iterable[Row]) -> list[dict[str, Any]]:
-    """Return what each law was given: its parameters by default and as tuned, and what either costs
+    """Return the tuning of each law: its parameters by default and as tuned, and what either costs
     the tuner.
 
     A row without a cost stands for a tuning whose process was lost.

@@ -151,7 +151,7 @@ def convergence_content(run: RunData) -> Findings:
         verdict=_verdict(data),
         picture=charts[0] if charts else None,
         sections=[
-            Section(anchor="question", title="What was asked", blocks=_question(data)),
+            Section(anchor="question", title="Question", blocks=_question(data)),
             Section(
                 anchor="settling",
                 title="How soon they settle",

@@ -310,7 +310,8 @@ def _row(block: Block, result: EnsembleResult, i: int) -> Row:
         "trajectory": case.trajectory,
         "law": block.law.value,
         "reference": case.kind,
-        "reference_heading_rate_max_rad_s": abs(case.rate) + sum(abs(term.amplitude) for term in case.terms),
+        "reference_heading_rate_max_rad_s": abs(case.rate)
+        + sum(abs(term.amplitude) for term in case.terms),
         "start_north_m": case.north,
         "start_east_m": case.east,
         "start_distance_m": float(np.hypot(case.north, case.east)),
@@ -369,7 +370,7 @@ class ConvergenceWork:
         return Result(task=task, tables={SUMMARY: fly_block(block)}, items=len(block.cases))
 
     def lost(self, task: Task, reason: str) -> Result:
-        """Return the result of a block whose process was lost: a row for each of its trajectories."""
+        """Return the result of a block whose process was lost: a row for each trajectory."""
         block = self.blocks[task.number]
         rows: list[Row] = [
             {

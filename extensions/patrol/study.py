@@ -67,7 +67,7 @@ class PatrolStudy(FlightStudy):
 
     Raises
     ------
-    InputError : as of ``FlightStudy``; flights that give no verdict, ships that are not steady, a
+    InputError : same as ``FlightStudy``; flights that give no verdict, ships that are not steady, a
         place to begin at, ships that are kept clear of by more than the way to them, or are so near
         to one another that a flight beside one enters the area of the other, an endurance too short
         for any ship, or ships that find no room
@@ -126,7 +126,8 @@ class PatrolStudy(FlightStudy):
             if counts.judged
             else "no ship was served"
             if not counts.served
-            else "no verdict, and none of an oracle: give ships more time (patrol.patience_s, flight.after_settling_s)"
+            else "no verdict, and none of an oracle: give ships more time (patrol.patience_s,"
+            " flight.after_settling_s)"
         )
         ended = f"exit status {int(not counts.met)}: " if counts.done == self.planned else "so far "
         lines = [
@@ -142,9 +143,12 @@ class PatrolStudy(FlightStudy):
             f" aircraft through; {judged}",
         ]
         manifest: dict[str, Any] = {
-            "patrols_met": counts.through, "ships_served": counts.served, "verdicts": counts.verdicts,
-            "verdicts_wrong": counts.wrong, "oracle_verdicts": counts.oracle,
-        }  # fmt: skip
+            "patrols_met": counts.through,
+            "ships_served": counts.served,
+            "verdicts": counts.verdicts,
+            "verdicts_wrong": counts.wrong,
+            "oracle_verdicts": counts.oracle,
+        }
         return StudySummary(
             done=counts.done, met=counts.met, lines=lines, manifest=manifest | self._sizes()
         )
@@ -437,9 +441,18 @@ def _limit_percent(scenario: Scenario) -> float:
 # ---------------------------------------------------------------- One flight beside a ship
 
 _TAKEN = (
-    "fsc_percent", "orbit_at_s", "time_to_find_s", "settling_time_s", "enough", "outcome", "message", "keepout_violations",
-    "min_distance_m", "altitude_outside_s", "kept_out",
-)  # fmt: skip
+    "fsc_percent",
+    "orbit_at_s",
+    "time_to_find_s",
+    "settling_time_s",
+    "enough",
+    "outcome",
+    "message",
+    "keepout_violations",
+    "min_distance_m",
+    "altitude_outside_s",
+    "kept_out",
+)
 """Columns of a flight's row that a ship's has, too."""
 
 

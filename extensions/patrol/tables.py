@@ -145,7 +145,7 @@ verdict; and away.
 
 
 def ship_row(patrol: Patrol, number: int, limit: float) -> Row:
-    """Return what is known of a ship before the patrol; ``limit`` is that of the verdict [% m/m]."""
+    """Return what is known of a ship before the patrol; ``limit`` is the verdict's [% m/m]."""
     ship = patrol.ships[number]
     scenario, place = ship.scenario, ship.mover.place
     return {

@@ -74,8 +74,8 @@ def test_every_command_and_every_option_is_on_its_page():
 
 def test_the_page_of_a_module_names_its_modules():
     made = pages()
-    assert ".. automodule:: extensions.arena.laws.npfg" in made["modules/extensions.arena.laws.md"]
-    assert "modules/extensions.arena.laws\n" in made["modules.md"]
+    assert ".. automodule:: gnc.mission.standoff" in made["modules/gnc.mission.md"]
+    assert "modules/gnc.mission\n" in made["modules.md"]
 
 
 def test_the_sketch_has_the_orbit_closed_about_the_centre():
