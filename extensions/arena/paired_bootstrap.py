@@ -84,7 +84,8 @@ def paired_estimates(
     strata = np.asarray(strata)
     columns = np.concatenate([
         members[generator.integers(len(members), size=(resamples, len(members)))]
-        for members in (np.flatnonzero(strata == stratum) for stratum in dict.fromkeys(strata.tolist()))
+        for stratum in dict.fromkeys(strata.tolist())
+        for members in [np.flatnonzero(strata == stratum)]
     ], axis=1) if len(strata) else np.empty((resamples, 0), dtype=int)  # fmt: skip
     known = np.isfinite(values)
     whole = np.logical_and(known[:, known.any(axis=0)].all(axis=1), known.any())
