@@ -109,7 +109,7 @@ def test_what_is_wrong_in_a_file_names_the_file_and_what_is_wrong_in_an_override
         ),
         (
             "study=magic",
-            ["study is 'magic'", "flights, paper, convergence, trials, monte_carlo, falsify"],
+            ["study is 'magic'", "flights, paper, trials, monte_carlo, falsify"],
         ),
         ("study=paper", ["study is 'paper' without cases"]),
         (f"seed={'9' * 5000}", ["--set seed: value 99999999999999999999... has too many digits"]),
