@@ -12,7 +12,7 @@ import numpy as np
 from extensions.patrol.keys import PatrolKeys
 from extensions.patrol.order import Order, Prospect, exact_order, inserted_order
 from extensions.patrol.ships import Patrol, sampled_patrol
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
 
 _ALIKE = 0.02

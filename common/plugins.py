@@ -5,6 +5,7 @@ the file that it stands in. Where it fails in flight, the flight is a row with t
 """
 
 import math
+import sysconfig
 import traceback
 from collections.abc import Callable
 from pathlib import Path
@@ -17,8 +18,14 @@ Result = TypeVar("Result")
 
 _PROJECT = Path(__file__).parents[1]
 
+_LIBRARY = sysconfig.get_path("stdlib")
+"""Folder of Python's own modules."""
+
 ROOMS = ("aircraft", "common", "gnc", "innerloop", "measurement", "reports", "scenarios")
 """Packages whose classes are no user's, and whose lines are not where a part has failed."""
+
+PASSED_ON = (RefusedError, MemoryError)
+"""Errors that say by themselves what is wrong, or do not come from the part."""
 
 _SHOWN = 80
 """Letters of a result that a message shows at most."""
@@ -52,10 +59,10 @@ def call_plugin(
     """
     try:
         found = method(*given, **named)
-    except Exception as error:
-        raise explained(part, method, error, *given) from error
+    except PASSED_ON:
+        raise
     # A part that ends the process must not end the command without a word.
-    except SystemExit as error:
+    except (Exception, SystemExit) as error:
         raise explained(part, method, error, *given) from error
     return check_result(f"{part}: {_called(method, given)} returned", found, result)
 
@@ -80,17 +87,13 @@ def check_result(what: str, found: Any, result: Callable[[Any], Result]) -> Resu
 
 def explained(
     part: str, method: Callable[..., Any], error: BaseException, *given: Any
-) -> BaseException:
-    """Return the error to be raised instead of one that a method of a part has raised; the same if
-    it says by itself what is wrong, or does not come from the part.
-    """
-    if isinstance(error, RefusedError | MemoryError):
-        return error
+) -> PluginError:
+    """Return the error that says in one line what a method of a part has raised, and where."""
     # The first frame is that of the call.
     frames = [
         frame
         for frame in traceback.extract_tb(error.__traceback__)[1:]
-        if not frame.filename.startswith("<")
+        if not frame.filename.startswith(("<", _LIBRARY)) or "site-packages" in frame.filename
     ]
     # The first file outside of the project is the part's; it may call other packages.
     own = [frame for frame in frames if not _is_of_project(frame.filename)]
@@ -113,7 +116,7 @@ def is_users(part: object) -> bool:
 
 
 def number(what: str) -> Callable[[Any], float]:
-    """Return what makes a finite float of a part's result; ``what`` it is, in words, with its unit."""
+    """Return what makes a finite float of a part's result; ``what`` it is, with its unit."""
     words = f"a finite number, {what}"
 
     def made(found: Any) -> float:

@@ -10,7 +10,8 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from common.plugins import call_plugin, explained, rejected_result
+from common.errors import PluginError
+from common.plugins import PASSED_ON, call_plugin, explained, rejected_result
 from gnc.errors import InfeasibleError
 from gnc.paper import LookAhead, RelativeState, relative_state, relative_velocity
 from gnc.reference.reference import Reference
@@ -222,6 +223,8 @@ class LimitedLaw:
         """
         try:
             rate: Any = self._steer(reference, own, air)
+        except PASSED_ON:
+            raise
         except Exception as error:
             raise explained(self._part, self._steer, error) from error
         if type(rate) is not float:
@@ -241,7 +244,7 @@ class LimitedLaw:
             raise self._no_number(rate)
         return float(number)
 
-    def _no_number(self, rate: object) -> BaseException:
+    def _no_number(self, rate: object) -> PluginError:
         return rejected_result(f"{self._part}: heading_rate() returned", rate, _HEADING_RATE)
 
 

@@ -4,8 +4,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 from common.errors import PluginError
+from common.plugins import call_plugin
 from common.provenance import without_folders
-from common.registry import announced, is_file_part, load_announced
+from common.registry import announced, is_file_part, load_announced, part_in_file
 from reports.design.content import design_content
 from reports.document.blocks import (
     FAILURES_MAX,
@@ -36,7 +37,13 @@ STUDIES: dict[str, Callable[[RunData], Findings]] = {
     "measurement": measurement_content,
 }
 """A study, as its manifest names it, and what makes the findings of its report. An installed package
-announces more of them in the group ``plume_flight_study.report``, by the name of their study.
+announces more of them in the group ``plume_flight_study.report``, by the name of their study; the
+class of a study in a file has its own as an attribute ``report``.
+"""
+
+SECTIONS = "report_section"
+"""Group of entry points, ``plume_flight_study.report_section``: functions that return sections which
+reports of every study have at their end, given the run.
 """
 
 
@@ -52,14 +59,17 @@ def content(run: RunData, settings: Mapping[str, str] | None = None) -> Content:
     Raises
     ------
     ReportError : the manifest names a study that has no report, or is of another version; or the
-        logo is no picture
+        logo is no picture; or what a package or a file adds fails
     """
-    made = _findings_of(run)
-    found = made(run)
+    try:
+        found = _findings_of(run)(run)
+        added = _added_sections(run)
+    except PluginError as error:
+        raise ReportError(str(error)) from error
     head = letterhead(run, settings or {})
     figures = Section(anchor="figures", title="Key figures", blocks=_figures(found.verdict))
     # What is missing is known once everything has been asked for; it stands first.
-    shown = [_without(found.picture, section) for section in found.sections]
+    shown = [_without(found.picture, section) for section in (*found.sections, *added)]
     sections = [*missing_sections(run), figures, *shown, provenance_section(run, head)]
     picture, sections = numbered(found.picture, [section for section in sections if section.blocks])
     changes = [change for change in run.manifest["overrides"] if not change.startswith("report.")]
@@ -85,17 +95,36 @@ def _findings_of(run: RunData) -> Callable[[RunData], Findings]:
         if study in STUDIES:
             return STUDIES[study]
         if study in announced("report"):
-            try:
-                made: Callable[[RunData], Findings] = load_announced("report", study)
-            except PluginError as error:
-                raise ReportError(str(error)) from error
+            made: Callable[[RunData], Findings] = load_announced("report", study)
             return made
-        if is_file_part(study) or study in announced("study"):
+        if is_file_part(study):
+            return _report_of_file(run, study)
+        if study in announced("study"):
             return flights_content
     known = [*STUDIES, *sorted(announced("report"))]
     raise ReportError(
         f"'{run.path}': study is {study!r}, which has no report; those that have one: {', '.join(known)}"
     )
+
+
+def _report_of_file(run: RunData, study: str) -> Callable[[RunData], Findings]:
+    """Return what makes the report of a study in a file; without that file, that of any flights."""
+    try:
+        kind = part_in_file(study)
+    except PluginError:
+        run.unread.add(study)
+        return flights_content
+    own: Callable[[RunData], Findings] | None = getattr(kind, "report", None)
+    return (lambda run: call_plugin(f"study '{study}'", own, run)) if own else flights_content
+
+
+def _added_sections(run: RunData) -> list[Section]:
+    """Return the sections that installed packages add."""
+    found: list[Section] = []
+    for name in sorted(announced(SECTIONS)):
+        made = load_announced(SECTIONS, name)
+        found += call_plugin(f"report section '{name}'", made, run)
+    return found
 
 
 def _description(words: str, changes: Sequence[str]) -> str:

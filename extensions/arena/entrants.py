@@ -10,8 +10,8 @@ from extensions.arena import STANDOFF, TRACKING
 from extensions.arena.keys import ArenaKeys
 from gnc.laws import ON_CIRCLE, ON_OSCILLATION, STEERING_LAWS
 from scenarios.errors import InputError
-from scenarios.scenario.keys import displaced
-from scenarios.scenario.load import with_values
+from scenarios.scenario.files import with_values
+from scenarios.scenario.overrides import displaced
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.guidance import GuidanceConfig, law_refusal
 

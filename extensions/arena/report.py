@@ -27,7 +27,7 @@ from reports.document.blocks import Block, Card, Findings, Heading, Section, Tab
 from reports.document.chart import Chart, Line, Note, Panel, Style
 from reports.document.palette import Meaning
 from reports.document.ship_map import ship_panel
-from reports.document.tables import number, outcome, parameter_table, parameter_value
+from reports.document.tables import number, outcome, parameter_blocks, parameter_value
 from reports.flights.added import added_sections
 from reports.flights.content import flights_content
 from reports.flights.first_page import flights_in_words
@@ -119,7 +119,7 @@ def arena_content(run: RunData) -> Findings:
         ),
         *added_sections(run, list(trials.values()), name),
         *([innerloop_section(run.innerloop)] if run.innerloop else []),
-        _section("parameters", "Parameters", "Parameters", [parameter_table(run)]),
+        _section("parameters", "Parameters", "Parameters", parameter_blocks(run)),
     ]
     both = len(arena.entrants) - len({entrant.law for entrant in arena.entrants})
     laws = f"{len(arena.entrants) - both} steering laws" + f", {both} of them in both tasks" * (

@@ -18,7 +18,7 @@ from extensions.arena.keys import ArenaConfig
 from extensions.arena.paired_bootstrap import paired_estimates
 from extensions.arena.window import MEASURED_COLUMNS, WINDOW_COLUMNS
 from scenarios.engine.task import Row
-from scenarios.planning.theory.speed_ratio import crossing_limit
+from scenarios.planning.theory import crossing_limit
 from scenarios.scenario.sections.guidance import GuidanceConfig
 from scenarios.statistics.estimates import without_nan
 

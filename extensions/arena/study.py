@@ -27,13 +27,13 @@ from scenarios.engine.task import Result, Row, Task
 from scenarios.errors import InputError
 from scenarios.experiment.requests import FlightRequest
 from scenarios.flight.record import FlightRecord
-from scenarios.flight_runner import FlightWork
+from scenarios.flight_runner import FlightRunner
 from scenarios.measures.columns import ANY_KEY, FLIGHT_COLUMNS
 from scenarios.planning.flight_plan import FlightPlan
-from scenarios.scenario.load import with_values
+from scenarios.scenario.files import with_values
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.experiment import CaseConfig
-from scenarios.studies.flight_study import FlightStudy
+from scenarios.studies.base import FlightStudy
 
 TUNING_COLUMNS = described(
     {
@@ -62,8 +62,8 @@ _GUIDANCE = "guidance."
 
 
 @dataclass(frozen=True, kw_only=True)
-class ArenaWork(FlightWork):
-    """Tunes laws, and flies them; other attributes are those of ``FlightWork``.
+class ArenaWork(FlightRunner):
+    """Tunes laws, and flies them; other attributes are those of ``FlightRunner``.
 
     Attributes
     ----------
@@ -74,11 +74,11 @@ class ArenaWork(FlightWork):
     entrants: tuple[Entrant, ...]
     tuner: Tuner
 
-    def fly(self, task: Task) -> Result:
+    def run(self, task: Task) -> Result:
         """Tune a law, or fly a flight."""
         entrant = self._tuned(task)
         if entrant is None:
-            return super().fly(task)
+            return super().run(task)
         began = time.perf_counter()
         rows = list(self.tuner.rows(entrant))
         for row in rows:
@@ -168,7 +168,7 @@ class ArenaStudy(FlightStudy):
         self.entrants, self._refused = entrants_of(self._scenario)
         return conditions_of(self._scenario, name, self.entrants)
 
-    def work(self, run: RunDirectory) -> FlightWork:
+    def work(self, run: RunDirectory) -> FlightRunner:
         """Return the work on its flights and on the tuning, after writing the aircraft's autopilot
         into the run directory.
         """

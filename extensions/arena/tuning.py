@@ -20,11 +20,10 @@ from extensions.arena.keys import ArenaConfig
 from extensions.arena.window import window_figures
 from scenarios.engine.task import Row
 from scenarios.experiment.requests import Experiment
-from scenarios.flight.closed_loop import fly
-from scenarios.flight.failure import failure
-from scenarios.flight.release import release
-from scenarios.planning.planner import plan_flight
-from scenarios.scenario.load import with_values
+from scenarios.flight.closed_loop import fly, release
+from scenarios.flight.ending import failure
+from scenarios.planning.missions import plan_flight
+from scenarios.scenario.files import with_values
 from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 

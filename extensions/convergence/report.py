@@ -17,7 +17,7 @@ from common.run_layout import HISTORY_SUFFIX
 from extensions.convergence import COUNTEREXAMPLES, TRAJECTORIES, trajectory_path
 from reports.document.blocks import Block, Card, Findings, Heading, Section, Table, Text, Verdict
 from reports.document.chart import Chart, Line, Panel, Style
-from reports.document.tables import number, parameter_table
+from reports.document.tables import number, parameter_blocks
 from reports.run.columns import Array, column
 from reports.run.run_data import RunData
 
@@ -167,7 +167,7 @@ def convergence_content(run: RunData) -> Findings:
                 nav_title="Counter-examples",
                 blocks=_failed(data),
             ),
-            Section(anchor="parameters", title="Parameters", blocks=[parameter_table(run)]),
+            Section(anchor="parameters", title="Parameters", blocks=parameter_blocks(run)),
         ],
     )
 

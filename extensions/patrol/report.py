@@ -20,7 +20,7 @@ from reports.document.blocks import Card, Findings, Heading, Section, Table, Tex
 from reports.document.chart import Chart, Line, Note, Panel, Style
 from reports.document.map_marks import on_map
 from reports.document.palette import Meaning
-from reports.document.tables import number, parameter_table, vehicle_flown
+from reports.document.tables import number, parameter_blocks, vehicle_flown
 from reports.flights.parameter_tables import distribution
 from reports.run.columns import column, least
 from reports.run.run_data import RunData
@@ -170,9 +170,7 @@ def patrol_content(run: RunData) -> Findings:
                 blocks=[block for blocks in shown for block in blocks],
             ),
             *([innerloop_section(run.innerloop)] if run.innerloop else []),
-            Section(
-                anchor="parameters", title="Parameters", blocks=[parameter_table(run, sampled)]
-            ),
+            Section(anchor="parameters", title="Parameters", blocks=parameter_blocks(run, sampled)),
         ],
     )
 

@@ -38,7 +38,7 @@ def export(
         ),
     ] = None,
 ) -> None:
-    """Write the flights of a run in other formats, into RUN_DIR/export, or send one in real time."""
+    """Write flights of a run in other formats, into RUN_DIR/export, or send one in real time."""
     from reports.build import command
 
     if not (to or stream):

@@ -12,7 +12,7 @@ from common.errors import PluginError
 from common.plugins import call_plugin, check_result
 from common.run_layout import TABLES
 from scenarios.flight.guard_belief import GuardBelief
-from scenarios.flight.plume_readings import PlumeBelief
+from scenarios.flight.onboard import PlumeBelief
 from scenarios.flight.record import HISTORY_COLUMNS
 from scenarios.instruments.instrument import EvaluatedInstrument, Evaluation, declared_by
 from scenarios.measures.columns import FINDING_COLUMNS, FLIGHT_COLUMNS, SUMMARY_COLUMNS

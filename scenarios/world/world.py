@@ -14,14 +14,17 @@ from common.plugins import call_plugin, is_users, number, numbers
 from scenarios.scenario.extension_points import PLUME_MODELS, VESSEL_TRACKS
 from scenarios.scenario.scenario import Scenario
 from scenarios.world.ais.track import AisVessel, ais_vessel
-from scenarios.world.background import UNIFORM, Background
-from scenarios.world.exhaust import Exhaust
 from scenarios.world.faults import TimedFault
-from scenarios.world.place import Place, given_place
-from scenarios.world.plume import Plume
-from scenarios.world.vessel import SteadyVessel, VesselTruth, sampled, track_times
-from scenarios.world.weather import wind_of
-from scenarios.world.wind_table import first_time
+from scenarios.world.plume import UNIFORM, Background, Exhaust, Plume
+from scenarios.world.vessel import (
+    Place,
+    SteadyVessel,
+    VesselTruth,
+    given_place,
+    sampled,
+    track_times,
+)
+from scenarios.world.wind import first_time, wind_of
 
 TRACK_MARGIN = 5.0
 """How long the track goes on after the longest flight [s]."""
@@ -113,14 +116,16 @@ def _check_track(part: str, track: VesselTruth, duration: float) -> None:
     """
     if not isinstance(getattr(track, "manoeuvres_end", None), int | float | np.number):
         raise PluginError(
-            f"{part} has no manoeuvres_end, the time at which its last manoeuvre ends [s]; give it one, math.nan without any"
+            f"{part} has no manoeuvres_end, the time at which its last manoeuvre ends [s]; give it"
+            " one, math.nan without any"
         )
     for time in np.arange(0.0, duration, _LOOK_STEP).tolist():
         north, east, v_north, v_east = call_plugin(part, track.motion, time, result=_MOTION)
         course = call_plugin(part, track.course, time, result=_COURSE)
         if time == 0.0 and math.hypot(north, east) > _ORIGIN_MAX:
             raise PluginError(
-                f"{part} begins at {north:g} m north and {east:g} m east; let it begin at the origin: motion(0)"
+                f"{part} begins at {north:g} m north and {east:g} m east; let it begin at the"
+                " origin: motion(0)"
             )
         flown = math.atan2(v_east, v_north)
         if (
@@ -128,7 +133,8 @@ def _check_track(part: str, track: VesselTruth, duration: float) -> None:
             and abs(math.remainder(course - flown, math.tau)) > _COURSE_MAX
         ):
             raise PluginError(
-                f"{part}: course({time:g}) is {course:.4g} rad, and the velocity of motion({time:g}) points to {flown:.4g} rad; let"
+                f"{part}: course({time:g}) is {course:.4g} rad, and the velocity of"
+                f" motion({time:g}) points to {flown:.4g} rad; let"
                 f" them agree to {_COURSE_MAX:.2g} rad, clockwise from north"
             )
 

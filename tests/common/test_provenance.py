@@ -14,10 +14,8 @@ from common.provenance import command_line, provenance
         (["--set", 'payload=["/home/a/b.py:X","c.py:Y"]'], '--set \'payload=["b.py:X","c.py:Y"]\''),
         (["C:\\Users\\somebody\\mine.toml", "~/runs/flights/nu_0.50"], "mine.toml nu_0.50"),
         (["runs/sweep/flights/nu_0.50"], "runs/sweep/flights/nu_0.50"),
-        (
-            ["--scheduler", "tcp://host:8786", "--flightgear=host:5550"],
-            "--scheduler HOST:PORT --flightgear=HOST:PORT",
-        ),
+        (["--scheduler", "tcp://host:8786"], "--scheduler HOST:PORT"),
+        (["--scheduler=tcp://host:8786"], "--scheduler=HOST:PORT"),
     ],
 )
 def test_a_command_line_names_no_host_and_no_folder_of_a_machine(arguments, shown):

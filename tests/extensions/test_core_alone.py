@@ -11,8 +11,8 @@ from tests.standing_alone import ROOT
 
 CORE = ("aircraft", "common", "gnc", "innerloop", "measurement", "reports", "scenarios")
 
-# Fast ones, of three rooms.
-TESTS = ("tests/common", "tests/reports/export", "tests/scenarios/search")
+# Fast ones.
+TESTS = ("tests/common", "tests/reports/export")
 
 WITHOUT_EXTENSIONS = """
 import sys

@@ -36,7 +36,7 @@ class WeavingKeys(StudyKeys):
 '''
 
 STUDY = """
-from scenarios.studies.flight_study import FlightStudy
+from scenarios.studies.base import FlightStudy
 
 
 class WeavingStudy(FlightStudy):

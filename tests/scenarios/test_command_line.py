@@ -121,7 +121,7 @@ def test_help_and_list_answer():
         (["sweep_nu", "--set", "keepout.radius=5"], ["unknown key 'keepout.radius'"]),
         (
             ["sweep_nu", "--set", "keepout.radius_m=-1"],
-            ["keepout.radius_m is -1; it must be at least 10 m"],
+            ["keepout.radius_m is -1; input should be greater than or equal to 10"],
         ),
         (["sweep_nu", "--set", "guidance.airspeed_mps=nan"], ["guidance.airspeed_mps", "nan"]),
         (
@@ -394,12 +394,12 @@ def test_an_interrupted_replay_is_resumed_by_the_command_that_is_printed(
 
 def test_an_interrupted_run_is_resumed_by_what_was_typed_with_its_directory(run_here, monkeypatch):
     def interrupted(_study, _stem, directory, **_):
-        summary = StudySummary(done=2, met=False, lines=[], manifest={}, beside_left=3)
+        summary = StudySummary(done=2, met=False, lines=[], manifest={}, comparisons_left=3)
         return RunResult(
             directory=directory, what="flights", planned=9, summary=summary, interrupted=True
         )
 
-    monkeypatch.setattr("scenarios.studies.registry.run_study", interrupted)
+    monkeypatch.setattr("scenarios.studies.base.run_study", interrupted)
     typed = [
         "sweep_nu",
         "--jobs",

@@ -10,12 +10,12 @@ import pytest
 
 from common.registry import ENTRY_POINTS, file_hash
 from gnc.laws import STEERING_LAWS
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.engine.runner import fly_study
 from scenarios.errors import InputError
-from scenarios.scenario.load import load_study, with_values
+from scenarios.scenario.files import load_study, with_values
+from scenarios.studies.base import run_study
 from scenarios.studies.manifest import parameters
-from scenarios.studies.registry import run_study
 from scenarios.studies.replay import Replay
 from tests.run_tables import manifest_of, rows_of
 from tests.scenarios.plugin_files import LAW, PARTS, TRACK, line_of, write_scenario
@@ -172,7 +172,7 @@ def test_a_field_of_a_law_without_a_default_is_refused_and_one_that_makes_its_de
     path = write_scenario(tmp_path, "")
     for key in ("guidance.law", "following.margin_law"):
         message = refusal(path, tmp_path / "run", f"{key}={tmp_path}/needy.py:Needy")
-        assert "has no default for its field 'lead_s'; give it one" in message
+        assert "has no default for its field 'lead_s'" in message
     assert load_study(path, [f"guidance.law={tmp_path}/needy.py:Listed"]).guidance.law_keys == {
         "leads": [0.5]
     }

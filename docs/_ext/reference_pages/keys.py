@@ -6,12 +6,14 @@ from pydantic import BaseModel
 
 from reference_pages.markdown import literal, plain, table
 from scenarios.cli.describe import value_text
-from scenarios.scenario.documented import DocumentedSection, documented_sections, file_kinds
-from scenarios.scenario.documented_parts import (
+from scenarios.scenario.documentation import (
     DIMENSIONLESS,
     FLIGHT_STUDIES,
     DocumentedKey,
+    DocumentedSection,
     documented_part_keys,
+    documented_sections,
+    file_kinds,
 )
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.experiment import TrialList

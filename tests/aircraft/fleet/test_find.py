@@ -177,7 +177,7 @@ def test_a_package_is_known_only_while_it_is_installed():
     [
         ("number", "'number' is of type float; it must be an AircraftSpec of aircraft/spec.py"),
         ("{file}:UNTRIMMED", "settle_time is -1 s"),
-        ("lost", "'lost' of package added_aircraft:LOST: AttributeError"),
+        ("lost", "'lost' of package added_aircraft:LOST: load() failed: AttributeError"),
         ("{file}:NOT_AN_AIRCRAFT", "is of type float; it must be an AircraftSpec"),
         ("{file}:TRAINR", "has no 'TRAINR'; did you mean 'TRAINER'?"),
         ("absent.py:TRAINER", "absent.py: cannot be read"),

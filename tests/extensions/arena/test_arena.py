@@ -4,13 +4,13 @@ import json
 
 import pandas as pd
 import pytest
+from scenarios.engine.in_process_executor import InProcessExecutor
 
 from extensions.arena.entrants import conditions_of, entrants_of
 from gnc.laws import STEERING_LAWS
-from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.errors import InputError
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study
 from tests.in_process import assert_refused, run_command
 from tests.run_tables import manifest_of, rows_of
 from tests.scenarios.plugin_files import LAW

@@ -4,17 +4,17 @@ import shutil
 
 import pandas as pd
 import pytest
+from scenarios.engine.executors import ExecutorFactory
+from scenarios.engine.in_process_executor import InProcessExecutor
 
 from extensions.convergence import study as convergence_study
 from extensions.convergence.ensemble import DISTANCE_CONVERGED, PHI_CONVERGED
 from extensions.convergence.scenario import ConvergenceScenario
 from reports.output import write_report
 from reports.run.run_data import read_run
-from scenarios.engine.executors import ExecutorFactory
-from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.errors import InputError
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study
 from tests.run_tables import manifest_of
 
 FEW = ["ensemble.trajectories=12", "ensemble.distance_max_m=100", "ensemble.samples=2"]

@@ -5,17 +5,17 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
+from scenarios.engine.in_process_executor import InProcessExecutor
 
 from extensions.patrol.ships import sampled_patrol
 from extensions.patrol.study import PatrolWork
 from extensions.patrol.tables import patrol_figures, ship_row, wind_row
-from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.engine.task import Task
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
 from scenarios.planning.spreads import PredictedSpreads
-from scenarios.scenario.load import load_study, with_values
-from scenarios.studies.registry import run_study
+from scenarios.scenario.files import load_study, with_values
+from scenarios.studies.base import run_study
 from scenarios.studies.replay import Replay
 from scenarios.world.world import mean_wind, vessel_of
 from tests.in_process import assert_refused, run_command
@@ -184,7 +184,7 @@ def test_a_patrol_that_fails_is_a_row_with_its_reason():
         setup=None,
         spreads=PredictedSpreads(),
     )
-    (row,) = work.fly(Task(number=0)).tables["summary.csv"]
+    (row,) = work.run(Task(number=0)).tables["summary.csv"]
     assert (row["outcome"], row["criteria_met"]) == ("failed", False)
     assert row["message"].startswith("patrol.separation_m is 20000 m")
 
