@@ -4,10 +4,10 @@ import json
 
 import pandas as pd
 import pytest
-from scenarios.engine.in_process_executor import InProcessExecutor
 
 from extensions.arena.entrants import conditions_of, entrants_of
 from gnc.laws import STEERING_LAWS
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.errors import InputError
 from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
@@ -214,7 +214,7 @@ class LosingTuner(InProcessExecutor):
     def fly(self, tasks):
         flights = self._work._ends[-1]
         return (
-            self._work.lost(task, "was killed") if task.number == flights else self._work.fly(task)
+            self._work.lost(task, "was killed") if task.number == flights else self._work.run(task)
             for task in tasks
         )
 

@@ -6,8 +6,6 @@ import time
 
 import numpy as np
 import pytest
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.engine.local_executor import LocalExecutor
 
 from extensions.convergence.motion import Vehicle
 from extensions.convergence.references import (
@@ -25,6 +23,7 @@ from extensions.convergence.study import (
     trajectory_of,
 )
 from gnc.paper import look_ahead
+from scenarios.engine.processes import InProcessExecutor, LocalExecutor
 from scenarios.engine.task import Limits, Task
 
 # The paper's vehicle (reference/paper-notes.md) and the guidance of the catalogue's scenarios.

@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
-from scenarios.engine.in_process_executor import InProcessExecutor
 
 from extensions.patrol.ships import sampled_patrol
 from extensions.patrol.study import PatrolWork
 from extensions.patrol.tables import patrol_figures, ship_row, wind_row
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.engine.task import Task
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
@@ -291,7 +291,7 @@ def test_a_study_without_any_verdict_of_an_oracle_either_is_not_met(tmp_path):
 @pytest.mark.parametrize(
     ("override", "words"),
     [
-        ("patrol.ships=0", ("patrol.ships is 0; it must be at least 1",)),
+        ("patrol.ships=0", ("patrol.ships is 0; input should be greater than or equal to 1",)),
         ("patrol.endurance_s=60", ("patrol.endurance_s is 60 s", "patrol.service_s = 165 s")),
         ("patrol.separation_m=9000", ("patrol.separation_m is 9000 m", "patrol.area_m")),
         (
