@@ -174,7 +174,7 @@ def test_an_interrupt_while_time_histories_are_kept_leaves_a_run_that_can_be_res
     ("override", "words"),
     [
         ('guidance.laws=["cascade", "cascade"]', ["laws is ['cascade', 'cascade']", "once"]),
-        ("guidance.laws=cascade", ["guidance.laws", "'cascade'", "list in brackets"]),
+        ("guidance.laws=cascade", ["guidance.laws", "'cascade'", "valid tuple"]),
         ('guidance.laws=["magic"]', ["guidance.laws.0", "'magic'", "lyapunov"]),
         (
             "ensemble.trajectories=0",
