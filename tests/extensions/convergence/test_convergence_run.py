@@ -182,7 +182,7 @@ def test_an_interrupt_while_time_histories_are_kept_leaves_a_run_that_can_be_res
         ),
         (
             "guidance.heading_rate_max_rad_s=0.4",
-            ["heading_rate_max_rad_s", "0.4", "above 0.5 rad/s"],
+            ["heading_rate_max_rad_s", "0.4", "greater than 0.5 [rad/s]"],
         ),
         ("fidelity=six_dof", ["fidelity", "'six_dof'", "kinematic"]),
         ("keepout.radius_m=200", ["unknown key 'keepout'"]),
