@@ -9,10 +9,11 @@ import time
 
 import numpy as np
 
+from extensions.patrol.keys import PatrolKeys
+from extensions.patrol.order import Order, Prospect, exact_order, inserted_order
+from extensions.patrol.ships import Patrol, sampled_patrol
 from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
-from scenarios.studies.patrol.order import Order, Prospect, exact_order, inserted_order
-from scenarios.studies.patrol.ships import Patrol, sampled_patrol
 
 _ALIKE = 0.02
 """Expected verdicts that make no difference [-]."""
@@ -44,7 +45,7 @@ def main() -> None:
 
 def expected(patrol: Patrol, scenario: Scenario) -> Prospect:
     """Return what a patrol expects before it begins."""
-    config, count = scenario.patrol, len(patrol.ships)
+    config, count = PatrolKeys.of(scenario).patrol, len(patrol.ships)
     return Prospect(
         ships=patrol.movers,
         service=[config.service_s] * count,

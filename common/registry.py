@@ -7,7 +7,7 @@ import importlib.metadata
 import importlib.util
 import pkgutil
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from types import FunctionType, ModuleType
@@ -33,7 +33,8 @@ class Registry(Generic[Part]):
     Parameters
     ----------
     kind : of the parts, as in "steering_law"
-    folder : package whose modules register the project's parts when they are imported
+    folder : package whose modules register the project's parts when they are imported, or one
+        module that does
     protocol : module of the Protocol, which may register parts as well; by default ``folder``
     methods : of the Protocol, which a part has to have unless it is a function that makes one;
         "this|that" where one of two is enough
@@ -92,15 +93,18 @@ class Registry(Generic[Part]):
         """Return all known names, in alphabetical order."""
         return sorted({*self._known(), *announced(self.kind)})
 
-    def builtin_names(self) -> list[str]:
-        """Return the names that modules of ``folder`` register, in alphabetical order."""
-        return sorted(
+    def installed_names(self) -> list[str]:
+        """Return the names that modules of ``folder`` register and those that installed packages
+        announce, in alphabetical order.
+        """
+        builtin = {
             name
             for name, part in self._known().items()
             if f"{getattr(part, '__module__', '')}.".startswith(
                 (f"{self._folder}.", f"{self._protocol}.")
             )
-        )
+        }
+        return sorted({*builtin, *announced(self.kind)})
 
     def __contains__(self, name: str) -> bool:
         """Return whether a name is known; installed packages come last, which takes longest."""
@@ -124,7 +128,7 @@ class Registry(Generic[Part]):
         if (
             name not in self._parts
             and name.isidentifier()
-            and importlib.util.find_spec(f"{self._folder}.{name}")
+            and any(of.name == name for of in self._modules())
         ):
             # The module of that name first: the others may take long to import.
             importlib.import_module(f"{self._folder}.{name}")
@@ -148,12 +152,16 @@ class Registry(Generic[Part]):
 
     def _known(self) -> dict[str, Part]:
         if not self._complete:
-            package = importlib.import_module(self._folder)
-            for module in pkgutil.iter_modules(package.__path__):
+            for module in self._modules():
                 importlib.import_module(f"{self._folder}.{module.name}")
             # Only now: a module that does not load has to fail at every call.
             self._complete = True
         return self._parts
+
+    def _modules(self) -> Iterable[pkgutil.ModuleInfo]:
+        """Return the modules of ``folder``: none of a module, which registers its parts itself."""
+        package = importlib.import_module(self._folder)
+        return pkgutil.iter_modules(getattr(package, "__path__", ()))
 
     def checked(self, name: str, part: Any) -> Part:
         """Return a part, which has every method of its Protocol.

@@ -29,9 +29,6 @@ INTERVENTIONS = "interventions.csv"
 DRAWS = "draws.csv"
 """The values of the random variables of each flight."""
 
-COUNTEREXAMPLES = "counterexamples.csv"
-"""Rows of the trajectories that did not converge."""
-
 ESTIMATE = "estimate.json"
 """The fuel sulphur content that a measured flight shows."""
 
@@ -59,23 +56,8 @@ SULPHUR_TABLE = "sulphur.csv"
 SULPHUR = "sulphur.json"
 """Statistics of the flights with a sniffer."""
 
-ARENA = "arena.json"
-"""Results of an arena of steering laws, and the tuning of each law."""
-
-SHIPS = "ships.csv"
-"""A row per ship of a patrol."""
-
-PHASES = "phases.csv"
-"""A row per stretch of a patrol: the way to a ship, and the flight beside it."""
-
 PREMISES = "premises.csv"
 """A row per case and term of the error budget: how near errors came to what is reckoned with."""
-
-TUNING_TABLE = "tuning.csv"
-"""A row for each setting that the tuner of an arena tried."""
-
-WINDOW_TABLE = "window.csv"
-"""A row for each flight of an arena: figures of its end."""
 
 TABLES = (
     SUMMARY,
@@ -83,13 +65,8 @@ TABLES = (
     CROSSINGS,
     INTERVENTIONS,
     DRAWS,
-    COUNTEREXAMPLES,
     SAMPLES,
-    SHIPS,
-    PHASES,
     PREMISES,
-    TUNING_TABLE,
-    WINDOW_TABLE,
 )
 """Tables of a run; the sniffer writes that of the sulphur content."""
 
@@ -98,9 +75,6 @@ MODEL = "model"
 
 FLIGHTS = "flights"
 """Directory of the time histories of flights, and entry of ``columns.json`` on their columns."""
-
-TRAJECTORIES = "trajectories"
-"""Directory of the time histories of a convergence study."""
 
 WORST = "worst"
 """Directory of the scenario files of the worst flights of a search."""
@@ -165,8 +139,3 @@ def flight_of(path: str) -> str:
     for suffix in (HISTORY_SUFFIX, SMOKE_SUFFIX, EVALUATION_SUFFIX):
         name = name.removesuffix(suffix)
     return name
-
-
-def trajectory_path(law: str, number: int) -> str:
-    """Return the path of the time history of a trajectory, relative to the run directory."""
-    return f"{TRAJECTORIES}/{law}_{number:05d}{HISTORY_SUFFIX}"

@@ -1,8 +1,8 @@
 """Steering laws: which there are, and those of the paper.
 
 ``gnc.steering`` has what a law gets and returns. The laws of the paper are (24) and (30) on the
-relative state, and the line of sight, which its Sim. 2 compares with. Laws of autopilots and of the
-literature are in ``gnc.path_laws``.
+relative state, and the line of sight, which its Sim. 2 compares with. Installed packages
+announce others, as ``extensions/arena`` does those of autopilots and of the literature.
 """
 
 import math
@@ -36,7 +36,7 @@ ONLY_MOVING_POINTS = {
 
 
 STEERING_LAWS: Registry[Callable[..., SteeringLaw]] = Registry(
-    "steering_law", folder="gnc.path_laws", protocol="gnc.laws", methods=("heading_rate",)
+    "steering_law", folder="gnc.laws", methods=("heading_rate",)
 )
 """Steering laws by name; calling one with its parameters makes it."""
 

@@ -6,14 +6,16 @@ The module is compiled by ``make fast``; the laws themselves, which users extend
 import math
 from collections.abc import Callable
 from numbers import Real
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
 from common.errors import PluginError
 from common.plugins import PASSED_ON, call_plugin, explained, rejected_result
+from gnc.errors import InfeasibleError
 from gnc.paper import LookAhead, RelativeState, relative_state, relative_velocity
 from gnc.reference.reference import Reference
+from gnc.vectors import Vector, along, course_of, dot, norm, plus, scaled
 
 
 class Motion:
@@ -63,6 +65,47 @@ class Air:
 
 STILL_AIR = Air()
 """No wind, and a path at rest over the ground."""
+
+
+class DesiredCourse(NamedTuple):
+    """A course or heading to take, and its rate.
+
+    Attributes
+    ----------
+    course : over the ground, relative to a centre, or through the air [rad]
+    rate : as the vehicle moves [rad/s]
+    """
+
+    course: float
+    rate: float
+
+
+def heading_for(course: float, course_rate: float, airspeed: float, drift: Vector) -> DesiredCourse:
+    """Return the heading that gives a course relative to a centre, and its rate.
+
+    It follows from the triangle of velocities.
+
+    Parameters
+    ----------
+    course, course_rate : of the velocity relative to the centre [rad, rad/s]
+    airspeed : V_a [m/s]
+    drift : velocity of the centre through the air [m/s]
+
+    Raises
+    ------
+    InfeasibleError : the centre is as fast through the air as the vehicle
+    """
+    if norm(drift) >= airspeed:
+        raise InfeasibleError(
+            f"the centre moves through the air at {norm(drift):.2f} m/s, the vehicle at"
+            f" {airspeed:.2f} m/s; no circle about it can be flown: follow a slower vessel, or fly"
+            " faster"
+        )
+    direction = along(course)
+    back = dot(direction, drift)
+    speed = -back + math.sqrt(back * back + airspeed * airspeed - dot(drift, drift))
+    heading = course_of(plus(scaled(direction, speed), drift))
+    return DesiredCourse(heading, course_rate * speed / (airspeed * math.cos(heading - course)))
 
 
 class SteeringLaw(Protocol):

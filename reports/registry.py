@@ -7,8 +7,6 @@ from common.errors import PluginError
 from common.plugins import call_plugin
 from common.provenance import without_folders
 from common.registry import announced, is_file_part, load_announced, part_in_file
-from reports.arena.content import arena_content
-from reports.convergence.content import convergence_content
 from reports.design.content import design_content
 from reports.document.blocks import (
     FAILURES_MAX,
@@ -29,16 +27,12 @@ from reports.errors import ReportError
 from reports.flights.content import flights_content
 from reports.measurement.content import measurement_content
 from reports.paper.content import paper_content
-from reports.patrol.content import patrol_content
 from reports.run.letterhead import letterhead, title
 from reports.run.run_data import RunData
 
 STUDIES: dict[str, Callable[[RunData], Findings]] = {
     **dict.fromkeys(("flights", "trials", "monte_carlo", "falsify", "premises"), flights_content),
     "paper": paper_content,
-    "arena": arena_content,
-    "patrol": patrol_content,
-    "convergence": convergence_content,
     "design": design_content,
     "measurement": measurement_content,
 }

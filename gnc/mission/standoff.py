@@ -2,8 +2,8 @@
 
 The reference is the circle's point nearest to the vehicle, anew at every step, with the course and
 the heading rate through the air that keep to the circle. It has no clock, so that a law is free to
-lag along the circle; a law that reads a path from the reference (``gnc.path_laws.path``) finds
-the circle in the frame of the vessel.
+lag along the circle; a law that reads a path from the reference finds the circle in the frame of
+the vessel.
 """
 
 import math
@@ -17,8 +17,7 @@ from gnc.mission.mission import FAULTY, TRACK, Centre, Mode, OrbitStatus, Order
 from gnc.mission.track import CLOSING_RATE, STANDOFF
 from gnc.mission.way import COURSE_GAIN, Egress
 from gnc.numeric import limited, wrap
-from gnc.path_laws.lgvf import heading_for
-from gnc.steering import Air, Motion
+from gnc.steering import Air, Motion, heading_for
 from gnc.tracker import PlacedReference, ReferenceTracker, TrackingParameters
 from gnc.unicycle import lag_ahead
 from gnc.vectors import Vector, along, course_of, minus, norm, plus, scaled

@@ -15,8 +15,7 @@ RUNS_MAX = 6
 """Runs that fit side by side."""
 
 _NOT_COMPARED = {
-    **dict.fromkeys(("design", "measurement", "convergence"), "which has no flights to compare"),
-    "patrol": "whose rows are patrols of several ships and not single flights",
+    **dict.fromkeys(("design", "measurement"), "which has no flights to compare"),
 }
 """Studies whose runs are not compared, and why; a study that others add says it in its manifest."""
 

@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping
 
+from common.registry import announced
 from common.run_layout import (
     BOUNDS,
     COLUMNS,
     COMPARISON,
-    COUNTEREXAMPLES,
     CROSSINGS,
     DESIGN_RECORD,
     DRAWS,
@@ -14,11 +14,8 @@ from common.run_layout import (
     FLIGHTS,
     INTERVENTIONS,
     LOGO,
-    PHASES,
     SAMPLES,
-    SHIPS,
     STATISTICS,
-    TRAJECTORIES,
     WORST,
 )
 from reports.document.blocks import Block, Section, Table, Text
@@ -35,11 +32,7 @@ _SHOWN: Mapping[str, str] = {
     CROSSINGS: "crossings in the figures of single flights",
     INTERVENTIONS: "nothing: the report counts interventions by flight",
     DRAWS: "figures over swept and sampled keys",
-    COUNTEREXAMPLES: "nothing: the summary has the same rows",
     FLIGHTS: "figures of this flight over time",
-    TRAJECTORIES: "figures of this trajectory over time",
-    SHIPS: "the ships of patrols, maps and time lines",
-    PHASES: "maps and time lines of patrols",
     WORST: "nothing: a scenario file of one of the worst flights",
     **{f"{LOGO}{suffix}": "the logo" for suffix in (".png", ".jpg", ".svg")},
 }
@@ -64,11 +57,13 @@ def missing_sections(run: RunData) -> list[Section]:
     if not names:
         return []
     more = len(names) - _LISTED_MAX
+    announced_report = run.manifest.get("study") in announced("report")
+    unknown = "what the report of its study shows of it" if announced_report else "nothing"
     rows = [
         [
             name,
             "cannot be read" if name in run.unread else "is gone",
-            _SHOWN.get(name, _SHOWN.get(name.split("/")[0], "nothing")),
+            _SHOWN.get(name, _SHOWN.get(name.split("/")[0], unknown)),
         ]
         for name in names[:_LISTED_MAX]
     ]

@@ -29,7 +29,6 @@ from common.run_layout import (
     is_file_name,
     smoke_path,
     time_history_path,
-    trajectory_path,
 )
 from reports.errors import ReportError
 from reports.run.columns import Mask
@@ -92,7 +91,7 @@ class RunData:
 
     def history(self, flight_id: str) -> pd.DataFrame | None:
         """Return a flight's time history, or None if it has none that can be read."""
-        return self._parquet(time_history_path(flight_id)) if is_file_name(flight_id) else None
+        return self.parquet(time_history_path(flight_id)) if is_file_name(flight_id) else None
 
     def evaluation(self, flight_id: str) -> dict[str, Any] | None:
         """Return what an instrument made of a flight, or None if there is nothing that can be read."""
@@ -135,7 +134,7 @@ class RunData:
         """Return the rows of the flights that have a time history, those of the study before those
         of its comparisons.
         """
-        # The rows of trajectories of a study of convergence name no flights.
+        # The rows of a study of something else than flights name none.
         tables = [rows for rows in (self.summary, self.comparison) if "flight_id" in rows]
         rows = [
             {str(key): value for key, value in row.items()}
@@ -153,12 +152,6 @@ class RunData:
         }
         return replace(self, **tables)
 
-    def trajectory(self, law: str, number: int) -> pd.DataFrame | None:
-        """Return the time history of a trajectory of a convergence study, or None if none was kept
-        that can be read.
-        """
-        return self._parquet(trajectory_path(law, number)) if is_file_name(law) else None
-
     def missing(self) -> list[str]:
         """Return the files that the run had when it ended, and that are gone or, as far as they
         were needed, cannot be read.
@@ -167,7 +160,8 @@ class RunData:
         names = [str(name) for name in listed] if isinstance(listed, list) else []
         return sorted({*(name for name in names if not is_file(self.path / name)), *self.unread})
 
-    def _parquet(self, name: str) -> pd.DataFrame | None:
+    def parquet(self, name: str) -> pd.DataFrame | None:
+        """Return a Parquet file of the run, or None if there is none that can be read."""
         if not is_file(self.path / name):
             return None
         # Of a file that is read whole, by itself and in one thread: pandas takes twice as long to

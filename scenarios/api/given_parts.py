@@ -14,14 +14,14 @@ from common.errors import PluginError
 from common.registry import Registry
 from scenarios.engine.task import Result, Task, Work
 from scenarios.errors import InputError
-from scenarios.scenario.study_keys import ADDED
+from scenarios.scenario.added_keys import ADDED
 from scenarios.world.ais import AisReports
 
 PLAIN = (bool, int, float, str)
 """Types of values that a scenario file has."""
 
 _LAWS = (
-    *("guidance.law", "following.margin_law", "laws", "arena.tracking", "arena.standoff"),
+    *("guidance.law", "following.margin_law"),
     *(key for keys in ADDED for key in keys.LAW_KEYS),
 )
 _COPIED = ("vessel.track", "reference.shape")

@@ -22,12 +22,12 @@ from scenarios.experiment.draws import (
     sampled_flight,
 )
 from scenarios.experiment.points import Point, points_of
+from scenarios.scenario.added_keys import ADDED
 from scenarios.scenario.effect import unused
 from scenarios.scenario.files import with_values
 from scenarios.scenario.overrides import displaced
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.experiment import STUDY, SweepConfig, swept_key
-from scenarios.scenario.study_keys import ADDED
 from scenarios.world.noise import Noise
 
 _PLANNED_FOR = ("guidance.", "turbulence.level", "reference.shape", "following.margin_law")
@@ -295,9 +295,6 @@ def scenario_file(request: FlightRequest, *, title: str) -> bytes:
         "common_random_numbers",
         "cases",
         "draws",
-        "laws",
-        "arena",
-        "patrol",
         "report",
         *(name for keys in ADDED for name in keys.names()),
     ):

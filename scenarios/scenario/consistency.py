@@ -11,13 +11,13 @@ from pydantic import BaseModel
 from common.text import at_or_below
 from gnc.laws import ON_CIRCLE, ON_OSCILLATION
 from measurement.plume.spread import SOURCE_HEIGHT_MAX
+from scenarios.scenario.added_keys import ADDED
 from scenarios.scenario.sections.equipment import REPORTS_MAX
 from scenarios.scenario.sections.experiment import FLIGHTS_MAX, SPEED_KEYS, STUDY, swept_key
 from scenarios.scenario.sections.guidance import law_refusal
 from scenarios.scenario.sections.needs import STEADY
 from scenarios.scenario.sections.section import check_divides, check_ordered
 from scenarios.scenario.sections.world import SOURCE_HEIGHT_MIN
-from scenarios.scenario.study_keys import ADDED
 
 if TYPE_CHECKING:
     from scenarios.scenario.scenario import Scenario
@@ -29,8 +29,6 @@ each.
 
 ONE_POINT = {
     "falsify": "it searches one point",
-    "arena": "what differs are the laws (laws) and the conditions (arena.conditions)",
-    "patrol": "give each value a run of its own",
     **{keys.STUDY: keys.ONE_POINT for keys in ADDED if keys.ONE_POINT},
 }
 """Studies of one point, and why."""
@@ -53,8 +51,6 @@ _WITHOUT_EFFECT = (
     "statistics.",
     "search.",
     "subset.",
-    "arena.",
-    "patrol.",
     "comparison.",
     "sweep.",
     "cases.",
@@ -79,7 +75,7 @@ _SET_IN = {
 """The same for each kind of table that sets keys."""
 
 _SET_IN_ADDED = (*_SET_ANYWHERE, "draws.", "speed_ratio.")
-"""The same for tables of sections that studies add, and for conditions of an arena."""
+"""The same for tables of sections that studies add."""
 
 _UNSTEADY = (
     "wind.speed_mps",
@@ -327,7 +323,6 @@ def _tables_of(scenario: "Scenario") -> Iterator[tuple[str, str, Collection[str]
     """Yield the tables that set keys for some flights: the kind, the name, and the keys."""
     yield from (("case", case.name, {**case.set, **case.set_kinematic}) for case in scenario.cases)
     yield from (("comparison", of.name, of.set) for of in scenario.comparison.variants)
-    yield from (("condition", of.name, of.set) for of in scenario.arena.conditions)
     for keys in ADDED:
         yield from keys.tables(scenario)
 

@@ -18,18 +18,17 @@ from pydantic_core import to_jsonable_python
 from common.registry import Registry
 from common.text import nearest
 from gnc.laws import STEERING_LAWS
+from scenarios.scenario.added_keys import ADDED, study_files
 from scenarios.scenario.consistency import ONE_POINT
 from scenarios.scenario.effect import needs_of
 from scenarios.scenario.errors import line, models_in, split_unit
 from scenarios.scenario.extension_points import PAYLOADS, PLUME_MODELS
 from scenarios.scenario.scenario import Scenario
-from scenarios.scenario.sections.convergence import ConvergenceScenario
 from scenarios.scenario.sections.experiment import DrawConfig, TrialList
 from scenarios.scenario.sections.guidance import GuidanceConfig
-from scenarios.scenario.study_keys import ADDED, study_files
 
 FLIGHT_STUDIES = (
-    *("flights", "paper", "monte_carlo", "falsify", "arena", "patrol", "premises"),
+    *("flights", "paper", "monte_carlo", "falsify", "premises"),
     *(keys.STUDY for keys in ADDED),
 )
 """Studies whose scenario files are those of flights."""
@@ -68,7 +67,6 @@ class DocumentedKey:
 _KINDS: dict[type[BaseModel], tuple[str, ...]] = {
     Scenario: FLIGHT_STUDIES,
     TrialList: ("trials",),
-    ConvergenceScenario: ("convergence",),
     **{file: (study,) for study, file in study_files().items()},
 }
 """Kinds of scenario files, and the studies of each."""
@@ -327,7 +325,7 @@ def documented_part_keys() -> tuple[DocumentedKey, ...]:
     found: dict[tuple[str, str], tuple[DocumentedKey, list[str]]] = {}
     for key_of_part, registry in _REGISTRIES.items():
         section = key_of_part.partition(".")[0]
-        for name in registry.builtin_names():
+        for name in registry.installed_names():
             part = registry.get(name)
             made = part if section == "guidance" else getattr(part, "SETTINGS", None)
             for key in _part_keys(section, made) if made else ():

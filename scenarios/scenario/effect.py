@@ -10,11 +10,11 @@ from pydantic import BaseModel
 
 from common.errors import PluginError
 from scenarios.errors import InputError
+from scenarios.scenario.added_keys import ADDED
 from scenarios.scenario.consistency import unsteady
 from scenarios.scenario.errors import fields_along, known_keys, models_in
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.needs import Need, of_others, of_study
-from scenarios.scenario.study_keys import ADDED
 
 _DISPLACED_BY = {
     "start.distance_m": ("start.range_m", "start.place_m"),
@@ -194,9 +194,6 @@ def differing(scenario: Scenario) -> Iterator[Mapping[str, object]]:
         for variant in scenario.comparison.variants:
             yield variant.set
     yield from (case.set | case.set_kinematic for case in scenario.cases)
-    if scenario.study == "arena":
-        yield {"guidance.law": None, "guidance.mission": None}
-        yield from (of.set for of in scenario.arena.conditions)
     for keys in ADDED:
         if scenario.study == keys.STUDY:
             yield from keys.differing(scenario)

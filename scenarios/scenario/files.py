@@ -17,6 +17,7 @@ from common.registry import announced, announced_folders, is_file_part
 from common.run_layout import FLIGHTS, MANIFEST
 from common.text import did_you_mean
 from scenarios.errors import InputError
+from scenarios.scenario.added_keys import ADDED, check_study, study_files
 from scenarios.scenario.effect import reject_unused_keys
 from scenarios.scenario.errors import explanation, shown
 from scenarios.scenario.overrides import (
@@ -30,25 +31,21 @@ from scenarios.scenario.overrides import (
 )
 from scenarios.scenario.parts import refuse_missing, with_absolute_files
 from scenarios.scenario.scenario import Scenario
-from scenarios.scenario.sections.convergence import ConvergenceScenario
 from scenarios.scenario.sections.experiment import TrialList
 from scenarios.scenario.sections.report import read_logo
 from scenarios.scenario.sections.section import Section
-from scenarios.scenario.study_keys import ADDED, StudyFile, check_study, study_files
+from scenarios.scenario.study_keys import StudyFile
 
 Study = TypeVar("Study", bound=Section)
 
-AnyStudy = Scenario | ConvergenceScenario | TrialList | StudyFile
+AnyStudy = Scenario | TrialList | StudyFile
 
 KINDS: dict[str, type[Any]] = {
     "flights": Scenario,
     "paper": Scenario,
-    "convergence": ConvergenceScenario,
     "trials": TrialList,
     "monte_carlo": Scenario,
     "falsify": Scenario,
-    "arena": Scenario,
-    "patrol": Scenario,
     "premises": Scenario,
     **{keys.STUDY: Scenario for keys in ADDED},
     **study_files(),

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from pydantic import Field, model_validator
 
 from measurement.emission import stack_height_of
+from scenarios.scenario.added_keys import ADDED
 from scenarios.scenario.consistency import check_consistency
 from scenarios.scenario.sections.equipment import (
     FaultConfig,
@@ -17,7 +18,6 @@ from scenarios.scenario.sections.equipment import (
 )
 from scenarios.scenario.sections.experiment import (
     FLIGHTS_MAX,
-    ArenaConfig,
     CaseConfig,
     ComparisonConfig,
     DrawConfig,
@@ -29,8 +29,7 @@ from scenarios.scenario.sections.experiment import (
 )
 from scenarios.scenario.sections.flight import CriteriaConfig, FlightConfig, StartConfig
 from scenarios.scenario.sections.guidance import FollowingConfig, GuidanceConfig, ReferenceConfig
-from scenarios.scenario.sections.needs import Need, not_patrol, when
-from scenarios.scenario.sections.patrol import PatrolConfig
+from scenarios.scenario.sections.needs import Need, when
 from scenarios.scenario.sections.report import ReportConfig
 from scenarios.scenario.sections.section import Range, Section, Seed, Title
 from scenarios.scenario.sections.world import (
@@ -43,7 +42,6 @@ from scenarios.scenario.sections.world import (
     VesselConfig,
     WindConfig,
 )
-from scenarios.scenario.study_keys import ADDED
 
 DEFAULT_AIRCRAFT = "x8"
 
@@ -98,7 +96,6 @@ class Scenario(_AddedKeys):
     histories: Annotated[
         int,
         Field(ge=0, le=100_000),
-        not_patrol("a patrol keeps no time histories: leave it out"),
     ] = 200
     """Number of time histories to be kept, evenly spaced over the flights [-]. Those of flights
     that did not meet what is required are kept as well; of missions that were not completed, that
@@ -140,10 +137,6 @@ class Scenario(_AddedKeys):
     statistics: StatisticsConfig = StatisticsConfig()
     subset: SubsetConfig = SubsetConfig()
     search: SearchConfig = SearchConfig()
-    laws: Annotated[tuple[str, ...], when("study", "arena", user="laws side by side")] = ()
-    """Laws that take part in an arena in addition to its own, each by its name or FILE.py:NAME."""
-    arena: ArenaConfig = ArenaConfig()
-    patrol: PatrolConfig = PatrolConfig()
     place: PlaceConfig = PlaceConfig()
     vessel: VesselConfig = VesselConfig()
     plume: PlumeConfig = PlumeConfig()

@@ -1,17 +1,12 @@
 """Keys that studies of installed packages add to a scenario file."""
 
 from collections.abc import Iterator, Mapping
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 from pydantic import BaseModel
 
-from common.errors import PluginError
-from common.registry import announced, load_announced
 from scenarios.scenario.sections.report import ReportConfig
 from scenarios.scenario.sections.section import Section, Seed, Title
-
-KEYS, FILES = "keys", "scenario"
-"""Groups of entry points, ``plume_flight_study.keys`` and ``plume_flight_study.scenario``."""
 
 
 class StudyKeys(Section):
@@ -44,6 +39,12 @@ class StudyKeys(Section):
     LAW_KEYS: ClassVar[tuple[str, ...]] = ()
 
     @classmethod
+    def of(cls, scenario: Any) -> Self:
+        """Return a scenario, whose keys these are among."""
+        keys: Self = scenario
+        return keys
+
+    @classmethod
     def differing(cls, scenario: Any) -> Iterator[Mapping[str, object]]:
         """Yield what the study sets for some of its flights, by dotted keys; None stands for values
         that are not known yet.
@@ -72,32 +73,6 @@ class StudyKeys(Section):
         )
 
 
-def _loaded(kind: str) -> Iterator[tuple[str, Any]]:
-    """Yield what installed packages announce in a group, by the names of studies."""
-    for name in sorted(announced(kind)):
-        try:
-            yield name, load_announced(kind, name)
-        except PluginError:
-            # Other studies are flown without it; `check_study` says why to whoever names this one.
-            continue
-
-
-def check_study(study: str) -> None:
-    """Load what a package announces for a study.
-
-    Raises
-    ------
-    PluginError : it does not load
-    """
-    for kind in (KEYS, FILES):
-        if study in announced(kind):
-            load_announced(kind, study)
-
-
-ADDED: tuple[type[StudyKeys], ...] = tuple(keys for _, keys in _loaded(KEYS))
-"""The keys that installed packages add."""
-
-
 class StudyFile(Section):
     """What every scenario file has, also of a study that flies nothing that ``Scenario`` describes.
 
@@ -114,10 +89,3 @@ class StudyFile(Section):
     seed: Seed = 1
     """Seed of everything that is sampled at random [-]."""
     report: ReportConfig = ReportConfig()
-
-
-def study_files() -> dict[str, type[StudyFile]]:
-    """Return the schemas of scenario files that are not of flights, by the studies of installed
-    packages: those announced in the group ``plume_flight_study.scenario``.
-    """
-    return dict(_loaded(FILES))

@@ -1,1 +1,1 @@
-"""Sweep, paper, trials, Monte Carlo, falsification, convergence, arena, patrol."""
+"""Sweep, paper, trials, Monte Carlo, falsification."""

@@ -77,7 +77,6 @@ from scenarios.scenario.effect import unused
 from scenarios.scenario.files import AnyStudy, load_study
 from scenarios.scenario.overrides import parse_override
 from scenarios.scenario.scenario import Scenario
-from scenarios.scenario.sections.convergence import ConvergenceScenario
 from scenarios.scenario.sections.experiment import STUDY, TrialList
 from scenarios.statistics.sulphur import COLUMNS as SULPHUR_COLUMNS
 from scenarios.statistics.sulphur import sulphur_statistics
@@ -653,10 +652,6 @@ def study_of(scenario: AnyStudy, name: str, overrides: Sequence[str] = ()) -> St
     ------
     InputError : the scenario cannot be flown
     """
-    if isinstance(scenario, ConvergenceScenario):
-        from scenarios.studies.convergence.study import ConvergenceStudy
-
-        return ConvergenceStudy(scenario, name, overrides=overrides)
     try:
         made = STUDIES.get(scenario.study)
     except PluginError as error:

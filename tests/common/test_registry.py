@@ -28,7 +28,7 @@ def test_a_module_that_does_not_load_hides_no_part_at_the_next_call(tmp_path, mo
             del sys.modules[name]
 
 
-def test_a_part_that_is_registered_temporarily_is_not_builtin(tmp_path, monkeypatch):
+def test_a_part_that_is_registered_temporarily_is_not_installed(tmp_path, monkeypatch):
     package = tmp_path / "parts_of_its_own"
     package.mkdir()
     (package / "__init__.py").write_text("", encoding="utf-8")
@@ -44,7 +44,7 @@ def test_a_part_that_is_registered_temporarily_is_not_builtin(tmp_path, monkeypa
     try:
         with registry.temporarily_registered("lent", Lent):
             assert registry.names() == ["lent", "own"]
-            assert registry.builtin_names() == ["own"]
+            assert registry.installed_names() == ["own"]
     finally:
         for name in [name for name in sys.modules if name.partition(".")[0] == package.name]:
             del sys.modules[name]

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from common import run_layout
-from common.run_layout import time_history_path, trajectory_path
+from common.run_layout import time_history_path
 
 PROJECT = Path(__file__).parents[2]
 
@@ -19,7 +19,6 @@ NAMES = [
 
 def test_time_histories_stand_in_a_directory_of_their_own():
     assert time_history_path("nu_0500") == "flights/nu_0500.parquet"
-    assert trajectory_path("cascade", 17) == "trajectories/cascade_00017.parquet"
 
 
 def test_the_list_of_names_is_not_empty():

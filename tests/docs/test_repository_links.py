@@ -8,9 +8,7 @@ DOCS = Path(__file__).parents[2] / "docs"
 
 
 def test_a_folder_is_named_and_not_linked():
-    assert (
-        with_links("see [`gnc/path_laws`](../gnc/path_laws).", DOCS, DOCS) == "see `gnc/path_laws`."
-    )
+    assert with_links("see [`gnc/mission`](../gnc/mission).", DOCS, DOCS) == "see `gnc/mission`."
 
 
 def test_a_file_stays_a_link():

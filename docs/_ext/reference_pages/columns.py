@@ -20,11 +20,7 @@ from scenarios.measures.columns import (
     SEARCH_COLUMNS,
     SUMMARY_COLUMNS,
 )
-from scenarios.measures.window import MEASURED_COLUMNS, WINDOW_COLUMNS
 from scenarios.statistics.estimates import TABLE_COLUMNS as PREMISE_COLUMNS
-from scenarios.studies.arena.study import TUNING_COLUMNS
-from scenarios.studies.convergence.ensemble import COLUMNS as CONVERGENCE_COLUMNS
-from scenarios.studies.patrol.tables import PATROL_COLUMNS, PHASE_COLUMNS, SHIP_COLUMNS
 
 _INTRODUCTION = """\
 # Every column
@@ -44,7 +40,6 @@ def tables() -> dict[str, Table]:
     """Return the columns by the titles of the tables."""
     ((sulphur, of_sulphur),) = SnifferOnBoard.TABLES.items()
     histories = HISTORY_COLUMNS | SnifferOnBoard.COLUMNS
-    named = {name: FLIGHT_COLUMNS[name] for name in ("flight_id", "trial")}
     return {
         "summary.csv and comparison.csv": SUMMARY_COLUMNS,
         SNIFFER_TITLE: SnifferOnBoard.FIGURES,
@@ -54,16 +49,10 @@ def tables() -> dict[str, Table]:
         "interventions.csv": INTERVENTION_COLUMNS,
         "draws.csv": INPUT_COLUMNS | SEARCH_COLUMNS,
         sulphur: FLIGHT_COLUMNS | of_sulphur,
-        "window.csv": named | WINDOW_COLUMNS | MEASURED_COLUMNS,
-        "tuning.csv": TUNING_COLUMNS,
         "flights/ID.parquet": HISTORY_COLUMNS,
         "flights/ID.parquet, of flights with a sniffer": SnifferOnBoard.COLUMNS,
         "flights/ID.parquet, of flights with a keep-out guard": GuardBelief.COLUMNS,
         "flights/ID.parquet, of flights that search for the plume": BELIEF_COLUMNS,
-        "summary.csv and counterexamples.csv, of a study of convergence": CONVERGENCE_COLUMNS,
-        "summary.csv, of patrols": PATROL_COLUMNS,
-        "ships.csv, of patrols": SHIP_COLUMNS,
-        "phases.csv, of patrols": PHASE_COLUMNS,
         "premises.csv": PREMISE_COLUMNS,
         "samples.csv of the log of a flight": described(SAMPLE_MEANINGS),
         "export/NAME.tracks.csv": {

@@ -1,12 +1,12 @@
 """What a scenario file may say of a flight: its start, its end, and what it must show."""
 
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, field_validator, model_validator
 
 from common.text import did_you_mean
 from gnc.mission.mission import Mode
-from scenarios.scenario.sections.needs import EXHAUST, SNIFFER, VESSEL, Need, not_patrol, when
+from scenarios.scenario.sections.needs import EXHAUST, SNIFFER, VESSEL, Need, when
 from scenarios.scenario.sections.section import (
     Angle,
     Limit,
@@ -81,7 +81,6 @@ class FlightConfig(Section):
         int,
         Field(ge=0, le=10_000),
         VESSEL,
-        not_patrol("a flight of a patrol ends with a verdict or its patience: leave it out"),
     ] = 30
     """Crossings to fly after settling; 0 to fly for the whole duration [-]."""
     after_settling_s: Annotated[Positive | None, VESSEL] = None
@@ -98,7 +97,6 @@ class FlightConfig(Section):
     duration_max_s: Annotated[
         float,
         Field(gt=0.0, le=100_000.0),
-        not_patrol("flights of a patrol are as long as patrol.patience_s allows: set that"),
     ] = 1500.0
     """Longest flight [s]; gusts, reports and the noise of sensors and exhaust are sampled for the
     whole of it, so another value changes them from the start on, with the same seed, too."""
@@ -174,12 +172,6 @@ class CriteriaConfig(Section):
     """Criteria of a flight, in addition to keeping out and completing its mission; ``false`` for
     what is not judged.
     """
-
-    NEEDS: ClassVar[tuple[Need, ...]] = (
-        not_patrol(
-            "a patrol is judged by patrol.oracle_share_min and patrol.wrong_share_max: set these"
-        ),
-    )
 
     required: Literal["criteria", "keep_out"] = "criteria"
     """What exit status 0 requires of the flight: to meet every criterion, or only to keep out, as

@@ -124,7 +124,7 @@ class GuidanceConfig(Section):
     """
     law: str = "cascade"
     """Steering law: cascade, eq. (30), lyapunov, eq. (24), line_of_sight, the baseline, those of
-    docs/explanation/arena.md, or FILE.py:NAME."""
+    extensions/arena/page.md, or FILE.py:NAME."""
     airspeed_mps: Annotated[float, Field(ge=5.0, le=300.0)] = 19.42
     """V_r, speed of the reference and of the UAV [m/s]; the aircraft's own if not given."""
     bank_deg: Annotated[

@@ -53,11 +53,6 @@ def of_others(study: str, user: str) -> Need:
     return Need(lambda s: s.study != study, f"other studies; {user}")
 
 
-def not_patrol(user: str) -> Need:
-    """Return the need of any study but a patrol."""
-    return of_others("patrol", user)
-
-
 STEADY = (
     "the mission that follows the vessel with estimates of vessel and wind; guidance.mission"
     " 'track' is in still air, beside a steady vessel: leave it out, or set it to 'follow'"

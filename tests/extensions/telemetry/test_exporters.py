@@ -5,10 +5,10 @@ import sys
 
 import numpy as np
 import pytest
+from convergence_runs import write_convergence_run
 
 from reports.build import export_run
 from reports.errors import ReportError
-from tests.reports.convergence_runs import write_convergence_run
 from tests.reports.export.placed_flight import (
     READ,
     TOLERANCE,

@@ -6,6 +6,8 @@ from gnc_cases import SPEED, TIME_STEP
 from hypothesis import given
 from hypothesis import strategies as st
 
+from extensions.arena.laws.lgvf import LgvfLaw
+from extensions.arena.laws.npfg import NpfgLaw
 from gnc.estimation.health import Fault
 from gnc.estimation.navigation import TrueNavigation
 from gnc.estimation.vessel import SteadyTarget
@@ -13,8 +15,6 @@ from gnc.laws import CascadeLaw
 from gnc.mission.axis import AxisHeight, Climb
 from gnc.mission.mission import TRACK, Mode
 from gnc.mission.standoff import CirclePoint, StandoffOrbit, StandoffParameters
-from gnc.path_laws.lgvf import LgvfLaw
-from gnc.path_laws.npfg import NpfgLaw
 from gnc.tracker import TrackingParameters
 from gnc.unicycle import unicycle_move
 

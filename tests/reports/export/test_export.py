@@ -6,6 +6,7 @@ import sys
 import numpy as np
 import pandas as pd
 import pytest
+from convergence_runs import write_convergence_run
 
 from common.errors import PluginError
 from reports.build import export_run
@@ -15,7 +16,6 @@ from reports.export.tracks_csv import COLUMNS
 from reports.output import write_flight
 from reports.run.run_data import read_run
 from tests.in_process import assert_refused, run_command
-from tests.reports.convergence_runs import write_convergence_run
 from tests.run_tables import change_manifest, write_manifest
 
 OWN = """

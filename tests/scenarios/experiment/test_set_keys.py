@@ -4,12 +4,12 @@ all others start alike.
 
 import pytest
 
+from extensions.arena.entrants import draws_left, entrants_of
+from extensions.arena.tuning import Tuner
 from scenarios.experiment.draws import sampled_flight
 from scenarios.experiment.requests import Experiment
 from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
-from scenarios.studies.arena.entrants import draws_left, entrants_of
-from scenarios.studies.arena.tuning import Tuner
 from scenarios.studies.base import study_of
 
 DRAWS = [

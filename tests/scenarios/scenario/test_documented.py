@@ -6,6 +6,7 @@ import re
 import pytest
 from pydantic import RootModel
 
+from extensions.convergence.scenario import ConvergenceScenario
 from scenarios.scenario.documentation import (
     FLIGHT_STUDIES,
     documented_keys,
@@ -15,7 +16,6 @@ from scenarios.scenario.documentation import (
 from scenarios.scenario.errors import known_keys
 from scenarios.scenario.files import KINDS
 from scenarios.scenario.scenario import Scenario
-from scenarios.scenario.sections.convergence import ConvergenceScenario
 from scenarios.scenario.sections.experiment import SubsetConfig, TrialList
 
 KEYS = documented_keys()

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import pytest
 
+from extensions.arena.entrants import entrants_of
 from scenarios.api.scenario import load
 from scenarios.errors import InputError
 from scenarios.planning.guidance import steering_law
 from scenarios.scenario.files import load_study
-from scenarios.studies.arena.entrants import entrants_of
 
 
 def loaded(*overrides):

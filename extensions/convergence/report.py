@@ -1,0 +1,569 @@
+"""The report of a convergence study: when trajectories settle under each law, and which did not
+converge.
+"""
+
+import math
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import pandas as pd
+
+from common.run_layout import HISTORY_SUFFIX
+from extensions.convergence import COUNTEREXAMPLES, TRAJECTORIES, trajectory_path
+from reports.document.blocks import Block, Card, Findings, Heading, Section, Table, Text, Verdict
+from reports.document.chart import Chart, Line, Panel, Style
+from reports.document.tables import number, parameter_blocks
+from reports.run.columns import Array, column
+from reports.run.run_data import RunData
+
+CURVE_POINTS, HISTORY_POINTS = 200, 500
+"""Points of a cumulative curve and of a time history, at most."""
+DISTANCE_BINS, BIN_TRAJECTORIES = 20, 20
+"""Bins of start distances at most, and trajectories for each, on average, above two bins."""
+PANEL_HEIGHT, HISTORIES_PER_LAW, FAILED_ROWS, FAILURES_NAMED = 0.32, 6, 20, 10
+DISTANCE_SHOWN_MIN_M, TIME_SHOWN_MIN_S, RATIO_SHOWN_MIN = 1e-3, 1.0, 1e-2
+"""Floors of logarithmic axes: distances go to zero, and a start inside the settling band is settled
+at once.
+"""
+QUANTILES = (0.5, 0.9, 0.99, 1.0)
+
+
+class Law(NamedTuple):
+    """A steering law: its key in the run's tables, its name in the report, and whether the paper
+    proves that it converges.
+    """
+
+    key: str
+    name: str
+    proven: bool
+
+
+LAWS = (
+    Law("lyapunov", "Law (24)", True),
+    Law("cascade", "Law (30)", True),
+    Law("cascade_cut", "Law (30), cut at ω_max", False),
+)
+
+REFERENCES: dict[str, tuple[str, str, Style]] = {
+    "circle": ("circling", "blue", "solid"),
+    "oscillation": ("oscillating", "orange", "dash"),
+    "random": ("randomly turning", "green", "dot"),
+}
+"""Kinds of reference: what they are called, and colour and style of curves about them, which are
+told apart in grey, too.
+"""
+
+
+@dataclass(frozen=True)
+class Convergence:
+    """A convergence study as read from disk."""
+
+    run: RunData
+
+    @cached_property
+    def rows(self) -> pd.DataFrame:
+        """Return a row per trajectory and law that was flown; those whose process was lost say
+        nothing of the theory.
+        """
+        rows = self.run.summary
+        for name, known in (("law", [law.key for law in LAWS]), ("reference", list(REFERENCES))):
+            if unknown := set(rows[name]) - set(known):
+                raise ValueError(
+                    f"{name} is {', '.join(map(str, unknown))}; known are {', '.join(known)}"
+                )
+        return rows[rows["outcome"] != "lost"]
+
+    @property
+    def lost(self) -> int:
+        """Return the number of trajectories whose process was lost."""
+        return len(self.run.summary) - len(self.rows)
+
+    @cached_property
+    def laws(self) -> list[Law]:
+        """Return the laws that were flown."""
+        return [law for law in LAWS if law.key in set(self.rows["law"])]
+
+    @cached_property
+    def kept(self) -> set[str]:
+        """Return law and number of every trajectory whose time history was kept, as LAW_NUMBER."""
+        names = (
+            re.fullmatch(r"(\w+)_(\d+)", path.stem)
+            for path in (self.run.path / TRAJECTORIES).glob(f"*{HISTORY_SUFFIX}")
+        )
+        return {f"{name[1]}_{int(name[2])}" for name in names if name}
+
+    def of(self, law: Law, reference: str | None = None) -> pd.DataFrame:
+        """Return the rows of a law, about one kind of reference or all."""
+        rows = self.rows[self.rows["law"] == law.key]
+        return rows if reference is None else rows[rows["reference"] == reference]
+
+    @property
+    def proven(self) -> pd.DataFrame:
+        """Return the rows of the laws that the theory is about."""
+        return self.rows[self.rows["law"].isin([law.key for law in self.laws if law.proven])]
+
+    @property
+    def planned(self) -> int:
+        """Return the number of trajectories under the laws that the theory is about, once the run
+        is complete.
+        """
+        config = self.run.manifest["config"]
+        proven = [law.key for law in LAWS if law.proven]
+        return int(config["ensemble"]["trajectories"]) * sum(
+            law in proven for law in config["guidance"]["laws"]
+        )
+
+
+def failed(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return those that did not converge."""
+    return rows[rows["outcome"] != "converged"]
+
+
+def predicted(rows: pd.DataFrame) -> "pd.Series[float]":
+    """Return settling times over those predicted, where these are neither 0, of a start that is
+    settled, nor infinite.
+    """
+    rows = rows[rows["settling_time_predicted_s"].between(0.0, math.inf, inclusive="neither")]
+    return rows["settling_time_s"] / rows["settling_time_predicted_s"]
+
+
+def convergence_content(run: RunData) -> Findings:
+    """Return the findings of a convergence study."""
+    data = Convergence(run)
+    states, laws = (
+        data.rows["trajectory"].nunique(),
+        ", ".join(law.name.lower() for law in data.laws) or "none",
+    )
+    charts = _settling_charts(data)
+    samples = (
+        f"Distance to the reference over time, of up to {HISTORIES_PER_LAW} trajectories per law"
+        " that converged."
+    )
+    shown = _history_charts(data, "samples", samples, converged=True)
+    return Findings(
+        flown=f"{len(data.rows):,} trajectories of the paper's kinematic vehicle, from {states:,}"
+        f" initial states at random, under these laws: {laws}.",
+        verdict=_verdict(data),
+        picture=charts[0] if charts else None,
+        sections=[
+            Section(anchor="question", title="Question", blocks=_question(data)),
+            Section(
+                anchor="settling",
+                title="How soon they settle",
+                nav_title="Settling",
+                blocks=[*charts, _settling_table(data)] if len(data.rows) else [],
+            ),
+            Section(
+                anchor="samples", title="Sample trajectories", nav_title="Samples", blocks=shown
+            ),
+            Section(
+                anchor="counterexamples",
+                title="What did not converge",
+                nav_title="Counter-examples",
+                blocks=_failed(data),
+            ),
+            Section(anchor="parameters", title="Parameters", blocks=parameter_blocks(run)),
+        ],
+    )
+
+
+def _question(data: Convergence) -> list[Block]:
+    if not len(data.rows):
+        return []
+    states, manifest = data.rows.drop_duplicates("trajectory"), data.run.manifest
+    kinds = states["reference"].value_counts()
+    counts = ", ".join(
+        f"{kinds[key]:,} are {name}" for key, (name, *_) in REFERENCES.items() if key in kinds
+    )
+    return [
+        Heading("Sampled initial states"),
+        Text(
+            f"{len(states):,} initial states, the same for every law: a place up to"
+            f" {number(states['start_distance_m'].max(), '{:,.0f}')} m from the reference and a"
+            f" course, both at random, and a reference that turns. Of the references {counts}."
+        ),
+        Text(
+            "A trajectory is given up when it has taken many times as long as the motion averaged"
+            " over its reference's turns predicts, and at least ensemble.time_max_s. The slowest"
+            " are those about references that hardly turn: an error along the track then decays"
+            " ever so slowly, at a rate that goes with the square of ω_r."
+        ),
+        Heading("What converged means"),
+        Text(
+            f"A trajectory has converged once it is within {manifest['converged_distance_m']:g} m"
+            " of its reference and φ, the angle from the vector z, along which the law steers, to"
+            f" the vehicle's course, is within {manifest['converged_phi_rad']:g} rad: from there"
+            " on, under the paper's laws, both stay small. It is settled from the moment from"
+            " which its distance stays below"
+            f" {manifest['config']['ensemble']['settling_band_m']:g} m."
+        ),
+        Heading("What the theory says"),
+        Text(
+            "From every initial state the distance goes to zero: under law (24) but for the"
+            " singular point φ = π, towards which its command grows without limit, and under"
+            " every law of the class (30). That holds for references that do turn, and for"
+            " commands that are carried out as they are. Of commands that are cut at ω_max, as an"
+            " aircraft flies them, the theory says nothing: they are shown, and have no part in"
+            " the verdict. Trajectories can refute the theory, not prove it."
+        ),
+    ]
+
+
+_LIMIT_CYCLE = (
+    "A circle that spends nearly all of ω_max leaves almost nothing to steer with. With cut"
+    " commands there is then, beside the reference, a limit cycle some hundred metres off: the"
+    " command is cut most of each turn, φ swings far out and back once a turn, and on average the"
+    " vehicle turns with the reference without coming nearer. Equation (31b), on which the proof"
+    " for law (30) rests, does not hold for cut commands. A reserve of a few per cent of ω_max"
+    " takes the cycle away; oscillations, at their peak only briefly, have converged without."
+)
+
+
+def _failed(data: Convergence) -> list[Block]:
+    caption = (
+        f"Distance to the reference over time, of up to {HISTORIES_PER_LAW} trajectories per law"
+        " that did not converge."
+    )
+    blocks = _history_charts(data, "counterexamples", caption, converged=False)
+    cut = failed(data.rows[~data.rows["law"].isin(data.proven["law"])])
+    limit = 0.98 * float(data.run.manifest["config"]["guidance"]["heading_rate_max_rad_s"])
+    if (
+        len(cut)
+        and (
+            (cut["reference"] == "circle") & (cut["reference_heading_rate_max_rad_s"] > limit)
+        ).all()
+    ):
+        blocks.insert(0, Text(_LIMIT_CYCLE))
+    head = [
+        "Trajectory",
+        "Reference",
+        "Start distance [m]",
+        "Start course [rad]",
+        "Start φ [rad]",
+        "Outcome",
+    ]
+    for law in data.laws:
+        if not (count := len(rows := failed(data.of(law)))):
+            continue
+        some = (
+            f"; the first {FAILED_ROWS} of {count:,}, all are in {COUNTEREXAMPLES}"
+            if count > FAILED_ROWS
+            else ""
+        )
+        cells = [
+            [
+                f"{row['trajectory']:.0f}",
+                REFERENCES[row["reference"]][0],
+                number(row["start_distance_m"], "{:.1f}"),
+                number(row["start_course_rad"], "{:.4f}"),
+                number(row["start_phi_rad"], "{:.4f}"),
+                _reason(row),
+            ]
+            for _, row in rows.head(FAILED_ROWS).iterrows()
+        ]
+        blocks += [
+            Heading(
+                f"{law.name}{'' if law.proven else ', of which the theory says nothing'}{some}"
+            ),
+            Table(
+                head=head,
+                rows=cells,
+                widths=[1.0, 1.6, 1.0, 1.0, 1.0, 5.4],
+                left_columns=2,
+                breakable=True,
+            ),
+        ]
+    return blocks
+
+
+def _reason(row: "pd.Series[Any]") -> str:
+    outcome, message = str(row["outcome"]).replace("_", " "), str(row["message"])
+    return f"{outcome}: {message}" if message else outcome
+
+
+def _settling_table(data: Convergence) -> Table:
+    """Return a row per law and kind of reference, and one per law for all."""
+    rows = []
+    for law in data.laws:
+        for key, name in (*((key, name) for key, (name, *_) in REFERENCES.items()), (None, "all")):
+            if count := len(of := data.of(law, key)):
+                largest = of["heading_rate_max_rad_s"].max()
+                times = (settled_time(of["settling_time_s"], fraction) for fraction in QUANTILES)
+                # Under law (24) commands have no limit.
+                rate = number(largest, "{:,.0f}" if largest >= 100.0 else "{:.3f}")
+                rows.append(
+                    [law.name, name, f"{count:,}", f"{count - len(failed(of)):,}", *times, rate]
+                )
+    head = [f"{100.0 * fraction:.0f} % settled [s]" for fraction in QUANTILES]
+    return Table(
+        caption="Trajectories that converged, and their settling times, by law and kind of"
+        " reference.",
+        head=["Law", "Reference", "Trajectories", "Converged", *head, "Largest command [rad/s]"],
+        rows=rows,
+        widths=[2.0, 1.5, 1.1, 1.0, *[0.9] * len(QUANTILES), 1.2],
+        left_columns=2,
+    )
+
+
+def settled_time(times: "pd.Series[float]", fraction: float) -> str:
+    """Return when so many of all had settled, and a dash if never."""
+    when = (
+        float(np.quantile(times.fillna(np.inf), fraction, method="inverted_cdf"))
+        if len(times)
+        else math.inf
+    )
+    return f"{when:,.0f}" if math.isfinite(when) else "–"
+
+
+def percentage(part: int, whole: int) -> str:
+    """Return a part of a whole in percent, rounded down: 100 % are all."""
+    return f"{math.floor(10_000.0 * part / whole) / 100.0:g} %" if whole else "none flown"
+
+
+def _verdict(data: Convergence) -> Verdict:
+    """Judge a study by the laws that the theory is about, if it flew any: it holds if every
+    trajectory under them converged.
+    """
+    rows, state, planned = data.proven, data.run.manifest.get("state", "unfinished"), data.planned
+    counter_examples, missed, every = failed(rows), len(failed(data.rows)), len(data.rows)
+    complete = state == "complete" and (
+        len(rows) == planned if planned else not (missed or data.lost)
+    )
+    if not planned:
+        headline = (
+            f"{every - missed:,} of {every:,} trajectories converged, under laws that no theory"
+            " covers"
+        )
+    elif not len(rows):
+        headline = "Nothing was flown yet"
+    elif len(counter_examples):
+        headline = f"{len(counter_examples):,} of {len(rows):,} trajectories did not converge"
+    else:
+        headline = f"All {len(rows):,} trajectories {'' if complete else 'so far '}converged"
+        headline += "" if complete else f"; {planned:,} are planned"
+    names = {law.key: law.name for law in LAWS}
+    lines = [
+        f"{names[row['law']]}, trajectory {row['trajectory']}: {_reason(row)}"
+        for _, row in counter_examples.iterrows()
+    ]
+    if (more := len(lines) - FAILURES_NAMED) > 0:
+        lines = [*lines[:FAILURES_NAMED], f"and {more:,} more, in {COUNTEREXAMPLES}"]
+    return Verdict(
+        holds=not planned or (len(rows) > 0 and not len(counter_examples)),
+        complete=complete,
+        headline=headline,
+        detail=_detail(data, state),
+        failures=lines,
+        figures=_figures(data),
+    )
+
+
+def _detail(data: Convergence, state: str) -> str:
+    proven = " and ".join(law.name.lower() for law in data.laws if law.proven)
+    words = (
+        [f"{data.rows['trajectory'].nunique():,} random initial states, each flown with {proven}."]
+        if proven
+        else []
+    )
+    words += [
+        "The theory says nothing of cut commands, so they have no part in this:"
+        f" under {law.name.lower()}, {len(rows) - len(failed(rows)):,} of {len(rows):,} converged."
+        for law in data.laws
+        if not law.proven
+        for rows in [data.of(law)]
+    ]
+    if data.lost:
+        words.append(
+            f"{data.lost:,} trajectories were lost with their processes, and count as not flown;"
+            " --resume flies them again."
+        )
+    if state != "complete":
+        words.append(f"The run is {state}; continue it with --resume.")
+    return " ".join(words)
+
+
+def _figures(data: Convergence) -> list[Card]:
+    fractions, slowest = [], []
+    for law in data.laws:
+        count = len(rows := data.of(law))
+        done = count - len(failed(rows))
+        limit, met = ("100 %", 0 < count == done) if law.proven else ("", None)
+        fractions.append(Card(f"{law.name}: converged", percentage(done, count), limit, met))
+        slowest.append(
+            Card(
+                f"{law.name}: slowest to settle", number(rows["settling_time_s"].max(), "{:,.0f} s")
+            )
+        )
+    farthest = Card("Farthest start", number(data.rows["start_distance_m"].max(), "{:,.0f} m"))
+    ratio = predicted(data.proven if data.planned else data.rows).median()
+    return [
+        *fractions,
+        farthest,
+        *slowest,
+        Card("Settling over predicted, median", number(ratio, "{:.2f}")),
+    ]
+
+
+def _by_law(name: str, caption: str, curves: dict[Law, list[Line]], **axes: Any) -> list[Chart]:
+    """Return a chart with a panel per law that has curves, whose logarithmic axis has the same
+    limits in all; none without any.
+    """
+    axis = "x" if axes.get("log_x") else "y"
+    limits = _around([getattr(line, axis) for lines in curves.values() for line in lines])
+    axes |= {f"{axis}_range": limits}
+    panels = [Panel(title=law.name, lines=lines, **axes) for law, lines in curves.items() if lines]
+    return (
+        [
+            Chart(
+                name=name,
+                caption=caption,
+                panels=panels,
+                columns=len(panels),
+                panel_height=PANEL_HEIGHT,
+            )
+        ]
+        if panels
+        else []
+    )
+
+
+def _line(reference: str, x: Array, y: Array) -> Line:
+    name, colour, style = REFERENCES[reference]
+    return Line(x=x, y=y, label=f"{name} reference", colour=colour, style=style)
+
+
+def _settling_charts(data: Convergence) -> list[Chart]:
+    """Return the figures of when trajectories settle, for the laws of which any did."""
+    laws = [law for law in data.laws if data.of(law)["settling_time_s"].notna().any()]
+
+    def shares(
+        values: Callable[[pd.DataFrame], "pd.Series[float]"], least: float
+    ) -> dict[Law, list[Line]]:
+        found = {
+            law: {
+                of: cumulative(np.maximum(values(data.of(law, of)).to_numpy(), least))
+                for of in REFERENCES
+            }
+            for law in laws
+        }
+        return {
+            law: [_line(of, x, 100.0 * y) for of, (x, y) in curves.items() if len(x)]
+            for law, curves in found.items()
+        }
+
+    return [
+        *_by_law(
+            "settling",
+            "Fraction of all trajectories that have settled, over time since their start; a"
+            " curve that ends below 100 % leaves out those that never did.",
+            shares(lambda rows: rows["settling_time_s"], TIME_SHOWN_MIN_S),
+            x_label="Settling time [s]",
+            y_label="Settled [%]",
+            log_x=True,
+            y_range=(0.0, 103.0),
+        ),
+        *_by_law(
+            "distance",
+            "Settling time over the distance at the start, of those that settled, in up to"
+            f" {DISTANCE_BINS} bins of distance. The prediction, by the motion averaged over the"
+            " reference's turns, is drawn by its median.",
+            {law: _over_distance(data, law) for law in laws},
+            x_label="Start distance [m]",
+            y_label="Settling time [s]",
+            log_y=True,
+            x_range=(0.0, 1.03 * float(data.rows["start_distance_m"].max())) if laws else None,
+        ),
+        *_by_law(
+            "predicted",
+            "Settling time measured over that predicted: fraction of the trajectories up to each"
+            " ratio. 1 is as predicted by the motion averaged over the reference's turns.",
+            shares(predicted, RATIO_SHOWN_MIN),
+            x_label="Measured over predicted [-]",
+            y_label="Trajectories [%]",
+            log_x=True,
+            y_range=(0.0, 103.0),
+        ),
+    ]
+
+
+def cumulative(values: Array) -> tuple[Array, Array]:
+    """Return some of the values in rising order, and which fraction of all is no larger.
+
+    What is not a number counts among all. The first value comes twice, first with 0, for the curve
+    to rise from there.
+    """
+    known = np.sort(values[np.isfinite(values)])
+    ranks = _thinned(len(known), CURVE_POINTS)
+    fraction = (ranks + 1.0) / max(1, len(values))
+    return np.append(known[:1], known[ranks]), np.append(np.zeros(len(known[:1])), fraction)
+
+
+def _over_distance(data: Convergence, law: Law) -> list[Line]:
+    settled, farthest = (
+        data.of(law).dropna(subset=["settling_time_s"]),
+        float(data.rows["start_distance_m"].max()),
+    )
+    count = min(max(len(settled) // BIN_TRAJECTORIES, 2), DISTANCE_BINS)
+    number_of = np.minimum(settled["start_distance_m"] * count / farthest, count - 1.0).astype(int)
+    curves: tuple[tuple[str, float, str, str, Style], ...] = (
+        ("settling_time_s", 1.0, "slowest", "grey", "diamonds"),
+        ("settling_time_s", 0.9, "90 % are faster", "sky", "solid"),
+        ("settling_time_s", 0.1, "10 % are faster", "sky", "dot"),
+        ("settling_time_s", 0.5, "median", "blue", "solid"),
+        ("settling_time_predicted_s", 0.5, "predicted", "black", "dash"),
+    )
+    lines = []
+    for name, fraction, label, colour, style in curves:
+        times = settled[name].clip(lower=TIME_SHOWN_MIN_S).replace(math.inf, math.nan)
+        y = times.groupby(number_of).quantile(fraction)
+        x = (y.index.to_numpy() + 0.5) * farthest / count
+        lines.append(Line(x=x, y=y.to_numpy(), label=label, colour=colour, style=style))
+    return lines
+
+
+def _history_charts(data: Convergence, name: str, caption: str, *, converged: bool) -> list[Block]:
+    """Return distances over time, of some of the trajectories that were kept: of those that
+    converged, or of those that did not.
+    """
+    curves = {law: _histories(data, law, converged=converged) for law in data.laws}
+    return [*_by_law(name, caption, curves, x_label="Time [s]", y_label="Distance [m]", log_y=True)]
+
+
+def _histories(data: Convergence, law: Law, *, converged: bool) -> list[Line]:
+    rows = data.of(law)
+    kept = rows[[f"{law.key}_{trajectory}" in data.kept for trajectory in rows["trajectory"]]]
+    chosen = (
+        kept[(kept["outcome"] == "converged") == converged]
+        .head(HISTORIES_PER_LAW)
+        .sort_values("reference", kind="stable")
+    )
+    lines = []
+    for reference, trajectory in zip(chosen["reference"], chosen["trajectory"], strict=True):
+        if (history := data.run.parquet(trajectory_path(law.key, int(trajectory)))) is not None:
+            known = history[np.isfinite(history["distance_m"])]
+            known = known.iloc[_thinned(len(known), HISTORY_POINTS)]
+            distance = np.maximum(column(known, "distance_m"), DISTANCE_SHOWN_MIN_M)
+            lines.append(_line(reference, column(known, "time_s"), distance))
+    return [line for line in lines if len(line.x)]
+
+
+def _thinned(count: int, most: int) -> npt.NDArray[np.int64]:
+    """Return indices of so many values at most, the first and the last among them."""
+    return np.unique(np.round(np.linspace(0, count - 1, min(most, count))).astype(np.int64))
+
+
+def _around(curves: Sequence[Array]) -> tuple[float, float] | None:
+    """Return the powers of ten that lie around all values, as limits of a logarithmic axis; none
+    without values.
+    """
+    values = np.concatenate([*curves, np.empty(0)])
+    known = values[np.isfinite(values)]
+    if not len(known):
+        return None
+    low, high = math.floor(math.log10(known.min())), math.ceil(math.log10(known.max()))
+    return 10.0**low, 10.0 ** max(high, low + 1)

@@ -1,0 +1,224 @@
+"""The order in which ships are served: the largest expected number of verdicts within the
+endurance.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from scipy.special import ndtr
+
+from extensions.patrol.route import Air, Mover, straight_leg
+
+_SOONER = 1e-3
+"""Verdicts that an end sooner by the whole endurance is worth: of orders with as many verdicts the
+quickest is taken.
+"""
+
+_LATEST = 10.0
+"""End that counts at most, over the endurance: a ship out of reach is never done."""
+
+EXACT_MAX = 8
+"""Ships of which every order is tried: it takes half a second at the most, and for fewer less than
+the insertion.
+"""
+
+_GAIN = 0.02
+"""Least expected number of verdicts for which a ship is inserted [-]."""
+
+
+class _State(NamedTuple):
+    """A part of a patrol: place [m] and time [s] at its end, ships served, and the verdicts that
+    are expected of them.
+    """
+
+    place: complex
+    time: float
+    served: int
+    verdicts: float
+
+
+class Order(NamedTuple):
+    """Ships in the order in which they are served, the verdicts expected, and when the last one is
+    done [s].
+    """
+
+    ships: tuple[int, ...]
+    verdicts: float
+    ends: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Prospect:
+    """What is expected of serving ships.
+
+    Attributes
+    ----------
+    ships : where they are and go
+    service : how long each takes from the end of the way to it to the verdict [s]
+    deviation : of that time, of each ship by itself; 0 where it is known [s]
+    chance : of a verdict, of each ship [-]
+    radius : from a ship at which the way to it ends [m]
+    air : wind and airspeed
+    endurance : when everything has to be done [s]
+    """
+
+    ships: Sequence[Mover]
+    service: Sequence[float]
+    deviation: float
+    chance: Sequence[float]
+    radius: float
+    air: Air
+    endurance: float
+
+    def after(self, state: _State, ship: int) -> _State:
+        """Return what one more ship makes of a part of a patrol; its end is infinite where it
+        cannot be reached.
+        """
+        leg = straight_leg(state.place, state.time, self.ships[ship], self.radius, self.air)
+        if leg is None:
+            return _State(state.place, math.inf, state.served + 1, state.verdicts)
+        ends, served = leg.ends + self.service[ship], state.served + 1
+        return _State(
+            self.ships[ship].at(ends),
+            ends,
+            served,
+            state.verdicts + self.chance[ship] * self._in_time(ends, served),
+        )
+
+    def _in_time(self, ends: float, served: int) -> float:
+        """Return the probability that a number of services, expected to end at a time [s], do so
+        within the endurance.
+        """
+        left, spread = self.endurance - ends, self.deviation * math.sqrt(served)
+        return float(ndtr(left / spread)) if spread > 0.0 else float(left >= 0.0)
+
+    def judged(self, start: complex, time: float, ships: Sequence[int]) -> Order:
+        """Return what comes of serving ships in some order, from a place at a time [m, s]."""
+        state = _State(start, time, 0, 0.0)
+        for ship in ships:
+            state = self.after(state, ship)
+        return Order(tuple(ships), state.verdicts, state.time)
+
+    def score_of(self, order: Order) -> float:
+        """Return what an order is worth: its expected verdicts, and a little for an early end."""
+        return self.score(order.verdicts, order.ends)
+
+    def score(self, verdicts: float, ends: float) -> float:
+        """Return the same of expected verdicts and of the end [s]."""
+        return verdicts - _SOONER * min(ends / self.endurance, _LATEST)
+
+
+def best_order(prospect: Prospect, start: complex, time: float, ships: Sequence[int]) -> Order:
+    """Return the best of all orders from a place at a time [m, s]; of many ships a good one, by
+    insertion.
+    """
+    return (exact_order if len(ships) <= EXACT_MAX else inserted_order)(
+        prospect, start, time, ships
+    )
+
+
+def inserted_order(prospect: Prospect, start: complex, time: float, ships: Sequence[int]) -> Order:
+    """Return an order by insertion and improvement, from a place at a time [m, s].
+
+    From each ship as the first, the ship and the place in the order that gain most are inserted
+    until none gains; then parts of up to three ships are moved, parts turned round and ships
+    exchanged for others as long as the order gets better. The best of these orders is taken.
+    """
+    best = prospect.judged(start, time, ())
+    for first in ships:
+        found = prospect.judged(start, time, (first,))
+        while True:
+            filled = _improved(
+                prospect, start, time, _filled(prospect, start, time, found, ships), ships
+            )
+            if filled == found:
+                break
+            found = filled
+        best = _better(prospect, best, found)
+    return best
+
+
+def exact_order(prospect: Prospect, start: complex, time: float, ships: Sequence[int]) -> Order:
+    """Return the best of all orders, of some ships or of all of them; the effort grows as the
+    factorial of their number.
+    """
+    best = prospect.judged(start, time, ())
+
+    def extend(state: _State, order: tuple[int, ...], left: frozenset[int]) -> None:
+        nonlocal best
+        score = prospect.score(state.verdicts, state.time)
+        if score > prospect.score_of(best):
+            best = Order(order, state.verdicts, state.time)
+        # Not even with a verdict of each ship that is left, at once.
+        if score + sum(prospect.chance[ship] for ship in left) <= prospect.score_of(best):
+            return
+        for ship in sorted(left):
+            extend(prospect.after(state, ship), (*order, ship), left - {ship})
+
+    extend(_State(start, time, 0, 0.0), (), frozenset(ships))
+    return best
+
+
+def ends_of(prospect: Prospect, start: complex, time: float, ships: Sequence[int]) -> list[float]:
+    """Return when each ship of an order is done [s]."""
+    state, ends = _State(start, time, 0, 0.0), []
+    for ship in ships:
+        state = prospect.after(state, ship)
+        ends.append(state.time)
+    return ends
+
+
+def _better(prospect: Prospect, one: Order, other: Order) -> Order:
+    """Return the better one of two orders, the first where they are alike."""
+    return other if prospect.score_of(other) > prospect.score_of(one) + 1e-12 else one
+
+
+def _filled(
+    prospect: Prospect, start: complex, time: float, best: Order, ships: Sequence[int]
+) -> Order:
+    while True:
+        tried = best
+        for ship in ships:
+            if ship not in best.ships:
+                for i in range(len(best.ships) + 1):
+                    tried = _better(
+                        prospect,
+                        tried,
+                        prospect.judged(start, time, (*best.ships[:i], ship, *best.ships[i:])),
+                    )
+        if tried.verdicts < best.verdicts + _GAIN:
+            return best
+        best = tried
+
+
+def _improved(
+    prospect: Prospect, start: complex, time: float, order: Order, ships: Sequence[int]
+) -> Order:
+    while True:
+        best = order
+        for neighbour in _neighbours(order.ships, ships):
+            best = _better(prospect, best, prospect.judged(start, time, neighbour))
+        if best is order:
+            return order
+        order = best
+
+
+def _neighbours(order: tuple[int, ...], ships: Sequence[int]) -> Iterator[tuple[int, ...]]:
+    """Yield the orders in which a part is turned round, up to three ships stand elsewhere, or one
+    is exchanged for one left out.
+    """
+    count = len(order)
+    for i in range(count):
+        for j in range(i + 2, count + 1):
+            yield (*order[:i], *order[i:j][::-1], *order[j:])
+        for ship in ships:
+            if ship not in order:
+                yield (*order[:i], ship, *order[i + 1 :])
+    for size in (1, 2, 3):
+        for i in range(count - size + 1):
+            part, rest = order[i : i + size], (*order[:i], *order[i + size :])
+            for k in range(len(rest) + 1):
+                if k != i:
+                    yield (*rest[:k], *part, *rest[k:])

@@ -1,5 +1,0 @@
-"""Steering laws side by side, as a study."""
-
-from scenarios.studies.arena.study import ArenaStudy
-
-__all__ = ["ArenaStudy"]

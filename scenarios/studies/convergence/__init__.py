@@ -1,1 +1,0 @@
-"""Global convergence of the steering laws, from many starts."""

@@ -1,0 +1,294 @@
+"""An arena of a few laws on the kinematic vehicle: tuned, flown, compared, resumed and replayed."""
+
+import json
+
+import pandas as pd
+import pytest
+
+from extensions.arena.entrants import conditions_of, entrants_of
+from gnc.laws import STEERING_LAWS
+from scenarios.engine.processes import InProcessExecutor
+from scenarios.errors import InputError
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study
+from tests.in_process import assert_refused, run_command
+from tests.run_tables import manifest_of, rows_of
+from tests.scenarios.plugin_files import LAW
+
+QUICK = (
+    "fidelity=kinematic", "guidance.rate_hz=5", "flight.log_rate_hz=5",
+    "flights=2", "flight.duration_max_s=60", "arena.window_s=30", "arena.tuning_duration_s=30",
+    "arena.evaluations=3", "arena.tuning_flights=1", "arena.resamples=100", "start.distance_m=[300,350]", "start.spread_deg=20",
+    'arena.tracking=["npfg","park_l1_point"]', 'arena.standoff=["npfg","lgvf"]', "arena.limits=[[0.0,5.0],[1.0,9.0]]",
+    'arena.conditions=[{name="calm",title="Calm"},{name="wind",title="Wind",set={"wind.speed_mps"=4.0}}]',
+)  # fmt: skip
+
+
+def arena(*overrides):
+    return load_study("arena", [*QUICK, *overrides])
+
+
+@pytest.fixture(scope="module")
+def law(tmp_path_factory):
+    path = tmp_path_factory.mktemp("law") / "mylaw.py"
+    path.write_text(LAW, encoding="utf-8")
+    return f"{path}:Pursuit"
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory, law):
+    out = tmp_path_factory.mktemp("arena") / "run"
+    run_study(arena(f'laws=["{law}"]'), "arena", out, executor_factory=InProcessExecutor)
+    return out
+
+
+@pytest.fixture(scope="module")
+def record(run):
+    return json.loads((run / "arena.json").read_text(encoding="utf-8"))
+
+
+def test_every_law_flies_every_task_that_it_can_in_every_condition_from_the_same_starts(run):
+    rows = pd.DataFrame(rows_of(run))
+    cases = [
+        "npfg",
+        "park_l1_point",
+        "pursuit",
+        "npfg_standoff",
+        "pursuit_standoff",
+        "lgvf_standoff",
+    ]
+    assert rows["flight_id"].tolist() == [
+        f"{trial}_{case}_kinematic_{i:05d}"
+        for trial in ("calm", "wind")
+        for case in cases
+        for i in range(2)
+    ]
+    # Two starts in each condition, one for each flight of a law: seeds follow from condition and
+    # number alone.
+    assert rows.groupby("trial")["seed"].nunique().tolist() == [2, 2]
+    assert rows.groupby("trial")["start_distance_m"].nunique().tolist() == [2, 2]
+
+
+def test_every_law_has_the_same_budget_and_seeds_that_the_comparison_does_not_use(run, record):
+    tuning = pd.read_csv(run / "tuning.csv")
+    assert set(tuning.groupby("entrant").size()) == {3}
+    assert tuning["message"].isna().all()
+    for entrant in record["entrants"]:
+        tried = tuning[tuning["entrant"] == entrant["name"]].sort_values("evaluation")
+        first, best = tried.iloc[0], tried.loc[tried["cost_m"].idxmin()]
+        assert json.loads(first["parameters"]) == entrant["defaults"]
+        assert json.loads(best["parameters"]) == entrant["tuned"]
+        assert entrant["cost_tuned_m"] <= entrant["cost_default_m"]
+        for key, value in entrant["tuned"].items():
+            # The range of the scenario, 4 times either way; six digits are kept.
+            assert 0.2499 < value / entrant["defaults"][key] < 4.001
+
+
+def test_flights_have_the_tuned_parameters_and_the_manifest_says_them(run, record):
+    manifest = manifest_of(run)
+    tuned = {entrant["name"]: entrant["tuned"] for entrant in record["entrants"]}
+    assert manifest["tuned"] == tuned
+    for case in manifest["trials"]["calm"]["cases"]:
+        assert (
+            tuned[case["name"]].items()
+            <= {k.removeprefix("guidance."): v for k, v in case["set"].items()}.items()
+        )
+    draws = pd.read_csv(run / "draws.csv").set_index("flight_id")
+    assert (
+        draws.loc["wind_npfg_kinematic_00001", "guidance.npfg_period_s"]
+        == tuned["npfg"]["npfg_period_s"]
+    )
+
+
+def test_laws_are_compared_within_a_task_and_crossings_over_both(record):
+    def of(figure, condition="all"):
+        return [
+            e for e in record["estimates"] if (e["figure"], e["condition"]) == (figure, condition)
+        ]
+
+    assert sum(estimate["best"] for estimate in of("error_rms_m")) == 2
+    assert sum(estimate["best"] for estimate in of("crossings_per_minute")) == 1
+    for estimate in of("error_rms_m", "wind"):
+        assert estimate["low"] <= estimate["mean"] <= estimate["high"]
+        assert estimate["flights"] == 2
+    # nu is 0.5 in calm air; the limit is 5 + 4 nu there.
+    assert record["limits"]["calm"] == pytest.approx(7.0, abs=1e-3)
+
+
+def test_every_flight_is_measured_over_its_end_and_what_a_minute_is_worth_is_compared(run, record):
+    flights, windows = pd.read_csv(run / "summary.csv"), pd.read_csv(run / "window.csv")
+    # The window of QUICK, whether the flight has settled or not.
+    assert windows["plume_s_per_minute"].to_numpy() == pytest.approx(
+        flights["seconds_in_plume_s"].to_numpy() * 60.0 / 30.0
+    )
+    admitted = flights["sulphur_quality"] != "C"
+    assert (windows["sulphur_information_per_minute"] > 0.0).tolist() == admitted.tolist()
+    assert admitted.any()
+    compared = [
+        e
+        for e in record["estimates"]
+        if (e["figure"], e["condition"]) == ("sulphur_information_per_minute", "all")
+    ]
+    assert len(compared) == len(record["entrants"])
+    best = max(compared, key=lambda estimate: estimate["mean"])
+    assert best["best"]
+
+
+def test_the_exhaust_and_the_sniffer_are_those_of_the_flights_that_measure():
+    of_arena, of_sulphur = load_study("arena"), load_study("sulphur")
+    assert (of_arena.emission, of_arena.payload) == (of_sulphur.emission, of_sulphur.payload)
+    assert (of_arena.plume.model, of_arena.source_height) == (
+        of_sulphur.plume.model,
+        of_sulphur.source_height,
+    )
+
+
+def test_without_a_sniffer_laws_are_compared_by_crossings_alone(tmp_path):
+    keys = (
+        'arena.conditions=[{name="calm",title="Calm"}]',
+        "flights=1",
+        'arena.tracking=["npfg"]',
+        "payload=[]",
+    )
+    run_study(
+        arena(*keys, "arena.standoff=[]", "arena.evaluations=0"),
+        "arena",
+        tmp_path / "run",
+        executor_factory=InProcessExecutor,
+    )
+    estimates = json.loads((tmp_path / "run" / "arena.json").read_text(encoding="utf-8"))[
+        "estimates"
+    ]
+    means = {estimate["figure"]: estimate["mean"] for estimate in estimates}
+    assert means["crossings_per_minute"] > 0.0
+    assert means["plume_s_per_minute"] is means["sulphur_information_per_minute"] is None
+
+
+def test_a_law_without_an_adapter_for_a_task_is_named_with_its_reason(record):
+    found = {(entry["law"], entry["task"]): entry["reason"] for entry in record["refused"]}
+    assert found.keys() == {("park_l1_point", "standoff"), ("lgvf", "tracking")}
+    assert "it flies a circle about a centre" in found["lgvf", "tracking"]
+
+
+def test_a_resumed_arena_has_nothing_to_do_and_a_flight_replays_as_it_was(run, tmp_path, law):
+    before = (run / "arena.json").read_bytes()
+    result = run_study(
+        arena(f'laws=["{law}"]'), "arena", run, executor_factory=InProcessExecutor, resume=True
+    )
+    assert not result.changed
+    assert (run / "arena.json").read_bytes() == before
+    flight = "wind_npfg_kinematic_00001"
+    ended = run_command(
+        "scenarios.run", run / "flights" / flight, "--out", tmp_path / "replay", "--no-report"
+    )
+    assert ended.status == 0, ended.errors
+    (row,) = [row for row in rows_of(run) if row["flight_id"] == flight]
+    (again,) = rows_of(tmp_path / "replay")
+    assert {k: v for k, v in again.items() if k != "wall_time_s"} == {
+        k: v for k, v in row.items() if k != "wall_time_s"
+    }
+
+
+def test_without_evaluations_laws_fly_their_defaults(tmp_path):
+    keys = (
+        "arena.evaluations=0",
+        'arena.conditions=[{name="calm",title="Calm"}]',
+        "flights=1",
+        'arena.tracking=["npfg"]',
+    )
+    run_study(
+        arena(*keys, "arena.standoff=[]"),
+        "arena",
+        tmp_path / "run",
+        executor_factory=InProcessExecutor,
+    )
+    (entrant,) = json.loads((tmp_path / "run" / "arena.json").read_text(encoding="utf-8"))[
+        "entrants"
+    ]
+    assert (entrant["tuned"], entrant["evaluations"]) == (entrant["defaults"], 0)
+
+
+class LosingTuner(InProcessExecutor):
+    """Loses the task that tunes the first law, as if its process had been killed."""
+
+    def fly(self, tasks):
+        flights = self._work._ends[-1]
+        return (
+            self._work.lost(task, "was killed") if task.number == flights else self._work.run(task)
+            for task in tasks
+        )
+
+
+def test_a_law_whose_tuning_was_lost_is_not_compared_with_its_defaults_and_is_tuned_when_the_run_continues(
+    tmp_path,
+):
+    keys = (
+        'arena.conditions=[{name="calm",title="Calm"}]',
+        "flights=1",
+        "arena.standoff=[]",
+        "flight.duration_max_s=40",
+    )
+    words = r"the tuning of 'npfg' was lost \(was killed\), and .*: continue with --resume, with a larger --time-limit"
+    with pytest.raises(InputError, match=words) as refused:
+        run_study(arena(*keys), "arena", tmp_path / "lost", executor_factory=LosingTuner)
+    assert "\n" not in str(refused.value)
+    for name, resume in (("lost", True), ("whole", False)):
+        run_study(
+            arena(*keys),
+            "arena",
+            tmp_path / name,
+            executor_factory=InProcessExecutor,
+            resume=resume,
+        )
+    lost, whole = tmp_path / "lost", tmp_path / "whole"
+    assert (lost / "arena.json").read_bytes() == (whole / "arena.json").read_bytes()
+    assert (lost / "draws.csv").read_bytes() == (whole / "draws.csv").read_bytes()
+    tuned = manifest_of(lost)["tuned"]["npfg"]
+    assert pd.read_csv(lost / "draws.csv")["guidance.npfg_period_s"][0] == tuned["npfg_period_s"]
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ('laws=["npgf"]', ["laws: unknown steering law 'npgf'", "'npfg'"]),
+        ('laws=["nofile.py:Law"]', ["nofile.py"]),
+        (
+            'laws=["npfg"]',
+            [
+                "'npfg' is named 2 times for tracking; laws adds to arena.tracking: name each law once"
+            ],
+        ),
+        ("arena.conditions=[]", ["arena.conditions is empty"]),
+        (
+            'arena.conditions=[{name="a",title="A",set={"wind.sped_mps"=1}}]',
+            ["condition 'a'", "wind.sped_mps"],
+        ),
+        ("arena.window_s=400", ["arena.window_s is 400 s", "flight.duration_max_s"]),
+        ("flight.measured_s=60", ["flight.measured_s is given", "arena.window_s"]),
+        ("sweep.nu=[0.5]", ["study is 'arena' beside a sweep"]),
+    ],
+)
+def test_bad_input_is_one_line(override, words, tmp_path):
+    arguments = [argument for key in (*QUICK, override) for argument in ("--set", key)]
+    assert_refused(
+        run_command("scenarios.run", "arena", *arguments, "--out", tmp_path / "run"), *words
+    )
+
+
+def test_a_law_that_cannot_do_the_task_of_a_flight_is_refused_in_one_line():
+    with pytest.raises(
+        InputError,
+        match=r"guidance\.law is 'lgvf': it flies a circle .* set guidance\.mission to 'standoff'",
+    ):
+        load_study("sweep_nu", ["guidance.law=lgvf"])
+    with pytest.raises(
+        InputError, match=r"guidance\.law is 'pure_pursuit': .* set guidance\.mission to 'follow'"
+    ):
+        load_study("sea_wind", ["guidance.law=pure_pursuit", "guidance.mission=standoff"])
+
+
+def test_the_arena_of_the_catalog_has_every_law_in_a_task():
+    scenario = load_study("arena")
+    entrants, _ = entrants_of(scenario)
+    assert {entrant.law for entrant in entrants} == set(STEERING_LAWS.names())
+    assert len(entrants) * len(conditions_of(scenario, "arena", entrants)) * scenario.flights == 520

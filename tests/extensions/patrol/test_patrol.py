@@ -1,0 +1,360 @@
+"""A patrol of two ships on the kinematic vehicle: served, recorded, repeated, and what is refused."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from extensions.patrol.ships import sampled_patrol
+from extensions.patrol.study import PatrolWork
+from extensions.patrol.tables import patrol_figures, ship_row, wind_row
+from scenarios.engine.processes import InProcessExecutor
+from scenarios.engine.task import Task
+from scenarios.errors import InputError
+from scenarios.experiment.requests import Experiment
+from scenarios.planning.spreads import PredictedSpreads
+from scenarios.scenario.files import load_study, with_values
+from scenarios.studies.base import run_study
+from scenarios.studies.replay import Replay
+from scenarios.world.world import mean_wind, vessel_of
+from tests.in_process import assert_refused, run_command
+from tests.run_tables import rows_of
+
+QUICK = (
+    "fidelity=kinematic",
+    "guidance.rate_hz=5",
+    "flight.log_rate_hz=5",
+    "flights=1",
+    "patrol.ships=2",
+    "patrol.area_m=8000",
+    "patrol.endurance_s=1500",
+    "patrol.separation_m=2000",
+)
+
+
+def patrol(*overrides):
+    return load_study("patrol", [*QUICK, *overrides])
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    out = tmp_path_factory.mktemp("patrol") / "run"
+    return run_study(patrol(), "patrol", out, executor_factory=InProcessExecutor), out
+
+
+def test_both_ships_are_served_with_the_right_verdict_and_the_run_is_met(run):
+    result, out = run
+    (row,) = rows_of(out)
+    assert (row["ships"], row["served"], row["correct"], row["wrong"], row["oracle_verdicts"]) == (
+        2,
+        2,
+        2,
+        0,
+        2,
+    )
+    assert row["kept_out"]
+    assert row["keepout_violations"] == 0
+    assert result.all_met
+    assert result.summary.lines[-1] == (
+        "exit status 0: 1 of 1 patrols kept out and brought their aircraft through; correct verdicts meet"
+        " patrol.oracle_share_min, wrong ones meet patrol.wrong_share_max"
+    )
+    ships = rows_of(out, "ships.csv")
+    assert sorted(ship["position"] for ship in ships) == [0, 1]
+    for ship in ships:
+        # The catalog's limit between compliant fuel and the others.
+        assert (
+            ship["verdict"]
+            == ship["truth"]
+            == ("above" if ship["fsc_fuel_percent"] > 0.15 else "below")
+        )
+        # r_min of the keep-out sphere, by default.
+        assert min(ship["min_distance_m"], ship["others_distance_min_m"]) > 200.0
+
+
+def test_a_patrol_of_the_summary_is_no_flight_to_replay(run):
+    _, out = run
+    (row,) = rows_of(out)
+    with pytest.raises(
+        InputError, match="is a study of patrol; only single flights can be replayed"
+    ):
+        Replay(str(out / "flights" / row["flight_id"]))
+
+
+def test_stretches_follow_each_other_in_time_and_place_and_fit_into_the_endurance(run):
+    _, out = run
+    phases = pd.read_csv(out / "phases.csv")
+    assert phases["begins_s"].iloc[0] == 0.0
+    for end, begin in (
+        ("ends_s", "begins_s"),
+        ("to_north_m", "from_north_m"),
+        ("to_east_m", "from_east_m"),
+    ):
+        # Each stretch begins with the very sample that the one before it ends with; a flight at the
+        # place that its start is turned into and back: rounding.
+        assert np.allclose(phases[end].iloc[:-1], phases[begin].iloc[1:], rtol=0.0, atol=1e-6), end
+    assert phases["ends_s"].iloc[-1] <= 1500.0
+    assert set(phases["phase"]) == {"transit", "approach", "searching", "measuring", "leaving"}
+
+
+def test_a_flight_begins_where_the_way_to_the_ship_ends(run):
+    _, out = run
+    phases = pd.read_csv(out / "phases.csv")
+    for ship in rows_of(out, "ships.csv"):
+        own = phases[phases["ship"] == ship["ship"]]
+        leg = own[own["phase"] == "transit"].iloc[-1]
+        course = math.radians(ship["vessel_course_deg"])
+        way = ship["vessel_speed_mps"] * ship["reached_s"]
+        north, east = (
+            ship["north_m"] + way * math.cos(course),
+            ship["east_m"] + way * math.sin(course),
+        )
+        # start.distance_m ends at 800 m; tables have all digits.
+        assert math.hypot(leg["to_north_m"] - north, leg["to_east_m"] - east) == pytest.approx(
+            800.0, abs=1e-6
+        )
+
+
+def test_the_same_patrol_is_flown_again_to_the_last_bit_in_this_process_or_another(tmp_path):
+    # Beside each ship until its patience is over, long before there is a verdict.
+    short = patrol("patrol.patience_s=30")
+    run_study(short, "patrol", tmp_path / "one")
+    run_study(short, "patrol", tmp_path / "again", executor_factory=InProcessExecutor)
+    assert [ship["ended_s"] > 0.0 for ship in rows_of(tmp_path / "one", "ships.csv")] == [
+        True,
+        True,
+    ]
+    for name in ("ships.csv", "phases.csv"):
+        assert (tmp_path / "again" / name).read_bytes() == (tmp_path / "one" / name).read_bytes()
+
+
+def test_a_complete_run_that_is_resumed_flies_nothing(run):
+    _, out = run
+    assert not run_study(patrol(), "patrol", out, resume=True).changed
+
+
+def test_ships_stay_apart_in_one_wind_and_every_patrol_has_others():
+    scenario = patrol(
+        "patrol.ships=6",
+        "patrol.area_m=40000",
+        "patrol.endurance_s=5400",
+        "patrol.separation_m=3000",
+    )
+    first, second = (sampled_patrol("patrol", scenario, number) for number in (0, 1))
+    assert first.movers != second.movers
+    assert first == sampled_patrol("patrol", scenario, 0)
+    assert (
+        len({(ship.scenario.wind.speed_mps, ship.scenario.wind.from_deg) for ship in first.ships})
+        == 1
+    )
+    assert len({ship.scenario.flight_seed for ship in first.ships}) == 6
+    for i, ship in enumerate(first.movers):
+        # The range of the catalog's speed_ratio.
+        assert 0.25 <= abs(ship.velocity - first.air.wind) / first.air.speed <= 0.9
+        for other in first.movers[:i]:
+            for time in range(0, 5401, 60):
+                assert abs(ship.at(time) - other.at(time)) >= 3000.0
+
+
+def test_ways_are_flown_in_the_wind_at_their_height_and_ships_have_the_speed_ratio_of_their_flights():
+    scenario = patrol("wind.roughness_m=0.0002")
+    found = sampled_patrol("patrol", scenario, 0)
+    given = found.ships[0].scenario.wind
+    # V(z) = V(10 m) ln(z/z0)/ln(10 m/z0), at the 60 m of the catalog's flights.
+    expected = given.speed_mps * math.log(60.0 / 2e-4) / math.log(10.0 / 2e-4)
+    assert abs(found.air.wind) == pytest.approx(expected, rel=1e-12)
+    assert wind_row(found) == {"wind_speed_mps": given.speed_mps, "wind_from_deg": given.from_deg}
+    for i, ship in enumerate(found.ships):
+        # By the wind at the funnel's mouth, as of any flight.
+        flown = mean_wind(ship.scenario, vessel_of(ship.scenario)).now(
+            0.0, ship.scenario.source_height
+        )
+        nu = abs(ship.mover.velocity - complex(*flown)) / found.air.speed
+        assert ship_row(found, i, 0.15)["nu"] == pytest.approx(nu, rel=1e-12)
+
+
+def test_a_patrol_that_fails_is_a_row_with_its_reason():
+    # Two ships that are to stay farther apart than the square is wide, found when the patrol is
+    # flown.
+    scenario = with_values(patrol(), {"patrol.separation_m": 20_000.0})
+    work = PatrolWork(
+        experiments=(Experiment("patrol", scenario),),
+        histories=1,
+        setup=None,
+        spreads=PredictedSpreads(),
+    )
+    (row,) = work.run(Task(number=0)).tables["summary.csv"]
+    assert (row["outcome"], row["criteria_met"]) == ("failed", False)
+    assert row["message"].startswith("patrol.separation_m is 20000 m")
+
+
+def ship(number, **values):
+    """Return the row of a ship that was served, with other values."""
+    row = {
+        "ship": number,
+        "position": number,
+        "verdict": "below",
+        "correct": True,
+        "outcome": "completed",
+        "message": "",
+    }
+    return (
+        row
+        | {
+            "keepout_violations": 0,
+            "kept_out": True,
+            "min_distance_m": 250.0,
+            "others_distance_min_m": 900.0,
+        }
+        | values
+    )
+
+
+def figures(*ships):
+    return patrol_figures(ships, [], endurance=1500.0, keepout_radius=200.0)
+
+
+def test_what_comes_within_r_min_of_another_ship_is_a_violation_with_its_reason():
+    found = figures(
+        ship(0, others_distance_min_m=120.0), ship(1, others_distance_min_m=180.0), ship(2)
+    )
+    assert (found["keepout_violations"], found["kept_out"], found["criteria_met"]) == (
+        2,
+        False,
+        False,
+    )
+    assert found["message"] == "came within 120 m of another ship"
+    assert figures(ship(0), ship(1, others_distance_min_m=200.0))["message"] == ""
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"outcome": "failed", "message": "no gain", "kept_out": False}, "ship 1: failed: no gain"),
+        ({"outcome": "aircraft_lost", "message": "stalled"}, "ship 1: aircraft lost: stalled"),
+        ({"keepout_violations": 2, "kept_out": False}, "ship 1: 2 keep-out violations"),
+        (
+            {"outcome": "not_settled", "keepout_violations": 1, "kept_out": False},
+            "ship 1: not settled: 1 keep-out violation",
+        ),
+    ],
+)
+def test_a_patrol_says_which_ship_it_failed_at_and_why(values, message):
+    found = figures(ship(0), ship(1, **values))
+    assert (found["message"], found["criteria_met"]) == (message, False)
+
+
+def test_a_ship_beside_which_nothing_was_flown_is_not_served():
+    refused = {
+        "ship": 1,
+        "position": 1,
+        "verdict": "open",
+        "correct": False,
+        "outcome": "infeasible",
+        "message": "too near",
+    }
+    found = figures(ship(0), refused, ship(2))
+    assert (found["ships"], found["served"], found["open"], found["kept_out"]) == (3, 2, 0, True)
+
+
+def test_a_study_that_never_took_off_is_not_met(tmp_path):
+    # The ship is kilometres away, and there are 5 s more than a flight beside her takes.
+    far = (
+        "patrol.ships=1",
+        "patrol.area_m=60000",
+        "patrol.endurance_s=170",
+        "patrol.patience_s=30",
+    )
+    result = run_study(patrol(*far), "patrol", tmp_path / "run", executor_factory=InProcessExecutor)
+    (row,) = rows_of(tmp_path / "run")
+    assert (row["served"], row["criteria_met"]) == (0, True)
+    assert not result.all_met
+    told = "\n".join(result.summary.lines)
+    assert "(–, required 80 %)" in told
+    assert told.endswith(
+        "exit status 1: 1 of 1 patrols kept out and brought their aircraft through; no ship was served"
+    )
+
+
+def test_a_study_without_any_verdict_of_an_oracle_either_is_not_met(tmp_path):
+    short = ("patrol.ships=1", "patrol.patience_s=10")
+    result = run_study(
+        patrol(*short), "patrol", tmp_path / "run", executor_factory=InProcessExecutor
+    )
+    (row,) = rows_of(tmp_path / "run")
+    assert (row["served"], row["oracle_verdicts"], row["criteria_met"]) == (1, 0, True)
+    assert not result.all_met
+    assert "no verdict, and none of an oracle: give ships more time" in result.summary.lines[-1]
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ("patrol.ships=0", ("patrol.ships is 0; input should be greater than or equal to 1",)),
+        ("patrol.endurance_s=60", ("patrol.endurance_s is 60 s", "patrol.service_s = 165 s")),
+        ("patrol.separation_m=9000", ("patrol.separation_m is 9000 m", "patrol.area_m")),
+        (
+            "patrol.separation_m=0",
+            ("patrol.separation_m is 0 m", "800 m", "start.distance_m", "give 1000 m or more"),
+        ),
+        ("flight.until=flown", ("flight.until is 'flown'", "'verdict'")),
+        ("sweep.keepout.radius_m=[200,210]", ("beside a sweep",)),
+        ("vessel.manoeuvres=[{at_s=20.0,turn_deg=30.0}]", ("vessel.manoeuvres",)),
+        (
+            "start.range_m=500",
+            ("beside start.range_m; a flight beside a ship begins where the way to it ends",),
+        ),
+        ("start.place_m=[-500,10]", ("beside start.place_m",)),
+        ('draws=[{key="start.aspect_deg",uniform=[0.0,30.0]}]', ("beside start.aspect_deg",)),
+        (
+            "patrol.clearance_m=700",
+            ("are 900 m together, more than start.distance_m, whose end is 800 m",),
+        ),
+        (
+            "flight.duration_max_s=900",
+            ("'flight.duration_max_s' has no effect here", "patrol.patience_s"),
+        ),
+        (
+            "criteria.required=keep_out",
+            ("'criteria.required' has no effect here", "judged by patrol.oracle_share_min and"),
+        ),
+        (
+            "criteria.settles=false",
+            ("'criteria.settles' has no effect here", "patrol.wrong_share_max: set these"),
+        ),
+        (
+            "histories=4",
+            ("'histories' has no effect here", "a patrol keeps no time histories: leave it out"),
+        ),
+    ],
+)
+def test_what_is_no_patrol_is_refused_in_one_line(override, words, tmp_path):
+    overrides = [part for given in (*QUICK, override) for part in ("--set", given)]
+    assert_refused(
+        run_command(
+            "scenarios.run", "patrol", *overrides, "--out", tmp_path / "run", "--no-report"
+        ),
+        *words,
+    )
+
+
+def test_flights_of_a_patrol_know_the_plume_as_the_scenario_says_and_those_of_the_oracle_are_told(
+    monkeypatch, tmp_path
+):
+    known = []
+
+    def recorded(scenario, values):
+        flown = with_values(scenario, values)
+        known.append(flown.following.plume)
+        return flown
+
+    monkeypatch.setattr("extensions.patrol.study.with_values", recorded)
+    one = patrol("patrol.ships=1", "following.plume=predicted")
+    run_study(one, "patrol", tmp_path / "run", executor_factory=InProcessExecutor)
+    assert known == ["predicted", "told"]
+
+
+def test_keys_of_a_patrol_are_refused_elsewhere():
+    with pytest.raises(InputError, match="several ships"):
+        load_study("sweep_nu", ["patrol.ships=3"])

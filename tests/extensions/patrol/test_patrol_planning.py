@@ -1,0 +1,261 @@
+"""Ways between ships that move in wind, and the order in which they are served."""
+
+import cmath
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from extensions.patrol.order import (
+    EXACT_MAX,
+    Prospect,
+    best_order,
+    ends_of,
+    exact_order,
+    inserted_order,
+)
+from extensions.patrol.route import (
+    Air,
+    Leg,
+    Mover,
+    keeps_clear,
+    nearest_on,
+    route,
+    straight_leg,
+    time_to_reach,
+)
+
+V_R = 20.0
+RADIUS = 800.0
+CLEARANCE = 500.0
+
+
+def ships(seed, count, *, side=4e4, air=None):
+    """Return ships at random places, each slower through the air than the UAV by a tenth at least."""
+    generator = np.random.default_rng(seed)
+    wind = air.wind if air else 0j
+    made = []
+    while len(made) < count:
+        velocity = cmath.rect(generator.uniform(3.0, 12.0), generator.uniform(-math.pi, math.pi))
+        if abs(velocity - wind) < 0.9 * V_R:
+            made.append(Mover(complex(*generator.uniform(-0.5 * side, 0.5 * side, 2)), velocity))
+    return made
+
+
+def airs(count):
+    generator = np.random.default_rng(5)
+    return [
+        Air(cmath.rect(generator.uniform(0.0, 12.0), generator.uniform(-math.pi, math.pi)), V_R)
+        for _ in range(count)
+    ]
+
+
+def prospect(of, air, *, endurance=5400.0, service=165.0, deviation=40.0):
+    count = len(of)
+    return Prospect(
+        ships=of,
+        service=[service] * count,
+        deviation=deviation,
+        chance=[1.0] * count,
+        radius=RADIUS,
+        air=air,
+        endurance=endurance,
+    )
+
+
+@pytest.mark.parametrize("air", airs(5))
+def test_a_leg_ends_at_the_radius_from_the_ship_and_is_flown_at_the_airspeed(air):
+    for ship in ships(1, 40, air=air):
+        leg = straight_leg(1000 + 500j, 30.0, ship, RADIUS, air)
+        # 1e-6 m and 1e-9 m/s: rounding of places of 1e4 m in double precision.
+        assert abs(leg.end - ship.at(leg.ends)) == pytest.approx(RADIUS, abs=1e-6)
+        assert abs(leg.velocity - air.wind) == pytest.approx(V_R, rel=1e-9)
+        # It points at the ship where the way ends: no other straight way is as quick.
+        to_ship = ship.at(leg.ends) - leg.end
+        assert math.remainder(leg.course(air) - cmath.phase(to_ship), math.tau) == pytest.approx(
+            0.0, abs=1e-9
+        )
+
+
+@pytest.mark.parametrize("air", airs(3))
+def test_no_course_reaches_the_ship_sooner(air):
+    # A pursuer that starts at any course and keeps it, tried at 0.1 s before the leg's end.
+    courses = np.exp(1j * np.linspace(-math.pi, math.pi, 721))
+    for ship in ships(2, 20, air=air):
+        leg = straight_leg(0j, 0.0, ship, RADIUS, air)
+        before = leg.ends - 0.1
+        assert np.min(np.abs((V_R * courses + air.wind) * before - ship.at(before))) > RADIUS
+
+
+def test_times_of_known_chases():
+    # Head on at 20 + 10 m/s over 3,000 m; from astern at 20 - 10 m/s over 1,000 m; abeam, a right
+    # triangle 3-4-5.
+    assert time_to_reach(3000 + 0j, -10 + 0j, 20.0) == pytest.approx(100.0, rel=1e-12)
+    assert time_to_reach(1000 + 0j, 10 + 0j, 20.0) == pytest.approx(100.0, rel=1e-12)
+    assert time_to_reach(400 + 0j, 12j, 20.0) == pytest.approx(25.0, rel=1e-12)
+    assert time_to_reach(3000 + 0j, -10 + 0j, 20.0, 600.0) == pytest.approx(80.0, rel=1e-12)
+    assert time_to_reach(100j, 3 + 0j, 20.0, 200.0) == 0.0
+    # A ship as fast as the pursuer is met if she comes, and never if she goes; a faster one
+    # likewise.
+    assert time_to_reach(4000 + 0j, -20 + 0j, 20.0) == pytest.approx(100.0, rel=1e-12)
+    assert time_to_reach(4000 + 0j, 20 + 0j, 20.0) == math.inf
+    assert time_to_reach(4500 + 0j, -25 + 0j, 20.0) == pytest.approx(100.0, rel=1e-12)
+    assert time_to_reach(4500 + 0j, 25 + 0j, 20.0) == math.inf
+    assert time_to_reach(4500 + 0j, 25j, 20.0) == math.inf
+
+
+def test_a_way_past_ships_keeps_clear_of_all_of_them_and_costs_little():
+    tried = 0
+    for seed, air in enumerate(airs(12)):
+        goal, *others = ships(seed, 4, air=air)
+        straight = straight_leg(0j, 0.0, goal, RADIUS, air)
+        # In the way of the straight leg, at a quarter, the half and three quarters of it, up to 300
+        # m to its side.
+        for i, other in enumerate(others):
+            at = 0.25 * (i + 1) * straight.ends
+            place = straight.velocity * at + 300.0 * cmath.exp(1j * seed) - other.velocity * at
+            others[i] = Mover(place, other.velocity)
+        if min(abs(other.place) for other in others) < 2.0 * CLEARANCE:
+            continue
+        tried += 1
+        assert not keeps_clear(straight, others, CLEARANCE)
+        legs = route(0j, 0.0, goal, RADIUS, air=air, ships=[goal, *others], clearance=CLEARANCE)
+        assert len(legs) > 1
+        for leg in legs:
+            for other in others:
+                # Sampled, beside the closed form; a millimetre of what is kept.
+                times = np.linspace(leg.begins, leg.ends, 400)
+                track = leg.start + leg.velocity * (times - leg.begins)
+                assert nearest_on(times, track, other) > CLEARANCE - 1e-3
+        assert all(
+            one.end == other.start and one.ends == other.begins
+            for one, other in itertools.pairwise(legs)
+        )
+        # Round three octagons of 541 m: with each at most half her circumference more than through
+        # her, 3 (pi/2 - 1) 2 x 541 m, at the UAV's advance over the ships of 0.1 V_R at least.
+        assert straight.ends < legs[-1].ends < straight.ends + 3.0 * 0.571 * 1082.0 / (0.1 * V_R)
+    assert tried > 6
+
+
+def test_a_way_from_beside_a_ship_leads_away_from_her():
+    air = Air(4 + 3j, V_R)
+    beside, goal = Mover(0j, 6 + 0j), Mover(-9000 + 0j, 5j)
+    # On her other side as seen from the goal, nearer than is kept.
+    legs = route(400 + 0j, 0.0, goal, RADIUS, air=air, ships=[beside, goal], clearance=CLEARANCE)
+    assert len(legs) > 1
+    assert min(leg.distance(beside) for leg in legs) > 400.0 - 1e-3
+    assert min(leg.distance(beside) for leg in legs[1:]) > CLEARANCE - 1e-3
+
+
+def test_a_mirrored_way_is_the_mirror_image():
+    air, goal = Air(5 + 2j, V_R), Mover(9000 + 500j, 3 + 4j)
+    straight = straight_leg(0j, 0.0, goal, RADIUS, air)
+    # 100 m beside the straight way when the UAV is half-way.
+    at = 0.5 * straight.ends
+    other = Mover(straight.velocity * at + 100j - (1 - 2j) * at, 1 - 2j)
+    legs = route(0j, 0.0, goal, RADIUS, air=air, ships=[goal, other], clearance=CLEARANCE)
+    mirrored = [Mover(ship.place.conjugate(), ship.velocity.conjugate()) for ship in (goal, other)]
+    image = route(
+        0j,
+        0.0,
+        mirrored[0],
+        RADIUS,
+        air=Air(air.wind.conjugate(), V_R),
+        ships=mirrored,
+        clearance=CLEARANCE,
+    )
+    assert len(legs) > 1
+    # 1e-6 m: rounding, as above.
+    assert np.allclose(
+        [leg.end for leg in image], [leg.end.conjugate() for leg in legs], rtol=0.0, atol=1e-6
+    )
+
+
+def test_a_ship_that_cannot_be_caught_has_no_way():
+    air = Air(0j, V_R)
+    assert (
+        route(0j, 0.0, Mover(5000 + 0j, 21 + 0j), RADIUS, air=air, ships=[], clearance=CLEARANCE)
+        is None
+    )
+
+
+@pytest.mark.parametrize("count", [1, 3, 5])
+def test_insertion_expects_nearly_as_many_verdicts_as_the_best_of_all_orders(count):
+    for seed, air in enumerate(airs(8)):
+        served = prospect(ships(seed, count, air=air), air)
+        best = exact_order(served, 0j, 0.0, range(count))
+        found = inserted_order(served, 0j, 0.0, range(count))
+        # No order is better than the exact one; insertion may stop at ships of which less than 0.02
+        # verdicts are expected each.
+        assert served.score_of(found) <= served.score_of(best) + 1e-12
+        assert found.verdicts > best.verdicts - 0.1
+        assert found.ends == pytest.approx(
+            ends_of(served, 0j, 0.0, found.ships)[-1] if found.ships else 0.0
+        )
+
+
+def test_exact_is_the_best_of_orders_tried_one_by_one():
+    air = Air(6 - 2j, V_R)
+    served = prospect(ships(3, 4, air=air), air, endurance=2500.0)
+    best = exact_order(served, 0j, 0.0, range(4))
+    orders = [order for size in range(5) for order in itertools.permutations(range(4), size)]
+    values = [served.score_of(served.judged(0j, 0.0, order)) for order in orders]
+    assert served.score_of(best) == pytest.approx(max(values), rel=1e-12)
+
+
+def test_a_mirrored_patrol_has_the_same_order():
+    air = Air(6 - 2j, V_R)
+    of = ships(4, 6, air=air)
+    mirrored = [Mover(ship.place.conjugate(), ship.velocity.conjugate()) for ship in of]
+    order = inserted_order(prospect(of, air), 0j, 0.0, range(6))
+    image = inserted_order(prospect(mirrored, Air(air.wind.conjugate(), V_R)), 0j, 0.0, range(6))
+    assert order.ships == image.ships
+    assert order.ends == pytest.approx(image.ends, rel=1e-12)
+
+
+def test_ships_ahead_on_a_line_are_served_as_they_come_and_those_out_of_reach_are_left_out():
+    air = Air(0j, V_R)
+    of = [Mover(complex(place), 0j) for place in (9000, 3000, 6000, 500_000)]
+    assert inserted_order(prospect(of, air), 0j, 0.0, range(4)).ships == (1, 2, 0)
+    assert exact_order(prospect(of, air), 0j, 0.0, range(4)).ships == (1, 2, 0)
+    # The one way to 9,000 m, 800 m of each way saved and made up for by flying on from the ship
+    # herself, and three services.
+    ends = ends_of(prospect(of, air), 0j, 0.0, (1, 2, 0))
+    assert ends == pytest.approx(
+        [2200.0 / V_R + 165.0, 4400.0 / V_R + 330.0, 6600.0 / V_R + 495.0], rel=1e-12
+    )
+
+
+def test_without_time_for_any_ship_the_order_is_empty():
+    air = Air(0j, V_R)
+    served = prospect([Mover(9000 + 0j, 0j)], air, endurance=100.0)
+    assert (
+        inserted_order(served, 0j, 0.0, [0]).ships == exact_order(served, 0j, 0.0, [0]).ships == ()
+    )
+
+
+def test_of_few_ships_every_order_is_tried_and_of_many_some(monkeypatch):
+    air = Air(6 - 2j, V_R)
+    # Four ships of which insertion misses the best order.
+    few, many = (
+        prospect(ships(2, 4, air=air), air, endurance=2500.0),
+        prospect(ships(6, EXACT_MAX + 1, air=air), air),
+    )
+    assert (
+        best_order(few, 0j, 0.0, range(4))
+        == exact_order(few, 0j, 0.0, range(4))
+        != inserted_order(few, 0j, 0.0, range(4))
+    )
+    expected = inserted_order(many, 0j, 0.0, range(EXACT_MAX + 1))
+    monkeypatch.setattr(
+        "extensions.patrol.order.exact_order",
+        lambda *_: pytest.fail("every order of many is tried"),
+    )
+    assert best_order(many, 0j, 0.0, range(EXACT_MAX + 1)) == expected
+
+
+def test_a_leg_without_a_length_stays_where_it_is():
+    leg = straight_leg(100 + 0j, 5.0, Mover(0j, 3 + 0j), RADIUS, Air(4 + 0j, V_R))
+    assert leg == Leg(5.0, 5.0, 100 + 0j, 100 + 0j)
+    assert leg.velocity == 0j
