@@ -29,6 +29,9 @@ INTERVENTIONS = "interventions.csv"
 DRAWS = "draws.csv"
 """The values of the random variables of each flight."""
 
+OVERRIDES = "overrides.csv"
+"""The keys that each flight has otherwise than the configuration of its trial in the manifest."""
+
 COUNTEREXAMPLES = "counterexamples.csv"
 """Rows of the trajectories that did not converge."""
 
@@ -83,6 +86,7 @@ TABLES = (
     CROSSINGS,
     INTERVENTIONS,
     DRAWS,
+    OVERRIDES,
     COUNTEREXAMPLES,
     SAMPLES,
     SHIPS,

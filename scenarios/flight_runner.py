@@ -17,7 +17,8 @@ import numpy as np
 import pandas as pd
 
 from common.columns import Column, Table
-from common.run_layout import CROSSINGS, DRAWS, INTERVENTIONS
+from common.run_layout import CROSSINGS, DRAWS, INTERVENTIONS, OVERRIDES
+from common.text import as_json_cell
 from scenarios.engine.task import Result, Row, Task
 from scenarios.experiment.requests import Experiment, FlightRequest, table_of
 from scenarios.flight.closed_loop import fly
@@ -128,6 +129,8 @@ class FlightWork:
             tables[DRAWS] = [
                 named | {"nu": row.get("nu")} | dict(task.labels) | _plain(request.inputs)
             ]
+            experiment, _ = self.located(task.number)
+            tables[OVERRIDES] = [named | _cells(experiment.overrides(request.scenario))]
             if self.refusal and request.scenario.fidelity == "six_dof":
                 return self._result(task, row | unflown(Outcome.TRIM_FAILED, self.refusal), tables)
             plan = self.plan(request)
@@ -350,3 +353,8 @@ def _cell(value: object) -> object:
     if isinstance(value, datetime):
         return value.isoformat()
     return value if isinstance(value, str | float | int) else json.dumps(value)
+
+
+def _cells(overrides: Mapping[str, object]) -> Row:
+    """Return values as a table has them from which they are read back as they are."""
+    return {key: as_json_cell(value) for key, value in overrides.items()}

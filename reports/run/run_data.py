@@ -22,6 +22,7 @@ from common.run_layout import (
     FILES,
     FORMAT,
     MANIFEST,
+    OVERRIDES,
     STATISTICS,
     SULPHUR,
     SUMMARY,
@@ -30,6 +31,7 @@ from common.run_layout import (
     time_history_path,
     trajectory_path,
 )
+from common.text import from_json_cell
 from reports.errors import ReportError
 from reports.run.columns import Mask
 from reports.run.files import refuse_running
@@ -57,6 +59,7 @@ class RunData:
     innerloop : the autopilot's design record, or none if the run ended before
     statistics : what a Monte Carlo study shows and how sure that is, or none of any other run
     draws : of each flight, what was swept or sampled
+    overrides : the keys that each flight has otherwise than its trial, by its name
     columns : what the columns of its tables are, by file and name
     unread : files that are there and cannot be read, as found so far
     """
@@ -69,6 +72,7 @@ class RunData:
     innerloop: dict[str, Any] | None
     statistics: dict[str, Any] | None
     draws: pd.DataFrame
+    overrides: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
     columns: Mapping[str, Table] = field(default_factory=dict)
     unread: set[str] = field(default_factory=set)
 
@@ -226,6 +230,7 @@ def read_run(path: Path) -> RunData:
         innerloop=_record(path / DESIGN_RECORD, unread),
         statistics=_record(path / STATISTICS, unread),
         draws=read_table(path / DRAWS, columns.get(DRAWS)),
+        overrides=read_overrides(path / OVERRIDES, unread),
         columns=columns,
         unread=unread,
     )
@@ -253,6 +258,27 @@ def _columns(path: Path, unread: set[str]) -> dict[str, dict[str, Column]]:
     except (ValueError, TypeError, AttributeError):
         unread.add(COLUMNS)
         return {}
+
+
+def read_overrides(path: Path, unread: set[str]) -> dict[str, dict[str, object]]:
+    """Return the keys that flights have otherwise than their trials, by the names of flights."""
+    if not is_file(path):
+        return {}
+    try:
+        frame = pd.read_csv(path, dtype=str, keep_default_na=False)
+    except (ValueError, OSError):
+        unread.add(path.name)
+        return {}
+    keys = [str(key) for key in frame if key not in ("flight_id", "trial", "variant")]
+    columns = [frame[key].tolist() for key in keys]
+    return {
+        str(flight_id): {
+            key: from_json_cell(column[i])
+            for key, column in zip(keys, columns, strict=True)
+            if column[i]
+        }
+        for i, flight_id in enumerate(frame.get("flight_id", ()))
+    }
 
 
 def _record(path: Path, unread: set[str]) -> dict[str, Any] | None:

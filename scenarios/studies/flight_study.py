@@ -20,6 +20,7 @@ from common.run_layout import (
     DRAWS,
     FLIGHTS,
     INTERVENTIONS,
+    OVERRIDES,
     SULPHUR,
     SULPHUR_TABLE,
     SUMMARY,
@@ -347,8 +348,21 @@ class FlightStudy:
 
     def export(self, run: RunDirectory, journal: Journal) -> None:
         """Write its tables, and what their columns are."""
-        write_tables(run, journal, self.tables)
-        write_columns(run, self.columns())
+        overrides = self._overrides(journal)
+        write_tables(run, journal, {**self.tables, **overrides})
+        write_columns(run, {**self.columns(), **overrides})
+
+    def _overrides(self, journal: Journal) -> dict[str, Table]:
+        """Return the columns of the table of what flights have otherwise than their trial, of a
+        study whose rows are flights.
+        """
+        if DRAWS not in self.tables:
+            return {}
+        keys = dict.fromkeys(key for row in journal.rows(OVERRIDES) for key in row)
+        return {
+            OVERRIDES: FLIGHT_COLUMNS
+            | described({key: ANY_KEY for key in keys if key not in FLIGHT_COLUMNS})
+        }
 
     def columns(self) -> Mapping[str, Table]:
         """Return what the columns of its tables are, by file."""

@@ -52,6 +52,7 @@ def tables() -> dict[str, Table]:
         "crossings.csv": CROSSING_COLUMNS,
         "interventions.csv": INTERVENTION_COLUMNS,
         "draws.csv": INPUT_COLUMNS | SEARCH_COLUMNS,
+        "overrides.csv": FLIGHT_COLUMNS,
         sulphur: FLIGHT_COLUMNS | of_sulphur,
         "window.csv": named | WINDOW_COLUMNS | MEASURED_COLUMNS,
         "tuning.csv": TUNING_COLUMNS,
