@@ -47,6 +47,9 @@ COLUMNS = "columns.json"
 DERIVED = "derived"
 """Entry of ``columns.json`` with figures that follow from the summary and are in no table."""
 
+VERDICT = "verdict.json"
+"""What the run has shown (``common.verdict``): the only judge of it."""
+
 DESIGN_RECORD = "innerloop.json"
 """The design record of the autopilot."""
 

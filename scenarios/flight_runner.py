@@ -19,6 +19,7 @@ import pandas as pd
 from common.columns import Column, Table
 from common.run_layout import CROSSINGS, DRAWS, INTERVENTIONS, OVERRIDES
 from common.text import as_json_cell
+from common.verdict import KeepOut
 from scenarios.engine.task import Result, Row, Task
 from scenarios.experiment.requests import Experiment, FlightRequest, table_of
 from scenarios.flight.closed_loop import fly
@@ -36,7 +37,7 @@ from scenarios.instruments.instrument import (
     Instrument,
     declarations,
 )
-from scenarios.measures.criteria import failed_criteria, kept_out
+from scenarios.measures.criteria import failed_criteria
 from scenarios.measures.crossings import crossing_rows
 from scenarios.measures.figures import flight_figures, plan_row
 from scenarios.measures.finding import finding_figures
@@ -146,7 +147,8 @@ class FlightWork:
             figures, found = flight_figures(plan, record)
             row |= figures | _never_flown(request, figures)
             # Before an instrument of a user's own may fail.
-            row |= {"kept_out": kept_out(row)} if "keepout_violations" in row else {}
+            if "keepout_violations" in row:
+                row["kept_out"] = KeepOut.of(row).is_known_outside
             tables[CROSSINGS] = [
                 named | {"nu": row.get("nu")} | crossing for crossing in crossing_rows(found)
             ]

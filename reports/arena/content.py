@@ -16,7 +16,7 @@ from reports.document.blocks import Block, Card, Findings, Heading, Section, Tex
 from reports.document.tables import outcome, parameter_table
 from reports.flights.content import flights_content
 from reports.flights.first_page import flights_in_words
-from reports.run.columns import count, flights_flown, lost, total, violated
+from reports.run.columns import flights_flown, lost, total
 from reports.run.run_data import RunData
 
 _BOLD = (
@@ -159,9 +159,8 @@ def _refused(arena: Arena) -> list[Block]:
 
 
 def _verdict(arena: Arena) -> Verdict:
-    rows, flown = arena.run.summary, flights_flown(arena.run.summary)
-    planned = int(arena.run.manifest["flights_planned"])
-    violations, gone = count(violated(flown)), count(lost(rows))
+    verdict, counts = arena.run.verdict, arena.run.verdict.counts
+    violations, gone = counts.violated, counts.lost
     best = [
         (task, first)
         for task in (True, False)
@@ -173,7 +172,7 @@ def _verdict(arena: Arena) -> Verdict:
             entrant.title for entrant in arena.entrants if total(entrant.rows, "keepout_violations")
         ]
         failures.append(
-            f"keep-out violations in {violations} of {len(flown)} flights: of {', '.join(laws)}"
+            f"keep-out violations in {violations} of {counts.flown} flights: of {', '.join(laws)}"
         )
     if gone:
         laws = [entrant.title for entrant in arena.entrants if lost(entrant.rows).any()]
@@ -196,12 +195,17 @@ def _verdict(arena: Arena) -> Verdict:
         ),
         Card(
             "Keep-out violations",
-            f"{total(flown, 'keepout_violations'):,}",
+            f"{counts.keepout_violations:,}",
             "0",
-            len(flown) > 0 and not violations,
+            counts.flown > 0 and not violations,
         ),
-        Card("Aircraft lost", f"{gone:,}", "0", len(flown) > 0 and not gone),
-        Card("Flights flown", f"{len(flown):,} of {planned:,}", "all", len(flown) == planned),
+        Card("Aircraft lost", f"{gone:,}", "0", counts.flown > 0 and not gone),
+        Card(
+            "Flights flown",
+            f"{counts.flown:,} of {counts.planned:,}",
+            "all",
+            counts.flown == counts.planned,
+        ),
         Card("Laws in a task", f"{len(arena.entrants)}"),
         Card(
             "Conditions, and flights of each law in each",
@@ -209,9 +213,9 @@ def _verdict(arena: Arena) -> Verdict:
         ),
     ]
     return Verdict(
-        holds=len(flown) > 0 and not violations and not gone,
-        complete=len(flown) == planned,
-        headline=_headline(arena, best) if len(flown) else "Nothing was flown",
+        holds=counts.flown > 0 and not violations and not gone,
+        complete=verdict.is_done and counts.flown == counts.planned and not counts.unknown,
+        headline=_headline(arena, best) if counts.flown else "Nothing was flown",
         detail=f"Means over all conditions, over the end of each flight. {_ONCE if arena.flights == 1 else _alike(arena, best)}",
         failures=failures,
         figures=figures,

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from common.patrols import PatrolCounts
+from common.verdict import MET
 from reports.design.section import innerloop_section
 from reports.document.blocks import Card, Findings, Heading, Section, Text, Verdict
 from reports.document.tables import parameter_table, vehicle_flown
@@ -82,7 +83,7 @@ def _verdict(patrols: Patrols) -> Verdict:
     violations = counts.violations
     return Verdict(
         holds=counts.holds,
-        complete=counts.met,
+        complete=counts.met and patrols.run.verdict.exit_status == MET,
         headline=_headline(counts),
         detail=f"{counts.served} of {counts.ships} ships were served in {counts.hours:.1f} h, {counts.per_hour:.1f} an hour;"
         f" {violations} keep-out violation{'s' * (violations != 1)}.",

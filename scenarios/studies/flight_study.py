@@ -26,11 +26,13 @@ from common.run_layout import (
     SUMMARY,
     time_history_path,
 )
+from common.text import from_json_cell
+from common.verdict import Bound, Counts, RunVerdict
 from gnc.mission.mission import Mode
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary, write_columns, write_tables
-from scenarios.engine.task import Task
+from scenarios.engine.task import Row, Task
 from scenarios.errors import InputError
 from scenarios.experiment.random_sample import (
     flights_per_sample,
@@ -51,12 +53,14 @@ from scenarios.measures.columns import (
     INTERVENTION_COLUMNS,
     SUMMARY_COLUMNS,
 )
+from scenarios.measures.verdict import Judge, Tally, bound_of
 from scenarios.planning.limits import omega_max
 from scenarios.planning.scaling import scaled, scaled_keys
 from scenarios.planning.spreads import predicted_spreads
 from scenarios.planning.theory.speed_ratio import theory_over_speed_ratio
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.experiment import STUDY, TrialList
+from scenarios.scenario.sections.flight import CriteriaConfig
 from scenarios.statistics.sulphur import COLUMNS as SULPHUR_COLUMNS
 from scenarios.statistics.sulphur import sulphur_statistics
 from scenarios.studies.checks import check_flights, check_without_design, plugins_explained
@@ -72,7 +76,16 @@ from scenarios.studies.manifest import (
 )
 from scenarios.studies.rows import frame
 from scenarios.studies.study import study
-from scenarios.studies.summary import POINTS_OF_SWEEP, FlightCounts, comparison_lines
+from scenarios.studies.summary import (
+    POINTS_OF_SWEEP,
+    FlightNotes,
+    bound_line,
+    comparison_lines,
+    exit_line,
+    premise_lines,
+    trial_line,
+    unexplained_lines,
+)
 from scenarios.vehicles.vehicle_setup import aircraft_setup, design_of, kinematic_setup, spec_of
 
 
@@ -369,67 +382,101 @@ class FlightStudy:
         others = {DERIVED: DERIVED_COLUMNS, FLIGHTS: history_columns(self.experiments.values())}
         return {**self.tables, **others}
 
-    def bound_line(self, counts: FlightCounts, samples: int, _journal: Journal) -> str:
-        """Return the line on keep-out violations and the bound on their probability, of flights
-        that are a random sample.
+    def bound(self, counts: Counts, samples: int, _journal: Journal) -> Bound:
+        """Return the bound on the probability of a keep-out violation, of flights that are a random
+        sample; parameters are those of ``bound_of``.
         """
-        return counts.bound_line(samples)
+        return bound_of(counts, samples)
+
+    def judged(self, journal: Journal) -> RunVerdict:
+        """Return what the flights so far have shown."""
+        judge, criteria = Judge(self.flights), self._criteria_of_flights(journal)
+        for number, row in journal.numbered(SUMMARY):
+            judge.add(row, criteria.get(number) or self.trials[row["trial"]].criteria)
+        return self._bounded(judge.verdict(comparisons=self._comparisons(journal)), journal)
+
+    def _criteria_of_flights(self, journal: Journal) -> dict[int, CriteriaConfig]:
+        """Return the criteria of flights by their numbers, where flights of a trial may differ in
+        them.
+        """
+        differ = any(
+            point.scenario.criteria != experiment.scenario.criteria
+            or any(draw.key.startswith("criteria.") for draw in point.scenario.draws)
+            for experiment in self.experiments.values()
+            for point in experiment.points
+        )
+        return {
+            number: self.criteria_of(row["trial"], row)
+            for number, row in (journal.numbered(OVERRIDES) if differ else ())
+        }
+
+    def criteria_of(self, trial: str, overrides: Row) -> CriteriaConfig:
+        """Return the criteria of a flight of a trial, by its row of ``overrides.csv``."""
+        criteria = self.trials[trial].criteria
+        own = {
+            key.removeprefix("criteria."): from_json_cell(str(value))
+            for key, value in overrides.items()
+            if key.startswith("criteria.")
+        }
+        return CriteriaConfig(**(criteria.model_dump(mode="json") | own)) if own else criteria
+
+    def _comparisons(self, journal: Journal) -> dict[str, Counts]:
+        """Return the counts of the flights of each comparison."""
+        planned = Counter[str]()
+        for experiment in self.experiments.values():
+            for point in experiment.points:
+                if point.variant != STUDY:
+                    planned[point.variant] += point.flights
+        tallies = {variant: Tally(flights) for variant, flights in planned.items()}
+        for row in journal.rows(COMPARISON) if tallies else ():
+            tallies[row["variant"]].add(row)
+        return {variant: tally.counts() for variant, tally in tallies.items()}
+
+    def _bounded(self, verdict: RunVerdict, journal: Journal) -> RunVerdict:
+        """Return a verdict with the bounds that follow from flights that are a random sample."""
+        at_random = self._sampled_at_random()
+        samples = {
+            trial: of.counts.beside // flights_per_sample(self.trials[trial])
+            for trial, of in verdict.trials.items()
+        }
+        trials = {
+            trial: replace(of, bound=self.bound(of.counts, samples[trial], journal))
+            if at_random[trial] and of.closest
+            else of
+            for trial, of in verdict.trials.items()
+        }
+        whole = verdict.whole
+        if all(at_random.values()) and whole.closest:
+            whole = replace(whole, bound=self.bound(whole.counts, sum(samples.values()), journal))
+        return replace(verdict, whole=whole, trials=trials)
 
     def summary(self, journal: Journal) -> StudySummary:
         """Return the result so far."""
-        whole = FlightCounts(planned=self.planned)
-        trial_counts = {
-            trial: FlightCounts(planned=flights) for trial, flights in self.flights.items()
-        }
-        for row in journal.rows(SUMMARY):
-            whole.add(row)
-            trial_counts[row["trial"]].add(row)
+        verdict, notes = self.judged(journal), FlightNotes.of(journal.rows(SUMMARY))
+        whole = verdict.whole
         lines = [
-            *whole.unexplained_lines(),
+            *unexplained_lines(verdict),
             *(reports.described() for reports in self.vessel_files.values()),
-            f"flights: {whole.line()}",
+            f"flights: {trial_line(whole)}",
         ]
-        if len(trial_counts) > 1:
-            lines += [f"  {trial}: {counts.line()}" for trial, counts in trial_counts.items()]
+        if len(verdict.trials) > 1:
+            lines += [f"  {trial}: {trial_line(of)}" for trial, of in verdict.trials.items()]
         points = {*map(random_numbers_of_points, self.trials.values())}
         lines += [POINTS_OF_SWEEP[kind] for kind in sorted(points) if kind]
-        lines += [*whole.premise_lines(), *self._comparison_lines(journal), *whole.sulphur_lines()]
-        if whole.flown > whole.without_area and all(self._sampled_at_random().values()):
-            samples = sum(
-                of.beside // flights_per_sample(self.trials[trial])
-                for trial, of in trial_counts.items()
-            )
-            lines.append(self.bound_line(whole, samples, journal))
-        left = self.beside - sum(1 for _ in journal.rows(COMPARISON)) if self.beside else 0
-        lines += [whole.exit_line(left=left), *whole.not_met_lines("    "), *whole.warnings()]
-        manifest = (
-            whole.manifest()
-            | self._sizes()
-            | {"guidance_lag_s": self._manifest.get("guidance_lag_s")}
-        )
-        return StudySummary(
-            done=whole.done,
-            met=whole.passed == whole.planned,
-            lines=lines,
-            manifest=manifest,
-            beside_left=left,
-            unexplained=whole.unexplained,
-        )
+        left_out = () if verdict.comparisons else self._ratios_without_flights()
+        lines += [
+            *premise_lines(verdict),
+            *comparison_lines(verdict, left_out),
+            *notes.sulphur_lines(),
+        ]
+        if whole.bound:
+            lines.append(bound_line(whole.bound, whole.counts.hours))
+        lines += [exit_line(verdict), *notes.not_met_lines("    "), *notes.warnings()]
+        guidance_lag = {"guidance_lag_s": self._manifest.get("guidance_lag_s")}
+        return StudySummary(verdict=verdict, lines=lines, manifest=self._sizes() | guidance_lag)
 
-    def _comparison_lines(self, journal: Journal) -> list[str]:
-        """Return a line for each comparison: its flights, which do not count."""
-        variants = (
-            point
-            for experiment in self.experiments.values()
-            for point in experiment.points
-            if point.variant != STUDY
-        )
-        planned = Counter[str]()
-        for point in variants:
-            planned[point.variant] += point.flights
-        left_out = (
-            [nu for of in self.trials.values() if of.comparison.variants for nu in of.comparison.nu]
-            if not planned
-            else []
-        )
-        return comparison_lines(planned, journal.rows(COMPARISON) if planned else (), left_out)
+    def _ratios_without_flights(self) -> list[float]:
+        """Return the speed ratios of comparisons at none of which the study has a flight."""
+        return [
+            nu for of in self.trials.values() if of.comparison.variants for nu in of.comparison.nu
+        ]

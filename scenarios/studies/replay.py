@@ -9,7 +9,7 @@ from common.run_layout import COMPARISON, JOURNAL, MANIFEST, SUMMARY, flight_of,
 from scenarios.engine.fingerprint import differences
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
-from scenarios.engine.runner import Study, StudySummary
+from scenarios.engine.runner import StudySummary
 from scenarios.engine.task import Row, Task, Work
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
@@ -20,7 +20,6 @@ from scenarios.scenario.parts import names_folder
 from scenarios.scenario.scenario import Scenario
 from scenarios.studies.flight_study import FlightStudy
 from scenarios.studies.manifest import plugins, refuse_changed
-from scenarios.studies.registry import study_of
 from scenarios.studies.single_flight import SingleFlight
 
 _TABLES = (SUMMARY, COMPARISON)
@@ -127,7 +126,7 @@ class Replay(SingleFlight):
         }
         return manifest | {"trials": trials, "plugins": plugins}
 
-    def _restored(self, manifest: dict[str, Any]) -> Study:
+    def _restored(self, manifest: dict[str, Any]) -> FlightStudy:
         """Return the study of the run, or of the one trial of it that the flight belongs to.
 
         The trial comes from the manifest, scaled to its aircraft, and not from the catalog, which
@@ -152,8 +151,8 @@ class Replay(SingleFlight):
         }
         flown = Experiment(trial, scenarios[trial]).points
         refuse_changed(manifest.get("plugins", {}), plugins(point.scenario for point in flown))
-        study = study_of(scenarios[trial], trial)
-        if len(scenarios) > 1 and isinstance(study, FlightStudy):
+        study = FlightStudy(scenarios[trial], trial, {trial: scenarios[trial]})
+        if len(scenarios) > 1:
             study.name_by_trial()
         flights = {name: Experiment(name, scenario).flights for name, scenario in scenarios.items()}
         before = sum(flights[name] for name in list(trials)[: list(trials).index(trial)])
@@ -184,11 +183,10 @@ class Replay(SingleFlight):
 
     def summary(self, journal: Journal) -> StudySummary:
         """Return whether the row is identical to that of the original flight."""
-        rows = list(journal.rows(self._table))
+        rows, verdict = list(journal.rows(self._table)), self.judged(journal)
         if not rows:
-            return StudySummary(
-                done=0, met=False, lines=["not flown"], manifest={"identical": False}
-            )
+            verdict = replace(verdict, required_met=False)
+            return StudySummary(verdict=verdict, lines=["not flown"], manifest={"identical": False})
         differing = [
             name for name in dict.fromkeys([*self._row, *rows[0]])
             if name not in NOT_COMPARED and json.dumps(self._row.get(name)) != json.dumps(rows[0].get(name))
@@ -206,9 +204,9 @@ class Replay(SingleFlight):
             lines.append(
                 f"differs from the flight in {self._from} in {len(differing)} values: {changes}; {self._reason()}"
             )
-        return StudySummary(
-            done=1, met=not differing, lines=lines, manifest={"identical": not differing}
-        )
+        # The exit status is about the repetition, and not about the flight.
+        verdict = replace(verdict, required_met=not differing)
+        return StudySummary(verdict=verdict, lines=lines, manifest={"identical": not differing})
 
     def _reason(self) -> str:
         """Return a possible reason."""

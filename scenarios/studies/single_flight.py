@@ -4,15 +4,17 @@ import sys
 from dataclasses import replace
 from typing import Any
 
-from common.run_layout import SUMMARY
+from common.run_layout import OVERRIDES, SUMMARY
+from common.verdict import RunVerdict
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
-from scenarios.engine.runner import Fly, Progress, Study, StudySummary
+from scenarios.engine.runner import Fly, Progress, StudySummary
 from scenarios.engine.task import Task, Work
 from scenarios.experiment.requests import table_of
 from scenarios.flight_runner import FlightWork
+from scenarios.measures.verdict import Judge
 from scenarios.studies.flight_study import FlightStudy
-from scenarios.studies.summary import FlightCounts
+from scenarios.studies.summary import FlightNotes, trial_line
 
 
 class SingleFlight:
@@ -30,7 +32,9 @@ class SingleFlight:
     what = "flights"
     planned, beside = 1, 0
 
-    def __init__(self, study: Study, task: Task, *, flight_id: str, trial: str, table: str) -> None:
+    def __init__(
+        self, study: FlightStudy, task: Task, *, flight_id: str, trial: str, table: str
+    ) -> None:
         self._study, self._task, self._flight_id, self._trial, self._table = (
             study,
             task,
@@ -83,12 +87,17 @@ class SingleFlight:
         if self._table != SUMMARY:
             (run.path / self._table).replace(run.path / SUMMARY)
 
+    def judged(self, journal: Journal) -> RunVerdict:
+        """Return what the flight has shown, beside a comparison's other flights or without."""
+        judge = Judge({self._trial: 1})
+        overrides = dict(journal.numbered(OVERRIDES))
+        for number, row in journal.numbered(self._table):
+            judge.add(row, self._study.criteria_of(row["trial"], overrides.get(number, {})))
+        return judge.verdict()
+
     def summary(self, journal: Journal) -> StudySummary:
         """Return how the flight ended."""
-        counts = FlightCounts.of(journal.rows(self._table), self.planned)
-        return StudySummary(
-            done=counts.done,
-            met=counts.passed == self.planned,
-            lines=[f"{self._flight_id}: {counts.line()}", *counts.not_met_lines("  ")],
-            manifest=counts.manifest(),
-        )
+        verdict, notes = self.judged(journal), FlightNotes.of(journal.rows(self._table))
+        line = f"{self._flight_id}: {trial_line(verdict.whole)}"
+        lines = [line, *notes.not_met_lines("  ")]
+        return StudySummary(verdict=verdict, lines=lines, manifest={})

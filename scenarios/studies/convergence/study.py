@@ -9,6 +9,7 @@ from typing import Any
 import pandas as pd
 
 from common.run_layout import COUNTEREXAMPLES, SUMMARY, trajectory_path
+from common.verdict import RunVerdict
 from gnc.analysis.ensemble import DISTANCE_CONVERGED, PHI_CONVERGED, Outcome
 from gnc.analysis.ensemble_motion import Vehicle
 from gnc.errors import InfeasibleError
@@ -187,9 +188,17 @@ class ConvergenceStudy:
             f"  {law}, {kind}: {int(of_kind.sum())} of {len(of_kind)} converged"
             for (law, kind), of_kind in flown
         ]
+        as_required = len(frame) == self.planned and bool(
+            converged[frame["law"].isin(judged)].all()
+        )
         return StudySummary(
-            done=len(frame),
-            met=len(frame) == self.planned and bool(converged[frame["law"].isin(judged)].all()),
+            verdict=RunVerdict.of_items(
+                self.what,
+                planned=self.planned,
+                done=len(frame),
+                met=int(converged.sum()),
+                required_met=as_required,
+            ),
             lines=[
                 f"{self.planned} trajectories planned, {len(frame)} done: {int(converged.sum())} converged",
                 *lines,

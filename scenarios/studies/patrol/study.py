@@ -6,6 +6,7 @@ from typing import Any
 
 from common.patrols import PatrolCounts
 from common.run_layout import PHASES, SHIPS, SUMMARY
+from common.verdict import RunVerdict
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary
@@ -103,9 +104,14 @@ class PatrolStudy(FlightStudy):
             "patrols_met": counts.through, "ships_served": counts.served, "verdicts": counts.verdicts,
             "verdicts_wrong": counts.wrong, "oracle_verdicts": counts.oracle,
         }  # fmt: skip
-        return StudySummary(
-            done=counts.done, met=counts.met, lines=lines, manifest=manifest | self._sizes()
+        verdict = RunVerdict.of_items(
+            self.what,
+            planned=self.planned,
+            done=counts.done,
+            met=counts.through,
+            required_met=counts.met,
         )
+        return StudySummary(verdict=verdict, lines=lines, manifest=manifest | self._sizes())
 
 
 def _given(scenario: Scenario, key: str) -> bool:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from common.verdict import RunVerdict
 from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.fingerprint import fingerprint
 from scenarios.engine.in_process_executor import InProcessExecutor
@@ -104,9 +105,8 @@ class SquareStudy:
 
     def summary(self, journal):
         done = journal.items()
-        return StudySummary(
-            done=done, met=done == self.planned, lines=[], manifest={"squares_done": done}
-        )
+        verdict = RunVerdict.of_items(self.what, planned=self.planned, done=done, met=done)
+        return StudySummary(verdict=verdict, lines=[], manifest={"squares_done": done})
 
 
 def fly(study, out, *, resume=False, jobs=0, progress=lambda *_: None):
