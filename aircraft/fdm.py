@@ -4,12 +4,14 @@ import contextlib
 import ctypes
 import math
 import os
+import re
 import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import IO
 
 import jsbsim
 
@@ -88,6 +90,12 @@ _SLOW_STEP_RATIO = 8
 They are still short against the second that a piston engine takes to change its speed.
 """
 
+_NAMED = re.compile(r'<\w+\s[^>]*?name\s*=\s*"([^"]+)"')
+"""Elements of a model's file that are named: functions and components of its controls."""
+
+_REASON_MOST = 300
+"""Letters of JSBSim's reason that a message quotes."""
+
 _FLIGHTGEAR = '<output name="{host}" type="FLIGHTGEAR" port="{port}" protocol="UDP" rate="30"/>'
 """JSBSim's output of FlightGear's packets, 30 a second."""
 
@@ -146,20 +154,19 @@ class Fdm:
             raise AircraftError(
                 f"aircraft '{name}': no model file {model_file}; check the JSBSim root directory"
             )
-        with silenced():
+        raised = ""
+        with captured() as printed:
             jsbsim.FGJSBBase().debug_lvl = 0  # type: ignore[no-untyped-call]
             executive = jsbsim.FGFDMExec(str(root))
             executive.set_debug_level(0)
             executive.set_dt(self.time_step)
             try:
                 loaded = executive.load_model(model)
-            except jsbsim.BaseError:
-                loaded = False
+            except jsbsim.BaseError as error:
+                loaded, raised = False, str(error)
         if not loaded:
-            raise AircraftError(
-                f"aircraft '{name}': JSBSim refused its model '{model}'; run JSBSim on it to see"
-                " why"
-            )
+            reason = _reason([*printed, raised], root)
+            raise AircraftError(f"aircraft '{name}': JSBSim refused its model: {reason}")
         return executive
 
     # Properties
@@ -176,6 +183,25 @@ class Fdm:
                 f"aircraft '{self.spec.name}' has no JSBSim property '{name}'; check its spelling"
             )
         return node
+
+    def not_finite(self) -> list[str]:
+        """Names of the properties whose value is not finite; those that the model computes itself
+        come first, in the order of its file, then those of engines.
+        """
+        names = [line.split(" ")[0] for line in self._exec.query_property_catalog("").splitlines()]
+        nodes = {name: self._find(name) for name in names}
+        found = [
+            name
+            for name, node in nodes.items()
+            if node and not math.isfinite(node.get_double_value())
+        ]
+        own = _NAMED.findall(self.spec.files.file.read_text(encoding="utf-8", errors="replace"))
+        place = {name: number for number, name in enumerate(own)}
+        last = len(place) + 1
+        return sorted(
+            found,
+            key=lambda name: place.get(name, last - name.startswith("propulsion/engine")),
+        )
 
     def _find(self, name: str) -> jsbsim.FGPropertyNode | None:
         if name in self._nodes:
@@ -463,21 +489,53 @@ def paced(run: Callable[[], object], time_step: float) -> Callable[[], object]:
 @contextlib.contextmanager
 def silenced() -> Iterator[None]:
     """Keep what JSBSim prints off standard output and error, also where these are files."""
+    with Path(os.devnull).open("w", encoding="utf-8") as sink, _printed_into(sink):
+        yield
+
+
+@contextlib.contextmanager
+def captured() -> Iterator[list[str]]:
+    """Same as ``silenced``; the list has the lines that were printed, once the context is left."""
+    lines: list[str] = []
+    with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as sink:
+        try:
+            with _printed_into(sink):
+                yield lines
+        finally:
+            sink.seek(0)
+            lines.extend(sink.read().splitlines())
+
+
+@contextlib.contextmanager
+def _printed_into(sink: IO[str]) -> Iterator[None]:
+    """Have standard output and error, of Python and of the process, written into a file."""
     _flush()
     saved = {stream: os.dup(stream) for stream in (1, 2)}
     try:
-        with Path(os.devnull).open("w", encoding="utf-8") as sink:
-            for stream in saved:
-                os.dup2(sink.fileno(), stream)
-            try:
+        for stream in saved:
+            os.dup2(sink.fileno(), stream)
+        try:
+            with contextlib.redirect_stdout(sink), contextlib.redirect_stderr(sink):
                 yield
-            finally:
-                # A file or a pipe is buffered: what is left in a buffer would be printed later.
-                _flush()
+        finally:
+            sink.flush()
+            # A file or a pipe is buffered: what is left in a buffer would be printed later.
+            _flush()
     finally:
         for stream, copy in saved.items():
             os.dup2(copy, stream)
             os.close(copy)
+
+
+def _reason(lines: list[str], root: Path) -> str:
+    """Return in one line why JSBSim refuses a model, from what it said: without colours, and
+    without the folder, which may be a copy.
+    """
+    said = [re.sub(r"\x1b\[[0-9;]*m", "", line).strip() for line in lines]
+    said = [line for line in said if line and not line.startswith("JSBSim Flight Dynamics Model")]
+    text = " ".join(dict.fromkeys(" ".join(said).replace(f"{root}/", "").split("\n")))
+    text = " ".join(text.split())
+    return text[:_REASON_MOST].rstrip(" .;") or "it says no more"
 
 
 def _flush() -> None:

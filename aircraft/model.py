@@ -163,7 +163,7 @@ def _remove_autopilots_and_io(config: ET.Element, files: ModelFiles) -> list[str
         if element.tag in ("output", "input"):
             config.remove(element)
         elif _is_autopilot(element):
-            names += _autopilot_properties(_content(element, files))
+            names += _autopilot_properties(content_of(element, files))
             config.remove(element)
     return list(dict.fromkeys(names))
 
@@ -175,8 +175,8 @@ def _is_autopilot(element: ET.Element) -> bool:
     return element.tag == "system" and any(_AUTOPILOT_NAME.search(name.lower()) for name in names)
 
 
-def _content(element: ET.Element, files: ModelFiles) -> ET.Element:
-    """The element itself, or the root of the file that it names."""
+def content_of(element: ET.Element, files: ModelFiles) -> ET.Element:
+    """Return the element itself, or the root of the file that it names."""
     found = files.find(element)
     return read_xml(found).getroot() if found else element
 
@@ -197,7 +197,7 @@ def _autopilot_properties(autopilot: ET.Element) -> list[str]:
 
 def _flightgear_properties(config: ET.Element, files: ModelFiles) -> list[str]:
     """FlightGear's properties that the model reads, as ``/sim/model/pushback``; JSBSim has none."""
-    referenced = [_content(element, files) for element in config.iter() if element.get("file")]
+    referenced = [content_of(element, files) for element in config.iter() if element.get("file")]
     texts = [element.text or "" for part in (config, *referenced) for element in part.iter()]
     words = [word.lstrip("-") for text in texts for word in text.split()]
     found = [word for word in words if re.fullmatch(r"/[A-Za-z_][\w.\-/\[\]]*", word)]

@@ -66,6 +66,9 @@ _EVALUATIONS_MAX = 80
 _ITERATIONS_MAX = 12
 """Largest number of iterations of the bounded least squares, each with a Jacobian."""
 
+_TURN_BACK = 1e3
+"""Acceleration from which a search turns back, a hundred times gravity [m/s^2, rad/s^2]."""
+
 _DIFFERENCE = 1e-3
 """Step of differences [rad, -]: large against what is left of an engine's settling."""
 
@@ -85,6 +88,7 @@ class TrimOutcome(Enum):
     CONVERGED = "converged"
     LIMITED = "held by a limit"
     NOT_CONVERGED = "not converged"
+    NOT_FINITE = "not finite"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -104,7 +108,8 @@ class Trim:
     driven : driven states by name [SI]
     outcome : whether it is an equilibrium
     residuals : remaining accelerations, forward, right, down, p, q, r [m/s^2, rad/s^2]
-    limits : control inputs and angles that are at their limit, each in words
+    limits : control inputs and angles that are at their limit, each in words; where accelerations
+        are not finite, what in the model is not
     """
 
     airspeed: float
@@ -124,7 +129,9 @@ class Trim:
 
     @property
     def residual(self) -> float:
-        """Largest remaining acceleration [m/s^2, rad/s^2]."""
+        """Largest remaining acceleration [m/s^2, rad/s^2]; infinite where one is not finite."""
+        if not all(math.isfinite(value) for value in self.residuals):
+            return math.inf
         return max(abs(value) for value in self.residuals)
 
     def state(
@@ -171,7 +178,9 @@ def trim(
     if found.outcome is TrimOutcome.CONVERGED:
         return found
     limits = " and ".join(found.limits)
-    if found.residual < TOLERANCE and limits:
+    if found.outcome is TrimOutcome.NOT_FINITE:
+        reason = limits
+    elif found.residual < TOLERANCE and limits:
         reason = f"{limits} is not enough"
     else:
         reason = (
@@ -300,6 +309,8 @@ class _TrimProblem:
                 raise _FoundError(unknowns)
             return residual
 
+        self._start_anew_if_not_finite()
+
         self._fdm.allow_engine_restart()
         if run_up:
             self._run_up(guess)
@@ -317,6 +328,13 @@ class _TrimProblem:
             return self._result(found.unknowns)
         return self._result(guess + self._scale * (np.asarray(solution) - 1.0))
 
+    def _start_anew_if_not_finite(self) -> None:
+        """Reset JSBSim where a value is not finite: it would stay in every later state."""
+        if not all(
+            map(math.isfinite, (*self._fdm.acceleration_body(), *self._fdm.angular_acceleration()))
+        ):
+            self._fdm.reset()
+
     def _run_up(self, guess: Array) -> None:
         """Settle at full throttle: an earlier guess may have left a propeller windmilling."""
         inputs = [
@@ -328,6 +346,9 @@ class _TrimProblem:
     def least_acceleration(self, best: Trim) -> Trim:
         """Point of least acceleration within all limits, or ``best``, found without limits."""
         for guess in self.guesses(None):
+            self._start_anew_if_not_finite()
+            if not np.isfinite(self._accelerations(guess)).all():
+                continue
             solution = least_squares(
                 self._residual,
                 guess,
@@ -358,6 +379,14 @@ class _TrimProblem:
         return np.column_stack(columns)
 
     def _residual(self, unknowns: Array) -> Array:
+        """Same as ``_accelerations``; where one is not finite so large that a search turns back."""
+        residual = self._accelerations(unknowns)
+        if np.isfinite(residual).all():
+            return residual
+        self._start_anew_if_not_finite()
+        return np.full(len(residual), _TURN_BACK)
+
+    def _accelerations(self, unknowns: Array) -> Array:
         """The six accelerations [m/s^2, rad/s^2] and, with a rudder, the sideslip [rad]."""
         fdm = self._fdm
         state, _ = self._state(unknowns)
@@ -372,11 +401,14 @@ class _TrimProblem:
     def _result(self, unknowns: Array) -> Trim:
         state, yaw_rate = self._state(unknowns)
         spec = self._fdm.spec
-        residuals = tuple(float(value) for value in self._residual(unknowns))
+        residuals = tuple(float(value) for value in self._accelerations(unknowns))
+        finite = all(map(math.isfinite, residuals))
         settled = self._fdm.settle(_SETTLED, _SETTLE_STEPS)
-        limits = self._limits(unknowns, settled)
+        limits = self._limits(unknowns, settled) if finite else (self._not_finite(),)
         inside = bool(np.all(unknowns <= self._upper) and np.all(unknowns >= self._lower))
-        if settled and inside and max(abs(value) for value in residuals) < TOLERANCE:
+        if not finite:
+            outcome = TrimOutcome.NOT_FINITE
+        elif settled and inside and max(abs(value) for value in residuals) < TOLERANCE:
             outcome = TrimOutcome.CONVERGED
         elif limits:
             outcome = TrimOutcome.LIMITED
@@ -398,6 +430,14 @@ class _TrimProblem:
             residuals=residuals[:6],
             limits=limits,
         )
+
+    def _not_finite(self) -> str:
+        """What is not finite, in words."""
+        names = self._fdm.not_finite()
+        if not names:
+            return "forces are not finite"
+        more = f" and {len(names) - 1} more" if len(names) > 1 else ""
+        return f"'{names[0]}'{more} not finite: correct it in {self._fdm.spec.files.file.name}"
 
     def _limits(self, unknowns: Array, settled: bool) -> tuple[str, ...]:
         """Limits that the unknowns are at or beyond, in words."""

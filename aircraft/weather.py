@@ -19,6 +19,9 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+import numpy.typing as npt
+
 from aircraft.fdm import Fdm
 from aircraft.spec import AircraftError
 from aircraft.wind import CALM, WindField
@@ -48,6 +51,9 @@ _AT_ONCE = 1e-9
 
 STEPS_BETWEEN_GUSTS = 2.0
 """Time steps that JSBSim's cosine gust needs from the end of one gust to the next [-]."""
+
+
+Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -170,6 +176,13 @@ class Gust:
     def end(self) -> float:
         """Time after the release at which it is over [s]."""
         return self.start + self.rise + self.hold + self.fall
+
+    def share(self, time: npt.ArrayLike) -> Array:
+        """Return the share of its peak that the air has at some times after the release [s, -]."""
+        since = np.asarray(time) - self.start
+        risen = np.clip(since / self.rise, 0.0, 1.0)
+        fallen = np.clip((since - self.rise - self.hold) / self.fall, 0.0, 1.0)
+        return np.asarray(0.5 * (np.cos(np.pi * fallen) - np.cos(np.pi * risen)))
 
 
 def ordered_gusts(gusts: Sequence[Gust], time_step: float) -> list[Gust]:

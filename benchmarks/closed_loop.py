@@ -23,12 +23,11 @@ from benchmarks.reports import report_reports
 from benchmarks.vehicle import x8_setup
 from gnc.compiled import compiled_modules
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from scenarios.flight.closed_loop import fly
-from scenarios.flight.release import release
+from scenarios.flight.closed_loop import fly, release
+from scenarios.flight.time_history import flight_history
 from scenarios.measures.figures import flight_figures
-from scenarios.measures.relative_state import flight_history
-from scenarios.planning.planner import plan_flight
-from scenarios.scenario.load import checked, load_document
+from scenarios.planning.missions import plan_flight
+from scenarios.scenario.files import checked, load_document
 from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 

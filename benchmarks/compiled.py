@@ -31,8 +31,8 @@ MODULES = {
         "guard/guard", "guard/turn",
     ),
     "scenarios": (
-        "flight/closed_loop", "flight/ending", "flight/recorder", "flight/settling",
-        "vehicles/jsbsim", "vehicles/telemetry",
+        "flight/closed_loop", "flight/ending", "flight/record",
+        "vehicles/jsbsim",
     ),
 }  # fmt: skip
 """Modules that are compiled, by package."""

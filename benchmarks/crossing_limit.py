@@ -3,7 +3,7 @@ optimal control.
 
 ``python -m benchmarks.crossing_limit`` solves the problem with CasADi and IPOPT (of the ``dev``
 extra), prints the table of docs/fastest_oscillation.md, and writes the limits that reports draw,
-``scenarios/planning/theory/crossing_limits.json``, with ``--write``, and the figure of the page
+``scenarios/planning/crossing_limits.json``, with ``--write``, and the figure of the page
 with ``--figure FILE``.
 
 A path is one of a point of constant speed whose bank, and whose roll rate, are limited. Seen from
@@ -27,7 +27,7 @@ from common.physics import bank_for_heading_rate
 from gnc.errors import InfeasibleError
 from gnc.reference.reference import REFERENCE_SHAPES
 from scenarios.planning.limits import omega_max
-from scenarios.planning.theory.speed_ratio import CROSSING_LIMITS
+from scenarios.planning.theory import CROSSING_LIMITS
 from scenarios.scenario.sections.guidance import GuidanceConfig
 
 if TYPE_CHECKING:

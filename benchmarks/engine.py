@@ -13,12 +13,11 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from aircraft.fdm import TIME_STEP
-from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.run_directory import RunDirectory
-from scenarios.engine.runner import fly_study
+from scenarios.engine.runner import ExecutorFactory, fly_study
 from scenarios.engine.task import Task, Work
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import study_of
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import study_of
 
 REFERENCE_STEP = 2.9e-6
 """Time of a step of JSBSim alone, with the bare aircraft, on the machine for which limits are given
@@ -114,7 +113,7 @@ def _bare(work: Work) -> float:
 
 def _fly_each(work: Work, numbers: Iterable[int]) -> None:
     for number in numbers:
-        work.fly(Task(number=number))
+        work.run(Task(number=number))
 
 
 def _work(length: float, path: Path) -> Work:
@@ -128,5 +127,5 @@ def _work(length: float, path: Path) -> Work:
 def _flight(work: Work) -> float:
     """Return the CPU time of one flight [s]."""
     began = time.process_time()
-    work.fly(Task(number=3))
+    work.run(Task(number=3))
     return time.process_time() - began

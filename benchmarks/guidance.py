@@ -26,9 +26,8 @@ from gnc.guidance import Guidance
 from gnc.mission.axis import SearchedAxis
 from scenarios.engine.task import Task
 from scenarios.experiment.requests import Experiment
-from scenarios.flight.onboard import OnboardSensing
-from scenarios.flight.plume_readings import axis_of
-from scenarios.flight_runner import FlightWork
+from scenarios.flight.onboard import OnboardSensing, axis_of
+from scenarios.flight_runner import FlightRunner
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.planning.spreads import PredictedSpreads
 from scenarios.scenario.scenario import Scenario
@@ -140,7 +139,7 @@ def _flown(scenario: Scenario, setup: VehicleSetup) -> tuple[FlightPlan, Measure
     """Return the plan of a flight, what its guidance measures at each step, and what a search would
     get.
     """
-    work = FlightWork(
+    work = FlightRunner(
         experiments=(Experiment("bench", scenario),),
         histories=1,
         setup=setup,
@@ -154,7 +153,7 @@ def _flown(scenario: Scenario, setup: VehicleSetup) -> tuple[FlightPlan, Measure
         return measured[-1][1]
 
     with mock.patch.object(OnboardSensing, "read", noted):
-        result = work.fly(Task(number=0))
+        result = work.run(Task(number=0))
     history = pd.read_parquet(
         io.BytesIO(result.files[time_history_path(result.tables[SUMMARY][0]["flight_id"])])
     )

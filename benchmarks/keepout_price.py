@@ -11,9 +11,9 @@ import tempfile
 from pathlib import Path
 
 from benchmarks.vehicle import x8_setup
-from scenarios.planning.planner import plan_flight
+from scenarios.planning.missions import plan_flight
 from scenarios.planning.spreads import predicted_spreads
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
 
 RATIOS = (0.2, 0.5, 0.8)

@@ -9,7 +9,7 @@ import time
 
 import numpy as np
 
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
 from scenarios.studies.patrol.order import Order, Prospect, exact_order, inserted_order
 from scenarios.studies.patrol.ships import Patrol, sampled_patrol

@@ -22,11 +22,10 @@ from common.physics import bank_for_heading_rate, heading_rate_for_bank
 from gnc.errors import InfeasibleError
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
-from scenarios.experiment.sampling import Points
+from scenarios.experiment.sampling import SamplingDesign
 from scenarios.planning.limits import omega_max
-from scenarios.planning.planner import plan_flight
-from scenarios.planning.start import sampled_start
-from scenarios.scenario.load import load_study
+from scenarios.planning.missions import plan_flight, sampled_start
+from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 from scenarios.world.noise import start_generator
@@ -74,7 +73,7 @@ def refused_starts(keys: list[str]) -> Iterator[Refused | None]:
     with tempfile.TemporaryDirectory() as folder:
         setup = x8_setup(study, Path(folder))[1]
     experiment = Experiment(STUDY, study)
-    points = Points(
+    points = SamplingDesign(
         study.sampling, dimension=len(study.draws), flights=experiment.flights, seed=study.seed
     )
     for number in range(experiment.flights):

@@ -10,10 +10,9 @@ from pathlib import Path
 
 from common.run_layout import REPORT_HTML, REPORT_PDF
 from reports.build import build_reports
-from scenarios.engine.executors import ExecutorFactory
-from scenarios.engine.runner import fly_study
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import study_of
+from scenarios.engine.runner import ExecutorFactory, fly_study
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import study_of
 
 SWEEP = "sweep_nu"
 

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from common.run_layout import JOURNAL, MANIFEST, SUMMARY
-from scenarios.engine.executors import DASK, LOCAL, ExecutorFactory
 from scenarios.engine.journal import Journal
+from scenarios.engine.runner import DASK, LOCAL, ExecutorFactory
 from scenarios.engine.task import Result, Task
 
 KINEMATIC = (
@@ -72,7 +72,7 @@ class EmptyWork:
     def moved(self, _: Path) -> "EmptyWork":
         return self
 
-    def fly(self, task: Task) -> Result:
+    def run(self, task: Task) -> Result:
         row = {"flight_id": f"empty_{task.number:05d}"} | {
             f"figure_{i}": math.pi * (i + task.number) for i in range(100)
         }

@@ -22,21 +22,21 @@ import numpy as np
 from aircraft.faults import ENGINE
 from aircraft.fdm import Fdm
 from aircraft.fleet.find import find_spec
+from aircraft.state import EquatorFrame
 from aircraft.trim import Trim, trim
 from aircraft.weather import TURBULENCE, Weather, low_altitude_turbulence
 from common.physics import SECONDS_PER_HOUR
 from gnc.estimation.health import CHECK_INTERVAL
-from gnc.estimation.navigation import EngineReadings
 from gnc.estimation.thrust import ThrustMonitor
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.part_failure import glide_airspeed
 from innerloop.jsbsim.system import write_root
 from innerloop.schedule import Schedule
 from innerloop.store import designed
+from scenarios.vehicles.jsbsim import Telemetry
 from scenarios.vehicles.thrust_expectation import (
     ThrustExpectation,
     ThrustTest,
-    engine_readings,
     hard_flight,
     thrust_expectation,
 )
@@ -115,11 +115,12 @@ class Flights:
         weather = Weather(turbulence=self._turbulence, seed=seed)
         bias = self._random.uniform(-AIRSPEED_BIAS, AIRSPEED_BIAS)
         monitor = ThrustMonitor(self.test.parameters, CHECK_INTERVAL)
+        read_engine = Telemetry(self._aircraft.fdm, EquatorFrame(self._start.altitude)).engine
         for airspeed in hard_flight(
             self._aircraft, self._envelope, self._start, weather, self._random
         ):
             read = airspeed + bias + AIRSPEED_SIGMA * self._random.standard_normal()
-            monitor.update(read, EngineReadings(*engine_readings(self._aircraft.fdm)))
+            monitor.update(read, read_engine())
             yield monitor, self._envelope.airspeed_min - airspeed
 
     def sound(self, hours: float) -> tuple[int, float]:

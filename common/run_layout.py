@@ -130,6 +130,9 @@ HISTORY_SUFFIX = ".parquet"
 EVALUATION_SUFFIX = ".json"
 """Suffix of instruments' evaluations of flights."""
 
+SMOKE_SUFFIX = ".smoke.json"
+"""Suffix of the parcels of exhausts, as replays draw them."""
+
 NAME_BYTES_MAX = 200
 """Longest name of a trial or a flight [bytes]: file systems take 255, and suffixes are added."""
 
@@ -158,9 +161,17 @@ def evaluation_path(flight_id: str) -> str:
     return f"{FLIGHTS}/{flight_id}{EVALUATION_SUFFIX}"
 
 
+def smoke_path(flight_id: str) -> str:
+    """Return the path of the parcels of a flight's exhaust, relative to the run directory."""
+    return f"{FLIGHTS}/{flight_id}{SMOKE_SUFFIX}"
+
+
 def flight_of(path: str) -> str:
     """Return the ID of a flight by a path ``RUN_DIR/flights/ID``, with or without a suffix."""
-    return Path(path).name.removesuffix(HISTORY_SUFFIX).removesuffix(EVALUATION_SUFFIX)
+    name = Path(path).name
+    for suffix in (HISTORY_SUFFIX, SMOKE_SUFFIX, EVALUATION_SUFFIX):
+        name = name.removesuffix(suffix)
+    return name
 
 
 def trajectory_path(law: str, number: int) -> str:

@@ -1,5 +1,6 @@
-"""Flying one flight in a process of its own: plan, fly, measure, record. Every way that one can end
-is a row.
+"""One flight, from its task to its row: request, plan, fly, measure, judge.
+
+Every way that a flight can end is a row: only ``FlightRunner.run`` catches.
 """
 
 import bisect
@@ -7,7 +8,7 @@ import itertools
 import json
 import time
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 from functools import cached_property
 from pathlib import Path
@@ -22,14 +23,14 @@ from common.text import as_json_cell
 from common.verdict import KeepOut
 from scenarios.engine.task import Result, Row, Task
 from scenarios.experiment.requests import Experiment, FlightRequest, table_of
-from scenarios.flight.closed_loop import fly
-from scenarios.flight.failure import failure, unflown
+from scenarios.flight.closed_loop import fly, release
+from scenarios.flight.ending import failure, unflown
 from scenarios.flight.guard_belief import GuardBelief
+from scenarios.flight.onboard import BELIEF_COLUMNS
 from scenarios.flight.outcome import Outcome
-from scenarios.flight.plume_readings import BELIEF_COLUMNS
 from scenarios.flight.record import HISTORY_COLUMNS, FlightRecord
-from scenarios.flight.release import release
-from scenarios.flight.time_history import history_files
+from scenarios.flight.smoke import smoke_record
+from scenarios.flight.time_history import flight_history, history_files
 from scenarios.instruments.fuel_estimate import repeated_figures, with_verdict
 from scenarios.instruments.instrument import (
     EvaluatedInstrument,
@@ -42,9 +43,8 @@ from scenarios.measures.crossings import crossing_rows
 from scenarios.measures.figures import flight_figures, plan_row
 from scenarios.measures.finding import finding_figures
 from scenarios.measures.own_instruments import check_instruments, evaluated
-from scenarios.measures.relative_state import flight_history
 from scenarios.planning.flight_plan import FlightPlan
-from scenarios.planning.planner import plan_flight
+from scenarios.planning.missions import plan_flight
 from scenarios.planning.spreads import PredictedSpreads
 from scenarios.scenario.extension_points import PAYLOADS
 from scenarios.scenario.sections.experiment import STUDY
@@ -54,12 +54,136 @@ from scenarios.world.own_part import asked
 
 _GONE = (Outcome.DIVERGED.value, Outcome.AIRCRAFT_LOST.value)
 
-_Tables = dict[str, list[Row]]
+Tables = dict[str, list[Row]]
 """Rows by the file name of their table."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Flown:
+    """A flight that was flown.
+
+    Attributes
+    ----------
+    request, plan : what was to be flown
+    instruments : on board, in the order of ``plan.payload``
+    record : what was recorded
+    every_step : whether every step of the guidance was, and not only the samples of the log
+    """
+
+    request: FlightRequest
+    plan: FlightPlan
+    instruments: list[Instrument | EvaluatedInstrument]
+    record: FlightRecord
+    every_step: bool
+
+
+@dataclass(slots=True)
+class Findings:
+    """What is known of a flight, step by step: it stays known where a later step fails.
+
+    Attributes
+    ----------
+    row : of the flight in the summary
+    tables : its rows in other tables
+    history : its time history, once it was flown
+    document : what an instrument says of it beside its columns and figures
+    smoke : parcels of the exhaust that it was flown in, if there was any
+    """
+
+    row: Row
+    tables: Tables = field(default_factory=dict)
+    history: pd.DataFrame | None = None
+    document: Mapping[str, Any] | None = None
+    smoke: bytes | None = None
+
+    @property
+    def named(self) -> Row:
+        """Return the columns that name the flight in every table."""
+        return {key: self.row[key] for key in ("flight_id", "trial", "variant")}
+
+    def add_request(self, request: FlightRequest, labels: Mapping[str, str]) -> None:
+        """Add what is known before the flight is planned; ``labels`` are those of its task."""
+        self.row |= _request_row(request)
+        inputs = {key: _cell(value) for key, value in request.inputs.items()}
+        self.tables[DRAWS] = [{**self.named, "nu": self.row.get("nu"), **labels, **inputs}]
+
+    def add_overrides(self, overrides: Mapping[str, object]) -> None:
+        """Add the keys that the flight has otherwise than the scenario of its trial."""
+        cells = {key: as_json_cell(value) for key, value in overrides.items()}
+        self.tables[OVERRIDES] = [self.named | cells]
+
+    def add_plan(self, plan: FlightPlan) -> None:
+        """Add what the plan says."""
+        self.row |= plan_row(plan)
+        self.tables[DRAWS][0]["nu"] = self.row.get("nu")
+
+    def add_record(self, flown: Flown) -> None:
+        """Add the time history, and what is measured without any instrument."""
+        plan, record = flown.plan, flown.record
+        self.history = flight_history(plan, record)
+        self.smoke = smoke_record(
+            plan.world.exhaust if plan.world else None,
+            float(self.history["time_s"].iloc[-1]),
+            flown.request.scenario.keepout.radius_m,
+        )
+        figures, crossings = flight_figures(plan, record)
+        self.row |= figures
+        # How many manoeuvres of the vessel begin after the end of the flight.
+        if begins := [each.at_s for each in flown.request.scenario.vessel.manoeuvres]:
+            self.row["manoeuvres_unflown"] = sum(at >= figures["duration_s"] for at in begins)
+        if "keepout_violations" in self.row:
+            self.row["kept_out"] = KeepOut.of(self.row).is_known_outside
+        nu = {"nu": self.row.get("nu")}
+        self.tables[CROSSINGS] = [
+            self.named | nu | crossing for crossing in crossing_rows(crossings)
+        ]
+        self.tables[INTERVENTIONS] = [self.named | each._asdict() for each in record.interventions]
+
+    def add_evaluations(self, flown: Flown) -> None:
+        """Add what instruments make of the flight, once it is over."""
+        record, history = flown.record, self.history
+        for name, instrument in zip(flown.plan.payload, flown.instruments, strict=True):
+            if not isinstance(instrument, EvaluatedInstrument) or history is None:
+                continue
+            found = evaluated(name, instrument, record.column, _measured_from(flown))
+            # Each sample stands until the next, where every step is recorded.
+            held = np.searchsorted(record.column("time_s"), history["time_s"], side="right") - 1
+            history[list(instrument.COLUMNS)] = found.columns[held]
+            self.row |= found.figures
+            for file, rows in found.tables.items():
+                # No row is of another flight, whatever the instrument says.
+                self.tables[file] = [self.named | row | self.named for row in rows]
+            self.document = found.document or self.document
+
+    def add_search(self, flown: Flown) -> None:
+        """Add how the plume was searched for and the fuel judged, in a flight with a gas reader."""
+        plan, record, history = flown.plan, flown.record, self.history
+        reader = next((each for each in flown.instruments if isinstance(each, GasReader)), None)
+        if reader is not None and history is not None:
+            self.row |= finding_figures(
+                history[:: plan.log_interval] if flown.every_step else history,
+                flown.request.scenario.flight,
+                noise=reader.spec.known("co2").noise,
+                stop_reason=record.stop_reason,
+            )
+        if record.verdict is not None and "sulphur_verdict" in self.row:
+            self.row |= repeated_figures(record.verdict, self.row)
+            self.document = with_verdict(self.document, str(self.row["sulphur_verdict"]))
+
+    def add_failure(self, error: Exception) -> None:
+        """Add what ended the flight before its row was complete.
+
+        After its flight an aircraft stays lost, whatever fails then, and what was flown is not
+        infeasible.
+        """
+        before = self.row.get("outcome")
+        self.row |= failure(error)
+        if before is not None:
+            self.row["outcome"] = before if before in _GONE else Outcome.FAILED.value
+
+
 @dataclass(frozen=True, kw_only=True)
-class FlightWork:
+class FlightRunner:
     """Plans, flies, measures and records the flights of experiments.
 
     Attributes
@@ -79,6 +203,111 @@ class FlightWork:
     refusal: str = ""
     viewer: tuple[str, int] | None = None
 
+    def run(self, task: Task) -> Result:
+        """Return the result of one flight, whatever becomes of it."""
+        began = time.perf_counter()
+        findings = Findings(self._identity(task))
+        try:
+            self._fly_and_judge(task, findings)
+        except Exception as error:  # noqa: BLE001 - a flight that fails is a row with its reason, and the study goes on
+            findings.add_failure(error)
+        findings.row["wall_time_s"] = time.perf_counter() - began
+        return self._result(task, findings)
+
+    def _fly_and_judge(self, task: Task, findings: Findings) -> None:
+        request = self.request(task)
+        findings.add_request(request, dict(task.labels))
+        experiment, _ = self.located(task.number)
+        findings.add_overrides(experiment.overrides(request.scenario))
+        if self.refusal and request.scenario.fidelity == "six_dof":
+            findings.row |= unflown(Outcome.TRIM_FAILED, self.refusal)
+            return
+        plan = self.plan(request)
+        findings.add_plan(plan)
+        flown = self.fly(request, plan, every_step=task.every_step)
+        self.measure(flown, findings)
+        failed = failed_criteria(findings.row, request.scenario.criteria)
+        findings.row |= {"criteria_met": not failed, "message": "; ".join(failed)}
+
+    def request(self, task: Task) -> FlightRequest:
+        """Return the flight of a task.
+
+        Raises
+        ------
+        InputError : a sampled value is out of range
+        """
+        experiment, number = self.located(task.number)
+        return experiment.request(number, task.point, seed=task.seed)
+
+    def plan(self, request: FlightRequest) -> FlightPlan:
+        """Return the plan of a flight.
+
+        Raises
+        ------
+        InfeasibleError : it has no solution
+        """
+        return plan_flight(
+            request.scenario,
+            flight_id=request.flight_id,
+            seed=request.noise,
+            setup=self.setup_of(request),
+            spreads=self.spreads,
+        )
+
+    def fly(self, request: FlightRequest, plan: FlightPlan, *, every_step: bool) -> Flown:
+        """Return a planned flight, flown; with ``every_step`` every step of it is recorded."""
+        instruments = payload_of(request, plan)
+        vehicle = release(plan, self.setup_of(request), self.viewer)
+        record = fly(
+            plan,
+            vehicle,
+            [each for each in instruments if isinstance(each, Instrument)],
+            reader=reader_of(plan, instruments),
+            every_step=every_step,
+        )
+        return Flown(
+            request=request,
+            plan=plan,
+            instruments=instruments,
+            record=record,
+            every_step=every_step,
+        )
+
+    def measure(self, flown: Flown, findings: Findings) -> None:
+        """Add what a flight shows: its own figures, those of its instruments, those of its study."""
+        findings.add_record(flown)
+        findings.add_evaluations(flown)
+        findings.add_search(flown)
+        more = self.more_tables(flown.request, flown.plan, flown.record, findings.row)
+        findings.tables |= more
+
+    def more_tables(
+        self,
+        request: FlightRequest,  # noqa: ARG002
+        plan: FlightPlan,  # noqa: ARG002
+        record: FlightRecord,  # noqa: ARG002
+        row: Row,  # noqa: ARG002
+    ) -> Tables:
+        """Return rows of tables that a study of its own adds to a flight's row, by the file name of
+        the table.
+        """
+        return {}
+
+    def lost(self, task: Task, reason: str) -> Result:
+        """Return the result of a flight whose process was lost."""
+        findings = Findings(self._identity(task))
+        if task.labels:
+            # What the study says of a flight is known without it.
+            findings.tables[DRAWS] = [findings.row | dict(task.labels)]
+        findings.row = findings.row | unflown(Outcome.FAILED, reason)
+        return replace(self._result(task, findings), lost=True)
+
+    def setup_of(self, request: FlightRequest) -> VehicleSetup:
+        """Return what a flight needs of its vehicle."""
+        if self.setup is None or request.scenario.fidelity == "kinematic":
+            return kinematic_setup(request.scenario)
+        return self.setup
+
     @cached_property
     def columns(self) -> Table:
         """What the columns of time histories are."""
@@ -89,7 +318,7 @@ class FlightWork:
         """Return the JSBSim root of the aircraft with its autopilot, if it is to fly."""
         return self.setup.aircraft.model if self.setup and self.setup.aircraft else None
 
-    def moved(self, model: Path) -> "FlightWork":
+    def moved(self, model: Path) -> "FlightRunner":
         """Return the same work with its files in another directory."""
         if self.setup is None or self.setup.aircraft is None:
             return self
@@ -107,159 +336,25 @@ class FlightWork:
         i = bisect.bisect_right(self._ends, number)
         return self.experiments[i], number - (self._ends[i - 1] if i else 0)
 
-    def request(self, task: Task) -> FlightRequest:
-        """Return the flight of a task.
-
-        Raises
-        ------
-        InputError : a sampled value is out of range
-        """
-        experiment, number = self.located(task.number)
-        return experiment.request(number, task.point, seed=task.seed)
-
-    def fly(self, task: Task) -> Result:
-        """Plan, fly, measure and record one flight."""
-        began = time.perf_counter()
-        row, tables = self._named(task), _Tables()
-        history: pd.DataFrame | None = None
-        document: Mapping[str, Any] | None = None
-        try:
-            request = self.request(task)
-            row |= _request_row(request)
-            named = {key: row[key] for key in ("flight_id", "trial", "variant")}
-            tables[DRAWS] = [
-                named | {"nu": row.get("nu")} | dict(task.labels) | _plain(request.inputs)
-            ]
-            experiment, _ = self.located(task.number)
-            tables[OVERRIDES] = [named | _cells(experiment.overrides(request.scenario))]
-            if self.refusal and request.scenario.fidelity == "six_dof":
-                return self._result(task, row | unflown(Outcome.TRIM_FAILED, self.refusal), tables)
-            plan = self.plan(request)
-            row |= plan_row(plan)
-            tables[DRAWS][0]["nu"] = row.get("nu")
-            instruments = payload_of(request, plan)
-            read = [instrument for instrument in instruments if isinstance(instrument, Instrument)]
-            vehicle = release(plan, self.setup_of(request), self.viewer)
-            record = fly(
-                plan, vehicle, read, reader=reader_of(plan, instruments), every_step=task.every_step
-            )
-            history = flight_history(plan, record)
-            figures, found = flight_figures(plan, record)
-            row |= figures | _never_flown(request, figures)
-            # Before an instrument of a user's own may fail.
-            if "keepout_violations" in row:
-                row["kept_out"] = KeepOut.of(row).is_known_outside
-            tables[CROSSINGS] = [
-                named | {"nu": row.get("nu")} | crossing for crossing in crossing_rows(found)
-            ]
-            tables[INTERVENTIONS] = [named | stretch._asdict() for stretch in record.interventions]
-            for name, instrument in zip(plan.payload, instruments, strict=True):
-                if isinstance(instrument, EvaluatedInstrument):
-                    evaluation = evaluated(
-                        name, instrument, record.column, _measured_from(request, record)
-                    )
-                    # Each sample stands until the next, where every step is recorded.
-                    held = (
-                        np.searchsorted(record.column("time_s"), history["time_s"], side="right")
-                        - 1
-                    )
-                    history[list(instrument.COLUMNS)] = evaluation.columns[held]
-                    row |= evaluation.figures
-                    tables |= {
-                        file: [named | of | named for of in rows]
-                        for file, rows in evaluation.tables.items()
-                    }
-                    document = evaluation.document or document
-            if sniffer := next(
-                (instrument for instrument in instruments if isinstance(instrument, GasReader)),
-                None,
-            ):
-                noise = sniffer.spec.known("co2").noise
-                sampled = history[:: plan.log_interval] if task.every_step else history
-                row |= finding_figures(
-                    sampled, request.scenario.flight, noise=noise, enough=record.enough
-                )
-            if record.verdict is not None and "sulphur_verdict" in row:
-                row |= repeated_figures(record.verdict, row)
-                document = with_verdict(document, str(row["sulphur_verdict"]))
-            tables |= self.more_tables(request, plan, record, row)
-            failed = failed_criteria(row, request.scenario.criteria)
-            row |= {"criteria_met": not failed, "message": "; ".join(failed)}
-        except Exception as error:  # noqa: BLE001 - a flight that fails is a row with its reason, and the study goes on
-            # After its flight an aircraft stays lost, whatever fails then, and what was flown is
-            # not infeasible.
-            flown = (
-                {"outcome": row["outcome"] if row["outcome"] in _GONE else Outcome.FAILED.value}
-                if "outcome" in row
-                else {}
-            )
-            row |= failure(error) | flown
-        return self._result(
-            task, row | {"wall_time_s": time.perf_counter() - began}, tables, history, document
-        )
-
-    def lost(self, task: Task, reason: str) -> Result:
-        """Return the result of a flight whose process was lost."""
-        row = self._named(task)
-        # What the study says of a flight is known without it.
-        tables = {DRAWS: [row | dict(task.labels)]} if task.labels else {}
-        return replace(self._result(task, row | unflown(Outcome.FAILED, reason), tables), lost=True)
-
-    def plan(self, request: FlightRequest) -> FlightPlan:
-        """Return the plan of a flight.
-
-        Raises
-        ------
-        InfeasibleError : it has no solution
-        """
-        return plan_flight(
-            request.scenario,
-            flight_id=request.flight_id,
-            seed=request.noise,
-            setup=self.setup_of(request),
-            spreads=self.spreads,
-        )
-
-    def more_tables(
-        self,
-        request: FlightRequest,  # noqa: ARG002
-        plan: FlightPlan,  # noqa: ARG002
-        record: FlightRecord,  # noqa: ARG002
-        row: Row,  # noqa: ARG002
-    ) -> _Tables:
-        """Return rows of tables that a study of its own adds to a flight's row, by the file name of
-        the table.
-        """
-        return {}
-
-    def setup_of(self, request: FlightRequest) -> VehicleSetup:
-        """Return what a flight needs of its vehicle."""
-        kinematic = self.setup is None or request.scenario.fidelity == "kinematic"
-        return kinematic_setup(request.scenario) if kinematic or self.setup is None else self.setup
-
-    def _named(self, task: Task) -> Row:
+    def _identity(self, task: Task) -> Row:
         experiment, number = self.located(task.number)
         flight_id, variant = experiment.named(number)
-        named = {"flight_id": flight_id, "trial": experiment.name, "variant": variant}
-        return named | ({"beside": beside} if (beside := experiment.beside(number)) else {})
+        row: Row = {"flight_id": flight_id, "trial": experiment.name, "variant": variant}
+        if paired := experiment.paired_flight(number):
+            row["beside"] = paired
+        return row
 
-    def _result(
-        self,
-        task: Task,
-        row: Row,
-        tables: Mapping[str, list[Row]] | None = None,
-        history: pd.DataFrame | None = None,
-        document: Mapping[str, Any] | None = None,
-    ) -> Result:
-        table = table_of(row["variant"])
+    def _result(self, task: Task, findings: Findings) -> Result:
+        row, history = findings.row, findings.history
         return Result(
             task=task,
             items=int(row["variant"] == STUDY),
-            tables={table: [row], **(tables or {})},
+            tables={table_of(row["variant"]): [row], **findings.tables},
             files=history_files(
                 task,
                 history,
-                document,
+                findings.document,
+                findings.smoke,
                 columns={} if history is None else self.columns,
                 planned=self._ends[-1],
                 kept=self.histories,
@@ -270,7 +365,7 @@ class FlightWork:
 
 def history_columns(experiments: Iterable[Experiment]) -> dict[str, Column]:
     """Return the columns that time histories of some experiments may have."""
-    points = (point.scenario for of in experiments for point in of.points)
+    points = [point.scenario for of in experiments for point in of.points]
     beliefs = BELIEF_COLUMNS | GuardBelief.COLUMNS
     return HISTORY_COLUMNS | beliefs | declarations(points).histories
 
@@ -297,22 +392,14 @@ def _request_row(request: FlightRequest) -> Row:
     }
 
 
-def _never_flown(request: FlightRequest, figures: Row) -> Row:
-    """Return how many manoeuvres of the vessel begin after the end of the flight, of one that has
-    any.
-    """
-    begins = [manoeuvre.at_s for manoeuvre in request.scenario.vessel.manoeuvres]
-    return (
-        {"manoeuvres_unflown": sum(at >= figures["duration_s"] for at in begins)} if begins else {}
-    )
-
-
-def _measured_from(request: FlightRequest, record: FlightRecord) -> float:
+def _measured_from(flown: Flown) -> float:
     """Return when instruments begin to be evaluated, from settling on if nothing else is said; not
     a number if never [s].
     """
-    measured = request.scenario.flight.measured_s
-    return record.settled_at if measured is None else float(record.column("time_s")[-1]) - measured
+    measured = flown.request.scenario.flight.measured_s
+    if measured is None:
+        return flown.record.settled_at
+    return float(flown.record.column("time_s")[-1]) - measured
 
 
 def payload_of(request: FlightRequest, plan: FlightPlan) -> list[Instrument | EvaluatedInstrument]:
@@ -344,19 +431,10 @@ def reader_of(
     )
 
 
-def _plain(values: Mapping[str, object]) -> Row:
-    """Return inputs as they go into a table: numbers and words, times in ISO 8601, anything else as
-    JSON.
-    """
-    return {key: _cell(value) for key, value in values.items()}
-
-
 def _cell(value: object) -> object:
+    """Return an input as it goes into a table: a number or a word, a time in ISO 8601, anything else
+    as JSON.
+    """
     if isinstance(value, datetime):
         return value.isoformat()
     return value if isinstance(value, str | float | int) else json.dumps(value)
-
-
-def _cells(overrides: Mapping[str, object]) -> Row:
-    """Return values as a table has them from which they are read back as they are."""
-    return {key: as_json_cell(value) for key, value in overrides.items()}

@@ -18,8 +18,7 @@ from common.run_layout import REPORT_HTML, REPORT_PDF, flight_of
 from common.verdict import INTERRUPTED, MET, UNEXPLAINED
 
 if TYPE_CHECKING:
-    from scenarios.engine.executors import ExecutorFactory
-    from scenarios.engine.runner import Launch
+    from scenarios.engine.runner import ExecutorFactory, Launch
 
 _WATCHED_TIME_LIMIT = 1e6
 """Longest computing time of a flight that is shown in real time [s]."""
@@ -100,7 +99,7 @@ def command(
     flight entered the keep-out area although every premise of its guard held, 130 interrupted, by
     Ctrl-C or SIGTERM. Of a flight that is replayed: 0 its row is identical, 1 it is not.
     """
-    from scenarios.engine.executors import ExecutorFactory
+    from scenarios.engine.runner import ExecutorFactory
     from scenarios.engine.task import Limits
     from scenarios.errors import InputError
 
@@ -140,7 +139,7 @@ def command(
 def _list() -> int:
     import tomllib
 
-    from scenarios.scenario.load import catalog
+    from scenarios.scenario.files import catalog
 
     for name, path in catalog().items():
         print(f"{name:24} {tomllib.loads(path.read_text(encoding='utf-8'))['title']}")
@@ -160,7 +159,7 @@ def _run(
     aircraft_dir: Path | None,
 ) -> int:
     from scenarios.errors import InputError
-    from scenarios.scenario.load import catalog, is_flight, load_study
+    from scenarios.scenario.files import catalog, is_flight, load_study
 
     if name is None:
         raise InputError(f"no scenario given; give a TOML file or one of: {', '.join(catalog())}")
@@ -181,14 +180,14 @@ def _run(
         )
     viewer = _viewer(flightgear, replayed=replayed)
     if aircraft_dir is not None and not replayed:
-        from scenarios.scenario.aircraft_folder import aircraft_from
+        from scenarios.scenario.files import aircraft_from
 
         overrides = aircraft_from(aircraft_dir, name, overrides)
     # Before any slow import: most mistakes in the input are found here.
     scenario = None if replayed else load_study(name, overrides)
 
     from common.provenance import command_line
-    from scenarios.engine.progress import progress_bar
+    from scenarios.engine.runner import progress_bar
 
     given = command_line("scenarios.run", sys.argv)
     with progress_bar() as progress:
@@ -207,7 +206,7 @@ def _run(
                 launched=_print_launch,
             )
         else:
-            from scenarios.studies.registry import run_study
+            from scenarios.studies.base import run_study
 
             result = run_study(
                 scenario,
@@ -244,13 +243,17 @@ def _run(
 
 def _print_launch(launch: "Launch") -> None:
     """Say how many flights there are to fly, and how many are done."""
-    beside = f", and {launch.beside_left} of comparisons" if launch.beside_left else ""
+    comparisons = (
+        f", and {launch.comparisons_left} of comparisons" if launch.comparisons_left else ""
+    )
     if launch.resumed:
         left = launch.planned - launch.done
         kept = f"; {launch.done} {'is' if launch.done == 1 else 'are'} done and kept"
-        print(f"{launch.what} left to fly: {left} of {launch.planned}{beside}{kept}", flush=True)
+        print(
+            f"{launch.what} left to fly: {left} of {launch.planned}{comparisons}{kept}", flush=True
+        )
     else:
-        print(f"{launch.what} to fly: {launch.planned}{beside}", flush=True)
+        print(f"{launch.what} to fly: {launch.planned}{comparisons}", flush=True)
 
 
 def _are_left(number: int) -> str:

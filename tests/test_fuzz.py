@@ -20,12 +20,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from common.command_line import BAD_INPUT
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.engine.memory import data_memory
+from scenarios.engine.processes import InProcessExecutor, data_memory
 from scenarios.errors import InputError
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
-from scenarios.studies.registry import study_of
+from scenarios.studies.base import study_of
 from tests.in_process import run_command
 from tests.scenarios.short_trial import short_trial
 
@@ -162,7 +161,7 @@ def place(tmp_path_factory):
         patch.chdir(place)
         # In this process: what examples damage is not how flights are spread over processes.
         patch.setattr(
-            "scenarios.engine.executors.LocalExecutor", lambda work, **_: InProcessExecutor(work)
+            "scenarios.engine.runner.LocalExecutor", lambda work, **_: InProcessExecutor(work)
         )
         assert (
             run_command(

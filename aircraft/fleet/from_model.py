@@ -23,7 +23,7 @@ from pydantic import (
     model_validator,
 )
 
-from aircraft.model import read_model, read_xml
+from aircraft.model import content_of, read_model, read_xml
 from aircraft.spec import (
     PROPERTY,
     SETTLE_TIMES,
@@ -181,7 +181,7 @@ def spec_of_model(
     try:
         config = read_model(files).getroot()
         engines = [_kind(engine, files) for engine in config.iterfind("propulsion/engine")]
-        reason = _why_no_aeroplane(config, engines, files)
+        reason = _why_no_aeroplane(config, engines, files) or _wrong_element(config, files)
     except AircraftError as error:
         raise AircraftError(f"aircraft '{name}' cannot be flown: {error}") from None
     inputs = _inputs(len(engines), given)
@@ -260,6 +260,37 @@ def _why_no_aeroplane(config: ET.Element, engines: list[str], files: ModelFiles)
         return "it flies on rocket engines, for minutes"
     odd = [kind for kind in engines if kind not in (*_STARTED_ENGINES, *_ELECTRIC_ENGINES)]
     return f"its engine's file is {', '.join(odd)}" if odd else ""
+
+
+_NEEDED = {
+    "metrics": ("wingarea", "wingspan", "chord"),
+    "mass_balance": ("ixx", "iyy", "izz", "emptywt"),
+}
+"""Elements of a model by their section, each of which it has once, and above 0."""
+
+
+def _wrong_element(config: ET.Element, files: ModelFiles) -> str:
+    """What is wrong with a needed element; empty if nothing: JSBSim takes a missing one for 0, and
+    of two the first.
+    """
+    for section, names in _NEEDED.items():
+        given = config.find(section)
+        if given is None:
+            return f"it has no element <{section}>"
+        content = content_of(given, files)
+        for name in names:
+            found = content.findall(name)
+            if len(found) != 1:
+                count = "no element" if not found else f"{len(found)} elements"
+                return f"it has {count} <{name}> in <{section}>; it must have one"
+            text = (found[0].text or "").strip()
+            try:
+                value = float(text)
+            except ValueError:
+                value = math.nan
+            if not 0.0 < value < math.inf:
+                return f"<{name}> in <{section}> is {text!r}; it must be a number above 0"
+    return ""
 
 
 def _lifts(thruster: ET.Element) -> bool:

@@ -20,7 +20,7 @@ from measurement.plume.fluctuating_plume import FluctuatingPlume
 from measurement.plume.spread import MarineAir
 from measurement.sniffer.sniffer import Sniffer
 from measurement.sniffer.spec import SnifferSpec
-from scenarios.planning.plume.axis import co2_sensor
+from scenarios.planning.plume import co2_sensor
 
 Array = npt.NDArray[np.float64]
 

@@ -2,10 +2,10 @@
 
 A term is a **bias** of unknown sign, a **process** that varies about 0 with a standard deviation
 and a correlation time, a **growth** with age, or a **deviation** along a turn. The planner states
-the terms from what the scenario declares (``scenarios/planning/errors.py``). The keep-out guard,
-the planner of the orbit's margin, the refusals and the monitor of the premises read them here. Each
-of them needs the same two answers: by how much may a velocity be wrong now (``velocity``), and by
-how much a place after some time (``displacement``).
+the terms from what the scenario declares (``scenarios/planning/air/errors.py``). The keep-out
+guard, the planner of the orbit's margin, the refusals and the monitor of the premises read them
+here. Each of them needs the same two answers: by how much may a velocity be wrong now
+(``velocity``), and by how much a place after some time (``displacement``).
 
 **Turbulence, as a moving vehicle meets it.** A horizontal component q of the gusts is a process of
 standard deviation sigma and correlation time T = L/V, by the scale length L and the airspeed V. Its
@@ -219,7 +219,8 @@ class ErrorBudget:
     Attributes
     ----------
     own_position : of the position by satellite navigation [m]
-    own_velocity : of the velocity over the ground and of the wind, by sensors [m/s]
+    own_velocity : of the velocity over the ground and of the wind, by sensors and by crab angles
+        that are not those of steady turns [m/s]
     gusts : discrete gusts, each of which may last as long as a turn [m/s]
     wind_change : change of the mean wind that its estimate has not followed [m/s]
     turbulence : as the vehicle meets it [m/s]

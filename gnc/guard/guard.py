@@ -768,6 +768,7 @@ class CommandHistory:
         # A reversal in steps counts as one at once, however often the guard looks.
         window = max(1, round((delay + lag) / time_step))
         self.recent: deque[float] = deque([0.0], maxlen=window)
+        self._lowest = self._highest = 0.0
 
     @property
     def newest(self) -> float:
@@ -796,7 +797,7 @@ class CommandHistory:
             self._take_in(rate)
         elif not self._begun:
             # A flight begins: the turn that is flown is under way.
-            self.recent[0] = rate
+            self.recent[0] = self._lowest = self._highest = rate
             self.under_way.extend([rate] * (self.under_way.maxlen or 0))
         if self._lag == 0.0:
             return 0.0
@@ -810,8 +811,11 @@ class CommandHistory:
 
     def range_with(self, command: float) -> tuple[float, float]:
         """Return the lowest and the highest recent command if one [rad/s] is given now [rad/s]."""
-        recent = self.recent
-        return min(command, *recent), max(command, *recent)
+        lowest, highest = self._lowest, self._highest
+        return (
+            command if command < lowest else lowest,
+            command if command > highest else highest,
+        )
 
     def _take_in(self, rate: float) -> None:
         """Take in the commands and heading rates since the last look [rad/s]."""
@@ -827,13 +831,26 @@ class CommandHistory:
         remembered = self._lack * self._kept ** len(commands)
         lack = remembered + acted - turned - self._slow_lag_after_delay * rate_change
         self._lack = limited(lack, self._lack_max)
-        recent, change = self.recent, self.change
-        for command in commands:
-            recent.append(command)
-            change = max(change * self._fading, (max(recent) - min(recent)) / self._reversal)
-        self.change = max(change, LEAST_CHANGE)
+        self._take_in_changes(commands)
         commands.clear()
         rates.clear()
+
+    def _take_in_changes(self, commands: list[float]) -> None:
+        """Take in how much commands [rad/s] changed."""
+        recent, change, fading = self.recent, self.change, self._fading
+        lowest, highest = min(commands), max(commands)
+        widest = max(highest, self._highest) - min(lowest, self._lowest)
+        if widest / self._reversal <= LEAST_CHANGE:
+            # None of them changes by more than counts at least, as on an orbit.
+            recent.extend(commands)
+            for _ in commands:
+                change *= fading
+        else:
+            for command in commands:
+                recent.append(command)
+                change = max(change * fading, (max(recent) - min(recent)) / self._reversal)
+        self.change = max(change, LEAST_CHANGE)
+        self._lowest, self._highest = min(recent), max(recent)
 
     def _course_under_way(self) -> float:
         """Return the course that the commands under way turn [rad]."""

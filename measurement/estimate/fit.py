@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+import numpy.typing as npt
 from scipy.special import chdtrc
 
 from measurement.estimate.model import (
@@ -22,8 +23,11 @@ from measurement.estimate.model import (
     Property,
     Slope,
     Variances,
+    Window,
     background_of_co2,
     block_record,
+    drawn_errors,
+    error_energy,
     line_operator,
     orthonormal,
     read_errors,
@@ -45,11 +49,17 @@ FOREIGN_MOST = 0.25
 _COMPARED_LEAST = 4
 """Fewest passes among which one can be seen to be of another fuel."""
 
-DISAGREE = 1e-6
-"""Probability of passes that differ as much, below which there is no verdict."""
+TOGETHER = 0.1
+"""Standard deviation of the time between SO2 and CO2 that one pass has and others have not [s]."""
 
-DISAGREE_SMALL, BETWEEN_MOST = 1e-3, 0.2
-"""The same for passes whose standard deviation relative to the slope is above the second figure."""
+_PASS_S = 3.0
+"""Usual length of a pass [s]: a shift by as much counts as a ratio that is twice as large."""
+
+DISAGREE = 0.01
+"""Probability of passes that differ as much, below which there is no verdict.
+
+They may differ by ``ALIKE`` and ``TOGETHER``, so that quiet logs are below it in fewer than 1 of
+1,000."""
 
 CHANGE = 1e-4
 """Probability of a change of slope between two passes, below which there is no verdict."""
@@ -123,11 +133,18 @@ class _State:
 
     @property
     def fixed(self) -> Array:
-        """Fixed columns, passes of other fuels included."""
+        """Fixed columns, passes of other fuels included.
+
+        Where another plume overlaps the ship's, SO2 has another place in the pass than CO2.
+        """
+        if not self.foreign:
+            return self.data.fixed
         others = self.data.passes[:, list(self.foreign)]
-        return (
-            orthonormal(np.hstack([self.data.fixed, others])) if self.foreign else self.data.fixed
-        )
+        return orthonormal(np.hstack([self.data.fixed, others, self.later(others)]))
+
+    def later(self, passes: Array) -> Array:
+        """Return the change of passes that come later, shape (n, k) [ppm/s]."""
+        return -np.asarray(np.gradient(passes, self.data.blocks.time[self.data.known], axis=0))
 
     @property
     def freed(self) -> Array:
@@ -186,17 +203,49 @@ class _State:
         found = likelihood.fitted(self.residual, self.freed, self.variances, varying)
         return replace(self, variances=found)
 
-    def solved(self, inverse: Array, *, one_shape: bool = False) -> Slope:
-        """Return the slope of the ship's passes."""
+    @property
+    def read_errors(self) -> Array:
+        """Covariance of the errors of CO2 as read, of all blocks [ppm^2]."""
+        size = background_of_co2(self.data, self.variances, self.slope)
+        return read_errors(self.data, self.variances, size)
+
+    def solved(self, inverse: Array) -> Slope:
+        """Return the slope of the ship's passes in their windows, as if these were given."""
         windows = [self.data.windows[i] for i in self.own]
         operator = line_operator(len(self.data.read), windows)
-        z = self.instrument_column
-        if one_shape:
-            operator = with_one_shape(operator, windows, self.data.read)
-            z = self.data.equalised(operator @ self.data.read)  # (5)
-        size = background_of_co2(self.data, self.variances, self.slope)
-        errors = read_errors(self.data, self.variances, size)
-        return solve_slope(self.data, inverse, z, operator, errors, self.signals)
+        energy = error_energy(self.data, inverse, operator, self.read_errors)
+        return solve_slope(inverse, self.instrument_column, energy, self.signals)
+
+    def solved_with_drawn_windows(self, inverse: Array, *, one_shape: bool = False) -> Slope:
+        """Return the slope by (8), for windows that are found in CO2 as it is read.
+
+        Parameters
+        ----------
+        one_shape : whether all passes get their mean shape
+        """
+        data, errors = self.data, self.read_errors
+        drawn = drawn_errors(errors)
+        instruments = np.zeros((len(data.known), drawn.shape[1]))
+        for i, added in enumerate(drawn.T):
+            read = data.read + added
+            windows = [window for window in data.windows_of(read) if self._is_own(window)]
+            operator = line_operator(len(read), windows)
+            windows = [
+                windows[j]
+                for j in np.flatnonzero(stands_out(operator, windows, read, 2.0 * errors))
+            ]
+            operator = line_operator(len(read), windows)
+            if one_shape and windows:
+                operator = with_one_shape(operator, windows, read)
+            instruments[:, i] = data.equalised(operator @ read)  # (5)
+        products = np.vdot(inverse @ data.equalised(drawn), instruments)
+        energy = float(products) / drawn.shape[1]  # (8)
+        return solve_slope(inverse, instruments.mean(axis=1), energy, self.signals)
+
+    def _is_own(self, window: Window) -> bool:
+        """Return whether no pass of another fuel is where this window has its peak."""
+        foreign = [self.data.windows[i] for i in self.foreign]
+        return not any(other.first < window.peak < other.last for other in foreign)
 
     def with_between(self, between: float) -> "_State":
         """Return the state with a standard deviation of the slopes of passes [ppb/ppm]."""
@@ -242,7 +291,8 @@ class Fit:
     residuals : how large they are
     background_ppb, background_ppm, background_s : standard deviation of the background of the
         residuals and of CO2, and its correlation length
-    agreement : probability that passes of one slope differ as much; NaN for a single pass
+    agreement : probability that passes of one fuel differ as much, in slope or in time; NaN for a
+        single pass
     excluded : passes of another fuel
     groups : slopes of groups of passes, and their noise
     t90_sd_s, delay_sd_s : standard deviations of t90 of SO2 and of its delay after CO2 [s]
@@ -307,11 +357,11 @@ def fit_record(record: Record, instrument: SnifferSpec) -> Fit:
     else:
         state = state.with_between(0.0)
     inverse = state.inverse(state.fixed, own)
-    found = state.solved(inverse)
+    found = state.solved_with_drawn_windows(inverse)
     bare = state.with_known_properties()
     whole = bare.solved(bare.inverse(state.fixed, own)).kept
     if found.kept < 1.0 - _CORRECTED_MOST:
-        found = state.solved(inverse, one_shape=True)
+        found = state.solved_with_drawn_windows(inverse, one_shape=True)
     if not math.isfinite(found.slope):
         return Fit(instrument=instrument, problems=(_HAZE,))
     if whole < KEPT_LEAST and not problems:
@@ -383,12 +433,7 @@ def _of_passes_that_stand_out(
     """
     data = state.data
     operator = line_operator(len(data.read), data.windows)
-    size = background_of_co2(data, state.variances, state.slope)
-    errors = read_errors(data, state.variances, size)
-    peaks = [window.peak for window in data.windows]
-    rows = operator[peaks]
-    deviations = np.sqrt(np.einsum("ij,jk,ik->i", rows, errors, rows))
-    high = rows @ data.read > _STANDS_OUT * deviations
+    high = stands_out(operator, data.windows, data.read, state.read_errors)
     if not high[state.own].any():
         return state, (_HAZE,)
     high[list(state.foreign)] = True
@@ -402,6 +447,21 @@ def _of_passes_that_stand_out(
     foreign = tuple(int(np.searchsorted(kept, i)) for i in state.foreign)
     state = replace(state, data=fewer, foreign=foreign).refitted()
     return state.with_slope(state.solved(state.inverse(state.fixed))), ()
+
+
+def stands_out(
+    operator: Array, windows: Sequence[Window], read: Array, errors: Array
+) -> npt.NDArray[np.bool_]:
+    """Return which passes are higher over their lines than errors of CO2 are by chance.
+
+    Parameters
+    ----------
+    operator : Q of (5)
+    read, errors : CO2 of all blocks [ppm], and the covariance of its errors [ppm^2]
+    """
+    rows = operator[[window.peak for window in windows]]
+    deviations = np.sqrt(np.einsum("ij,ij->i", rows @ errors, rows))
+    return np.asarray(rows @ read > _STANDS_OUT * deviations)
 
 
 def _without_foreign(state: _State) -> tuple[_State, Array, float]:
@@ -421,28 +481,59 @@ def _without_foreign(state: _State) -> tuple[_State, Array, float]:
         worst = int(np.argmax(strength))
         too_few = len(state.data.windows) < _COMPARED_LEAST or len(state.foreign) >= most
         if too_few or strength[worst] < FOREIGN_SIGMA:
-            return state, inverse, _agreement(against, inner)
+            return state, inverse, _agreement(state, inverse)
         state = replace(state, foreign=(*state.foreign, state.own[worst])).refitted()
 
 
-def _agreement(against: Array, inner: Array) -> float:
-    """Return the probability that passes of one slope differ as much, by their scores."""
-    if len(against) < 2:
+def _agreement(state: _State, inverse: Array) -> float:
+    """Return the probability that passes of one fuel differ as much, in ratio or in time.
+
+    Another plume that overlaps the ship's is hardly ever in the same place of every pass. So it
+    changes the ratio from pass to pass, and where SO2 is in a pass by the time of CO2. What all
+    passes have in common, as another slope, t90 or delay, counts for nothing.
+
+    Parameters
+    ----------
+    inverse : P of (3) in which slopes of passes may differ by ``ALIKE``
+    """
+    own = state.data.passes[:, state.own]
+    if own.shape[1] < 2:
         return math.nan
-    values, vectors = np.linalg.eigh(inner)
+    later = state.later(own)
+    inverse = _with_columns(inverse, TOGETHER * state.slope * later)
+    common = orthonormal(np.hstack([own.sum(axis=1, keepdims=True), state.data.columns]))
+    weighted = inverse @ common
+    inverse = inverse - weighted @ np.linalg.solve(common.T @ weighted, weighted.T)
+    residual = inverse @ state.residual
+    # Ratios alone as well: among as many places again they are told less well.
+    chances = [
+        _chance_of_scores(columns.T @ residual, columns.T @ (inverse @ columns))
+        for columns in (own, np.hstack([own, _PASS_S * later]))
+    ]
+    return min(1.0, len(chances) * min(chances))
+
+
+def _chance_of_scores(scores: Array, covariance: Array) -> float:
+    """Return the probability of scores that are as large as these, given their covariance."""
+    values, vectors = np.linalg.eigh(covariance)
     telling = values > 1e-4 * values[-1]
-    scores = (vectors.T @ against)[telling] ** 2 / values[telling]
-    return float(chdtrc(max(1, int(telling.sum()) - 1), float(scores.sum())))
+    squares = (vectors.T @ scores)[telling] ** 2 / values[telling]
+    return float(chdtrc(int(telling.sum()), float(squares.sum())))
+
+
+def _with_columns(inverse: Array, columns: Array) -> Array:
+    """Return P of (3) after the outer product of columns has been added to V."""
+    weighted = inverse @ columns
+    inner = np.eye(columns.shape[1]) + columns.T @ weighted
+    return np.asarray(inverse - weighted @ np.linalg.solve(inner, weighted.T))
 
 
 def _disagreement(state: _State, inverse: Array, agreement: float) -> tuple[str, ...]:
     """Return the problem of passes that are not of one fuel, with the ratios that they show."""
     count = len(state.data.windows)
     full = len(state.foreign) >= max(1, int(FOREIGN_MOST * count))
-    varying = state.variances.between > BETWEEN_MOST * abs(state.slope)
     change, chance = _change_of_slope(state, inverse)
-    disagree = agreement < DISAGREE or (agreement < DISAGREE_SMALL and varying)
-    if not (full or disagree or chance < CHANGE):
+    if not (full or agreement < DISAGREE or chance < CHANGE):
         return ()
     if chance < CHANGE and chance < agreement:
         first, last = _times(state, change)

@@ -41,6 +41,17 @@ and the slope solves E[z' P r] = -b tr(P C), C the covariance of the errors of z
 
 (instrumental variables with a known error: Fuller, Measurement Error Models, 1987, section 2.4).
 The background of CO2 in C is what residuals and troughs show of it, the smaller of both.
+
+**Windows.** The passes are found in c, so that Q depends on its errors: a weak pass counts where
+noise raises it, and windows end where it is low. Errors that choose are not 0 in the mean, and (6)
+would be 2 % low where noise is a tenth of the passes. With other errors w of the same covariance,
+c + w and c - w are independent. So the slope is found with z(c + w), of which all is chosen in
+c + w, against the CO2 of c - w:
+
+    E[z(c + w)' P (co2 - E w)] = E[z(c + w)]' P (plume of co2)                           (8)
+
+However z is found, its mean over w is the instrument, and that of z' P E w takes the place of
+tr(P C) (Oliveira, Lei and Tibshirani, arXiv:2111.09447; Leiner et al., arXiv:2112.11079).
 """
 
 import itertools
@@ -156,11 +167,13 @@ _NEAR = 20.0
 """Time on either side within which a peak must stand out [s]: broad haze does so little."""
 
 
-def _find_windows(blocks: _Blocks, co2: Array, noise: float, memory: float) -> list[Window]:
+def _find_windows(blocks: _Blocks, co2: Array, instrument: SnifferSpec) -> list[Window]:
     """Return the windows of the passes: from trough to trough at most, by the CO2 of blocks [ppm].
 
     Blocks have less noise than readings, so that weaker passes count here than in ``find_passes``.
     """
+    noise = _noise_of_blocks(blocks, instrument)
+    memory = sum(instrument.known("co2").constants)
     windows: list[Window] = []
     for number in np.unique(blocks.segment):
         index = np.flatnonzero(blocks.segment == number)
@@ -181,6 +194,12 @@ def _find_windows(blocks: _Blocks, co2: Array, noise: float, memory: float) -> l
                 start = int(index[0])
                 windows.append(Window(first=start + first, peak=start + peak, last=start + last))
     return windows
+
+
+def _noise_of_blocks(blocks: _Blocks, instrument: SnifferSpec) -> float:
+    """Return the standard deviation of the noise of a block of CO2 [ppm]."""
+    channel = instrument.known("co2")
+    return channel.noise / channel.gain / math.sqrt(blocks.rows.shape[1])
 
 
 def _peaks(values: Array, least: float, reach: int) -> tuple[Rows, Array]:
@@ -357,8 +376,11 @@ class BlockedRecord:
     @property
     def reading_noise(self) -> float:
         """Standard deviation of the noise of a block of CO2 [ppm]."""
-        channel = self.signals.instrument.known("co2")
-        return channel.noise / channel.gain / math.sqrt(self.blocks.rows.shape[1])
+        return _noise_of_blocks(self.blocks, self.signals.instrument)
+
+    def windows_of(self, read: Array) -> list[Window]:
+        """Return the windows of the passes in other CO2 of all blocks [ppm]."""
+        return _find_windows(self.blocks, read, self.signals.instrument)
 
     def means(self, instrument: SnifferSpec) -> tuple[Array, Array]:
         """Return SO2 and CO2 of the known blocks by another instrument, shape (n,) each."""
@@ -389,8 +411,7 @@ def block_record(
     )
     read = blocks.mean(native)
     if windows is None:
-        noise = co2.noise / co2.gain / math.sqrt(blocks.rows.shape[1])
-        windows = _find_windows(blocks, read, noise, sum(co2.constants))
+        windows = _find_windows(blocks, read, instrument)
     over = _passes_over_lines(record, blocks, windows, native, read)
     each = _by_segments(record, over, lambda part: _from_rest(signals, part))
     so2, passes = blocks.mean(signals.so2)[known], blocks.mean(each)[known]
@@ -769,28 +790,57 @@ def read_errors(data: BlockedRecord, found: Variances, size: float) -> Array:
     return covariance
 
 
+def error_energy(data: BlockedRecord, inverse: Array, operator: Array, errors: Array) -> float:
+    """Return tr(P C) of (6) for windows that the errors of CO2 have no part in.
+
+    Parameters
+    ----------
+    inverse : P of (3), shape (n, n)
+    operator : Q of (5), of all blocks
+    errors : covariance of the errors of CO2 as read, of all blocks [ppm^2]
+    """
+    covariance = data.equalised(data.equalised(operator @ errors).T).T  # C of (6)
+    return float(np.vdot(inverse, covariance))
+
+
+_DRAWS, _SEED = 8, 60
+"""Pairs of draws w and -w in (8), and the seed of their random numbers: the same for all records,
+so that an estimate is repeated to the last bit."""
+
+_ROUNDING = 1e-10
+"""Variance that makes a covariance positive definite, relative to the largest variance [-]."""
+
+
+def drawn_errors(errors: Array) -> Array:
+    """Return draws w of (8), one in each column and each with its negative, shape (n, k) [ppm].
+
+    Parameters
+    ----------
+    errors : covariance of the errors of CO2 as read, of all blocks [ppm^2]
+    """
+    white = np.random.default_rng(_SEED).standard_normal((len(errors), _DRAWS))
+    # Of errors that are exactly 0, none are drawn.
+    least = max(_ROUNDING * float(np.max(np.diagonal(errors))), 1e-300)
+    drawn = np.linalg.cholesky(errors + least * np.eye(len(errors))) @ white
+    return np.hstack([drawn, -drawn])
+
+
 def solve_slope(
-    data: BlockedRecord,
-    inverse: Array,
-    z: Array,
-    operator: Array,
-    errors: Array,
-    signals: tuple[Array, Array],
+    inverse: Array, z: Array, error_energy: float, signals: tuple[Array, Array]
 ) -> Slope:
     """Return the slope by (6) and (7).
 
     Parameters
     ----------
     inverse : P of (3), shape (n, n)
-    z, operator : of (5), shape (n,) [ppm], and its Q, of all blocks
-    errors : covariance of the errors of CO2 as read, of all blocks [ppm^2]
+    z : of (5), shape (n,) [ppm]
+    error_energy : tr(P C) of (6) [-]
     signals : so2 and co2 by the stated instrument, shape (n,) [ppb], [ppm]
     """
     so2, co2 = signals
-    covariance = data.equalised(data.equalised(operator @ errors).T).T  # C of (6)
     weighted = inverse @ z
     whole = float(weighted @ co2)
-    energy = whole - float(np.vdot(inverse, covariance))
+    energy = whole - error_energy
     if not (energy > 0.0 and float(z @ weighted) > 0.0):
         return Slope(slope=math.nan, deviation=math.nan, weights=0.0 * z, kept=0.0)
     return Slope(

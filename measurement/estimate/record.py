@@ -222,8 +222,8 @@ def _no_segment(columns: Mapping[str, Array]) -> str:
     )
 
 
-def check_increasing(time: Array, *, in_file: bool = False) -> None:
-    """Check that times increase, shape (m,); the error names the row of a file, from 2 on.
+def check_increasing(time: Array, *, rows: npt.NDArray[np.int_] | None = None) -> None:
+    """Check that times increase, shape (m,); the error names their row of a file that has ``rows``.
 
     Raises
     ------
@@ -233,7 +233,7 @@ def check_increasing(time: Array, *, in_file: bool = False) -> None:
     if not backwards.size:
         return
     i = int(backwards[0])
-    row, what = (f" in row {i + 2}", "rows by time") if in_file else ("", "record")
+    row, what = ("", "record") if rows is None else (f" in row {rows[i]}", "rows by time")
     raise MeasurementError(
         f"times do not increase: {time[i]:.15g} s{row} is followed by {time[i + 1]:.15g} s;"
         f" sort the {what} and drop repeats, or, where the clock was set back, correct the times"

@@ -81,7 +81,7 @@ class FscEstimate:
     excluded : passes that are of another fuel, as of another ship
     pass_percent, pass_deviation_percent : sulphur content of groups of neighbouring passes and its
         noise
-    agreement : probability that groups of the same fuel differ as much as these
+    agreement : probability that passes of one fuel differ as much as these
     so2_t90_s, so2_t90_sd_s, delay_s, delay_sd_s : response of SO2 and its delay after CO2, as
         stated or as they fit best [s]
     instrument : as it was used: noise, and response and delay of SO2, as the record shows them

@@ -176,7 +176,10 @@ def _result(found: FscEstimate) -> Iterator[str]:
 
 
 def _missing(flight: LoggedFlight, analysis: Analysis) -> Iterator[str]:
-    """Yield lines on repeated rows, missing readings, gaps, and places that count as missing."""
+    """Yield lines on how the log was read, on repeated rows, missing readings, gaps, and places
+    that count as missing.
+    """
+    yield f"table: {flight.about.table}"
     gaps = find_gaps(flight.readings, analysis.estimate.signals, flight.about.readings)
     yield from (f"{title.lower()}: {words}" for title, words in gaps.remarks.items())
     if flight.about.place_remark:

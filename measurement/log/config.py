@@ -8,6 +8,14 @@ from datetime import UTC, date, datetime
 from pathlib import Path
 from typing import Any
 
+from common.tables import (
+    MASS_PRESSURE_HPA,
+    MASS_TEMPERATURE_C,
+    TableError,
+    TableFormat,
+    table_format,
+    unit_factor,
+)
 from measurement.errors import MeasurementError, check_keys, naming
 from measurement.estimate.estimator import check_parameters
 from measurement.estimate.result import Method
@@ -40,7 +48,12 @@ _KEYS = (
     "missing",
     "rule",
     "scale",
+    "table",
+    "units",
 )
+
+_AIR_KEYS = ("temperature_c", "pressure_hpa")
+"""Keys of ``[units]`` beside the gases: the air that masses per volume are of."""
 
 _RULE_KEYS = ("limit_percent", "suspect_percent", "title")
 """Keys of the table ``[rule]``."""
@@ -86,7 +99,11 @@ class LogConfig:
     method : "regression" or "areas"
     missing : numbers that stand for missing readings in the file, as -9999
     columns : name in the file of each of ``COLUMNS``
-    scale : factors of gases' columns to ppb, or ppm of CO2
+    scale : factors of gases' columns to ppb, or ppm of CO2; they come before any unit
+    units : of gases' columns; those that are not given are in the columns' names or in a row of
+        units
+    air : temperature [deg C] and pressure [hPa] of the air that masses per volume are of
+    table : how the file is written, as far as it is given
     flight : details that the log cannot show
     """
 
@@ -99,6 +116,9 @@ class LogConfig:
     missing: tuple[float, ...] = ()
     columns: Mapping[str, str] = field(default_factory=lambda: dict(COLUMNS))
     scale: Mapping[str, float] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
+    air: tuple[float, float] = (MASS_TEMPERATURE_C, MASS_PRESSURE_HPA)
+    table: TableFormat = field(default_factory=TableFormat)
     flight: FlightDetails = field(default_factory=FlightDetails)
 
 
@@ -132,6 +152,7 @@ def _config(table: Mapping[str, Any], name: str) -> LogConfig:
             raise MeasurementError(
                 f"scale of {gas} is {factor!r}; it must be positive, 1000 for ppm of SO2"
             )
+    units, air = _units(_sub_table(table, "units", (*GASES, *_AIR_KEYS)))
     method = table.get("method", "regression")
     carbon = table.get("carbon", CARBON_FRACTION)
     if not _is_finite(carbon):
@@ -169,6 +190,9 @@ def _config(table: Mapping[str, Any], name: str) -> LogConfig:
         missing=tuple(float(code) for code in missing),
         columns=columns,
         scale={gas: float(factor) for gas, factor in scale.items()},
+        units=units,
+        air=air,
+        table=_table_format(table),
         flight=_details(_sub_table(table, "flight", _FLIGHT_KEYS)),
     )
 
@@ -180,6 +204,43 @@ def _sub_table(table: Mapping[str, Any], key: str, names: Sequence[str]) -> dict
         raise MeasurementError(f"{key} is {found!r}; give a table [{key}]")
     check_keys(found, names, f"[{key}]")
     return found
+
+
+def _units(given: Mapping[str, Any]) -> tuple[dict[str, str], tuple[float, float]]:
+    """Return the units of gases, and the air [deg C, hPa] that masses per volume are of."""
+    air = []
+    for key, usual, low, high in (
+        ("temperature_c", MASS_TEMPERATURE_C, -60.0, 60.0),
+        ("pressure_hpa", MASS_PRESSURE_HPA, 300.0, 1200.0),
+    ):
+        value = given.get(key, usual)
+        if not _is_finite(value) or not low <= value <= high:
+            raise MeasurementError(
+                f"units.{key} is {value!r}; it must be a number from {low:g} to {high:g}"
+            )
+        air.append(float(value))
+    units = {}
+    for gas in GASES:
+        if gas not in given:
+            continue
+        if not isinstance(given[gas], str):
+            raise MeasurementError(f"units.{gas} is {given[gas]!r}; give a unit, as in 'ppb'")
+        try:
+            unit_factor(given[gas], UNITS[gas], gas=gas)
+        except TableError as error:
+            raise MeasurementError(f"units.{gas}: {error}") from None
+        units[gas] = given[gas]
+    return units, (air[0], air[1])
+
+
+def _table_format(table: Mapping[str, Any]) -> TableFormat:
+    given = table.get("table", {})
+    if not isinstance(given, dict):
+        raise MeasurementError(f"table is {given!r}; give a table [table]")
+    try:
+        return table_format(given)
+    except TableError as error:
+        raise MeasurementError(str(error)) from None
 
 
 def _rule(given: Any) -> DecisionRule | None:

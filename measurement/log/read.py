@@ -1,17 +1,13 @@
-"""A logged flight in a CSV file: its readings, places and times, checked row by row.
+"""A logged flight in a table: its readings, places and times, checked row by row.
 
-Rows are counted as in a spreadsheet: the head line is row 1.
+Rows are counted as in an editor: they are lines of the file.
 """
 
-import lzma
 import math
 import re
-import warnings
-import zipfile
-import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
-from datetime import date, datetime, timedelta
+from datetime import UTC, date, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
@@ -19,13 +15,21 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
+from common.tables import (
+    Moments,
+    Table,
+    TableError,
+    first_columns,
+    longitude_within,
+    read_table,
+    unit_factor,
+)
 from measurement.errors import MeasurementError, naming
 from measurement.estimate.record import check_increasing, check_units, lowest_reading, shown_step
 from measurement.gases import GASES, UNITS
 from measurement.log.config import COLUMNS, FlightDetails, LogConfig
 from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings
-from measurement.tables import other_separator
 
 TRUE_COLUMNS = {f"{gas}_true_{UNITS[gas]}": gas for gas in GASES}
 """Columns of the true concentrations of a simulated flight; shown, and not used by the estimate."""
@@ -58,6 +62,7 @@ class FlightRecord:
     first_position, last_position : first and last known place of the log, or None where it has none
     place_remark : which of its places are taken as missing, or empty
     columns, scale, missing : as the log was read
+    table : how the log was read, in one line
     stated : keys of the instrument's channels in the configuration, same as in ``LogConfig``
     """
 
@@ -73,6 +78,7 @@ class FlightRecord:
     columns: Mapping[str, str]
     scale: Mapping[str, float]
     missing: tuple[float, ...]
+    table: str
     stated: Mapping[str, tuple[str, ...]] | None
 
     def record(self) -> dict[str, Any]:
@@ -102,270 +108,172 @@ class LoggedFlight:
 
 
 def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
-    """Return the flight in a CSV file with a row per reading, or with rows faster than the sensors.
+    """Return the flight in a table with a row per reading, or with rows faster than the sensors.
 
-    Times are seconds, or dates and times that pandas reads. Rows may end in a comma.
+    How the table may be written, ``common.tables`` says. Times are seconds, or dates and times.
 
     Raises
     ------
-    MeasurementError : the file cannot be read or is not separated by commas, has no readings, lacks
-        a column or has it twice, has words in it, readings out of range or too low, times that do
-        not increase, longer rows than its head line, or places that no aircraft can have
+    MeasurementError : the file cannot be read, has no readings, lacks a column or has it twice, has
+        words in it, a gas without a unit, readings out of range or too low, times that do not
+        increase, longer rows than its head line, or places that no aircraft can have
     """
     with naming(path):
-        return _flight(_read_table(path, config), config)
+        try:
+            return _flight(_read_table(path, config), config)
+        except TableError as error:
+            raise MeasurementError(str(error)) from None
 
 
-def _flight(table: pd.DataFrame, config: LogConfig) -> LoggedFlight:
+def _flight(table: Table, config: LogConfig) -> LoggedFlight:
     """Return the flight in the table of a log."""
-    time_column = table[config.columns["time"]]
-    time, logged = _times(time_column)
-    values = np.full((len(table), len(GASES)), np.nan)
-    for i, gas in enumerate(GASES):
-        name = config.columns[gas]
-        if name in table:
-            values[:, i] = config.scale.get(gas, 1.0) * _known_numbers(table[name], config)
-    _check_range(values, config)
+    time, moments, kept = _times(table, config)
+    scale = {gas: _factor(table, gas, config) for gas in GASES if config.columns[gas] in table}
+    values = np.full((int(kept.sum()), len(GASES)), np.nan)
+    for gas, factor in scale.items():
+        numbers = _known_numbers(table, config.columns[gas], config)[kept]
+        values[:, GASES.index(gas)] = factor * numbers
+    rows = np.array(table.lines)[kept]
+    _check_range(values, rows, config)
     readings = new_readings(Readings(time, values), config.instrument.gases)
-    _check_negative(values, readings, config)
+    _check_negative(values, rows, readings, config)
     places = {
-        key: _known_numbers(table[config.columns[key]], config)
+        key: _known_numbers(table, config.columns[key], config)[kept]
         for key in _PLACES
         if config.columns[key] in table
     }
-    _check_angles(places)
-    places, remark = _without_missing_fixes(places)
+    _check_angles(places, rows)
+    if "longitude" in places:
+        places["longitude"] = longitude_within(places["longitude"])
+    places, remark = _without_missing_fixes(places, rows)
     plane = _on_a_plane(places)
-    _check_jumps(plane, time)
-    true = {name: _numbers(table[name]) for name in TRUE_COLUMNS if name in table}
-    offset = (
-        logged is not None and pd.Timestamp(str(time_column.iloc[0]).strip()).tzinfo is not None
-    )
+    _check_jumps(plane, time, rows)
+    true = {name: table.numbers(name)[kept] for name in TRUE_COLUMNS if name in table}
+    logged = None
+    if moments.dated:
+        known = moments.seconds[kept]
+        logged = _utc(known[0]), _utc(known[-1])
     first_utc, last_utc, utc_from = _utc_times(config.flight, logged, float(time[-1] - time[0]))
     first_position, last_position = _end_positions(places)
     about = FlightRecord(
-        readings=len(table),
+        readings=len(values),
         details=config.flight,
         first_utc=first_utc,
         last_utc=last_utc,
         utc_from=utc_from,
-        offset=offset,
+        offset=moments.offset,
         first_position=first_position,
         last_position=last_position,
         place_remark=remark,
         columns={key: name for key, name in config.columns.items() if name in table},
-        scale=config.scale,
+        scale={gas: factor for gas, factor in scale.items() if factor != 1.0},
         missing=config.missing,
+        table=_described(table, moments),
         stated=config.stated,
     )
     return LoggedFlight(readings, pd.DataFrame({"time_s": time, **plane, **true}), about)
 
 
-# The table of a CSV file
-
-_HEAD_LETTERS = 60
-"""Letters of a head line that are quoted in an error."""
-
-_LONG_ROW = re.compile(r"Expected \d+ fields in line (\d+), saw \d+")
-"""Error of pandas for a row that is longer than the first ones."""
-
-_OPEN_QUOTE = re.compile(r"EOF inside string starting at row (\d+)")
-"""Error of pandas for an open quotation mark; it counts the head line as row 0."""
-
-_NUMBER = re.compile(r"[-+]?[\d.]+(e[-+]?\d+)?(\.\d+)?", re.IGNORECASE)
-"""A number, with the suffix that pandas adds to a repeated one."""
-
-_DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+")
+def _described(table: Table, moments: Moments) -> str:
+    """Return how the table was read, in one line, with the rows that were left out."""
+    leap = f"; leap seconds left out: {moments.leap}" if moments.leap else ""
+    return table.described() + leap
 
 
-def _read_table(path: Path, config: LogConfig) -> pd.DataFrame:
-    """Return the table of a CSV file, which may be compressed, after checking its columns."""
-    head = ""
+def _factor(table: Table, gas: str, config: LogConfig) -> float:
+    """Return by what a gas's column is multiplied to be in its unit of ``UNITS``.
+
+    Raises
+    ------
+    MeasurementError : nothing says the column's unit, or it is no unit of a gas
+    """
+    name = config.columns[gas]
+    if gas in config.scale:
+        return config.scale[gas]
+    unit = config.units.get(gas) or table.units.get(name, "")
+    if not unit:
+        raise MeasurementError(
+            f"column '{name}' does not say its unit; give it in the configuration, as in [units]"
+            f' {gas} = "{UNITS[gas]}", or in the column\'s name'
+        )
     try:
-        head = _checked_head(path)
-        # Without ``index_col=False`` rows that end in a comma would move every column by one.
-        # With it pandas drops the ends of long rows with a warning, which is an error here.
-        with warnings.catch_warnings(action="error", category=pd.errors.ParserWarning):
-            table = pd.read_csv(path, skipinitialspace=True, low_memory=False, index_col=False)
-            # The names as they stand there: pandas numbers repeated ones.
-            names = pd.read_csv(
-                path, skipinitialspace=True, header=None, nrows=1, dtype=str, index_col=False
-            ).iloc[0]
-    except MeasurementError:
-        raise
-    except (EOFError, lzma.LZMAError, zipfile.BadZipFile, zlib.error) as error:
-        raise MeasurementError(
-            f"cannot be unpacked: {error}; give a whole file, or the CSV file itself"
-        ) from None
+        temperature, pressure = config.air
+        return unit_factor(
+            unit, UNITS[gas], gas=gas, temperature_c=temperature, pressure_hpa=pressure
+        )
+    except TableError as error:
+        raise MeasurementError(f"column '{name}': {error}") from None
+
+
+# The table
+
+_NUMBER = re.compile(r"[-+]?[\d.]+(e[-+]?\d+)?", re.IGNORECASE)
+
+
+def _read_table(path: Path, config: LogConfig) -> Table:
+    """Return the table of a file after checking its columns."""
+    try:
+        table = read_table(path, config.table, head=tuple(config.columns.values()))
     except OSError as error:
-        # A file that is not the archive that its name says has no error number.
-        raise MeasurementError(
-            f"cannot be read: {error.strerror or error}; give a CSV file"
-        ) from None
-    except (ValueError, pd.errors.ParserWarning) as error:
-        raise MeasurementError(_parser_problem(error, head)) from None
-    table.columns = table.columns.map(str).str.strip()
-    names = names.dropna().str.strip()
-    used = [*config.columns.values(), *TRUE_COLUMNS]
-    twice = names[names.duplicated() & names.isin(used)]
-    if len(twice):
-        raise MeasurementError(f"column '{twice.iloc[0]}' is there twice; rename or remove one")
-    if table.empty:
-        raise MeasurementError("a head line and 0 readings; it needs a row per reading")
+        raise MeasurementError(f"cannot be read: {error.strerror or error}; give a table") from None
+    for name in (*config.columns.values(), *TRUE_COLUMNS):
+        if name in table:
+            table.column(name)
     for key, name in config.columns.items():
         if name not in table and (key in _REQUIRED or name != COLUMNS[key]):
-            raise MeasurementError(_missing_column(key, name, table))
+            raise MeasurementError(_missing_column(key, name, table.names))
+    if not len(table):
+        raise MeasurementError("a head line and 0 readings; it needs a row per reading")
     return table
 
 
-def _checked_head(path: Path) -> str:
-    """Return the head line in quotes, empty for a compressed file; check that it has commas."""
-    with path.open(encoding="utf-8-sig", errors="replace") as file:
-        head = file.readline().strip()
-    if not head.replace("\t", "").isprintable():
-        # It may be compressed, which pandas reads.
-        return ""
-    if problem := other_separator(head):
-        raise MeasurementError(f"the file {problem}")
-    return f" ('{head[:_HEAD_LETTERS]}{'...' * (len(head) > _HEAD_LETTERS)}')"
-
-
-def _parser_problem(error: Exception, head: str) -> str:
-    """Return the problem of a table that pandas refuses, given its head line in quotes."""
-    if isinstance(error, UnicodeDecodeError):
-        return "not text in UTF-8; save it as CSV in UTF-8"
-    if isinstance(error, pd.errors.EmptyDataError):
-        return "empty; it needs a head line and a row per reading"
-    if opened := _OPEN_QUOTE.search(str(error)):
-        return f"the quotation mark in line {int(opened[1]) + 1} is not closed; remove it"
-    long_row = _LONG_ROW.search(str(error))
-    if not long_row and not isinstance(error, pd.errors.ParserWarning):
-        reason = str(error).splitlines()[0].strip()
-        return f"not CSV: {reason}; give a CSV file with a head line"
-    where = f"line {long_row[1]} has" if long_row else "some rows have"
-    return (
-        f"{where} more values than the head line has names{head}: the first line has to name every"
-        " column; remove lines above it, and write decimals with a point"
-    )
-
-
-def _missing_column(key: str, name: str, table: pd.DataFrame) -> str:
+def _missing_column(key: str, name: str, names: Sequence[str]) -> str:
     """Return the problem of a table without the column ``name`` for the quantity ``key``."""
-    numbers = sum(bool(_NUMBER.fullmatch(column)) for column in table.columns)
-    if 2 * numbers > len(table.columns):
+    numbers = sum(bool(_NUMBER.fullmatch(column)) for column in names)
+    if 2 * numbers > len(names):
         needed = ", ".join(COLUMNS[required] for required in _REQUIRED)
         return (
             "no head line, but numbers in the first line; add one that names every column, as in"
             f" {needed}"
         )
     quantity = key.upper() if key in GASES else key
-    there = ", ".join(f"'{column}'" for column in list(table.columns)[:12])
     remedy = f'name it in [columns] of the configuration: {key} = "..."'
     if name != COLUMNS[key]:
         remedy = f'correct {key} = "{name}" in [columns] of the configuration'
-    return f"no {quantity} column '{name}', but {there}; {remedy}"
+    return f"no {quantity} column '{name}', but {first_columns(names)}; {remedy}"
 
 
-def _numbers(column: pd.Series) -> Array:
-    """Return a column as numbers, NaN where it is empty, shape (n,)."""
-    numbers = pd.to_numeric(column, errors="coerce")
-    words = numbers.isna() & column.notna() & (column.astype(str).str.strip() != "")
-    if words.any():
-        row = int(np.argmax(words.to_numpy()))
-        value = str(column.iloc[row])
-        raise MeasurementError(
-            f"column '{column.name}' has {value!r} in row {row + 2}; it must hold numbers, or be"
-            f" empty{_with_a_point(value)}"
-        )
-    if np.isinf(numbers).any():
-        row = int(np.argmax(np.isinf(numbers)))
-        raise MeasurementError(
-            f"column '{column.name}' is infinite in row {row + 2}; where it stands for a reading"
-            " out of range, leave the record out from there, or leave the cell empty"
-        )
-    return numbers.to_numpy(dtype=np.float64)
-
-
-def _known_numbers(column: pd.Series, config: LogConfig) -> Array:
+def _known_numbers(table: Table, name: str, config: LogConfig) -> Array:
     """Return a column as numbers, NaN where it is empty or has a mark for missing values."""
-    numbers = _numbers(column)
+    numbers = table.numbers(name)
     return np.where(np.isin(numbers, config.missing), np.nan, numbers)
-
-
-def _with_a_point(value: str) -> str:
-    """Return the remedy for a number with a decimal comma; empty for other words."""
-    value = value.strip()
-    if not _DECIMAL_COMMA.fullmatch(value):
-        return ""
-    return f"; write decimals with a point, as in {value.replace(',', '.')}"
 
 
 # Times
 
-_COMPACT = 1e13, 1e14
-"""Range of times of 14 digits, as 20240501120000: as seconds they jump by 41 at every minute."""
 
-_DAY_ENDS = 240_000.0
-"""End of a day by a clock without marks, HHMMSS."""
-
-_MINUTES_MIN = 2
-"""Changes of the minute that show such a clock: seconds may skip 60 to 99 once by chance."""
-
-
-def _times(column: pd.Series) -> tuple[Array, tuple[datetime, datetime] | None]:
-    """Return the times [s], and those of the first and last row in UTC where the log has dates."""
-    logged = None
-    if pd.api.types.is_numeric_dtype(column):
-        time = column.to_numpy(dtype=np.float64)
-        _check_seconds(time, str(column.name))
-    else:
-        moments = _moments(column)
-        time = np.asarray((moments - moments.iloc[0]).dt.total_seconds(), dtype=np.float64)
-        if not moments.isna().any():
-            logged = moments.iloc[0].to_pydatetime(), moments.iloc[-1].to_pydatetime()
-    missing = np.flatnonzero(~np.isfinite(time))
-    if missing.size:
+def _times(table: Table, config: LogConfig) -> tuple[Array, Moments, npt.NDArray[np.bool_]]:
+    """Return the times [s], what the table says of them, and which rows are kept: all but those of
+    a leap second.
+    """
+    moments = table.times(config.columns["time"], day=config.flight.day)
+    missing = np.flatnonzero(~np.isfinite(moments.seconds))
+    cells = table.column(config.columns["time"])
+    empty = [row for row in missing.tolist() if not moments.leap or not cells[row]]
+    if empty:
         raise MeasurementError(
-            f"no time in row {missing[0] + 2}; give a time in every row, or remove the row"
+            f"no time in row {table.lines[empty[0]]}; give a time in every row, or remove the row"
         )
-    check_increasing(time, in_file=True)
-    return time, logged
+    kept = np.isfinite(moments.seconds)
+    time = moments.seconds[kept]
+    if moments.dated and not moments.plain:
+        time = time - time[0]
+    check_increasing(time, rows=np.array(table.lines)[kept])
+    return time, moments, kept
 
 
-def _moments(column: pd.Series) -> pd.Series:
-    """Return a column of dates and times in UTC."""
-    try:
-        return pd.to_datetime(column, utc=True, format="ISO8601")
-    except (ValueError, TypeError):
-        # The first row that is not of the kind that most rows have.
-        seconds = pd.to_numeric(column, errors="coerce").notna()
-        dates = pd.to_datetime(column, utc=True, format="ISO8601", errors="coerce").notna()
-        row = int(np.argmin(seconds if seconds.sum() > dates.sum() else dates))
-        value = str(column.iloc[row])
-        raise MeasurementError(
-            f"time '{value}' in column '{column.name}' cannot be read (row {row + 2}); give"
-            f" seconds, or 2024-05-01T12:00:00.0{_with_a_point(value)}"
-        ) from None
-
-
-def _check_seconds(time: Array, name: str) -> None:
-    """Check that numbers are seconds, and not dates or times of the day without marks."""
-    if _COMPACT[0] <= time[0] < _COMPACT[1]:
-        raise MeasurementError(
-            f"time {time[0]:.0f} in column '{name}' is a date and time without marks; give"
-            " seconds, or 2024-05-01T12:00:00.0"
-        )
-    in_a_day = (time >= 0.0) & (time < _DAY_ENDS)
-    if not (in_a_day & (time % 100.0 < 60.0) & (time // 100.0 % 100.0 < 60.0)).all():
-        return
-    minutes = np.flatnonzero(np.diff(time // 100.0) > 0.0)
-    if len(minutes) >= _MINUTES_MIN:
-        row = int(minutes[0])
-        raise MeasurementError(
-            f"times in column '{name}' go from {time[row]:.10g} to {time[row + 1]:.10g}"
-            f" (row {row + 3}), and similarly at each of {len(minutes)} minutes: they are hours,"
-            " minutes and seconds without marks; give seconds, or 2024-05-01T12:00:00.0"
-        )
+def _utc(seconds: float) -> datetime:
+    return datetime.fromtimestamp(round(seconds, 6), UTC)
 
 
 def _utc_times(
@@ -404,7 +312,7 @@ def _iso_text(value: date | datetime | None) -> str | None:
 # Readings
 
 
-def _check_range(values: Array, config: LogConfig) -> None:
+def _check_range(values: Array, rows: Rows, config: LogConfig) -> None:
     """Check that no reading is beyond the end of its channel's range, where the sensor stops."""
     for gas in config.instrument.gases:
         channel, column = config.instrument.known(gas), values[:, GASES.index(gas)]
@@ -416,13 +324,13 @@ def _check_range(values: Array, config: LogConfig) -> None:
             unit = UNITS[gas]
             more = f", and {beyond.size - 1} more" if beyond.size > 1 else ""
             raise MeasurementError(
-                f"{gas.upper()} is {column[beyond[0]]:g} {unit} in row {beyond[0] + 2}{more}; its"
+                f"{gas.upper()} is {column[beyond[0]]:g} {unit} in row {rows[beyond[0]]}{more}; its"
                 f" sensor reads {channel.range_high:g} {unit} at most (range_high): leave such a"
                 " cell empty, or correct the column's unit ([scale]) or the range"
             )
 
 
-def _check_negative(values: Array, readings: Readings, config: LogConfig) -> None:
+def _check_negative(values: Array, rows: Rows, readings: Readings, config: LogConfig) -> None:
     """Check that no reading is lower than in clean air: a mark, a calibration or a wrong sign."""
     for gas in config.instrument.gases:
         column = values[:, GASES.index(gas)]
@@ -435,7 +343,7 @@ def _check_negative(values: Array, readings: Readings, config: LogConfig) -> Non
             more = f", and {low.size - 1} more are as low" if low.size > 1 else ""
             air = "air, " if gas == "co2" else ""
             raise MeasurementError(
-                f"{gas.upper()} is {least:g} {unit} in row {low[0] + 2}{more}; {air}noise, zero"
+                f"{gas.upper()} is {least:g} {unit} in row {rows[low[0]]}{more}; {air}noise, zero"
                 f" and other gases explain {lowest:.0f} {unit} at least: where it stands for a"
                 " missing reading, or is of a calibration from which the sensor has not recovered,"
                 " leave it empty or name it in the configuration, as in missing = [-9999];"
@@ -528,7 +436,7 @@ _ERROR_M = 100.0
 """Largest error of a place [m]."""
 
 
-def _check_angles(places: Mapping[str, Array]) -> None:
+def _check_angles(places: Mapping[str, Array], rows: Rows) -> None:
     """Check that latitude and longitude are in range, shape (n,) each [deg]."""
     for name, most in (("latitude", 90.0), ("longitude", 360.0)):
         if name not in places:
@@ -537,18 +445,18 @@ def _check_angles(places: Mapping[str, Array]) -> None:
         if beyond.size:
             row = int(beyond[0])
             raise MeasurementError(
-                f"{name} is {places[name][row]:g} deg in row {row + 2}; it must be {-most:g} to"
+                f"{name} is {places[name][row]:g} deg in row {rows[row]}; it must be {-most:g} to"
                 f" {most:g}: correct it, leave it empty, or name what stands for a missing one in"
                 " the configuration, as in missing = [-9999]"
             )
 
 
-def _without_missing_fixes(places: dict[str, Array]) -> tuple[dict[str, Array], str]:
+def _without_missing_fixes(places: dict[str, Array], lines: Rows) -> tuple[dict[str, Array], str]:
     """Return places without latitude and longitude 0 of receivers without a fix, and a remark."""
     if not {"latitude", "longitude"} <= set(places):
         return places, ""
     missing = (places["latitude"] == 0.0) & (places["longitude"] == 0.0)
-    rows = np.flatnonzero(missing) + 2
+    rows = lines[missing]
     if not len(rows):
         return places, ""
     named = f"row {rows[0]} is"
@@ -560,7 +468,7 @@ def _without_missing_fixes(places: dict[str, Array]) -> tuple[dict[str, Array], 
     )
 
 
-def _check_jumps(plane: Mapping[str, Array], time: Array) -> None:
+def _check_jumps(plane: Mapping[str, Array], time: Array, lines: Rows) -> None:
     """Check that an aircraft can fly between places in the time [s], shape (n,) each."""
     if "north_m" not in plane:
         return
@@ -577,8 +485,8 @@ def _check_jumps(plane: Mapping[str, Array], time: Array) -> None:
         i = int(jumps[0])
         more = f" (1 of {jumps.size} such jumps)" if jumps.size > 1 else ""
         raise MeasurementError(
-            f"the place in row {rows[i + 1] + 2} is {distance[i] / 1000.0:,.1f} km from that in row"
-            f" {rows[i] + 2}, {seconds[i]:g} s earlier, which is faster than {_SPEED_MOST:g}"
+            f"the place in row {lines[rows[i + 1]]} is {distance[i] / 1000.0:,.1f} km from that in"
+            f" row {lines[rows[i]]}, {seconds[i]:g} s earlier, which is faster than {_SPEED_MOST:g}"
             f" m/s{more}: correct the places that are wrong, or leave them empty"
         )
 

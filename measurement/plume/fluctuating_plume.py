@@ -82,6 +82,38 @@ class PlumeSample(NamedTuple):
     sigma_z: Array
 
 
+class PlumeLine(NamedTuple):
+    """Parcels of one realisation, arrays of shape (n,), and how any parcel grows with its age.
+
+    A parcel stays where it was emitted in the frame of the air mass. At an age its centre is
+    ``meander_y * across`` off the axis, along the apparent wind turned +90 degrees north to east,
+    and ``abs(height + meander_z * up)`` above the sea.
+
+    Attributes
+    ----------
+    emitted : time of emission, in even steps [s]
+    step : between them [s]
+    north, east : place in the frame of the air mass [m]
+    wind : apparent wind at emission [m/s]
+    across, up : deviation of the centre, in standard deviations of the meander [-]
+    winds : apparent winds of the table, geometrically even [m/s], shape (w,)
+    age_max : age of the table's last column; the first one is of age 0 [s]
+    table : height of the axis, spreads across and up, and meander across and up [m],
+        shape (w, ages, 5)
+    """
+
+    emitted: Array
+    step: float
+    north: Array
+    east: Array
+    wind: Array
+    across: Array
+    up: Array
+    winds: Array
+    age_max: float
+    table: Array
+
+
 class FluctuatingPlume:
     """Gifford's fluctuating plume: a Gaussian about a centre that leaves the mean axis.
 
@@ -211,6 +243,34 @@ class FluctuatingPlume:
             )
         north, east, wind = self._parcels.at(time - age)
         return north, east, self._table.at(wind, age).height
+
+    def line(self, end: float, *, length: float, spacing: float, ages: int = 25) -> PlumeLine:
+        """Return the parcels that are seen until a time, emitted at even steps.
+
+        Parameters
+        ----------
+        end : time of the last parcel, within the track's [s]; the first one is the oldest that is
+            seen at time 0
+        length, spacing : of the line, and between parcels, in a wind as on the average [m]
+        ages : columns of the table of spreads
+        """
+        self._check_times(np.array([end]))
+        typical = self._parcels.path_end / (self._parcels.end - self._parcels.start)
+        oldest, step = min(self._age_max, length / typical), spacing / typical
+        first = math.ceil(max(-oldest, self._parcels.start) / step)
+        emitted = step * np.arange(first, math.floor(end / step) + 1, dtype=np.float64)
+        north, east, wind = self._parcels.at(emitted)
+        path = self._parcels.path(emitted)
+        across, up = (
+            np.zeros(len(emitted)) if process is None else process.at(path)
+            for process in (self._across, self._up)
+        )
+        winds = self._table.winds
+        age = np.linspace(0.0, oldest, ages)
+        table = np.stack(
+            [np.stack(self._table.at(np.full(ages, wind), age), axis=-1) for wind in winds]
+        )
+        return PlumeLine(emitted, step, north, east, wind, across, up, winds, oldest, table)
 
     def _chunk(self, time: Array, north: Array, east: Array, up: Array) -> Array:
         """Return the rows of a ``PlumeSample``, shape (fields, m)."""

@@ -396,6 +396,7 @@ class SpreadTable:
     Attributes
     ----------
     typical_spread : relative spread across at a typical wind and age [m]
+    winds : apparent winds of its rows, geometrically even [m/s], shape (w,)
     """
 
     def __init__(
@@ -412,6 +413,7 @@ class SpreadTable:
             grid = np.array([0.5 * (low + high)])
         else:
             grid = np.geomspace(low, high, 1 + math.ceil(math.log(high / low) / _WIND_STEP))
+        self.winds = grid
         self._winds = len(grid)
         self._log_first = math.log(grid[0])
         self._log_step = math.log(high / low) / max(1, self._winds - 1)

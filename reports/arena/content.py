@@ -13,7 +13,7 @@ from reports.arena.tables import (
 )
 from reports.design.section import innerloop_section
 from reports.document.blocks import Block, Card, Findings, Heading, Section, Text, Verdict
-from reports.document.tables import outcome, parameter_table
+from reports.document.tables import outcome, parameter_blocks
 from reports.flights.content import flights_content
 from reports.flights.first_page import flights_in_words
 from reports.run.columns import flights_flown, lost, total
@@ -87,7 +87,7 @@ def arena_content(run: RunData) -> Findings:
             [Text(_GIVEN), given_table(arena), *_refused(arena)],
         ),
         *([innerloop_section(run.innerloop)] if run.innerloop else []),
-        _section("parameters", "Parameters", "Parameters", [parameter_table(run)]),
+        _section("parameters", "Parameters", "Parameters", parameter_blocks(run)),
     ]
     both = len(arena.entrants) - len({entrant.law for entrant in arena.entrants})
     laws = f"{len(arena.entrants) - both} steering laws" + f", {both} of them in both tasks" * (

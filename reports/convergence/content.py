@@ -8,7 +8,7 @@ from reports.convergence.data import REFERENCES, ConvergenceData, failed, read_c
 from reports.convergence.tables import FAILED_ROWS, failed_table, settling_table
 from reports.convergence.verdict import convergence_verdict
 from reports.document.blocks import Block, Findings, Heading, Section, Text
-from reports.document.tables import number, parameter_table
+from reports.document.tables import number, parameter_blocks
 from reports.run.run_data import RunData
 
 
@@ -35,7 +35,7 @@ def convergence_content(run: RunData) -> Findings:
             nav_title="Counter-examples",
             blocks=_failed(data),
         ),
-        Section(anchor="parameters", title="Parameters", blocks=[parameter_table(run)]),
+        Section(anchor="parameters", title="Parameters", blocks=parameter_blocks(run)),
     ]
     pictures = settling_charts(data) if len(data.rows) else []
     return Findings(

@@ -84,10 +84,24 @@ class FlightPicker:
     flights: list[FlightContent]
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fold:
+    """What most readers pass over: behind a fold on the screen, and not in print.
+
+    Attributes
+    ----------
+    title : of the fold
+    blocks : in it, whose figures and tables have no number
+    """
+
+    title: str
+    blocks: Sequence[Chart | Table | Heading | Text]
+
+
 CARDS_MAX, FAILURES_MAX = 6, 4
 """Figures and failures on page 1, at most."""
 
-Block = Chart | Table | Heading | Text | FlightPicker
+Block = Chart | Table | Heading | Text | FlightPicker | Fold
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

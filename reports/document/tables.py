@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from common.provenance import without_folders
-from reports.document.blocks import Table, Verdict
+from reports.document.blocks import Block, Fold, Table, Verdict
 from reports.run.columns import Array
 from reports.run.run_data import RunData
 
@@ -25,12 +25,12 @@ def pairs_table(
     )
 
 
-def parameter_table(run: RunData, sampled: Mapping[str, str] | None = None) -> Table:
-    """Return every parameter of the run with its unit and meaning, and of those that are
-    ``sampled`` how, by their keys.
+def parameter_blocks(run: RunData, sampled: Mapping[str, str] | None = None) -> list[Block]:
+    """Return the parameters of the run that differ from their defaults, and behind a fold all; of
+    those that are ``sampled`` how, by their keys.
     """
     known = sampled or {}
-    rows = [
+    every = [
         [
             p["key"],
             known.get(p["key"]) or parameter_value(p["value"], p["key"]),
@@ -39,8 +39,23 @@ def parameter_table(run: RunData, sampled: Mapping[str, str] | None = None) -> T
         ]
         for p in run.manifest["parameters"]
     ]
+    own = [
+        row
+        for row, p in zip(every, run.manifest["parameters"], strict=True)
+        if p["key"] in known or "default" not in p or p["value"] != p["default"]
+    ]
+    return [
+        _parameter_table("Parameters that differ from their defaults.", own),
+        Fold(
+            title="Every parameter",
+            blocks=[_parameter_table("Every parameter, with its unit and meaning.", every)],
+        ),
+    ]
+
+
+def _parameter_table(caption: str, rows: list[list[str]]) -> Table:
     return Table(
-        caption="Every parameter, with its unit and meaning.",
+        caption=caption,
         head=["Parameter", "Value", "Unit", "Meaning and equation"],
         rows=rows,
         widths=[2.7, 1.9, 0.7, 3.6],

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from reports.document.axes import cut_words
-from reports.document.blocks import Block, Section, Table, Text
+from reports.document.blocks import Block, Fold, Section, Table, Text
 from reports.document.chart import VARIANT_STYLES, Chart, Line, Panel, Style
 from reports.document.palette import VARIANTS, Meaning
 from reports.document.tables import number
@@ -65,7 +65,10 @@ def comparison_section(run: RunData, trials: list[Trial]) -> Section:
         if len(compared):
             pairs = _pairs(trial.rows, compared)
             chart = _chart(trial, pairs)
-            blocks += [*([chart] if chart else []), _table(trial, pairs)]
+            table = _table(trial, pairs)
+            # The figure says which part is worth what, the table how much.
+            more = Fold(title="The flights, a row each", blocks=[table])
+            blocks += [chart, more] if chart else [table]
     text = Text(
         "The same flights, from the same starts, with parts changed. They have no part in the verdict."
     )

@@ -3,7 +3,7 @@
 import re
 from typing import Any
 
-from reports.document.blocks import Block, Heading, Table
+from reports.document.blocks import Block, Fold, Heading, Table, Text
 from reports.document.tables import in_symbols, parameter_value, span
 from reports.flights.names import flown_elsewhere, manoeuvre_name, swept_column
 from reports.flights.trials.tables import OSCILLATION_COLUMNS, flight_table
@@ -24,12 +24,15 @@ _ANY_RATIO = 1e9
 
 
 def parameter_blocks(run: RunData, trials: list[Trial]) -> list[Block]:
-    """Return every parameter of a run's only trial; of several, what each sets, and the others with
-    their defaults.
+    """Return what a run's trials set, sweep and sample, and behind a fold every other parameter with
+    its default.
     """
+    if not trials:
+        return []
     blocks: list[Block] = []
+    more: list[Table] = []
     if len(trials) == 1 and trials[0].swept and len(trials[0].flown):
-        blocks += [
+        more.append(
             flight_table(
                 run,
                 trials[0].flown,
@@ -37,26 +40,17 @@ def parameter_blocks(run: RunData, trials: list[Trial]) -> list[Block]:
                 OSCILLATION_COLUMNS,
                 flown_ratio=flown_elsewhere(trials[0]),
                 caption="The reference's oscillation in each flight; by equations (6), (8) and (10) of the paper.",
-            ),
-        ]
+            )
+        )
     if len(trials) == 1:
-        return [
-            *blocks,
-            Heading("Every parameter"),
-            _table(_rows(trials[0], every=True) + _derived(run, trials[0])),
-        ]
-    for trial in trials:
-        blocks += [Heading(trial.title), _table(_rows(trial, every=False))]
-    defaults = (
-        [[p["key"], "", _default(p), p["unit"], p["meaning"]] for p in trials[0].parameters()]
-        if trials
-        else []
-    )
-    return (
-        [*blocks, Heading("Every other parameter, with its default"), _table(defaults)]
-        if trials
-        else []
-    )
+        blocks += [Heading(trials[0].title), _table(_rows(trials[0]) + _derived(run, trials[0]))]
+    else:
+        # What a trial is about stands above its figures.
+        blocks.append(Text("What each trial sets is in the manifest, and in report.html."))
+        blocks += [Fold(title=trial.title, blocks=[_table(_rows(trial))]) for trial in trials]
+    every = [[p["key"], "", _default(p), p["unit"], p["meaning"]] for p in trials[0].parameters()]
+    title = "Every parameter, with its default"
+    return [*blocks, Fold(title=title, blocks=[*more, _table(every)])]
 
 
 def _table(rows: list[list[str]]) -> Table:
@@ -74,10 +68,8 @@ def _table(rows: list[list[str]]) -> Table:
     )
 
 
-def _rows(trial: Trial, *, every: bool) -> list[list[str]]:
-    """Return what a trial sweeps and samples, and every parameter or those that differ from their
-    defaults.
-    """
+def _rows(trial: Trial) -> list[list[str]]:
+    """Return what a trial sweeps and samples, and the parameters that differ from their defaults."""
     listed = {parameter["key"]: parameter for parameter in trial.parameters()}
     rows = [
         [
@@ -120,7 +112,7 @@ def _rows(trial: Trial, *, every: bool) -> list[list[str]]:
             p["meaning"],
         ]
         for key, p in listed.items()
-        if key not in inputs and (every or "default" not in p or p["value"] != p["default"])
+        if key not in inputs and ("default" not in p or p["value"] != p["default"])
     ]
 
 

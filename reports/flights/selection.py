@@ -1,7 +1,7 @@
 """Which flights of a run are shown one by one."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -47,13 +47,19 @@ _BY_CLEARANCE = "; where r_min differs, by the distance beyond each flight's own
 
 _ALONE = "without a vessel"
 
+PRINTED_MAX = 2
+"""Flights that have a page in print, the most telling first: the page on the screen has all."""
+
+_TYPICAL = (_MEDIAN, _MEDIAN_BEYOND)
+"""Why a flight is shown that page 1 shows already, or that stands for many."""
+
 
 def flight_section(trials: list[Trial]) -> Section:
     """Return the section of single flights."""
     swept = len(trials) == 1 and bool(trials[0].swept) and len(trials[0].rows) <= SWEPT_MAX
     picked = picked_flights(trials)
     if swept and len(trials[0].rows) > 1:
-        telling = {str(row["flight_id"]): why for _, row, why in picked}
+        telling = {str(row["flight_id"]): why for _, row, why in picked if not _is_typical(why)}
         flights = [
             _of_sweep(trials[0], row, telling.get(str(row["flight_id"]), ""))
             for _, row in trials[0].rows.iterrows()
@@ -66,7 +72,11 @@ def flight_section(trials: list[Trial]) -> Section:
         )
     else:
         several = any(radii_differ(beside_vessel(trial.rows)) for trial in trials)
-        flights = [_content(trial, row, _state(row, why)) for trial, row, why in picked]
+        printed = _printed([why for _, _, why in picked])
+        flights = [
+            replace(_content(trial, row, _state(row, why)), printed=number in printed)
+            for number, (trial, row, why) in enumerate(picked)
+        ]
         text = (
             f"{'Of each trial t' if len(trials) > 1 else 'T'}he flight with the deepest keep-out violation, and one with a"
             " criterion that is not met, if there are such; of those with a time history the closest approach, and the one nearest"
@@ -81,6 +91,18 @@ def flight_section(trials: list[Trial]) -> Section:
         nav_title="Single flights",
         blocks=blocks if flights else [],
     )
+
+
+def _is_typical(why: str) -> bool:
+    return any(words in why for words in _TYPICAL)
+
+
+def _printed(reasons: Sequence[str]) -> set[int]:
+    """Return the numbers of the flights that are printed, given why each is shown."""
+    order = (_VIOLATION, _FAILED, _CLOSEST, _LEAST_BEYOND, _ALONE)
+    rank = {why: number for number, why in enumerate(order)}
+    by_rank = sorted(range(len(reasons)), key=lambda of: rank.get(reasons[of], len(order)))
+    return set(by_rank[:PRINTED_MAX])
 
 
 def _only(trials: list[Trial]) -> str:

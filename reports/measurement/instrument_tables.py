@@ -202,6 +202,7 @@ def assumption_table(run: RunData, record: Record) -> Table:
         ["Configuration", f"{settings}, SHA-256 {run.manifest['settings_hash']}" if settings else "none was given"],
         ["Columns of time and place", _columns(flight["columns"])],
         ["Columns multiplied", factors],
+        ["Table", flight.get("table") or "not recorded"],
         ["Codes of missing readings", missing],
         ["Figures of the instrument", source.replace("\n", " ")],
         ["Method", METHODS[found["method"]]],

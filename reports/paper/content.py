@@ -21,7 +21,7 @@ from reports.document.blocks import (
     Text,
 )
 from reports.document.chart import Chart
-from reports.document.tables import approach, kinematic, length, number, outcome, parameter_table
+from reports.document.tables import approach, kinematic, length, number, outcome, parameter_blocks
 from reports.flights.flight_view import flight_view
 from reports.flights.single_flight import flight_charts
 from reports.flights.tracks import track_picture
@@ -64,7 +64,7 @@ def paper_content(run: RunData) -> Findings:
             blocks=[
                 Heading("What each simulation sets"),
                 _case_table(run),
-                parameter_table(run),
+                *parameter_blocks(run),
             ],
         ),
     ]  # fmt: skip

@@ -10,7 +10,7 @@ from common.patrols import PatrolCounts
 from common.verdict import MET
 from reports.design.section import innerloop_section
 from reports.document.blocks import Card, Findings, Heading, Section, Text, Verdict
-from reports.document.tables import parameter_table, vehicle_flown
+from reports.document.tables import parameter_blocks, vehicle_flown
 from reports.flights.parameter_tables import distribution
 from reports.patrol.charts import patrol_chart, time_lines
 from reports.patrol.data import Patrols, read_patrols
@@ -55,7 +55,7 @@ def patrol_content(run: RunData) -> Findings:
         ),
         *([innerloop_section(run.innerloop)] if run.innerloop else []),
         Section(
-            anchor="parameters", title="Parameters", blocks=[parameter_table(run, _sampled(run))]
+            anchor="parameters", title="Parameters", blocks=parameter_blocks(run, _sampled(run))
         ),
     ]
     patrols_flown = f"{len(patrols.patrols)} patrol{'s' * (len(patrols.patrols) != 1)}"

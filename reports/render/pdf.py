@@ -16,6 +16,7 @@ from reports.document.blocks import (
     Content,
     FlightContent,
     FlightPicker,
+    Fold,
     Section,
     Table,
 )
@@ -116,9 +117,11 @@ def _card(card: Card, *, judges: bool) -> Data:
 
 
 def _section(section: Section, figures: Figures) -> Data:
-    """Return a section without its picker, whose flights have pages of their own."""
+    """Return a section without its folds, and its picker, whose flights have pages of their own."""
     blocks = [
-        _block(block, figures) for block in section.blocks if not isinstance(block, FlightPicker)
+        _block(block, figures)
+        for block in section.blocks
+        if not isinstance(block, FlightPicker | Fold)
     ]
     return {"title": section.title, "blocks": blocks}
 

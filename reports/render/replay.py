@@ -3,6 +3,7 @@ as plain data.
 """
 
 import base64
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,11 +13,10 @@ import numpy.typing as npt
 from reports.document.blocks import FlightPicker, Section
 from reports.document.map_marks import SIZE_NOT_KNOWN
 from reports.document.palette import COLOURS, Meaning
-from reports.document.scene import Scene
+from reports.document.scene import Estimate, Gas, Scene
 from reports.document.ship_map import hull_words
 from reports.render.script_data import for_script
 from reports.run.columns import Array
-from reports.run.plume_shape import PlumeShape
 from reports.run.ship import Hull
 
 THREE = Path(__file__).parent / "bundle" / "three.min.js"
@@ -24,12 +24,21 @@ THREE = Path(__file__).parent / "bundle" / "three.min.js"
 
 SCRIPTS = tuple(
     Path(__file__).parent / "player" / f"{name}.js"
-    for name in ("flight", "shapes", "world", "camera", "plot", "replay")
+    for name in ("flight", "smoke", "shapes", "air", "world", "camera", "plot", "replay")
 )
 """What draws the replay with it, in the order in which the page reads them."""
 
 _PLACE, _ANGLE = 0.01, 0.002
 """Steps in which places and angles are sent [m, rad]: 1 cm, and 0.1 deg."""
+
+_STEPS = {
+    "gas": 0.1,
+    "airspeed": 0.05,
+    "wind_north": 0.05,
+    "wind_east": 0.05,
+    "apparent_drift": 0.1,
+}
+"""Those of other columns, in their units."""
 
 _ANGLES = ("heading", "pitch", "roll", "vessel_heading", "plume_axis")
 
@@ -50,6 +59,7 @@ _MEANINGS = {
     "crossing": Meaning.CROSSING,
     "ship": Meaning.SHIP,
     "plume": Meaning.PLUME,
+    "wind": Meaning.WIND,
 }
 """What the scripts call what they draw, and what that means in figures."""
 
@@ -103,7 +113,7 @@ def draw_scene(scene: Scene) -> Data:
         "interval": scene.interval,
         "samples": len(scene.columns["north"]),
         "columns": {
-            name: packed_column(values, _ANGLE if name in _ANGLES else _PLACE)
+            name: packed_column(values, _ANGLE if name in _ANGLES else _STEPS.get(name, _PLACE))
             for name, values in scene.columns.items()
         },
         "guard": [list(stretch) for stretch in scene.guard],
@@ -115,7 +125,12 @@ def draw_scene(scene: Scene) -> Data:
             "height": scene.source_height,
         },
         "hull": _hull(scene.hull),
-        "plumes": [[time, _sections(plume)] for time, plume in scene.plumes],
+        "utc": scene.utc,
+        "events": [event._asdict() for event in scene.events],
+        "gas": _gas(scene.gas),
+        "estimate": _estimate(scene.estimate),
+        "smoke": _smoke(scene.smoke) if scene.smoke else None,
+        "axis": {"length": scene.plume_length, "rise": scene.plume_rise},
     }
 
 
@@ -126,14 +141,35 @@ def _hull(hull: Hull) -> Data:
     return size | {"name": name, "words": f"Of the ship: {hull_words(hull)}."}
 
 
-def _sections(plume: PlumeShape) -> list[list[float]]:
-    """Return the cross-sections of a plume: distance from the funnel, height of the axis,
-    half-width, half-height [m].
-    """
-    rows: list[list[float]] = np.round(
-        np.column_stack([plume.distance, plume.height, plume.half_width, plume.half_height]), 1
-    ).tolist()
-    return rows
+def _gas(gas: Gas | None) -> Data | None:
+    """Return a gas with what the curve and the legend call it."""
+    if gas is None:
+        return None
+    words = f"{gas.name} above the background {gas.source}, 0 to {gas.most:.0f} {gas.unit}"
+    return gas._asdict() | {"label": f"{gas.name} [{gas.unit}]", "words": words}
+
+
+def _estimate(estimate: Estimate | None) -> Data | None:
+    """Return an estimate with the end of its scale: all limits, and the interval at its end."""
+    if estimate is None:
+        return None
+    most = 1.25 * max([estimate.rows[-1][3], *estimate.limits])
+    rows = [[*(round(value, 4) for value in row[:4]), row[4]] for row in estimate.rows]
+    return {"rows": rows, "limits": list(estimate.limits), "most": most, "words": "Fuel sulphur"}
+
+
+def _smoke(smoke: Mapping[str, Any]) -> Data:
+    """Return the parcels of an exhaust as the replay reads them."""
+    steps = {"north": 0.05, "east": 0.05, "wind": 0.05, "across": 0.01, "up": 0.01}
+    steps |= {"drift_north": 0.05, "drift_east": 0.05}
+    columns = {
+        name: packed_column(np.asarray(smoke[name], dtype=np.float64), step)
+        for name, step in steps.items()
+    }
+    return columns | {
+        "count": len(smoke["north"]),
+        **{name: smoke[name] for name in ("first", "step", "age_max", "winds", "table")},
+    }
 
 
 def packed_column(values: Array, step: float) -> Data:

@@ -1,14 +1,15 @@
 """The scene of one flight, from its time history."""
 
+import math
+from datetime import datetime
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from reports.document.scene import Scene
+from reports.document.scene import Estimate, Event, Gas, Scene
 from reports.run.columns import Array, column
-from reports.run.flight_config import Config, keepout_shape, source_height
-from reports.run.plume_shape import PlumeShape, plume_shape
+from reports.run.flight_config import keepout_shape, source_height
 from reports.run.ship import hull_of
 from reports.run.time_history import guard_stretches, shown_distances, true_wind, vessel_heading
 from reports.run.trials import Trial
@@ -17,15 +18,13 @@ INTERVAL = 0.2
 """Between samples of a scene, or as a time history has them if that is longer [s]."""
 
 _PLUME_LENGTH = 3.0
-"""Length of the plume that is drawn, over r_min [-]."""
+"""Length of a plume without smoke that is drawn, over r_min [-]."""
 
-_CHANGED, _SHAPES_MAX = 0.1, 25
-"""Change of the ship's speed or of the wind from which the plume is drawn anew [-], and how often
-at most in a flight.
-"""
+_GASES = (("co2_reading_ppm", "CO2", "ppm"), ("co2_ppm", "CO2", "ppm"))
+"""Columns that may colour the track, their gas and unit: CO2 is read fast enough to show a crossing."""
 
-_SLOW = 1.0
-"""Speed below which changes count as those of this speed [m/s]."""
+_STRONGEST = 0.99
+"""Quantile of a gas that has the strongest colour [-]."""
 
 
 def flight_scene(trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame | None) -> Scene | None:
@@ -73,6 +72,17 @@ def flight_scene(trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame | No
     )
     up = 0.0 if keepout_shape(config) == "cylinder" else altitude - source_height(config)
     distance = np.hypot(np.hypot(places["north"], places["east"]), up)
+    wind_north, wind_east = (at_times(values) for values in true_wind(history, row))
+    past = np.hypot(
+        wind_north - np.gradient(vessel["north"], interval),
+        wind_east - np.gradient(vessel["east"], interval),
+    )
+    guard = [
+        (float(recorded[first]), float(recorded[min(after, len(recorded) - 1)]), held)
+        for first, after, held in guard_stretches(history)
+    ]
+    gas, values = _gas(history)
+    flight_id = str(row["flight_id"])
     return Scene(
         start=float(time[0]),
         interval=interval,
@@ -91,56 +101,88 @@ def flight_scene(trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame | No
                 vessel_heading(history, float(config.get("vessel", {}).get("course_deg", 0.0)))
             ),
             "plume_axis": at_times(column(history, "plume_axis_rad"), angles=True),
+            "airspeed": at_times(column(history, "airspeed_mps")),
+            "wind_north": wind_north,
+            "wind_east": wind_east,
+            "apparent_drift": interval * np.cumsum(past),
+            "gas": at_times(values),
         },
-        guard=[
-            (float(recorded[first]), float(recorded[min(after, len(recorded) - 1)]), held)
-            for first, after, held in guard_stretches(history)
-        ],
-        crossings=column(
-            trial.run.crossings_of(str(row["flight_id"])).dropna(subset="time_s"), "time_s"
-        ),
+        utc=_utc(row),
+        guard=guard,
+        events=_events(row, time, distance, guard),
+        crossings=column(trial.run.crossings_of(flight_id).dropna(subset="time_s"), "time_s"),
         distances=shown_distances(distance, time >= float(row["settling_time_s"]), radius),
         keepout_radius=radius,
         keepout_shape=keepout_shape(config),
         source_height=source_height(config),
+        plume_length=_PLUME_LENGTH * radius,
+        plume_rise=math.tan(math.radians(float(config["plume"].get("elevation_deg", 0.0)))),
         hull=hull_of(config),
-        plumes=_plumes(config, row, history),
+        gas=gas,
+        estimate=_estimate(trial.run.evaluation(flight_id), row),
+        smoke=trial.run.smoke(flight_id),
     )
 
 
-def _plumes(
-    config: Config, row: "pd.Series[Any]", history: pd.DataFrame
-) -> list[tuple[float, PlumeShape]]:
-    """Return the plume's shapes in the course of a flight, each with the time from which it has it
-    [s].
-    """
-    time = column(history, "time_s")
-    north, east = (column(history, f"vessel_velocity_{axis}_mps") for axis in ("north", "east"))
-    wind_north, wind_east = true_wind(history, row)
-    air = np.column_stack([
-        np.hypot(north, east), np.hypot(wind_north, wind_east), np.hypot(wind_north - north, wind_east - east)
-    ])  # fmt: skip
-    length = _PLUME_LENGTH * float(row["keepout_radius_m"])
-    shapes: list[tuple[float, PlumeShape]] = []
-    for sample in _changes(air):
-        speed, wind, apparent = air[sample].tolist()
-        shape = plume_shape(config, speed=speed, wind=wind, apparent_wind=apparent, length=length)
-        if shape.smoke or not shapes or shapes[-1][1].smoke:
-            shapes.append((float(time[sample]), shape))
-    return shapes
+def _utc(row: "pd.Series[Any]") -> float | None:
+    """Return the time of a flight's start since 1970 [s], or None where it is not known."""
+    start = row.get("start_utc")
+    return datetime.fromisoformat(start).timestamp() if isinstance(start, str) and start else None
 
 
-def _changes(air: Array) -> list[int]:
-    """Return the first sample, and each at which a speed differs by ``_CHANGED`` or, if they were
-    too many, by more.
-    """
-    speeds = np.log(np.maximum(air, _SLOW))
-    changed = _CHANGED
-    while True:
-        chosen = [0]
-        for sample in np.flatnonzero(np.isfinite(speeds).all(axis=1)).tolist():
-            if np.abs(speeds[sample] - speeds[chosen[-1]]).max() > changed:
-                chosen.append(sample)
-        if len(chosen) <= _SHAPES_MAX:
-            return chosen
-        changed *= 1.5
+def _events(
+    row: "pd.Series[Any]", time: Array, distance: Array, guard: list[tuple[float, float, bool]]
+) -> list[Event]:
+    """Return what one can go to in a flight, in the order of time but for its start and end."""
+    times = {
+        "closest approach": float(time[int(np.argmin(distance))]),
+        "settled": row.get("settling_time_s"),
+        "fault": row.get("fault_time_s"),
+        "guard acts": guard[0][0] if guard else math.nan,
+        "verdict": row.get("verdict_time_s"),
+    }
+    known = [
+        Event(name, float(at))
+        for name, at in times.items()
+        if isinstance(at, int | float) and math.isfinite(at) and time[0] <= at <= time[-1]
+    ]
+    ends = [Event("start", float(time[0])), Event("end", float(time[-1]))]
+    return [ends[0], *sorted(known, key=lambda event: event.time), ends[1]]
+
+
+def _gas(history: pd.DataFrame) -> tuple[Gas | None, Array]:
+    """Return the gas that colours the track, and its values; none of a flight without exhaust."""
+    for name, gas, unit in _GASES:
+        values = column(history, name)
+        known = values[np.isfinite(values)]
+        if len(known) and np.ptp(known) > 0.0:
+            base = float(np.quantile(known, 0.05))
+            above = values - base
+            words = "as read" if "reading" in name else "as simulated"
+            return Gas(gas, unit, float(np.quantile(known - base, _STRONGEST)), words), above
+    return None, np.full(len(history), math.nan)
+
+
+def _estimate(evaluation: dict[str, Any] | None, row: "pd.Series[Any]") -> Estimate | None:
+    """Return how the estimate of the fuel's sulphur grew, of a flight that has one."""
+    began = row.get("settling_time_s")
+    if (
+        evaluation is None
+        or not evaluation.get("over_time")
+        or not isinstance(began, int | float)
+        or not math.isfinite(began)
+    ):
+        return None
+    limits = [verdict["limit_percent"] for verdict in evaluation["estimate"]["verdicts"]]
+    rows = [
+        (
+            began + of["elapsed_s"],
+            of["fsc_percent"],
+            of["low_percent"],
+            of["high_percent"],
+            str(of.get(f"verdict_{limits[0]:g}") or "") if limits else "",
+        )
+        for of in evaluation["over_time"]
+        if of["fsc_percent"] is not None and math.isfinite(of["fsc_percent"])
+    ]
+    return Estimate(rows, limits) if rows else None

@@ -29,6 +29,7 @@ from common.run_layout import (
     VERDICT,
     evaluation_path,
     is_file_name,
+    smoke_path,
     time_history_path,
     trajectory_path,
 )
@@ -117,6 +118,14 @@ class RunData:
         """Return what an instrument made of a flight, or None if there is nothing that can be read."""
         return (
             _record(self.path / evaluation_path(flight_id), self.unread)
+            if is_file_name(flight_id)
+            else None
+        )
+
+    def smoke(self, flight_id: str) -> dict[str, Any] | None:
+        """Return the parcels of a flight's exhaust, or None if there are none that can be read."""
+        return (
+            _record(self.path / smoke_path(flight_id), self.unread)
             if is_file_name(flight_id)
             else None
         )

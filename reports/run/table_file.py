@@ -9,7 +9,6 @@ import pandas as pd
 
 from common.columns import Table
 from common.text import MARK, from_cell
-from measurement.tables import other_separator
 from reports.errors import ReportError
 
 REMEDY = "repeat the run's command with --resume, which writes the tables anew"
@@ -20,6 +19,9 @@ _NAMES = ("flight_id", "trial", "variant", "beside", "confirms")
 
 _TRUTH = ("True", "False", "", "nan", "None")
 """What a column of truth values may hold; of a flight without one it is empty."""
+
+_OTHER_SEPARATORS = (";", "\t")
+"""Of a table that a spreadsheet has saved."""
 
 _LINE_MOST = 1_000_000
 """Bytes of a row at most."""
@@ -45,8 +47,10 @@ def read_table(
     try:
         with path.open(encoding="utf-8") as file:
             head = file.readline()
-        if words := other_separator(head):
-            raise ReportError(f"'{path}' {words}; or {REMEDY}")
+        if max(map(head.count, _OTHER_SEPARATORS)) > head.count(","):
+            raise ReportError(
+                f"'{path}' is not separated by commas: it was saved by another program; {REMEDY}"
+            )
         text = [name for name, column in (columns or {}).items() if column.kind == "text"]
         frame = pd.read_csv(
             path, keep_default_na=False, na_values=[""], dtype=dict.fromkeys(text or _NAMES, str)

@@ -5,22 +5,22 @@ import shutil
 import tempfile
 import weakref
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from common.text import did_you_mean
-from scenarios.api.objects import LentWork, check_picklable, lent
+from scenarios.api.given_parts import WorkWithParts, check_picklable, registered
 from scenarios.api.results import Flight, Run
 from scenarios.api.scenario import Given, Scenario, load, sweeps_nu
 from scenarios.errors import InputError
 
 if TYPE_CHECKING:
-    from scenarios.engine.executor import Executor
+    from scenarios.engine.processes import Executor
     from scenarios.engine.runner import Progress, RunResult
     from scenarios.engine.task import Work
-    from scenarios.studies.flight_study import FlightStudy
+    from scenarios.studies.base import FlightStudy
 
 _LOOKED_THROUGH = 1000
 """Most flights of a study among which the name that was meant is looked for."""
@@ -48,20 +48,20 @@ def fly(
     flight_id : name of the flight, where the scenario has several
     out : run directory, which must be new or empty
     progress : show a progress bar on standard error
-    keys : to set, as of ``Scenario.set``:
+    keys : to set, same as ``Scenario.set``:
         ``fly("sweep_nu", nu=0.5, **{"guidance.preview": False})``
 
     Raises
     ------
     InputError : the scenario cannot be flown, or has several flights, or not this one; one line
     """
-    from scenarios.engine.in_process_executor import InProcessExecutor
+    from scenarios.engine.processes import InProcessExecutor
     from scenarios.engine.runner import fly_study
-    from scenarios.studies.single_flight import SingleFlight
+    from scenarios.studies.base import SingleFlight
 
     loaded = load(scenario).set(**keys)
     with (
-        lent(loaded.parts),
+        registered(loaded.parts),
         _directory(out) as (directory, keeping),
         _shown(progress=progress) as show,
     ):
@@ -95,7 +95,7 @@ def run(
 
     Parameters
     ----------
-    scenario, out, progress, keys : as of ``fly``
+    scenario, out, progress, keys : same as ``fly``
     jobs : number of processes; one per core if not given
 
     Raises
@@ -105,8 +105,8 @@ def run(
     KeyboardInterrupt : it was interrupted; in ``out`` finished flights are kept, and ``--resume``
         of the command line goes on
     """
-    from scenarios.engine.executors import ExecutorFactory
-    from scenarios.studies.registry import run_study
+    from scenarios.engine.runner import ExecutorFactory
+    from scenarios.studies.base import run_study
 
     if jobs is not None and not (isinstance(jobs, Integral) and jobs >= 1):
         raise InputError(
@@ -117,10 +117,10 @@ def run(
     processes = ExecutorFactory(jobs=jobs or os.cpu_count() or 1)
 
     def executor(work: "Work") -> "Executor":
-        return processes(LentWork(work, loaded.parts) if loaded.parts else work)
+        return processes(WorkWithParts(work, loaded.parts) if loaded.parts else work)
 
     with (
-        lent(loaded.parts),
+        registered(loaded.parts),
         _directory(out) as (directory, keeping),
         _shown(progress=progress) as show,
     ):
@@ -136,14 +136,13 @@ def run(
 
 
 def flights_of(loaded: Scenario) -> "FlightStudy":
-    """Return the study of a scenario, single flights of which can be flown.
+    """Return the study of a scenario whose flights can be flown alone.
 
     Raises
     ------
     InputError : it has no such flights
     """
-    from scenarios.studies.flight_study import FlightStudy
-    from scenarios.studies.registry import study_of
+    from scenarios.studies.base import FlightStudy, study_of
 
     study = study_of(loaded.config, loaded.name, loaded.changes)
     if not isinstance(study, FlightStudy) or study.chooses_flights:
@@ -230,16 +229,11 @@ def _refuse_taken(directory: Path) -> None:
         ) from None
 
 
-@contextmanager
-def _shown(*, progress: bool) -> Iterator["Progress"]:
-    """Yield what is called as the flights advance: a progress bar, or nothing."""
-    if not progress:
-        yield lambda *_: None
-        return
-    from scenarios.engine.progress import progress_bar
+def _shown(*, progress: bool) -> "AbstractContextManager[Progress]":
+    """Return the context of what is called as flights advance: a progress bar, or nothing."""
+    from scenarios.engine.runner import progress_bar
 
-    with progress_bar() as show:
-        yield show
+    return progress_bar() if progress else nullcontext(lambda *_: None)
 
 
 def _finished(result: "RunResult", keeping: Keeping) -> Run:

@@ -6,11 +6,11 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from scenarios.api.given_parts import Parts, named, registered
 from scenarios.api.html import table
-from scenarios.api.objects import Parts, lent, named
 from scenarios.errors import InputError
-from scenarios.scenario.keys import suggestion
-from scenarios.scenario.load import AnyStudy, load_document, load_study, sweeps_speed_ratio
+from scenarios.scenario.errors import suggestion
+from scenarios.scenario.files import AnyStudy, load_document, load_study, sweeps_speed_ratio
 from scenarios.scenario.overrides import Document, as_toml
 
 Given = str | os.PathLike[str] | Mapping[str, Any]
@@ -47,7 +47,7 @@ class Scenario:
     config: AnyStudy = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        with lent(self.parts):
+        with registered(self.parts):
             object.__setattr__(self, "config", load_study(self.source, self.changes))
 
     @property
@@ -134,7 +134,7 @@ def load(scenario: Given | Scenario, /, *, name: str | None = None, **keys: obje
     scenario : a name of the catalog, the path of a TOML file, what such a file holds, as a mapping,
         or a scenario
     name : of the scenario; that of the file, or "scenario", if not given
-    keys : as of ``Scenario.set``
+    keys : same as ``Scenario.set``
 
     Raises
     ------

@@ -6,13 +6,15 @@ from collections.abc import Iterator
 from itertools import groupby
 
 from scenarios.errors import InputError
-from scenarios.scenario.documented import (
+from scenarios.scenario.documentation import (
+    PART_SECTIONS,
+    DocumentedKey,
     DocumentedSection,
     documented_keys,
+    documented_part_keys,
     documented_sections,
     similar_key,
 )
-from scenarios.scenario.documented_parts import PART_SECTIONS, DocumentedKey, documented_part_keys
 from scenarios.scenario.overrides import as_toml
 from scenarios.scenario.sections.convergence import ConvergenceScenario
 
@@ -49,7 +51,10 @@ def described(name: str | None = None) -> list[str]:
     plain = plain.removeprefix("sweep.")
     tables = (key.key for key in documented_keys() if key.range.endswith(" a table"))
     if table := next((table for table in tables if plain.startswith(f"{table}.")), None):
-        note = f"{name} is a key of the table that {table} may be; docs/howto/measuring.md lists its keys, with their units."
+        note = (
+            f"{name} is a key of the table that {table} may be; docs/howto/measuring.md lists its"
+            " keys, with their units."
+        )
         return [*_wrapped("", note), *described(table)]
     keys = [
         key
@@ -83,7 +88,11 @@ def value_text(value: object) -> str:
 
 
 def _all_sections() -> Iterator[str]:
-    yield "Sections of a scenario file, and how many keys each has; plume-flight describe SECTION lists them:"
+    yield from _wrapped(
+        "",
+        "Sections of a scenario file, and how many keys each has; plume-flight describe SECTION"
+        " lists them:",
+    )
     for section in documented_sections():
         yield from _wrapped(
             f"{section.name.replace('.0', '') or _TOP:<21} {len(section.keys):>3}  ",

@@ -23,7 +23,7 @@ def export(
         list[str] | None,
         typer.Option(
             metavar="NAME,...",
-            help="Formats: kmz, acmi, czml, mcap, netcdf, tlog, geojson, tracks_csv, or FILE.py:NAME.",
+            help="Formats: kmz, acmi, czml, mcap, netcdf, tlog, geojson, tracks_csv, FILE.py:NAME.",
         ),
     ] = None,
     flight: Annotated[
@@ -37,7 +37,7 @@ def export(
         ),
     ] = None,
 ) -> None:
-    """Write the flights of a run in other formats, into RUN_DIR/export, or send one in real time."""
+    """Write flights of a run in other formats, into RUN_DIR/export, or send one in real time."""
     from reports.build import command
 
     if not (to or stream):

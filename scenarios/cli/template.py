@@ -12,10 +12,15 @@ from pydantic import BaseModel
 
 from scenarios.cli.describe import value_text
 from scenarios.errors import InputError
-from scenarios.scenario.documented import DocumentedSection, documented_sections
-from scenarios.scenario.documented_parts import DIMENSIONLESS, DocumentedKey, documented_part_keys
+from scenarios.scenario.documentation import (
+    DIMENSIONLESS,
+    DocumentedKey,
+    DocumentedSection,
+    documented_part_keys,
+    documented_sections,
+)
 from scenarios.scenario.effect import compares, unused
-from scenarios.scenario.load import OPERATIONAL, OPERATIONAL_STUDIES, load_document, load_study
+from scenarios.scenario.files import OPERATIONAL, OPERATIONAL_STUDIES, load_document, load_study
 from scenarios.scenario.overrides import Document, as_toml
 from scenarios.scenario.scenario import Scenario
 
@@ -24,10 +29,12 @@ _WIDTH = 118
 _HEAD = """\
 Made from {name} by plume-flight new. Fly it with: plume-flight run {file}
 
-Every key is here with its meaning, range and default. A key behind a # is not set: it stands there with its default, with \
-what {name} says where these flights do not use it, or without a value where it has no default. Remove the # to set it, and \
+Every key is here with its meaning, range and default. A key behind a # is not set: it stands \
+there with its default, with what {name} says where these flights do not use it, or without a \
+value where it has no default. Remove the # to set it, and \
 give it a value. A key that no part of the flights uses is refused, with the part that would use it.
-The seeds of flights follow from the name of this file, unless nu is swept: called otherwise it has other starts.
+The seeds of flights follow from the name of this file, unless nu is swept: called otherwise it \
+has other starts.
 """
 
 
@@ -199,8 +206,9 @@ def _of_parts(
         if name in known:
             continue
         if key := documented.get(f"{section.name}.{name}"):
+            unit = f" [{key.unit}]" if key.unit else ""
             yield from _comment(
-                f"{key.meaning} ({key.range}{f' [{key.unit}]' if key.unit else ''}; of {' or '.join(key.conditions)})"
+                f"{key.meaning} ({key.range}{unit}; of {' or '.join(key.conditions)})"
             )
         shown = f"{name} = {as_toml(values.get(name, default))}"
         yield from (shown if name in values else f"# {shown}", "")

@@ -21,8 +21,8 @@ from typing import Any, Self
 
 import distributed
 
-from scenarios.engine.executor import MAX_ATTEMPTS, QUEUE_DEPTH
-from scenarios.engine.fingerprint import differences, fingerprint
+from scenarios.engine.processes import MAX_ATTEMPTS, QUEUE_DEPTH
+from scenarios.engine.run_directory import differences, fingerprint
 from scenarios.engine.task import Limits, Result, Task, Work
 from scenarios.errors import InputError
 
@@ -61,7 +61,10 @@ class DaskExecutor:
     """
 
     def __init__(self, work: Work, *, scheduler: str | None, jobs: int, limits: Limits) -> None:
-        self._work, self._scheduler, self._jobs, self._limits = work, scheduler, jobs, limits
+        self._work = work
+        self._scheduler = scheduler
+        self._jobs = jobs
+        self._limits = limits
         self._name = f"plume-flight-study-{uuid.uuid4().hex}"
         self._cluster: Any = None
         self._worker_count, self._counted_at = 1, -math.inf
@@ -191,7 +194,7 @@ def _reason(error: BaseException | None) -> str:
 def _fly(name: str, task: Task) -> Result:
     """Do a task; runs on a worker."""
     plugin: Any = distributed.get_worker().plugins[name]
-    result: Result = plugin.fly(task)
+    result: Result = plugin.run(task)
     return result
 
 
@@ -225,12 +228,12 @@ class _WorkPlugin(distributed.WorkerPlugin):
     def _directory(self, worker: Any) -> Path:
         return Path(worker.local_directory) / self.name
 
-    def fly(self, task: Task) -> Result:
+    def run(self, task: Task) -> Result:
         with _FLYING:
             # This timer ends the worker without Python's interpreter lock, which a flight that
             # hangs in C++ may hold.
             faulthandler.dump_traceback_later(self._time_limit, exit=True)
             try:
-                return self._work.fly(task)
+                return self._work.run(task)
             finally:
                 faulthandler.cancel_dump_traceback_later()

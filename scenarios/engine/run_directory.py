@@ -1,14 +1,19 @@
-"""The run directory: its files, each written completely or not at all."""
+"""The run directory: its files, each written completely or not at all, and what has to agree with a run
+that is resumed: its configuration, and the software that results depend on.
+"""
 
+import functools
+import importlib.metadata
 import json
 import os
+import platform
 import re
 import uuid
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from common.files import write_json, write_text, write_whole
+from common.files import files_hash, write_json, write_text, write_whole
 from common.run_layout import (
     BOUNDS,
     DESIGN_RECORD,
@@ -23,8 +28,6 @@ from common.run_layout import (
     STATISTICS,
 )
 from common.text import cell
-from scenarios.engine.configuration import changed_keys
-from scenarios.engine.fingerprint import differences, fingerprint
 from scenarios.errors import InputError
 
 if TYPE_CHECKING:
@@ -40,8 +43,26 @@ _BEGUN = re.compile(
 _PARQUET_END = b"PAR1"
 """How a Parquet file ends (Apache Parquet, file format)."""
 
-_SHOWN = 120
+_PATH_SHOWN = 120
 """Letters of a path that a message shows at most: what is refused may be too long."""
+
+_PACKAGES = ("jsbsim", "numpy", "scipy", "control", "slycot", "pydantic", "cma")
+SOURCE = ("aircraft", "common", "gnc", "innerloop", "measurement", "scenarios")
+"""Packages of the project that results depend on: all that flies or measures; ``reports`` only
+shows it.
+"""
+
+_SUFFIXES = (".json", ".py", ".toml", ".xml")
+"""Source, and the data that it reads: aircraft models, presets and tables."""
+
+_CATALOG = "scenarios/catalog/"
+"""Left out: a run is compared by what its scenario contains, wherever that was read from."""
+
+_KEYS_NAMED = 3
+"""Keys that are named, at most."""
+
+_VALUE_SHOWN = 60
+"""Letters of a value that are shown, at most."""
 
 
 class RunDirectory:
@@ -53,7 +74,7 @@ class RunDirectory:
 
     Attributes
     ----------
-    gone : files that the run had when it ended, and that are deleted or cut since; known once it
+    missing_files : files that the run had when it ended, and that are deleted or cut since; known once it
         has been opened to be resumed
     """
 
@@ -65,7 +86,7 @@ class RunDirectory:
         self.bounds = path / BOUNDS
         self.statistics = path / STATISTICS
         self.model = path / MODEL
-        self.gone: list[str] = []
+        self.missing_files: list[str] = []
 
     def open(
         self,
@@ -149,25 +170,30 @@ class RunDirectory:
                 f"'{self.path}' was run with another configuration{f': {keys}' if keys else ''}; resume it with the same scenario,"
                 " --seed and --set values"
             )
-        if differing := differences(theirs):
-            name = differing[0]
+        self._refuse_other_software(theirs)
+        self._refuse_links()
+        self._create()
+        listed = manifest.get(FILES)
+        names = [str(name) for name in listed] if isinstance(listed, list) else []
+        self.missing_files = [name for name in names if not _is_whole(self.path / name)]
+        return manifest
+
+    def _refuse_other_software(self, theirs: Mapping[str, str]) -> None:
+        for name in differences(theirs)[:1]:
             before, now = theirs.get(name, "unknown"), fingerprint()[name]
             raise InputError(
                 f"'{self.path}' was started with {name} {before}, now it is {now}: results would not be comparable;"
                 f" resume it with the same {name}, or start a new run in another --out"
             )
+
+    def _refuse_links(self) -> None:
         for path in self.path.iterdir():
             if path.is_symlink():
                 raise InputError(
                     f"'{path}' is a link; results are written into '{self.path}' alone: replace it by what it links to"
                 )
-        self._create()
-        listed = manifest.get(FILES)
-        names = [str(name) for name in listed] if isinstance(listed, list) else []
-        self.gone = [name for name in names if not _is_whole(self.path / name)]
-        return manifest
 
-    def sweep(self) -> None:
+    def remove_partial_files(self) -> None:
         """Remove partly written files of a program that was killed. No other program may be
         writing.
         """
@@ -194,7 +220,7 @@ class RunDirectory:
 
     def _unwritable(self, error: OSError) -> InputError:
         shown = str(self.path)
-        shown = shown if len(shown) <= _SHOWN else f"{shown[:_SHOWN]}..."
+        shown = shown if len(shown) <= _PATH_SHOWN else f"{shown[:_PATH_SHOWN]}..."
         return InputError(
             f"output directory '{shown}' cannot be written: {error.strerror}; choose another --out"
         )
@@ -249,3 +275,83 @@ def _is_whole(path: Path) -> bool:
         return path.is_file()
     except (OSError, ValueError, RecursionError):
         return False
+
+
+@functools.cache
+def fingerprint() -> dict[str, str]:
+    """Return the versions of Python and of the packages that results depend on, and a hash of the
+    project's source.
+    """
+    versions = {package: importlib.metadata.version(package) for package in _PACKAGES}
+    return {
+        "python": platform.python_version(),
+        **versions,
+        "source": source_hash(Path(__file__).parents[2]),
+    }
+
+
+def source_hash(project: Path) -> str:
+    """Return a hash of the files of a project that results depend on, by their paths in it and
+    their contents.
+    """
+    found = (
+        path
+        for package in SOURCE
+        for path in sorted((project / package).rglob("*.*"))
+        if path.suffix in _SUFFIXES
+    )
+    counted = (
+        path for path in found if not path.relative_to(project).as_posix().startswith(_CATALOG)
+    )
+    return files_hash(project, counted)[:16]
+
+
+def differences(theirs: Mapping[str, str]) -> list[str]:
+    """Return the names of the entries in which another fingerprint differs from that of this
+    program.
+    """
+    return [name for name, mine in fingerprint().items() if theirs.get(name) != mine]
+
+
+def changed_keys(before: Mapping[str, Any], now: Mapping[str, Any]) -> str:
+    """Return the first keys that differ, each with both values, in words; nothing if the manifests
+    do not say which.
+
+    Parameters
+    ----------
+    before, now : manifests of the run, and of the study that is to continue it
+    """
+    if not isinstance(before.get("config"), dict):
+        return ""
+    then, today = dict(_values(before)), dict(_values(json.loads(json.dumps(now))))
+    keys = [key for key in dict.fromkeys([*today, *then]) if then.get(key) != today.get(key)]
+    named = [
+        f"{key} was {_shown(then.get(key))}, and is {_shown(today.get(key))} now"
+        for key in keys[:_KEYS_NAMED]
+    ]
+    more = [f"and {len(keys) - _KEYS_NAMED} more"] if len(keys) > _KEYS_NAMED else []
+    return "; ".join([*named, *more])
+
+
+def _values(manifest: Mapping[str, Any]) -> Iterator[tuple[str, object]]:
+    yield "the scenario's name", manifest.get("name")
+    yield from _flat(config := manifest.get("config"), "")
+    if isinstance(config, dict) and config.get("study") == "trials":
+        # A list says nothing of the keys of its trials.
+        yield from _flat(manifest.get("trials"), "")
+    yield from _flat(manifest.get("plugins"), "the hash of ")
+
+
+def _flat(values: object, before: str) -> Iterator[tuple[str, object]]:
+    for key, value in values.items() if isinstance(values, dict) else ():
+        if isinstance(value, dict) and value:
+            yield from _flat(value, f"{before}{key}.")
+        else:
+            yield f"{before}{key}", value
+
+
+def _shown(value: object) -> str:
+    if value is None:
+        return "not set"
+    text = json.dumps(value, ensure_ascii=False)
+    return text if len(text) <= _VALUE_SHOWN else f"{text[:_VALUE_SHOWN]}..."

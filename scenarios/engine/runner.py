@@ -1,28 +1,40 @@
-"""The interface of a study, and its execution with an executor, a journal and a run directory."""
+"""The interface of a study, and its execution with an executor, a journal and a run directory; the
+progress bar.
+"""
 
+import contextlib
 import errno
 import sqlite3
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Protocol
 
 from common.columns import Table, to_json
 from common.files import remove_reports, write_whole
 from common.run_layout import COLUMNS, FILES, VERDICT
+from common.text import install_words
 from common.verdict import MET, RunVerdict
-from scenarios.engine.executor import Executor
 from scenarios.engine.journal import CONTINUE, Journal, is_full, unusable
-from scenarios.engine.memory import peak_memory
+from scenarios.engine.processes import Executor, LocalExecutor, peak_memory
 from scenarios.engine.run_directory import RunDirectory
-from scenarios.engine.task import Task, Work
+from scenarios.engine.task import Limits, Task, Work
 from scenarios.errors import InputError
 
 Progress = Callable[[str, int, int], None]
 """Called with the current activity, the number of items that are done and the total number of
 items.
+"""
+
+LOCAL, DASK = "local", "dask"
+"""Names of the executors."""
+
+REFRESH_INTERVAL = 0.1
+"""Shortest time between two updates of the progress bar [s]: results may arrive faster than a terminal
+can show them.
 """
 
 _COMPLETE, _INTERRUPTED = "complete", "interrupted"
@@ -55,14 +67,14 @@ class Launch:
     ----------
     what : name of the items that the study counts, in the plural
     planned, done : largest possible number of items, and the number of those that are done
-    beside_left : number of items of comparisons that are not done
+    comparisons_left : number of items of comparisons that are not done
     resumed : whether the run had begun before
     """
 
     what: str
     planned: int
     done: int
-    beside_left: int
+    comparisons_left: int
     resumed: bool
 
 
@@ -83,9 +95,9 @@ class Study(Protocol):
         """Return the largest possible number of items."""
 
     @property
-    def beside(self) -> int:
-        """Return how many results that are no items there are beside them, as of comparisons;
-        progress counts them, too.
+    def comparisons(self) -> int:
+        """Return the number of results of comparisons, which are no items; progress counts them,
+        too.
         """
 
     def initial_manifest(self) -> dict[str, Any]:
@@ -171,7 +183,7 @@ def fly_study(
                 raise InputError(
                     f"'{run.path}' has results without a {run.manifest.name}; choose another --out"
                 )
-            run.sweep()
+            run.remove_partial_files()
             execution = _Execution(study, run, journal, before, progress, command)
             return execution.fly(executor_factory, launched)
         finally:
@@ -207,13 +219,11 @@ class _Execution:
         progress: Progress,
         command: str,
     ) -> None:
-        self._study, self._run, self._journal, self._before, self._progress = (
-            study,
-            run,
-            journal,
-            before,
-            progress,
-        )
+        self._study = study
+        self._run = run
+        self._journal = journal
+        self._before = before
+        self._progress = progress
         # A run that is resumed is as old as its first flight, and has taken as long as all of its
         # sessions.
         began = before.get("begun_utc") or f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ}"
@@ -257,7 +267,7 @@ class _Execution:
                 "wall_time_s": self._wall_time + time.perf_counter() - began,
                 "peak_memory_mib": round(peak_memory() / 2**20, 1),
                 # What was deleted and is not made again is still missed.
-                FILES: sorted({*run.files(), *run.gone}),
+                FILES: sorted({*run.files(), *run.missing_files}),
             }
             run.write_json(run.manifest, self._manifest | closing | summary.manifest)
         elif self._before.get("report") != self._manifest.get("report"):
@@ -265,7 +275,7 @@ class _Execution:
             changed = True
             report = {
                 "report": self._manifest.get("report"),
-                FILES: sorted({*run.files(), *run.gone}),
+                FILES: sorted({*run.files(), *run.missing_files}),
             }
             run.write_json(run.manifest, {**self._before, **report})
         return RunResult(directory=run.path, verdict=verdict, lines=summary.lines, changed=changed)
@@ -283,7 +293,7 @@ class _Execution:
             what=study.what,
             planned=study.planned,
             done=before.counts.done if before else 0,
-            beside_left=before.comparisons_left if before else study.beside,
+            comparisons_left=before.comparisons_left if before else study.comparisons,
             resumed=before is not None,
         )
 
@@ -302,7 +312,11 @@ class _Execution:
 
     def _is_as_before(self) -> bool:
         """Return whether the run was complete, nothing was added, and nothing is missing."""
-        return not self._begun and self._before.get("state") == _COMPLETE and not self._run.gone
+        return (
+            not self._begun
+            and self._before.get("state") == _COMPLETE
+            and not self._run.missing_files
+        )
 
     def _executing(self, executor: Executor) -> Fly:
         before, done, beside = (
@@ -313,7 +327,7 @@ class _Execution:
 
         def report() -> None:
             # What tunes a law before its flights is neither an item nor beside them.
-            possible = self._study.beside
+            possible = self._study.comparisons
             self._progress("flying", done + min(beside, possible), self._study.planned + possible)
 
         report()
@@ -336,6 +350,46 @@ class _Execution:
                     report()
 
         return fly
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExecutorFactory:
+    """Makes executors of one kind.
+
+    Attributes
+    ----------
+    jobs : number of processes to start; unused with a scheduler, whose workers are running already
+    executor : ``LOCAL`` or ``DASK``
+    scheduler : address of a Dask scheduler; without one a cluster is started on this machine
+    limits : time and memory limits of a task
+
+    Raises
+    ------
+    InputError : a scheduler without Dask, or Dask is not installed
+    """
+
+    jobs: int = 1
+    executor: str = LOCAL
+    scheduler: str | None = None
+    limits: Limits = field(default_factory=Limits)
+
+    def __post_init__(self) -> None:
+        if self.scheduler is not None and self.executor != DASK:
+            raise InputError(
+                f"--scheduler is {self.scheduler} with --executor {self.executor}; add --executor dask"
+            )
+        if self.executor == DASK and find_spec("distributed") is None:
+            raise InputError(
+                f"--executor is dask, which is not installed; install the extra: {install_words('dask')}"
+            )
+
+    def __call__(self, work: Work) -> Executor:
+        """Return an executor for some work."""
+        if self.executor == LOCAL:
+            return LocalExecutor(work, jobs=self.jobs, limits=self.limits)
+        from scenarios.engine.dask_executor import DaskExecutor
+
+        return DaskExecutor(work, scheduler=self.scheduler, jobs=self.jobs, limits=self.limits)
 
 
 def write_tables(run: RunDirectory, journal: Journal, tables: Mapping[str, Table]) -> None:
@@ -373,3 +427,47 @@ def _explained(error: OSError | sqlite3.DatabaseError, run: RunDirectory) -> Inp
             f"'{where}' cannot be used: {error.strerror or error}; fix that, then {CONTINUE}"
         )
     return unusable(run.journal, error)
+
+
+@contextlib.contextmanager
+def progress_bar() -> Iterator[Progress]:
+    """Yield a function to call with the current activity, the number of finished items and their
+    total.
+
+    The bar appears at the first call. If the input is refused it is removed, so that only the
+    message is left.
+    """
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import Progress as Bar
+
+    bar = Bar(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        console=Console(stderr=True),
+        auto_refresh=False,
+    )
+    task = bar.add_task("")
+
+    refreshed = -REFRESH_INTERVAL
+
+    def report(activity: str, done: int, total: int) -> None:
+        nonlocal refreshed
+        bar.start()
+        now = time.monotonic()
+        due = now - refreshed >= REFRESH_INTERVAL or done == total
+        refreshed = now if due else refreshed
+        bar.update(task, description=activity, completed=done, total=total, refresh=due)
+
+    try:
+        yield report
+    except InputError:
+        # This erases the bar from a terminal; to anything else nothing has been written yet.
+        bar.live.transient = True
+        bar.console.quiet = not bar.console.is_terminal
+        raise
+    finally:
+        if bar.live.is_started:
+            bar.stop()

@@ -81,7 +81,7 @@ class Work(Protocol):
     def moved(self, model: Path) -> "Work":
         """Return the same work with its files in another directory."""
 
-    def fly(self, task: Task) -> Result:
+    def run(self, task: Task) -> Result:
         """Do a task. Every failure becomes a row with its reason, except MemoryError, which is
         raised.
         """

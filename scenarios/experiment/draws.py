@@ -9,8 +9,8 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 
 from scenarios.errors import InputError
-from scenarios.scenario.keys import displaced
-from scenarios.scenario.load import with_values
+from scenarios.scenario.files import with_values
+from scenarios.scenario.overrides import displaced
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.experiment import DrawConfig
 from scenarios.world.noise import Noise
@@ -42,7 +42,7 @@ class SampledFlight:
 
     @property
     def seed(self) -> int:
-        """Return the seed of its noise; beside a blend, of what is not blended."""
+        """Return the seed of its noise; of a blend, of the part that is not blended."""
         return self.noise.seed
 
 
@@ -53,7 +53,7 @@ def sampled_flight(
     point: Sequence[float] = (),
     *,
     given: Collection[str] = (),
-    beside: Callable[[Values], Scenario] | None = None,
+    paired: Callable[[Values], Scenario] | None = None,
     stream: int = 0,
 ) -> SampledFlight:
     """Return one flight of a trial.
@@ -70,7 +70,7 @@ def sampled_flight(
     given : keys that the scenario sets for each of its flights: the samples that give way to them
         keep their places, so that all others are what they are without them
     stream : number of the random numbers of the flight's point, 0 for those of all points
-    beside : makes the flight whose speed ratio says whether to sample again, of the samples; the
+    paired : makes the flight whose speed ratio says whether to sample again, of the samples; the
         flight itself if not given
 
     Raises
@@ -83,7 +83,7 @@ def sampled_flight(
     for values in _tried(scenario.draws, np.random.default_rng(sequence), number, inputs):
         kept = not_displaced(values, given)
         flight = with_values(scenario, kept)
-        judged = flight if beside is None else beside(values)
+        judged = flight if paired is None else paired(values)
         if has_speed_ratio(judged):
             own = (
                 int(sequence.generate_state(1)[0])
@@ -193,7 +193,7 @@ def check_draws(trial: str, scenario: Scenario, given: Collection[str] = ()) -> 
 
     Raises
     ------
-    InputError : as of ``sampled_flight``
+    InputError : same as ``sampled_flight``
     """
     for draw in scenario.draws:
         if draw.within is not None and not _share_below(draw, draw.within[0]) < _share_below(

@@ -9,10 +9,9 @@ from dataclasses import dataclass
 
 from common.registry import is_file_part
 from scenarios.errors import InputError
-from scenarios.scenario.experiment_checks import swept_key
-from scenarios.scenario.load import with_values
+from scenarios.scenario.files import with_values
 from scenarios.scenario.scenario import Scenario
-from scenarios.scenario.sections.experiment import STUDY, CaseConfig
+from scenarios.scenario.sections.experiment import STUDY, CaseConfig, swept_key
 
 Values = dict[str, object]
 
@@ -29,7 +28,7 @@ class Point:
     nu : speed ratio that is swept, or none [-]
     inputs : swept keys and their values
     flights : number of flights
-    beside : number of the study's point whose flights a comparison has with some keys set
+    paired_point : number of the study's point whose flights a comparison has with some keys set
         otherwise; None of others
     given : keys that its case and its comparison set: what is random of these keeps what they set
     stream : number that tells its random numbers from those of other points; 0 where points share
@@ -42,7 +41,7 @@ class Point:
     nu: float | None
     inputs: Values
     flights: int
-    beside: int | None = None
+    paired_point: int | None = None
     given: tuple[str, ...] = ()
     stream: int = 0
 
@@ -61,7 +60,7 @@ def points_of(scenario: Scenario) -> list[Point]:
     for variant in comparison.variants:
         try:
             points += [
-                _varied(point, variant.name, variant.set, comparison.flights, beside=i)
+                _varied(point, variant.name, variant.set, comparison.flights, paired_point=i)
                 for i, point in _compared(scenario, points)
             ]
         except InputError as error:
@@ -172,7 +171,9 @@ def _compared(scenario: Scenario, points: list[Point]) -> list[tuple[int, Point]
     ]
 
 
-def _varied(point: Point, name: str, values: Values, flights: int | None, *, beside: int) -> Point:
+def _varied(
+    point: Point, name: str, values: Values, flights: int | None, *, paired_point: int
+) -> Point:
     return Point(
         label=f"{point.label}_{name}" if point.label else name,
         variant=name,
@@ -180,7 +181,7 @@ def _varied(point: Point, name: str, values: Values, flights: int | None, *, bes
         nu=point.nu,
         inputs=point.inputs,
         flights=min(flights or point.flights, point.flights),
-        beside=beside,
+        paired_point=paired_point,
         given=(*point.given, *values),
         stream=point.stream,
     )

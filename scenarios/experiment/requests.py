@@ -3,6 +3,7 @@ and the number alone.
 """
 
 import bisect
+import functools
 import itertools
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -22,11 +23,11 @@ from scenarios.experiment.draws import (
     sampled_flight,
 )
 from scenarios.experiment.points import Point, points_of
-from scenarios.scenario.experiment_checks import swept_key
-from scenarios.scenario.keys import displaced
-from scenarios.scenario.load import with_values
+from scenarios.scenario.effect import unused
+from scenarios.scenario.files import with_values
+from scenarios.scenario.overrides import displaced
 from scenarios.scenario.scenario import Scenario
-from scenarios.scenario.sections.experiment import STUDY
+from scenarios.scenario.sections.experiment import STUDY, SweepConfig, swept_key
 from scenarios.world.noise import Noise
 
 _PLANNED_FOR = ("guidance.", "turbulence.level", "reference.shape", "following.margin_law")
@@ -63,7 +64,7 @@ class FlightRequest:
 
     @property
     def seed(self) -> int:
-        """Return the seed of its noise; beside a blend, of what is not blended."""
+        """Return the seed of its noise; of a blend, of the part that is not blended."""
         return self.noise.seed
 
 
@@ -88,7 +89,9 @@ class Experiment:
     """
 
     def __init__(self, name: str, scenario: Scenario, *, alone: bool = True) -> None:
-        self.name, self.scenario, self._alone = name, scenario, alone
+        self.name = name
+        self.scenario = scenario
+        self._alone = alone
         self.points = points_of(scenario)
         labels = Counter(point.label for point in self.points)
         self.points = [
@@ -131,20 +134,22 @@ class Experiment:
 
     def named(self, number: int) -> tuple[str, str]:
         """Return name and variant of a flight."""
-        point, index = self._point(number)
+        point, index = self.point_of(number)
         parts = [] if self._alone and point.label else [self.name]
         parts += [point.label] if point.label else []
         parts += [f"{index:05d}"] if point.flights > 1 or not point.label else []
         return "_".join(parts), point.variant
 
-    def beside(self, number: int) -> str:
-        """Return the name of the study's flight that a comparison's flight is beside; no word for
-        other flights.
+    def paired_flight(self, number: int) -> str:
+        """Return the name of the study's flight with which a comparison's flight is compared; empty
+        for other flights.
         """
-        point, index = self._point(number)
-        if point.beside is None:
+        point, index = self.point_of(number)
+        if point.paired_point is None:
             return ""
-        return self.named(self._ends[point.beside] - self.points[point.beside].flights + index)[0]
+        return self.named(
+            self._ends[point.paired_point] - self.points[point.paired_point].flights + index
+        )[0]
 
     def names(self) -> list[str]:
         """Return the name of one flight of each point: those of the others differ in their number
@@ -152,19 +157,10 @@ class Experiment:
         """
         return [self.named(end - 1)[0] for end in self._ends]
 
-    def stream(self, number: int) -> int:
-        """Return the number that tells random numbers of a flight's point from those of others; 0
-        where points share them.
-        """
-        return self._point(number)[0].stream
-
-    def label(self, number: int) -> str:
-        """Return the name of a flight's point, as of its case."""
-        return self._point(number)[0].label
-
-    def index(self, number: int) -> int:
-        """Return the number of a flight among those of its point."""
-        return self._point(number)[1]
+    def point_of(self, number: int) -> tuple[Point, int]:
+        """Return the point of a flight, and the flight's number among those of its point."""
+        i = bisect.bisect_right(self._ends, number)
+        return self.points[i], number - (self._ends[i - 1] if i else 0)
 
     def request(
         self, number: int, at: Sequence[float] = (), *, seed: int | None = None
@@ -181,7 +177,7 @@ class Experiment:
         ------
         InputError : a sampled value is out of range
         """
-        point, index = self._point(number)
+        point, index = self.point_of(number)
         flight_id, variant = self.named(number)
         if point.scenario.draws:
             sampled = self._sampled(point, index, at)
@@ -202,6 +198,10 @@ class Experiment:
             noise=noise,
             inputs=inputs,
         )
+
+    def requests(self) -> Iterator[FlightRequest]:
+        """Yield every flight, in the order of their numbers."""
+        return map(self.request, range(self.flights))
 
     def settings(self) -> Iterator[Scenario]:
         """Yield every kind of flight, as far as autopilot and margins depend on it: by points and
@@ -240,38 +240,30 @@ class Experiment:
             if draws:
                 yield with_values(point.scenario, {draw.key: draw.largest for draw in draws})
 
-    def _point(self, number: int) -> tuple[Point, int]:
-        i = bisect.bisect_right(self._ends, number)
-        return self.points[i], number - (self._ends[i - 1] if i else 0)
-
     def _sampled(self, point: Point, index: int, at: Sequence[float]) -> SampledFlight:
         """Return a flight with its samples; one of a comparison has those of the study's flight
-        that it is beside.
+        with which it is compared.
         """
-        if point.beside is None:
-            return sampled_flight(
-                self.name, point.scenario, index, at, given=point.given, stream=point.stream
-            )
-        study = self.points[point.beside]
-
-        def beside(values: Values) -> Scenario:
-            return with_values(study.scenario, not_displaced(values, study.given))
-
+        paired = (
+            None
+            if point.paired_point is None
+            else functools.partial(_with_samples, self.points[point.paired_point])
+        )
         return sampled_flight(
             self.name,
             point.scenario,
             index,
             at,
             given=point.given,
-            beside=beside,
+            paired=paired,
             stream=point.stream,
         )
 
     def _seed(self, point: Point, index: int) -> int:
         """Return the seed of a flight; variants of a point start alike.
 
-        It depends on nu alone where that is swept, with one flight at each, and no other random
-        numbers are asked for.
+        In a sweep of nu with one flight a point it depends on nu alone, unless the points are to
+        share their random numbers, or each has a stream of its own.
         """
         common = self.scenario.common_random_numbers is True and bool(point.inputs)
         if point.nu is not None and point.flights == 1 and not (point.stream or common):
@@ -299,3 +291,54 @@ def differing_keys(before: Mapping[str, Any], now: Mapping[str, Any], above: str
         else:
             found[f"{above}{key}"] = value
     return found
+
+
+def _with_samples(point: Point, values: Values) -> Scenario:
+    """Return a point's scenario with samples, without those that give way to its own keys."""
+    return with_values(point.scenario, not_displaced(values, point.given))
+
+
+def scenario_file(request: FlightRequest, *, title: str) -> bytes:
+    """Return a scenario that replays a flight, to the last bit.
+
+    But where an experiment varies the bank beyond the design's, or the climb with a part that may
+    fail: the vehicle is measured for the steepest of all its flights, and here for that of this
+    one.
+    """
+    import tomli_w
+
+    document = request.scenario.model_dump(mode="json", exclude_none=True)
+    # The margin is planned for every fault that the experiment may bring, also for those that this
+    # flight does not have.
+    document["fault"]["declared"] = sorted(
+        request.scenario.declared_faults - {request.scenario.fault.kind}
+    )
+    alone = request.scenario.model_copy(update={"draws": (), "sweep": SweepConfig()})
+    for section, values in document.items():
+        if isinstance(values, dict):
+            document[section] = {
+                key: value for key, value in values.items() if not unused(alone, f"{section}.{key}")
+            }
+    for experiment in (
+        "method",
+        "sampling",
+        "statistics",
+        "subset",
+        "search",
+        "comparison",
+        "sweep",
+        "common_random_numbers",
+        "cases",
+        "draws",
+        "laws",
+        "arena",
+        "patrol",
+        "report",
+    ):
+        document.pop(experiment, None)
+    # It is of the experiment, and not of this flight.
+    document.pop("description")
+    # The random variables have their values, and nothing is sampled again.
+    document.pop("speed_ratio")
+    one = {"study": "flights", "title": title, "flights": 1, "flight_seed": request.seed}
+    return tomli_w.dumps(document | one).encode()

@@ -6,22 +6,22 @@ import math
 from collections.abc import Generator, Sequence
 from typing import Any
 
+from aircraft.wind import CALM
 from gnc.guard.guard import GuardStatus
 from gnc.guidance import Guidance
 from gnc.mission.axis import SearchedAxis
 from gnc.mission.follow import PlumeFollowing
-from scenarios.flight.ending import Ending
+from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from scenarios.flight.ending import EarlyStop, Ending, Settling
 from scenarios.flight.guard_belief import GuardBelief
-from scenarios.flight.interventions import interventions
-from scenarios.flight.judge import Judge
-from scenarios.flight.onboard import OnboardSensing
-from scenarios.flight.plume_readings import PlumeBelief, PlumeReadings, axis_of
-from scenarios.flight.record import FlightRecord
-from scenarios.flight.recorder import Recorder
-from scenarios.flight.settling import Settling
+from scenarios.flight.onboard import OnboardSensing, PlumeBelief, PlumeReadings, axis_of
+from scenarios.flight.record import NO_REFERENCE, FlightRecord, GuardedStep, Recorder, interventions
 from scenarios.instruments.instrument import GasReader, Instrument
 from scenarios.planning.flight_plan import FlightPlan
+from scenarios.vehicles.jsbsim import JsbsimVehicle
+from scenarios.vehicles.kinematic import KinematicVehicle
 from scenarios.vehicles.vehicle import Vehicle
+from scenarios.vehicles.vehicle_setup import VehicleSetup
 
 Commands = tuple[float, float]
 """Heading rate [rad/s] and airspeed [m/s]."""
@@ -74,7 +74,11 @@ class ClosedLoop:
         )
         self._sensing = _sensing(plan, vehicle, guidance, reader)
         self.ending = Ending(
-            plan, vehicle, guidance, self.settling, _judge(plan, guidance, reader, self.settling)
+            plan,
+            vehicle,
+            guidance,
+            self.settling,
+            _early_stop(plan, guidance, reader, self.settling),
         )
 
     def steps(self) -> Generator[Commands, Commands, FlightRecord]:
@@ -86,26 +90,16 @@ class ClosedLoop:
         or out of control.
         """
         # Names of their own: this is the innermost loop of every flight.
-        plan, guidance, sensing, recorder, ending = (
-            self.plan,
-            self.guidance,
-            self._sensing,
-            self._recorder,
-            self.ending,
-        )
+        plan, guidance, sensing = self.plan, self.guidance, self._sensing
+        recorder, ending, belief = self._recorder, self.ending, self._guard_belief
         mission, target, guard = guidance.mission, guidance.target, guidance.guard
-        belief = self._guard_belief
-        guide, motion_of, advance, reference_of = (
-            guidance.step,
-            self.vehicle.motion,
-            self.vehicle.advance,
-            recorder.reference,
-        )
+        guide, reference_of = guidance.step, recorder.reference
+        motion_of, advance = self.vehicle.motion, self.vehicle.advance
         time_step, log_interval = plan.time_step, plan.log_interval
         record_interval = 1 if self._every_step else log_interval
         demand_max = command_max = airspeed_error = 0.0
         saturated = step = 0
-        guarding: list[tuple[int, float, bool]] = []
+        guarded: list[GuardedStep] = []
         for step in range(round(plan.duration_max / time_step) + 1):
             time, motion = step * time_step, motion_of()
             recorded = step % record_interval == 0
@@ -128,41 +122,35 @@ class ClosedLoop:
             command_max = max(command_max, commanded)
             saturated += tracker.saturated
             if guidance.guarding and guard is not None:
-                guarding.append(
-                    (
-                        step,
-                        math.hypot(motion.north - target.north, motion.east - target.east),
-                        guard.status is GuardStatus.LOST,
-                    )
-                )
+                distance = math.hypot(motion.north - target.north, motion.east - target.east)
+                guarded.append(GuardedStep(step, distance, guard.status is GuardStatus.LOST))
             if recorded:
                 sampled = step % log_interval == 0
-                sample, complete = recorder.record(
-                    time, motion, reference or reference_of() or (math.nan,) * 4, judged=sampled
-                )
+                placed = reference or reference_of() or NO_REFERENCE
+                sample, complete = recorder.record(time, motion, placed, judged=sampled)
                 if sampled and ending.reached(time, motion, sample, complete=complete):
                     break
             command, airspeed = yield command, guidance.airspeed_command
             if belief is not None:
                 belief.command(tracker.heading_rate_command)
             advance(command, airspeed - airspeed_error)
-        ending.guarded, ending.saturated = bool(guarding), saturated / (step + 1)
+        ending.guarded, ending.saturated = bool(guarded), saturated / (step + 1)
         rows = recorder.rows()
         return FlightRecord(
             outcome=ending.outcome,
             message=ending.message,
             mode=ending.mode,
-            enough=ending.enough,
+            stop_reason=ending.stop_reason,
             verdict=ending.verdict,
             settled_at=self.settling.at,
-            interventions=interventions(guarding, time_step),
+            interventions=interventions(guarded, time_step),
             columns=recorder.columns,
             history=rows[::log_interval] if self._every_step else rows,
             every_step=rows,
             saturation_fraction=ending.saturated,
             heading_rate_demand_max=demand_max,
             heading_rate_command_max=command_max,
-            guard_time=len(guarding) * time_step,
+            guard_time=len(guarded) * time_step,
         )
 
 
@@ -174,8 +162,8 @@ def fly(
     reader: GasReader | None = None,
     every_step: bool = False,
 ) -> FlightRecord:
-    """Fly ``plan`` with a vehicle that stands at its start as its guidance commands; parameters as
-    of ``ClosedLoop``.
+    """Fly ``plan`` with a vehicle that stands at its start as its guidance commands; parameters
+    are those of ``ClosedLoop``.
     """
     steps = ClosedLoop(plan, vehicle, payload, reader=reader, every_step=every_step).steps()
     follow = steps.send
@@ -218,11 +206,56 @@ def _sensing(
     )
 
 
-def _judge(
+def _early_stop(
     plan: FlightPlan, guidance: Guidance, reader: GasReader | None, settling: Settling
-) -> Judge | None:
-    """Return what ends a flight when it has enough, of one that is to."""
+) -> EarlyStop | None:
+    """Return what ends a flight early, of one that may end so."""
     mission = guidance.mission
     if not plan.until_verdict or reader is None or not isinstance(mission, PlumeFollowing):
         return None
-    return Judge(reader, mission, settling)
+    return EarlyStop(reader, mission, settling)
+
+
+def failable(plan: FlightPlan) -> bool:
+    """Return whether a part of the aircraft may fail in a flight."""
+    return plan.world is not None and plan.world.fault.of_aircraft()
+
+
+def release(
+    plan: FlightPlan,
+    setup: VehicleSetup,
+    viewer: tuple[str, int] | None = None,
+    *,
+    flown: AutopilotedAircraft | None = None,
+) -> Vehicle:
+    """Return the vehicle at the start of a flight.
+
+    Parameters
+    ----------
+    plan : the flight
+    setup : of the aircraft, or of the kinematic vehicle
+    viewer : host and port of a FlightGear that is to show the aircraft, in real time; none if not
+        given
+    flown : an aircraft that has flown before, to be used again; a fresh one if not given
+    """
+    start, world = plan.start, plan.world
+    where = {
+        "north": start.north,
+        "east": start.east,
+        "altitude": plan.altitude,
+        "course": start.course,
+    }
+    aircraft = setup.aircraft
+    if aircraft is None:
+        wind = world.weather.wind if world else CALM
+        return KinematicVehicle(
+            **where, speed=plan.guidance.speed, time_step=plan.time_step, lag=setup.lag, wind=wind
+        )
+    flown = flown or AutopilotedAircraft(aircraft.spec, aircraft.model, failable=failable(plan))
+    if viewer is not None:
+        flown.fdm.stream_to_flightgear(*viewer)
+    # Still air needs no weather of its own.
+    weather = world.weather if world and plan.sensing else None
+    return JsbsimVehicle(
+        flown, aircraft.start, aircraft.envelope, **where, time_step=plan.time_step, weather=weather
+    )

@@ -1,18 +1,54 @@
-"""When a flight is over, and how it ended."""
+"""When a flight has settled, when it is over, and how it ended.
+
+A flight may end early: with a verdict on the fuel, or with the knowledge that there will be none.
+Each look at the readings could be wrong, and a flight ends at the first that finds a verdict. So the
+guard band allows for the looks before and after it (``measurement.estimate.repeated``).
+"""
 
 import math
+import traceback
+from enum import Enum
+from pathlib import Path
 
+from aircraft.spec import AircraftError
+from common.registry import PluginError
+from common.text import one_line
+from gnc.errors import InfeasibleError, LawError
 from gnc.estimation.health import Fault
 from gnc.estimation.navigation import MeasuredMotion
+from gnc.estimation.plume.passes import SensorState
 from gnc.guidance import Guidance
+from gnc.mission.axis import SearchedAxis
+from gnc.mission.follow import PlumeFollowing
 from gnc.mission.mission import LOST, Mode
+from measurement.errors import MeasurementError
+from measurement.estimate.estimator import estimate
 from measurement.estimate.repeated import RepeatedVerdict
-from scenarios.flight.judge import Judge
+from measurement.estimate.verdict import OPEN
+from scenarios.engine.task import Row
+from scenarios.errors import InputError
 from scenarios.flight.outcome import Outcome
-from scenarios.flight.settling import Settling
+from scenarios.instruments.instrument import GasReader
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.scenario.sections.flight import DITCHED
 from scenarios.vehicles.vehicle import Vehicle
+
+_CENTRE_BANDS = 3.0
+"""Distance of the orbit's centre from its place that counts as there, over the settling band: the
+vessel is not known exactly.
+"""
+
+LOOK_INTERVAL = 15.0
+"""Time between looks at the readings [s]."""
+
+_AGREEING = 2
+"""Looks in a row that have to find the plume out of reach or the sensor failed, which may pass."""
+
+_MEASURABLE = 0.05
+"""Probability that the plume can be crossed below which it is given up [-]."""
+
+LEFT_BY = 150.0
+"""How much farther from the vessel than where it began to leave a flight is over [m]."""
 
 _ON_THE_WATER = 2.0
 """Altitude below which a gliding vehicle has come down [m]."""
@@ -30,13 +66,195 @@ report.
 """
 
 
+class Settling:
+    """Watches a flight, sample by sample.
+
+    A flight has settled from the first moment from which the vehicle stays near its reference, and
+    the orbit near its place, for a whole period. It stays settled: what turbulence or a manoeuvre
+    do later belongs to the flight.
+
+    Parameters
+    ----------
+    band : distance from the reference that counts as near [m]
+    period : of the oscillation [s]
+    crossings : to be flown; 0 for no end
+    after : how long the flight goes on once it has settled, infinite for no end [s]
+
+    Attributes
+    ----------
+    at : when the flight had settled, NaN as long as that does not show [s]
+    crossings : flown since
+    tracked : longest time for which the vehicle stayed near its reference before that, wherever the
+        orbit was [s]
+    centre_error, centre_band : distance of the orbit's centre from its place at the last sample,
+        infinite while it is still closing in, and below what it counts as there [m]
+    """
+
+    def __init__(
+        self, *, band: float, period: float, crossings: int, after: float = math.inf
+    ) -> None:
+        self._band = band
+        self._period = period
+        self._demanded = crossings
+        self._after = after
+        self._since = math.inf
+        self._near_since = math.inf
+        self._side = 0.0
+        self._complete = False
+        self._open = True
+        self.centre_band = _CENTRE_BANDS * band
+        self.centre_error = math.inf
+        self.at = math.nan
+        self.crossings = 0
+        self.tracked = 0.0
+
+    def update(
+        self,
+        time: float,
+        tracking_error: float,
+        centre_error: float,
+        x: float,
+        y: float,
+        axis: float,
+    ) -> bool:
+        """Take note of a sample; return whether the flight had flown all that it is to fly by the
+        last one.
+
+        Parameters
+        ----------
+        time : [s]
+        tracking_error : distance to the reference [m]
+        centre_error : distance of the orbit's centre from its place, infinite while that is still
+            closing in [m]
+        x, y : north and east of the vessel [m]
+        axis : course along which the plume trails [rad]
+        """
+        self.centre_error = centre_error
+        cos_a, sin_a = math.cos(axis), math.sin(axis)
+        before, self._side = self._side, cos_a * y - sin_a * x
+        if self._open:
+            near = tracking_error < self._band
+            self._near_since = min(self._near_since, time) if near else math.inf
+            self.tracked = max(self.tracked, time - self._near_since)
+        if self._open and (tracking_error >= self._band or centre_error >= self.centre_band):
+            self._since, self.crossings = math.inf, 0
+        elif self._since == math.inf:
+            self._since = time
+        elif before * self._side < 0.0 and cos_a * x + sin_a * y > 0.0:
+            self.crossings += 1
+        if self._open and time - self._since >= self._period:
+            self.at, self._open = self._since, False
+        complete, self._complete = self._complete, not self._open and self._flown(time)
+        return complete
+
+    def _flown(self, time: float) -> bool:
+        """Return whether it has settled for as long, and has the crossings, that are asked for; not
+        where nothing is.
+        """
+        crossed = 0 < self._demanded <= self.crossings
+        if self._after == math.inf:
+            return crossed
+        return time - self.at >= self._after and self.crossings >= self._demanded
+
+
+class StopReason(Enum):
+    """Why a flight leaves before its time."""
+
+    ABOVE = "verdict: above"
+    BELOW = "verdict: below"
+    OUT_OF_REACH = "plume out of reach"
+    SENSOR = "sensor failed"
+
+
+class EarlyStop:
+    """Checks periodically whether the flight can end early, and then has it leave.
+
+    Parameters
+    ----------
+    reader : of the gases
+    mission : that follows the plume
+    settling : says from when on readings count
+
+    Attributes
+    ----------
+    reason : why the flight leaves; None while it goes on
+    left_at : when it began to leave [s]
+    verdict : on the fuel, by all looks
+    """
+
+    def __init__(self, reader: GasReader, mission: PlumeFollowing, settling: Settling) -> None:
+        self._reader, self._mission, self._settling = reader, mission, settling
+        self._next_look, self._same_finding = LOOK_INTERVAL, 0
+        self._last: StopReason | None = None
+        self._left_from = math.inf
+        self.reason: StopReason | None = None
+        self.left_at = math.nan
+        self.verdict = RepeatedVerdict(reader.limit_percent)
+
+    @property
+    def message(self) -> str:
+        """Return why the flight left without a verdict, in a sentence."""
+        axis = self._mission.axis
+        believed = ""
+        if isinstance(axis, SearchedAxis) and not math.isnan(axis.estimate.height):
+            found = axis.estimate
+            believed = (
+                f"; the plume's axis was taken to be {found.height:.0f} m high, with a deviation of"
+                f" {found.height_deviation:.0f} m"
+            )
+        reason = self.reason.value if self.reason else ""
+        return f"{reason}: it left at {self.left_at:.0f} s without a verdict{believed}"
+
+    def has_left(self, time: float, distance: float) -> bool:
+        """Return whether the flight has left, at a time [s] and a distance from the vessel [m]."""
+        if self.reason is not None:
+            return distance > self._left_from + LEFT_BY
+        if time < self._next_look:
+            return False
+        self._next_look += LOOK_INTERVAL
+        found = self._look()
+        self._same_finding = self._same_finding + 1 if found is self._last else 1
+        self._last = found
+        needed = 1 if found in (StopReason.ABOVE, StopReason.BELOW) else _AGREEING
+        if found is not None and self._same_finding >= needed:
+            self.reason, self.left_at, self._left_from = found, time, distance
+            self._mission.depart()
+        return False
+
+    def _look(self) -> StopReason | None:
+        """Return the reason to stop that there is by now."""
+        axis = self._mission.axis
+        if isinstance(axis, SearchedAxis):
+            if axis.sensor is not SensorState.WORKING:
+                return StopReason.SENSOR
+            orbit = self._mission.orbit
+            # Off its orbit a flight detects nothing, wherever the plume is.
+            on_orbit = orbit is not None and orbit.in_place
+            if on_orbit and axis.mode is not Mode.FOUND and axis.measurable() < _MEASURABLE:
+                return StopReason.OUT_OF_REACH
+        if math.isnan(self._settling.at):
+            return None
+        readings, limit = self._reader.readings(self._settling.at), self._reader.limit_percent
+        try:
+            found = estimate(readings, self._reader.spec, limits_percent=(limit,))
+        except MeasurementError:
+            return None
+        verdict = self.verdict.look(
+            found.fsc_percent,
+            noise=found.noise_percent,
+            total=found.total_percent,
+            admitted=found.quality != "C",
+        )
+        return None if verdict == OPEN else StopReason(f"verdict: {verdict}")
+
+
 class Ending:
     """Decides when a flight is over, and how it ended.
 
     Parameters
     ----------
     plan, vehicle, guidance, settling : of the flight
-    judge : says when it has enough, or none
+    early_stop : says when it can end early; None where it may not
 
     Attributes
     ----------
@@ -52,18 +270,13 @@ class Ending:
         vehicle: Vehicle,
         guidance: Guidance,
         settling: Settling,
-        judge: Judge | None,
+        early_stop: EarlyStop | None,
     ) -> None:
-        self._plan, self._vehicle, self._guidance, self._settling, self._judge = (
-            plan,
-            vehicle,
-            guidance,
-            settling,
-            judge,
-        )
+        self._plan, self._vehicle, self._guidance = plan, vehicle, guidance
+        self._settling, self._early_stop = settling, early_stop
         self._ditched, self._fault, self._end = False, "", 0.0
-        self.guarded, self.saturated = False, 0.0
         self._noticed = math.inf
+        self.guarded, self.saturated = False, 0.0
 
     def reached(
         self, time: float, motion: MeasuredMotion, sample: tuple[float, ...], *, complete: bool
@@ -72,36 +285,28 @@ class Ending:
         crossings that are asked for.
         """
         monitor, self._end = self._guidance.monitor, time
-        self._ditched = (
-            monitor is not None and monitor.fault is not Fault.NONE and sample[0] < _ON_THE_WATER
-        )
-        if monitor is None or monitor.fault is Fault.NONE:
-            self._noticed = math.inf
-        else:
-            self._noticed = min(self._noticed, time)
+        failed = monitor is not None and monitor.fault is not Fault.NONE
+        self._noticed = min(self._noticed, time) if failed else math.inf
+        self._ditched = failed and sample[0] < _ON_THE_WATER
         self._fault = "" if self._ditched else self._vehicle.fault(sample)
         over = complete
-        if self._judge is not None:
+        stop = self._early_stop
+        if stop is not None:
             target = self._guidance.target
-            over = self._judge.over(
-                time, math.hypot(motion.north - target.north, motion.east - target.east)
-            )
-            over = over or (complete and self._judge.enough is None)
+            distance = math.hypot(motion.north - target.north, motion.east - target.east)
+            over = stop.has_left(time, distance) or (complete and stop.reason is None)
         return bool(self._fault) or self._ditched or over
 
     @property
-    def enough(self) -> str:
+    def stop_reason(self) -> str:
         """Return why the flight left before its time, or nothing."""
-        return (
-            self._judge.enough.value
-            if self._judge is not None and self._judge.enough is not None
-            else ""
-        )
+        stop = self._early_stop
+        return stop.reason.value if stop is not None and stop.reason is not None else ""
 
     @property
     def verdict(self) -> RepeatedVerdict | None:
         """Return the verdict on the fuel by all looks, or None where nobody looked."""
-        return self._judge.verdict if self._judge is not None else None
+        return self._early_stop.verdict if self._early_stop is not None else None
 
     @property
     def mode(self) -> str:
@@ -111,29 +316,30 @@ class Ending:
     @property
     def outcome(self) -> Outcome:
         """Return how the flight ended."""
-        mode = self._guidance.mode
+        mode, plan = self._guidance.mode, self._plan
         if self._fault:
             return Outcome.DIVERGED
         if self._ditched or mode in LOST:
             return Outcome.AIRCRAFT_LOST
-        if self._plan.world is None or self.enough.startswith("verdict"):
+        if plan.world is None or self.stop_reason.startswith("verdict"):
             return Outcome.COMPLETED
-        if self.enough:
+        if self.stop_reason:
             return Outcome.INCOMPLETE
         if math.isnan(self._settling.at):
             return Outcome.NOT_SETTLED
-        flown = self._settling.crossings >= max(1, self._plan.crossings) and not self._missing
+        flown = self._settling.crossings >= max(1, plan.crossings) and not self._missing
         # One that has flown all that it is to fly is over, whatever its guidance is about to do.
-        given_up = (
-            not self._plan.crossings and self._plan.after_settling == math.inf and mode in _GIVEN_UP
-        )
+        endless = not plan.crossings and plan.after_settling == math.inf
+        given_up = endless and mode in _GIVEN_UP
         return Outcome.COMPLETED if flown and not given_up else Outcome.INCOMPLETE
 
     @property
     def _missing(self) -> float:
         """Return how much of the time after settling that is asked for has not been flown [s]."""
-        asked = self._plan.after_settling
-        return 0.0 if asked == math.inf else max(0.0, asked - (self._end - self._settling.at))
+        demanded = self._plan.after_settling
+        if demanded == math.inf:
+            return 0.0
+        return max(0.0, demanded - (self._end - self._settling.at))
 
     @property
     def message(self) -> str:
@@ -142,11 +348,8 @@ class Ending:
             case Outcome.DIVERGED:
                 return f"{self._fault} at {self._end:.1f} s"
             case Outcome.AIRCRAFT_LOST:
-                what = (
-                    "came down on the sea"
-                    if self._ditched
-                    else f"was still {self.mode} towards the sea"
-                )
+                still = f"was still {self.mode} towards the sea"
+                what = "came down on the sea" if self._ditched else still
                 return (
                     f"it {what} at {self._end:.1f} s, {self._crossings()}{self._after_fault()}"
                     f"{self._what_was_noticed()}"
@@ -164,11 +367,9 @@ class Ending:
     def _after_fault(self) -> str:
         """Return which fault of the scenario had begun, or nothing."""
         fault = self._plan.world.fault if self._plan.world else None
-        return (
-            f", after the fault '{fault.kind}' at {fault.begins:.1f} s"
-            if fault and fault.begins <= self._end
-            else ""
-        )
+        if fault is None or fault.begins > self._end:
+            return ""
+        return f", after the fault '{fault.kind}' at {fault.begins:.1f} s"
 
     def _what_was_noticed(self) -> str:
         """Return the fault that was noticed in flight and not taken back, or nothing."""
@@ -179,39 +380,46 @@ class Ending:
 
     def _shortfall(self) -> str:
         settling, plan, mode = self._settling, self._plan, self._guidance.mode
-        if self._judge is not None and self._judge.enough is not None:
-            return self._judge.words
+        if self._early_stop is not None and self._early_stop.reason is not None:
+            return self._early_stop.message
         ended = f", and ended {mode.value}" if mode in _GIVEN_UP else ""
         within = f"within {plan.duration_max:g} s{ended}"
         guard = ", and the keep-out guard may hold it off its orbit" if self.guarded else ""
         if math.isnan(settling.at):
             return self._unsettled(f"did not settle {within}", guard)
+        after = plan.after_settling
         if self._missing:
-            flown = f"flew {plan.after_settling - self._missing:.0f} of {plan.after_settling:g} s after settling"
-        elif plan.after_settling < math.inf and not plan.crossings:
+            flown = f"flew {after - self._missing:.0f} of {after:g} s after settling"
+        elif after < math.inf and not plan.crossings:
             # It ended as it was to end, before the end of the longest flight.
             return (
-                f"flew no crossing in {self._end - settling.at:.0f} s after settling: fly longer (flight.after_settling_s), or ask"
-                " for crossings (flight.crossings)"
+                f"flew no crossing in {self._end - settling.at:.0f} s after settling: fly longer"
+                " (flight.after_settling_s), or ask for crossings (flight.crossings)"
             )
         elif plan.crossings or not settling.crossings:
-            flown = f"flew {settling.crossings}{f' of {plan.crossings}' if plan.crossings else ''} crossings after settling"
+            demanded = f" of {plan.crossings}" if plan.crossings else ""
+            flown = f"flew {settling.crossings}{demanded} crossings after settling"
         else:
-            return f"ended {mode.value} after {settling.crossings} crossings: the plume was no longer crossed"
-        return f"{flown} {within}: allow more time (flight.duration_max_s), or start closer{guard}"
+            crossed = f"after {settling.crossings} crossings"
+            return f"ended {mode.value} {crossed}: the plume was no longer crossed"
+        remedy = "allow more time (flight.duration_max_s), or start closer"
+        return f"{flown} {within}: {remedy}{guard}"
 
     def _unsettled(self, what: str, guard: str) -> str:
         """Return why a flight did not settle, and what may help."""
         tracked = self._settling.tracked
         if self.saturated > _SATURATED:
             return (
-                f"{what}: its steering law asked for more than the largest heading rate in {100.0 * self.saturated:.0f} % of the"
-                " steps; check that it returns rad/s, positive to the right (guidance.law)"
+                f"{what}: its steering law asked for more than the largest heading rate in"
+                f" {100.0 * self.saturated:.0f} % of the steps; check that it returns rad/s,"
+                " positive to the right (guidance.law)"
             )
-        remedy = f"fly longer (flight.duration_max_s) or start closer, though neither may be enough{guard}"
+        longer = "fly longer (flight.duration_max_s) or start closer"
+        remedy = f"{longer}, though neither may be enough{guard}"
         if tracked < self._plan.settling_period:
             return f"{what}: {remedy}"
-        return f"{what}: it tracked its reference for {tracked:.0f} s, but {self._orbit()}. {remedy.capitalize()}"
+        tracking = f"it tracked its reference for {tracked:.0f} s, but {self._orbit()}"
+        return f"{what}: {tracking}. {remedy.capitalize()}"
 
     def _orbit(self) -> str:
         """Return how the orbit stood to its place at the end of a flight that tracked it and did
@@ -220,6 +428,35 @@ class Ending:
         off, most = self._settling.centre_error, self._settling.centre_band
         if off == math.inf:
             return "its orbit was still closing in on its place"
-        if off >= most:
-            return f"its orbit was still {off:.0f} m from its place at the end ({most:g} m are near enough)"
-        return "its orbit was not in its place for a whole period"
+        if off < most:
+            return "its orbit was not in its place for a whole period"
+        near = f"{most:g} m are near enough"
+        return f"its orbit was still {off:.0f} m from its place at the end ({near})"
+
+
+def failure(error: Exception | SystemExit) -> Row:
+    """Return the outcome and the message of a flight that an error ended.
+
+    Raises
+    ------
+    MemoryError : if that is the error: the same flight may do in a process of its own
+    """
+    if isinstance(error, MemoryError):
+        raise error
+    if isinstance(error, InfeasibleError | MeasurementError):
+        return unflown(Outcome.INFEASIBLE, str(error))
+    message = str(error)
+    if not isinstance(error, AircraftError | InputError | LawError | PluginError):
+        frames = traceback.extract_tb(error.__traceback__)
+        # Methods of dataclasses are made from text, and have no file: what called them has.
+        in_files = [frame for frame in frames if not frame.filename.startswith("<")]
+        where = (in_files or frames)[-1]
+        message = f"{type(error).__name__}: {error} ({Path(where.filename).name}:{where.lineno})"
+    return unflown(Outcome.FAILED, message)
+
+
+def unflown(outcome: Outcome, message: str) -> Row:
+    """Return the outcome and the message, in one line, of a flight that was not flown or not to its
+    end.
+    """
+    return {"outcome": outcome.value, "message": one_line(message), "criteria_met": False}

@@ -1,16 +1,137 @@
-"""What the guidance learns by sensors and reports, and what it passes on to the vehicle beside its
-commands.
+"""What the guidance learns by sensors, by reports and of the plume, and what it passes on to the
+vehicle beside its commands.
 """
 
+import math
+
+import numpy as np
+
+from common.columns import described
 from gnc.estimation.health import Fault
 from gnc.estimation.navigation import MeasuredMotion, SensorReadings
 from gnc.estimation.vessel import ReportedTarget, VesselReport
 from gnc.guidance import Guidance
-from scenarios.flight.plume_readings import PlumeReadings
+from gnc.mission.axis import ExpectedAxis, PredictedAxis, SearchedAxis
+from gnc.mission.follow import PlumeFollowing
+from scenarios.instruments.instrument import GasReader
 from scenarios.planning.flight_plan import Sensing
 from scenarios.vehicles.vehicle import Vehicle
 from scenarios.world.faults import SATELLITES, VESSEL_DATA
 from scenarios.world.world import World
+
+_BELIEF_INTERVAL = 15.0
+"""Time between evaluations of what is costly to compute [s]."""
+
+
+class PlumeReadings:
+    """Passes on the readings of a sniffer, and the true axis of the plume to a flight that is given
+    it.
+
+    Parameters
+    ----------
+    reader : a sniffer that is read in flight, or none
+    world, vehicle : of the flight
+    axis : of the plume, as the guidance has it
+    interval : guidance steps between rows of the record, at which the sniffer's path is known
+    knows_axis : whether the guidance is given the true axis
+    """
+
+    def __init__(
+        self,
+        reader: GasReader | None,
+        world: World,
+        vehicle: Vehicle,
+        axis: ExpectedAxis,
+        *,
+        interval: int,
+        knows_axis: bool,
+    ) -> None:
+        self._reader, self._world, self._vehicle, self._axis = reader, world, vehicle, axis
+        self._interval, self._knows_axis = interval, knows_axis
+
+    def pass_on(self, step: int, time: float, motion: MeasuredMotion, guidance: Guidance) -> None:
+        """Pass on what has come until a step; the guidance has taken note of its own motion at it."""
+        if step % self._interval == 0:
+            sample, axis = self._vehicle.sample(), self._axis
+            axis.flown = sample[0]
+            readings = self._reader.follow(time, motion, sample) if self._reader is not None else ()
+            if isinstance(axis, SearchedAxis):
+                axis.take_readings(time, readings)
+        if self._knows_axis and step % guidance.plan_interval == 0:
+            self._set_true_axis(time, guidance)
+
+    def _set_true_axis(self, time: float, guidance: Guidance) -> None:
+        """Say where the mean axis is, seen from the centre of oscillation as the guidance has it."""
+        exhaust, orbit = self._world.exhaust, guidance.mission.orbit
+        if exhaust is None or orbit is None or not isinstance(self._axis, PredictedAxis):
+            return
+        centre = orbit.centre
+        north, east, _, _ = self._world.vessel.motion(time)
+        height = self._world.source_height
+        at = (np.array([value]) for value in (time, north + centre.x, east + centre.y, height))
+        plume = exhaust.sample(*at)
+        across, above = float(plume.across[0]), float(plume.axis_height[0])
+        if math.isfinite(above):
+            bearing, distance = math.atan2(centre.y, centre.x), math.hypot(centre.x, centre.y)
+            self._axis.set_true_axis(above, bearing - math.atan2(across, distance))
+
+
+BELIEF_COLUMNS = described(
+    {
+        "axis_height_estimated_m": "estimated height of the plume's axis",
+        "axis_height_deviation_m": "standard deviation of the estimated height",
+        "axis_offset_estimated_m": "estimated offset of the axis across the predicted one",
+        "axis_offset_deviation_m": "standard deviation of the estimated offset",
+        "axis_spread_estimated_m": "estimated vertical spread of the plume",
+        "axis_spread_across_estimated_m": "estimated horizontal spread of the plume",
+        "axis_measurable": "estimated probability that the plume can be crossed within the limits"
+        " of the altitude",
+        "axis_innovation": "mean normalised innovation squared of the passes, 1 where the filter is"
+        " consistent",
+    }
+)
+"""Of a time history, of flights that search for the plume."""
+
+
+class PlumeBelief:
+    """What the guidance believes of the plume, as columns of the time history.
+
+    Parameters
+    ----------
+    axis : of the plume, as the guidance has it
+    """
+
+    COLUMNS = tuple(BELIEF_COLUMNS)
+
+    def __init__(self, axis: SearchedAxis) -> None:
+        self._axis = axis
+        self._measurable, self._next = math.nan, 0.0
+
+    def read(
+        self,
+        time: float,
+        motion: MeasuredMotion,  # noqa: ARG002 - of an instrument
+        sample: tuple[float, ...],  # noqa: ARG002 - of an instrument
+    ) -> tuple[float, ...]:
+        """Return a value for each column."""
+        found = self._axis.estimate
+        if time >= self._next:
+            self._measurable, self._next = self._axis.measurable(), time + _BELIEF_INTERVAL
+        return (
+            found.height,
+            found.height_deviation,
+            found.offset,
+            found.offset_deviation,
+            found.spread,
+            found.spread_across,
+            self._measurable,
+            found.innovation,
+        )
+
+
+def axis_of(guidance: Guidance) -> ExpectedAxis | None:
+    """Return the axis of the plume that a guidance follows, if it follows one."""
+    return guidance.mission.axis if isinstance(guidance.mission, PlumeFollowing) else None
 
 
 class OnboardSensing:
@@ -31,11 +152,6 @@ class OnboardSensing:
         the command
     """
 
-    __slots__ = (
-        "_air_data", "_altitude", "_engine", "_exact", "_fault", "_guidance", "_held", "_read_with_errors", "_readings", "_received",
-        "_report", "_satellites_fail", "_servo_error", "_vehicle", "_vessel", "airspeed_error", "failing",
-    )  # fmt: skip
-
     def __init__(
         self,
         sensing: Sensing,
@@ -48,19 +164,20 @@ class OnboardSensing:
     ) -> None:
         if not isinstance(guidance.target, ReportedTarget):
             raise TypeError(
-                "the guidance knows its target exactly, and has no use for reports; give it a filter"
+                "the guidance knows its target exactly, and has no use for reports; give it a"
+                " filter"
             )
-        self._fault, self._vessel = world.fault, world.vessel
-        self._read_with_errors, self._air_data = sensing.errors.read, vehicle.air_data
-        self._servo_error, self._engine = vehicle.servo_error, vehicle.engine
-        self._exact, self._received = (
-            sensing.received is None,
-            list(reversed(sensing.received or [])),
-        )
         self._vehicle, self._guidance, self._readings = vehicle, guidance, readings
-        self._report = guidance.target.report
-        self._altitude, self._held, self.failing = altitude, False, world.fault.of_aircraft()
+        self._fault, self._vessel = world.fault, world.vessel
+        self._fault_pending = world.fault.of_aircraft()
         self._satellites_fail = world.fault.kind == SATELLITES
+        self._read_with_errors = sensing.errors.read
+        self._air_data, self._servo_error = vehicle.air_data, vehicle.servo_error
+        self._engine = vehicle.engine
+        self._exact = sensing.received is None
+        self._received = list(reversed(sensing.received or []))
+        self._report = guidance.target.report
+        self._altitude, self._elevator_held = altitude, False
         self.airspeed_error = 0.0
 
     def read(self, step: int, time: float, motion: MeasuredMotion) -> SensorReadings:
@@ -77,8 +194,8 @@ class OnboardSensing:
         else:
             while self._received and self._received[-1][0] <= time:
                 self._report(self._received.pop()[1])
-        if self.failing and time >= fault.begins:
-            self.failing = False
+        if self._fault_pending and time >= fault.begins:
+            self._fault_pending = False
             self._vehicle.fail(fault.kind)
         # It begins with a place that is known, too: dead reckoning goes on from one.
         satellites = not self._satellites_fail or step == 0 or not fault.lasts(SATELLITES, time)
@@ -107,7 +224,11 @@ class OnboardSensing:
             self._altitude = guidance.altitude_command
             self._vehicle.command_altitude(self._altitude)
         monitor = guidance.monitor
-        if not self._held and monitor is not None and monitor.fault is Fault.ACTUATOR_STUCK:
+        if (
+            not self._elevator_held
+            and monitor is not None
+            and monitor.fault is Fault.ACTUATOR_STUCK
+        ):
             # Where one surface is elevator and aileron, each would undo the other's work.
-            self._held = True
+            self._elevator_held = True
             self._vehicle.hold_elevator()

@@ -1,18 +1,84 @@
-"""What is recorded of a flight: its columns, each with unit and meaning, and how the flight ended."""
+"""What is recorded of a flight: its columns, each with unit and meaning, how the flight ended, and
+when the keep-out guard changed commands.
+"""
 
+import math
+import struct
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from common.columns import described
 from common.text import did_you_mean
-from scenarios.flight.interventions import Intervention
+from gnc.estimation.navigation import MeasuredMotion
+from gnc.guidance import Guidance
+from gnc.mission.mission import NO_CENTRE, OrbitStatus
+from scenarios.flight.ending import Settling
 from scenarios.flight.outcome import Outcome
+from scenarios.instruments.instrument import Instrument
+from scenarios.vehicles.vehicle import Vehicle
+from scenarios.world.own_part import are_numbers, asked, refuse_answer
+from scenarios.world.world import World
 
 if TYPE_CHECKING:
     from measurement.estimate.repeated import RepeatedVerdict
+
+
+class GuardedStep(NamedTuple):
+    """A step of the guidance at which the keep-out guard changed the command.
+
+    Attributes
+    ----------
+    step : its number
+    distance : to the vessel, as the guidance knows it [m]
+    lost : whether the guard's radius could not be held
+    """
+
+    step: int
+    distance: float
+    lost: bool
+
+
+class Intervention(NamedTuple):
+    """A stretch of guidance steps in each of which the guard changed the command.
+
+    Attributes
+    ----------
+    time_s : when it began [s]
+    duration_s : for how long it lasted [s]
+    distance_min_m : how near the vessel was taken to be [m]
+    lost : whether the guard's radius could not be held at some step
+    """
+
+    time_s: float
+    duration_s: float
+    distance_min_m: float
+    lost: bool
+
+
+def interventions(guarded: Sequence[GuardedStep], time_step: float) -> list[Intervention]:
+    """Return the stretches of steps at which the guard changed commands, by the guidance's time
+    step [s].
+    """
+    stretches: list[list[GuardedStep]] = []
+    for entry in guarded:
+        if stretches and entry.step == stretches[-1][-1].step + 1:
+            stretches[-1].append(entry)
+        else:
+            stretches.append([entry])
+    return [
+        Intervention(
+            time_s=stretch[0].step * time_step,
+            duration_s=len(stretch) * time_step,
+            distance_min_m=min(entry.distance for entry in stretch),
+            lost=any(entry.lost for entry in stretch),
+        )
+        for stretch in stretches
+    ]
+
 
 Array = npt.NDArray[np.float64]
 
@@ -46,7 +112,8 @@ HISTORY_COLUMNS = described(
         "heading_rate_demand_rad_s": "heading rate that the law demands, before any limit",
         "heading_rate_command_rad_s": "commanded heading rate",
         "airspeed_command_mps": "commanded airspeed",
-        "altitude_command_m": "commanded altitude; far below the sea while a vehicle with a fault glides",
+        "altitude_command_m": "commanded altitude; far below the sea while a vehicle with a fault"
+        " glides",
         "command_saturated": "1 while the demand is limited to omega_max",
         "guard": "1 while the keep-out guard changes commands, 2 while it cannot hold its radius",
         "altitude_m": "altitude above the sea",
@@ -73,7 +140,7 @@ HISTORY_COLUMNS = described(
     }
 )
 """Columns of a time history, in order, and what each is. A vehicle's own, from ``altitude_m`` on,
-may be not a number.
+may be NaN.
 """
 
 RELATIVE_COLUMNS = ("delta_m", "rho_m", "phi_r_rad", "phi_rad")
@@ -85,11 +152,9 @@ WIND_COLUMNS = ("true_wind_north_mps", "true_wind_east_mps")
 PLACE_COLUMNS = ("latitude_deg", "longitude_deg", "time_utc")
 """Where and when on earth, of flights of which that is known: they follow from the others, too."""
 
-COLUMNS = tuple(
-    column
-    for column in HISTORY_COLUMNS
-    if column not in (*RELATIVE_COLUMNS, *WIND_COLUMNS, *PLACE_COLUMNS)
-)
+_DERIVED = RELATIVE_COLUMNS + WIND_COLUMNS + PLACE_COLUMNS
+
+COLUMNS = tuple(column for column in HISTORY_COLUMNS if column not in _DERIVED)
 """Columns of a flight's record."""
 
 
@@ -101,9 +166,9 @@ class FlightRecord:
     ----------
     outcome, message : how it ended, in a word and in a sentence
     mode : of the guidance at the end, or ``DITCHED``
-    enough : why it left before its time, or nothing
+    stop_reason : why it left before its time, or nothing
     verdict : on the fuel by all looks of a flight that ends with one, or None
-    settled_at : when it had settled, not a number if it never had [s]
+    settled_at : when it had settled, NaN if it never had [s]
     interventions : each time that the keep-out guard changed commands
     columns : of the histories: ``COLUMNS``, and those of the payload
     history : shape (samples, len(columns))
@@ -117,7 +182,7 @@ class FlightRecord:
     outcome: Outcome
     message: str
     mode: str
-    enough: str = ""
+    stop_reason: str = ""
     verdict: "RepeatedVerdict | None" = None
     settled_at: float
     interventions: list[Intervention]
@@ -141,3 +206,187 @@ class FlightRecord:
                 f"the flight's record has no column '{name}'{did_you_mean(name, self.columns)}"
             )
         return self.history[:, self.columns.index(name)]
+
+
+class ReferencePoint(NamedTuple):
+    """Where the reference is in the frame of the air mass.
+
+    Attributes
+    ----------
+    north, east : [m]
+    course, heading_rate : [rad, rad/s]
+    """
+
+    north: float
+    east: float
+    course: float
+    heading_rate: float
+
+
+NO_REFERENCE = ReferencePoint(math.nan, math.nan, math.nan, math.nan)
+"""Before the mission has placed it."""
+
+_NO_ORBIT = OrbitStatus(NO_CENTRE, math.nan, in_place=False)
+
+
+class Recorder:
+    """Records one flight, and watches whether it has settled.
+
+    Parameters
+    ----------
+    guidance, vehicle, world : of the flight; the world may be absent
+    payload : instruments on board
+    settling : watches the flight
+
+    Attributes
+    ----------
+    columns : of the record
+    """
+
+    def __init__(
+        self,
+        guidance: Guidance,
+        vehicle: Vehicle,
+        world: World | None,
+        payload: Sequence[Instrument],
+        settling: Settling,
+    ) -> None:
+        instruments: Sequence[Any] = payload
+        self._guidance = guidance
+        self._own, self._target = guidance.own, guidance.target
+        self._mission, self._guard = guidance.mission, guidance.guard
+        self._sample, self._payload = vehicle.sample, instruments
+        self._update_settling = settling.update
+        # A track, plume or instrument of a user's own may answer in other numbers than Python's,
+        # and in other rows than tuples.
+        self._vessel_at: Callable[[float], Any] = world.vessel.motion if world else _no_vessel
+        self._axis_at: Callable[[float], Any] = world.plume.axis if world else _no_axis
+        own_columns = [column for instrument in instruments for column in instrument.COLUMNS]
+        self.columns = COLUMNS + tuple(own_columns)
+        # As bytes: tuples would be numbers by the hundred thousand for Python to look after, and
+        # slow to make an array of.
+        self._rows: list[bytes] = []
+        self._pack = struct.Struct(f"{len(self.columns)}d").pack
+
+    def reference(self) -> ReferencePoint | None:
+        """Return where the reference is; None before the mission has placed it."""
+        if self._mission.orbit is None:
+            return None
+        reference = self._mission.tracker.reference
+        return ReferencePoint(
+            reference.north, reference.east, reference.course, reference.heading_rate
+        )
+
+    def record(
+        self, time: float, motion: MeasuredMotion, reference: ReferencePoint, *, judged: bool
+    ) -> tuple[tuple[float, ...], bool]:
+        """Keep a row; return the vehicle's sample, and whether the flight has all its crossings, by
+        ``judged`` samples.
+
+        Parameters
+        ----------
+        time : [s]
+        motion : of the vehicle, true
+        reference : as the guidance had it when it computed its commands
+        """
+        guidance, own, target = self._guidance, self._own, self._target
+        mission, guard = self._mission, self._guard
+        tracker = mission.tracker
+        centre, centre_error, in_place = mission.orbit or _NO_ORBIT
+        reference_north = reference.north + own.drift_north
+        reference_east = reference.east + own.drift_east
+        vessel, axis = self._vessel_at(time), self._axis_at(time)
+        sample = self._sample()
+        read: Sequence[Any] = ()
+        if self._payload:
+            read_all = _read_all if self._rows else _read_first
+            read = read_all(self._payload, time, motion, sample)
+        self._rows.append(
+            self._pack(
+                time,
+                *motion,
+                math.atan2(motion.velocity_east, motion.velocity_north),
+                *vessel,
+                axis,
+                reference_north,
+                reference_east,
+                reference.course,
+                reference.heading_rate,
+                target.north + centre.x,
+                target.east + centre.y,
+                centre_error,
+                own.wind_north,
+                own.wind_east,
+                target.north,
+                target.east,
+                centre.speed_ratio,
+                guidance.mode.number,
+                tracker.heading_rate_demand,
+                guidance.heading_rate_command,
+                guidance.airspeed_command,
+                guidance.altitude_command,
+                tracker.saturated,
+                float(guard.status) if guard is not None else 0.0,
+                *sample,
+                *read,
+            )
+        )
+        if not judged:
+            return sample, False
+        settled = self._update_settling(
+            time,
+            math.hypot(reference_north - motion.north, reference_east - motion.east),
+            centre_error if in_place else math.inf,
+            float(motion.north - vessel[0]),
+            float(motion.east - vessel[1]),
+            float(axis),
+        )
+        return sample, settled
+
+    def rows(self) -> Array:
+        """Return what is recorded, shape (rows, columns)."""
+        return np.frombuffer(b"".join(self._rows)).reshape(-1, len(self.columns))
+
+
+def _read_all(
+    payload: Sequence[Any], time: float, motion: MeasuredMotion, sample: tuple[float, ...]
+) -> list[Any]:
+    """Return what instruments read, one after the other."""
+    return [value for instrument in payload for value in instrument.read(time, motion, sample)]
+
+
+def _read_first(
+    payload: Sequence[Any], time: float, motion: MeasuredMotion, sample: tuple[float, ...]
+) -> list[Any]:
+    """Return what instruments read first; an error says which of them reads something unusable."""
+    values: list[Any] = []
+    for instrument in payload:
+        part = f"payload: instrument of class {type(instrument).__qualname__}"
+        count = len(instrument.COLUMNS)
+        read = asked(
+            part,
+            "failed in read()",
+            "time, motion and sample",
+            instrument.read,
+            time,
+            motion,
+            sample,
+        )
+        read = read if isinstance(read, str) or not isinstance(read, Iterable) else tuple(read)
+        if not are_numbers(read, count, finite=False):
+            refuse_answer(
+                part,
+                "read()",
+                read,
+                f"a tuple of {count} number{'s' * (count != 1)}, one for each of its COLUMNS",
+            )
+        values.extend(read)
+    return values
+
+
+def _no_vessel(_time: float) -> tuple[float, float, float, float]:
+    return 0.0, 0.0, 0.0, 0.0
+
+
+def _no_axis(_time: float) -> float:
+    return math.nan

@@ -8,16 +8,16 @@ from gymnasium import spaces
 from scenarios.engine.task import Task
 from scenarios.errors import InputError
 from scenarios.experiment.draws import value_at
-from scenarios.flight_runner import FlightWork
+from scenarios.flight_runner import FlightRunner
 from scenarios.gym.observation import Array
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.planning.limits import omega_max
-from scenarios.scenario.load import with_values
+from scenarios.scenario.files import with_values
 from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 
 
-def action_box(work: FlightWork) -> "spaces.Box[np.float64]":
+def action_box(work: FlightRunner) -> "spaces.Box[np.float64]":
     """Return heading rates [rad/s] and airspeeds [m/s] that flights of a scenario may be commanded,
     of all of them together.
 
@@ -49,7 +49,7 @@ def limits_of(plan: FlightPlan, setup: VehicleSetup) -> tuple[Array, Array]:
     return np.array([-turn, setup.airspeed_min]), np.array([turn, setup.airspeed_max])
 
 
-def _settings(work: FlightWork) -> Iterator[Scenario]:
+def _settings(work: FlightRunner) -> Iterator[Scenario]:
     """Yield scenarios among which every flight's guidance is, or has its largest and least heading
     rates.
     """
@@ -68,7 +68,7 @@ def _settings(work: FlightWork) -> Iterator[Scenario]:
                 )
 
 
-def _first_of_each_point(work: FlightWork) -> Iterator[int]:
+def _first_of_each_point(work: FlightRunner) -> Iterator[int]:
     number = 0
     for experiment in work.experiments:
         for point in experiment.points:

@@ -22,11 +22,10 @@ from scenarios.api.scenario import Given, load
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
 from scenarios.experiment.requests import FlightRequest
-from scenarios.flight.closed_loop import ClosedLoop, Commands, record_of
+from scenarios.flight.closed_loop import ClosedLoop, Commands, failable, record_of, release
 from scenarios.flight.outcome import Outcome
 from scenarios.flight.record import FlightRecord
-from scenarios.flight.release import failable, release
-from scenarios.flight_runner import FlightWork, payload_of, reader_of
+from scenarios.flight_runner import FlightRunner, payload_of, reader_of
 from scenarios.gym.actions import action_box, limits_of
 from scenarios.gym.observation import Array, Observer, observation_space
 from scenarios.gym.reward import LOST, VIOLATION, CrossingReward
@@ -125,7 +124,7 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
         directory = Path(tempfile.mkdtemp(prefix="plume-flight-gym-"))
         weakref.finalize(self, shutil.rmtree, directory, ignore_errors=True)
         self.render_mode = render_mode
-        self._work: FlightWork = self._study.work(RunDirectory(directory))
+        self._work: FlightRunner = self._study.work(RunDirectory(directory))
         if self._work.refusal:
             raise InputError(self._work.refusal)
         self._numbers = dict(self._own_flights())

@@ -27,7 +27,7 @@ _INTERVAL = 60.0
 
 FIGURES = described(
     {
-        "sensor": Column("preset of the sniffer, or the title of one's own", kind="text"),
+        "sensor": Column("preset of the sniffer, or the title of the user's own", kind="text"),
         "fsc_fuel_percent": Column(
             "sulphur in the fuel, by mass", title="Sulphur in the fuel", digits=4
         ),
@@ -56,7 +56,8 @@ FIGURES = described(
         "fsc_low_percent": "lower end of the 95 % interval",
         "fsc_high_percent": "upper end of the 95 % interval",
         "areas_fsc_percent": "fuel sulphur content by areas",
-        "areas_fsc_uncertainty_percent": "standard uncertainty of the fuel sulphur content by areas",
+        "areas_fsc_uncertainty_percent": "standard uncertainty of the fuel sulphur content by"
+        " areas",
         "areas_fsc_separate_percent": "fuel sulphur content by areas if passes did not overlap",
         "areas_fsc_noise_percent": "part of that uncertainty that a longer measurement reduces",
         "areas_fsc_low_percent": "lower end of the 95 % interval",
@@ -70,7 +71,8 @@ FIGURES = described(
         "co2_signal_to_noise": "signal-to-noise ratio of the CO2 readings",
         "so2_signal_to_noise": "signal-to-noise ratio of the SO2 readings",
         "sulphur_suspect": Column(
-            "whether payload.rule reports the ship as suspect; empty without a rule, or of quality C",
+            "whether payload.rule reports the ship as suspect; empty without a rule, or of quality"
+            " C",
             title="Reported as suspect",
             kind="truth",
         ),

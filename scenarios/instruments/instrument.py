@@ -94,7 +94,7 @@ class EvaluatedInstrument(Protocol):
         Parameters
         ----------
         column : returns a column of the flight's record by name, shape (samples,)
-        since : when the measurement begins: where the flight has settled; not a number if it never
+        since : when the measurement begins: where the flight has settled; NaN if it never
             does [s]
         """
 

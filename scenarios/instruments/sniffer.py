@@ -1,7 +1,11 @@
-"""A sniffer on board: what it reads of the exhaust, in flight or after it, and what that says of
-the fuel.
+"""A sniffer on board: the air along the flight, what it reads of the exhaust, in flight or after it,
+and how well the plume was hit.
+
+The air is sampled at even times between samples of the flight: the same in parts, while the flight
+goes on, as at once.
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Annotated, Any
@@ -10,7 +14,8 @@ import numpy as np
 import numpy.typing as npt
 from pydantic import BeforeValidator
 
-from common.columns import described
+from common.columns import Column, described
+from common.physics import STANDARD_GRAVITY
 from common.run_layout import SULPHUR_TABLE
 from common.text import did_you_mean
 from gnc.errors import InfeasibleError
@@ -18,25 +23,203 @@ from gnc.estimation.navigation import MeasuredMotion
 from measurement.emission import expected_fsc
 from measurement.errors import MeasurementError
 from measurement.gases import GASES, UNITS
+from measurement.plume.fluctuating_plume import HIT, PlumeSample, passes
 from measurement.rules import RULES
 from measurement.sniffer.sniffer import Readings, Sniffer
 from measurement.sniffer.spec import SnifferSpec, sensor_of, sensor_presets
-from scenarios.instruments.air_samples import (
-    CO2,
-    PLACE_COLUMNS,
-    RATE_COLUMNS,
-    TIME_STEP,
-    AirSampler,
-    AirSamples,
-)
 from scenarios.instruments.fuel_estimate import FIGURES, TABLES, fuel_estimate
 from scenarios.instruments.instrument import Evaluation, payload
-from scenarios.instruments.plume_passes import PASS_FIGURES, fraction_of_axis, pass_figures
 from scenarios.scenario.scenario import Scenario
 from scenarios.world.faults import SNIFFER_DEAD, SNIFFER_SATURATED
+from scenarios.world.plume import Background, Exhaust
 from scenarios.world.world import World
 
 Array = npt.NDArray[np.float64]
+
+TIME_STEP = 0.05
+"""Between the places at which the air is sampled [s]: a metre at 20 m/s, a tenth of the narrowest
+plume.
+"""
+
+CLEAN_AIR = {"so2": 0.2, "co2": 420.0, "no": 0.1, "no2": 1.0}
+"""Gases in clean air over the sea, in the units of readings; assumptions. They are far below the
+noise, but for CO2.
+"""
+
+CO2 = GASES.index("co2")
+"""Its column."""
+
+PLACE_COLUMNS = ("north_m", "east_m", "altitude_m")
+RATE_COLUMNS = ("velocity_north_mps", "velocity_east_mps", "climb_rate_mps")
+"""Columns of a flight's record that say where it goes."""
+
+_AIR_DENSITY = 1.225
+"""Of the standard atmosphere at sea level [kg/m^3]."""
+
+
+@dataclass(frozen=True)
+class AirSamples:
+    """The air at even times.
+
+    Attributes
+    ----------
+    time : shape (n,) [s]
+    air : gases, shape (n, 4), in the order and the units of ``measurement.gases``
+    background_co2 : CO2 without the exhaust, shape (n,) [ppm]
+    pressure : in the sensors less that at the sea [hPa], shape (n,)
+    above : height over the plume's mean axis [m], shape (n,)
+    plume : there
+    """
+
+    time: Array
+    air: Array
+    background_co2: Array
+    pressure: Array
+    above: Array
+    plume: PlumeSample
+
+    @classmethod
+    def joined(cls, parts: "list[AirSamples]") -> "AirSamples":
+        """Return parts that follow each other as one."""
+        if len(parts) == 1:
+            return parts[0]
+
+        def whole(of: str) -> Array:
+            return np.concatenate([getattr(part, of) for part in parts])
+
+        def of_plume(of: str) -> Array:
+            return np.concatenate([getattr(part.plume, of) for part in parts])
+
+        plume = PlumeSample(*(of_plume(name) for name in PlumeSample._fields))
+        names = ("time", "air", "background_co2", "pressure", "above")
+        return cls(plume=plume, **{name: whole(name) for name in names})
+
+
+class AirSampler:
+    """Samples the air along a path that is given in parts. Between two places the path is the cubic
+    through them and their rates.
+
+    Parameters
+    ----------
+    exhaust, background : in the air
+    dynamic_pressure_fraction : of the dynamic pressure that the inlet passes on to the sensors [-]
+    """
+
+    def __init__(
+        self,
+        exhaust: Exhaust,
+        background: Background,
+        *,
+        dynamic_pressure_fraction: float,
+    ) -> None:
+        self._exhaust, self._background = exhaust, background
+        self._fraction, self._taken = dynamic_pressure_fraction, 0
+        self._clean = np.array([CLEAN_AIR[gas] for gas in GASES])
+
+    def advance(self, time: Array, place: Array, rate: Array, airspeed: Array) -> AirSamples:
+        """Return the samples whose time has come, before the last time given.
+
+        Parameters
+        ----------
+        time : from the last one given before on, shape (n,) [s]
+        place, rate : north, east and altitude, shape (n, 3) [m], and what they change by [m/s]
+        airspeed : shape (n,) [m/s]
+        """
+        from scipy.interpolate import CubicHermiteSpline
+
+        end = max(self._taken, math.ceil(time[-1] / TIME_STEP))
+        at = TIME_STEP * np.arange(self._taken, end, dtype=np.float64)
+        self._taken = end
+        north, east, up = CubicHermiteSpline(time, place, rate)(at).T
+        plume = self._exhaust.sample(at, north, east, up)
+        flown = np.interp(at, time, airspeed)
+        clean = np.tile(self._clean, (len(at), 1))
+        clean[:, CO2] += self._background.at(at)
+        return AirSamples(
+            time=at,
+            air=clean + self._exhaust.excess(plume.dilution),
+            background_co2=clean[:, CO2],
+            pressure=_AIR_DENSITY
+            * (0.5 * self._fraction * flown**2 - STANDARD_GRAVITY * up)
+            / 100.0,
+            above=up - plume.axis_height,
+            plume=plume,
+        )
+
+
+INSIDE = math.exp(-2.0)
+"""Concentration over that of the axis from which a place counts as inside the plume [-]: two
+spreads from the axis.
+"""
+
+
+PASS_FIGURES = described(
+    {
+        "plume_axis_crossings": "crossings of the smoke's mean axis seen from above, in the time"
+        " evaluated, with smoke or without",
+        "smoke_passes": "of those crossings the ones with smoke: once above exp(-2) of the"
+        " concentration in the plume's centre",
+        "hit_rate": Column(
+            "of those crossings the share whose peak is above 0.6 of the concentration in the"
+            " centre of the plume",
+            title="Hit rate",
+        ),
+        "seconds_in_plume_s": "time in which the concentration is above exp(-2) of that on the"
+        " axis",
+        "dose_per_pass_ppm_s": "mean over plume_axis_crossings, with smoke or without, of the"
+        " integral of CO2 above clean air",
+        "axis_height_error_mean_m": "mean height of plume_axis_crossings above the plume's own"
+        " axis",
+        "axis_height_error_rms_m": "root mean square height of plume_axis_crossings above the"
+        " plume's own axis",
+    }
+)
+"""Columns of the summary."""
+
+
+def fraction_of_axis(plume: PlumeSample) -> Array:
+    """Return the concentration over that in the centre of the plume's cross-section; 0 where there
+    is no plume.
+    """
+    inside = plume.axis_dilution > 0.0
+    return np.divide(
+        plume.dilution, plume.axis_dilution, out=np.zeros_like(plume.dilution), where=inside
+    )
+
+
+def pass_figures(
+    across: Array, above: Array, fraction: Array, excess_co2: Array, *, time_step: float
+) -> dict[str, float]:
+    """Return figures of the passes of a flight.
+
+    A change of sides of the plume's mean axis, seen from above, is a crossing, with smoke there or
+    without: the UAV may be above or below the plume, and the plume may have meandered away. Of
+    these passes those count as passes through smoke in which the UAV was inside the plume, as
+    ``INSIDE`` says, at one sample at least.
+
+    Parameters
+    ----------
+    across, above : from the plume's axis, NaN where there is no plume, shape (n,) [m]
+    fraction : same as ``fraction_of_axis``
+    excess_co2 : above clean air [ppm]
+    time_step : between samples [s]
+    """
+    found = list(passes(across))
+    inside = float(time_step * np.count_nonzero(fraction > INSIDE))
+    if not found:
+        return {"plume_axis_crossings": 0, "smoke_passes": 0, "seconds_in_plume_s": inside}
+    peaks = np.array([np.max(fraction[at]) for at in found])
+    error = above[[at.start + int(np.nanargmin(np.abs(across[at]))) for at in found]]
+    return {
+        "plume_axis_crossings": len(found),
+        "smoke_passes": int(np.count_nonzero(peaks > INSIDE)),
+        "hit_rate": float(np.mean(peaks > HIT)),
+        "seconds_in_plume_s": inside,
+        "dose_per_pass_ppm_s": float(time_step * np.sum(excess_co2) / len(found)),
+        "axis_height_error_mean_m": float(np.mean(error)),
+        "axis_height_error_rms_m": float(np.sqrt(np.mean(error**2))),
+    }
+
 
 _PASSED_ON = 0.45
 """Time between readings that are passed on in flight, at least [s]: those of a faster sniffer come
@@ -81,7 +264,7 @@ class SnifferSettings:
 
     Attributes
     ----------
-    sensor : a preset of measurement/sniffer/presets, or a table of one's own with the keys of these
+    sensor : a preset of measurement/sniffer/presets, or an inline table with the same keys
     exact : whether the instrument is as its data sheet says; otherwise gains, zeros, responses and
         cross-sensitivities are sampled within what is stated
     limit_percent : sulphur content that the verdict is on [% m/m]: 0.1 in an emission control area,
@@ -111,15 +294,17 @@ class SnifferSettings:
             try:
                 self.spec.check_known()
             except MeasurementError as error:
-                raise MeasurementError(f"sensor is a table of no use: {error}") from None
+                raise MeasurementError(f"sensor is an invalid table: {error}") from None
             if "co2" not in (gases := self.spec.gases):
                 raise MeasurementError(
-                    f"sensor is a table of no use: its channels are {', '.join(gases)}, and co2, which shows the plume, is not"
+                    f"sensor is an invalid table: its channels are {', '.join(gases)}, and co2,"
+                    " which shows the plume, is not"
                     " among them: add the table payload.sensor.channels.co2"
                 )
         if not 0.0 < self.limit_percent <= 5.0:
             raise MeasurementError(
-                f"limit_percent is {self.limit_percent:g}; give above 0 to 5 % m/m, as 0.1 in an emission control area"
+                f"limit_percent is {self.limit_percent:g}; give above 0 to 5 % m/m, as 0.1 in an"
+                " emission control area"
             )
         if self.rule not in _rules():
             guess = did_you_mean(self.rule, _rules()) or ";"
@@ -158,11 +343,9 @@ class SnifferOnBoard:
             raise InfeasibleError(
                 "payload.instruments has a sniffer, and there is no exhaust: set emission.ship"
             )
-        self._exhaust, self._settings, self._fault = (
-            world.exhaust,
-            scenario.payload.settings(type(self)),
-            world.fault,
-        )
+        self._exhaust = world.exhaust
+        self._settings = scenario.payload.settings(type(self))
+        self._fault = world.fault
         self.spec: SnifferSpec = self._settings.spec
         actual = self.spec if self._settings.exact else self.spec.drawn(generator)
         self._sniffer = Sniffer(actual, generator=generator, time_step=TIME_STEP)
@@ -258,11 +441,9 @@ class SnifferOnBoard:
         if not since < at[-1]:
             return Evaluation(columns=columns)
         flown = at >= since
-        limit, fuel, expected = (
-            self._settings.limit_percent,
-            self._exhaust.fuel,
-            expected_fsc(self._exhaust.fuel),
-        )
+        limit = self._settings.limit_percent
+        fuel = self._exhaust.fuel
+        expected = expected_fsc(self._exhaust.fuel)
         known = fuel_estimate(
             self.readings(since),
             self.spec,

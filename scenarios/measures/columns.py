@@ -29,11 +29,13 @@ SUMMARY_COLUMNS = described(
     {
         **FLIGHT_COLUMNS,
         "beside": Column(
-            "flight of the study with the same start and air, if this one is of a comparison; else empty",
+            "flight of the study with the same start and air, if this one is of a comparison; else"
+            " empty",
             kind="text",
         ),
         "outcome": Column(
-            "completed, not_settled, incomplete, aircraft_lost, diverged, unexplained_violation, infeasible, trim_failed or failed",
+            "completed, not_settled, incomplete, aircraft_lost, diverged, unexplained_violation,"
+            " infeasible, trim_failed or failed",
             kind="text",
         ),
         "message": Column("the reason of an outcome other than completed", kind="text"),
@@ -68,7 +70,8 @@ SUMMARY_COLUMNS = described(
             "modes of the guidance, in the order in which they first occurred", kind="text"
         ),
         "mode_at_end": Column("mode of the guidance at the end", kind="text"),
-        "plume_heading_deg": "direction of the plume's axis, clockwise from the vessel's course, at the start",
+        "plume_heading_deg": "direction of the plume's axis, clockwise from the vessel's course, at"
+        " the start",
         "plume_elevation_deg": "elevation of the plume's axis above the horizon",
         "start_distance_m": "horizontal distance of the start from the vessel",
         "start_aspect_deg": "bearing of the start, seen from the vessel, from the plume's axis",
@@ -101,7 +104,8 @@ SUMMARY_COLUMNS = described(
             "radius r_min of the keep-out area", title="Keep-out radius", symbol="r_min", digits=1
         ),
         "keepout_margin_m": Column(
-            "planned margin between r_min and the orbit, for errors of estimates, reports and tracking",
+            "planned margin between r_min and the orbit, for errors of estimates, reports and"
+            " tracking",
             title="Planned margin",
         ),
         "keepout_violations": Column(
@@ -146,7 +150,8 @@ SUMMARY_COLUMNS = described(
             missing="not settled",
         ),
         "crossing_count": Column(
-            "crossings of the straight axis along the apparent wind, seen from above, settled, with smoke or without",
+            "crossings of the straight axis along the apparent wind, seen from above, settled, with"
+            " smoke or without",
             title="Plume crossings after settling",
             digits=0,
             adds_up=True,
@@ -162,7 +167,8 @@ SUMMARY_COLUMNS = described(
             digits=3,
         ),
         "crossing_interval_predicted_s": Column(
-            "pi/omega_0; beside a vessel that manoeuvres, its mean over the time of the mean interval",
+            "pi/omega_0; beside a vessel that manoeuvres, its mean over the time of the mean"
+            " interval",
             title="Predicted crossing interval",
             symbol="π/ω₀",
             digits=3,
@@ -185,7 +191,8 @@ SUMMARY_COLUMNS = described(
             worse="lower",
         ),
         "crossing_angle_mean_deg": Column(
-            "mean angle between path and axis at the crossings, over whole periods of the orbit, as seen from the vessel",
+            "mean angle between path and axis at the crossings, over whole periods of the orbit, as"
+            " seen from the vessel",
             title="Mean crossing angle",
             digits=1,
         ),
@@ -209,7 +216,8 @@ SUMMARY_COLUMNS = described(
             title="Deviation towards the vessel",
         ),
         "spread_predicted_m": Column(
-            "standard deviation of the tracking error towards the vessel, as predicted from turbulence alone",
+            "standard deviation of the tracking error towards the vessel, as predicted from"
+            " turbulence alone",
             title="Deviation towards the vessel, from turbulence alone",
         ),
         "manoeuvre_end_s": "time at which the vessel's last manoeuvre ends",
@@ -237,7 +245,8 @@ SUMMARY_COLUMNS = described(
             title="Airspeed error, largest after settling",
             worse="higher",
         ),
-        "airspeed_trim_rms_mps": "root mean square of what the airspeed law adds to the constant airspeed, settled",
+        "airspeed_trim_rms_mps": "root mean square of what the airspeed law adds to the constant"
+        " airspeed, settled",
         "airspeed_min_mps": "least airspeed of the flight",
         "airspeed_max_mps": "largest airspeed of the flight",
         "speed_max_mps": "largest speed over the ground",
@@ -255,7 +264,8 @@ SUMMARY_COLUMNS = described(
         "bank_max_deg": Column(
             "largest bank of the flight", title="Largest bank", digits=1, worse="higher"
         ),
-        "heading_rate_error_rms_rad_s": "root mean square difference of the heading rate from that of the reference, settled",
+        "heading_rate_error_rms_rad_s": "root mean square difference of the heading rate from that"
+        " of the reference, settled",
         "heading_rate_demand_max_rad_s": Column(
             "largest heading rate that the law demanded, before any limit",
             title="Largest demanded heading rate",
@@ -304,7 +314,8 @@ SUMMARY_COLUMNS = described(
             adds_up=True,
         ),
         "guard_lost_s": Column(
-            "time in which no turn away held the guard's radius, by more than the declared errors explain",
+            "time in which no turn away held the guard's radius, by more than the declared errors"
+            " explain",
             title="Time with the guard's radius lost",
             digits=1,
             worse="higher",
@@ -327,7 +338,8 @@ SUMMARY_COLUMNS = described(
             worse="higher",
         ),
         "centre_error_rms_m": Column(
-            "root mean square distance of the orbit's centre from the centre of oscillation, settled",
+            "root mean square distance of the orbit's centre from the centre of oscillation,"
+            " settled",
             title="Error of the orbit's centre, rms after settling",
             worse="higher",
         ),
@@ -348,13 +360,16 @@ FINDING_COLUMNS = described(
             missing="not found",
         ),
         "found": Column("whether the plume was detected within 300 s on the orbit", kind="truth"),
-        "axis_height_3min_m": "true height of the plume's axis at the crossing nearest to 180 s on the orbit",
+        "axis_height_3min_m": "true height of the plume's axis at the crossing nearest to 180 s on"
+        " the orbit",
         "axis_height_error_3min_m": "error of the estimated height there",
         "axis_height_deviation_3min_m": "standard deviation of the estimated height there",
-        "hit_rate_found": "share of the crossings of the smoke's mean axis that hit the plume, as in hit_rate, after it was found",
+        "hit_rate_found": "share of the crossings of the smoke's mean axis that hit the plume, as"
+        " in hit_rate, after it was found",
         "axis_height_end_m": "estimated height of the axis at the end",
         "axis_deviation_end_m": "standard deviation of the estimated height of the axis at the end",
-        "axis_measurable_end": "estimated probability at the end that the plume can be crossed within the limits of the altitude",
+        "axis_measurable_end": "estimated probability at the end that the plume can be crossed"
+        " within the limits of the altitude",
         "altitude_outside_s": Column(
             "time outside the limits of the altitude",
             title="Time outside the altitudes of the scenario",
@@ -364,12 +379,14 @@ FINDING_COLUMNS = described(
         ),
         "enough": Column("why the flight ended early, or empty", kind="text"),
         "verdict_looks": Column(
-            "looks of a flight that ends with a verdict, its end among them, at which there could be one",
+            "looks of a flight that ends with a verdict, its end among them, at which there could"
+            " be one",
             title="Looks at the verdict",
             digits=0,
         ),
         "verdict_guard": Column(
-            "standard uncertainties from the limit that the last of them needed for a verdict; 1.645 is that of one look",
+            "standard uncertainties from the limit that the last of them needed for a verdict;"
+            " 1.645 is that of one look",
             title="Uncertainties from the limit that a verdict needs",
             digits=3,
         ),
@@ -387,7 +404,8 @@ CROSSING_COLUMNS = described(
         "distance_m": "distance from the funnel",
         "horizontal_distance_m": "distance from the vertical through the funnel",
         "angle_deg": Column("angle between path and axis, as seen from the vessel", digits=1),
-        "height_m": "height above a line from the funnel's mouth at plume.elevation_deg, level for smoke, which rises above it",
+        "height_m": "height above a line from the funnel's mouth at plume.elevation_deg, level for"
+        " smoke, which rises above it",
     }
 )
 """Of ``crossings.csv``: a row per crossing."""

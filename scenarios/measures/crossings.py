@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import CubicHermiteSpline, PPoly
 
-from scenarios.measures.bezier import bezier_points
+from scenarios.measures.keepout import bezier_points
 
 Array = npt.NDArray[np.float64]
 

@@ -16,10 +16,9 @@ from scenarios.flight.record import FlightRecord
 from scenarios.measures.crossings import Crossing, find_crossings
 from scenarios.measures.keepout import closest_approach, keepout_figures
 from scenarios.measures.premises import is_unexplained, premise_figures
-from scenarios.measures.sample import rms
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.world.ais.track import AisVessel
-from scenarios.world.place import Place
+from scenarios.world.vessel import Place
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -274,10 +273,8 @@ def crossings_of(
     plan: FlightPlan, record: FlightRecord, settled: Mask, position: Array, velocity: Array
 ) -> list[Crossing]:
     """Find crossings of an axis that may turn, in the frame that turns with it."""
-    time, axis = (
-        record.column("time_s")[settled],
-        np.unwrap(record.column("plume_axis_rad")[settled]),
-    )
+    time = record.column("time_s")[settled]
+    axis = np.unwrap(record.column("plume_axis_rad")[settled])
     position, velocity = position[settled], velocity[settled]
     elevation = plan.world.elevation if plan.world else 0.0
     if axis[0] == axis[-1] and not np.any(axis - axis[0]):
@@ -387,3 +384,10 @@ def _predicted_interval(plan: FlightPlan, record: FlightRecord, first: float, la
     )
     crossing_rate = per_period / np.interp(ratio, steps, plan.periods)
     return float((last - first) / np.trapezoid(crossing_rate, time))
+
+
+def rms(values: npt.NDArray[np.float64]) -> float:
+    """Return the root of the mean square of ``values``, in their unit; NaN if there are
+    none.
+    """
+    return float(np.sqrt(np.mean(values**2)))

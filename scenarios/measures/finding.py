@@ -29,7 +29,7 @@ _BELIEFS = ("axis_height_estimated_m", "axis_height_deviation_m", "axis_measurab
 
 
 def finding_figures(
-    history: pd.DataFrame, flight: FlightConfig, *, noise: float, enough: str
+    history: pd.DataFrame, flight: FlightConfig, *, noise: float, stop_reason: str
 ) -> Row:
     """Measure the search of a flight with a sniffer.
 
@@ -38,7 +38,7 @@ def finding_figures(
     history : of the flight, with the columns of its sniffer
     flight : its limits of the altitude
     noise : standard deviation of a reading of CO2 [ppm]
-    enough : why it left before its time, or nothing
+    stop_reason : why it left before its time, or nothing
     """
     time, altitude = (
         np.asarray(history[name], dtype=np.float64) for name in ("time_s", "altitude_m")
@@ -49,7 +49,10 @@ def finding_figures(
         commanded > 0.0
     )
     step = float(time[1] - time[0]) if len(time) > 1 else 0.0
-    row: Row = {"altitude_outside_s": step * float(np.count_nonzero(outside)), "enough": enough}
+    row: Row = {
+        "altitude_outside_s": step * float(np.count_nonzero(outside)),
+        "enough": stop_reason,
+    }
     on_orbit = np.flatnonzero(np.asarray(history["mode"]) != Mode.APPROACH.number)
     row |= _beliefs_at_end(history)
     if not len(on_orbit):

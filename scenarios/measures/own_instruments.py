@@ -14,7 +14,7 @@ from common.registry import PluginError
 from common.run_layout import TABLES, is_file_name
 from scenarios.errors import InputError
 from scenarios.flight.guard_belief import GuardBelief
-from scenarios.flight.plume_readings import PlumeBelief
+from scenarios.flight.onboard import PlumeBelief
 from scenarios.flight.record import HISTORY_COLUMNS
 from scenarios.instruments.instrument import EvaluatedInstrument, Evaluation, figures_of, tables_of
 from scenarios.measures.columns import FINDING_COLUMNS, FLIGHT_COLUMNS, SUMMARY_COLUMNS

@@ -9,27 +9,34 @@ With the error budget B, the place p, the velocity over the mean air u, the wind
 and what is allowed for while few measurements are in the wind, and estimates marked ^, the ratios are
 
 position   |p^ - p| / (k sigma_p), by satellite navigation; k is that of the vessel's discs
-wind       the larger of |w^ - w| and, by satellite navigation, |u^ - u|, over b
+wind       the larger of |w^ - w - g| and, by satellite navigation, |u^ - u|, over b, with the
+           discrete gust g of the moment
 vessel     |p_vessel + p^ - p - c| / R, in the disc (centre c, radius R) with the least room for it;
            an error of the own place counts as one of the vessel, in dead reckoning the last one
 airspeed   ||u| - (V_f + V_s)/2| / ((V_f - V_s)/2 + b), fastest and slowest V of the guard; without
            turbulence, where the speed in gusts is part of ``turning``
-response   n(t) / (c D + g t), in air without turbulence: n is how much nearer to the vessel a turn
-           at omega_max led within t than predicted from its start, D the response of a full
-           reversal, c the share of it that is counted, g the speed of discrete gusts
+response   n(t) / (c D + g t), in air without turbulence: n is how much less a turn at omega_max led
+           away within t than predicted from its start, D the response of a full reversal, c the
+           share of it that is counted, g the speed of declared gusts
 turning    n(t) / (c D + g t + ``B.displacement.after(t)``), in turbulence
 drift      |(p^ - p)(t) - (p^ - p)(0)| / ((drift + allowance) t + k ``B.drift_sigma(t)``), t after
            satellite navigation was lost
 
-A turn is predicted as the guard does: lag and delay behind the commands that were given, course still
-to come of earlier ones, V_r commanded, at the speed that was flown; full commands for a radian or
-more are a turn. In turbulence it is predicted over
-the wind as it was estimated at the start, since the speed is kept over that, and at a speed within
-the guard's range: what is beyond is displacement. A turn by satellite navigation ends where that is
-lost. Where a part of the aircraft has failed, what the budget has for that is added to c D.
+A turn is predicted as the guard does: lag and delay behind the commands that were given, course
+still to come of earlier ones, V_r commanded, at the speed that was flown; full commands for a
+radian or more are a turn. Its deviation counts in the directions in which the design's search takes
+it (``innerloop.flight.turn_reversal``): away from discs where a turn away comes closest to them,
+which is abeam of one at rest, later by an angle from one that closes in, and sooner from one that
+draws ahead. An aircraft that turns faster than predicted is nearer to what lies ahead on the inner
+side; it does not turn away from that, and no turn away comes closest there. In turbulence a turn is
+predicted over the wind as it was estimated at the start, since the speed is kept over that, and at
+a speed within the guard's range: what is beyond is displacement. A turn by satellite navigation
+ends where that is lost. Where a part of the aircraft has failed, what the budget has for that is
+added to c D.
 
-A ratio is not a number where the flight has nothing to compare, or where a term is exact: where the
-budget does not exceed the guard's resolution, nor does the error.
+A ratio is not a number where the flight has nothing to compare, where no turn deviates by more than
+the guard's resolution, or where a term is exact: where the budget does not exceed the guard's
+resolution, nor does the error.
 """
 
 import itertools
@@ -65,15 +72,20 @@ _FULL, _FULL_IN_TURBULENCE = 0.98, 0.8
 """Share of omega_max from which a command counts as that of a turn away [-]. In turbulence commands
 are seldom full for long without the guard; there nearly full turns count, too."""
 
-_AT_TURN_SPEED = 1.03
-"""Commanded airspeed up to which a turn counts as one at V_r, over V_r [-]: a faster turn has
-another response."""
+_SPEED_BAND = 0.03
+"""Difference of the commanded pace from V_r up to which a turn counts as one at V_r, over V_r
+[-]. The guard commands V_r in a turn away; one that slows down or speeds up has another response.
+"""
 
 _LEAST_TURN = 1.0
 """Course that full commands take to count as a turn [rad]: of less there is nothing to see."""
 
 _HALF_TURNS = 1.5
 """Half turns for which a turn is followed [-]: a turn away takes as many at most."""
+
+_LEANS = np.radians([-60.0, -30.0, 0.0, 30.0, 60.0])
+"""How far the directions away lean forward of abeam [rad]: the sine is the speed at which the disc
+closes in, over that of the vehicle."""
 
 _STARTS = 32
 """Starts of turns in the time of such a turn [-]."""
@@ -176,6 +188,7 @@ class _Flight:
         self.time = column("time_s")
         self.off_north = column("own_seen_north_m") - column("north_m")
         self.off_east = column("own_seen_east_m") - column("east_m")
+        self._gusts = plan.world.weather.gusts
         wind = plan.world.weather.wind
         self.wind_north, self.wind_east = wind.at(self.time, column("altitude_m"))
         self.lost_for = column("satellites_lost_s")
@@ -191,6 +204,15 @@ class _Flight:
         self.velocity_error = np.array(reckoned) + self.allowance
         fault = plan.world.fault
         self.part_fails_at = fault.begins if fault.of_aircraft() else math.inf
+
+    def gusts(self) -> tuple[Array, Array]:
+        """Return the discrete gusts of the flight, north and east [m/s]."""
+        north, east = np.zeros(len(self.time)), np.zeros(len(self.time))
+        for gust in self._gusts:
+            share = gust.share(self.time)
+            north += gust.velocity_ned[0] * share
+            east += gust.velocity_ned[1] * share
+        return north, east
 
     def nothing(self) -> Ratios:
         """Return that there is nothing to compare."""
@@ -224,8 +246,10 @@ def _wind_ratios(flight: _Flight) -> Ratios:
     if flight.plan.guidance.navigation is None:
         return flight.nothing()
     column = flight.column
+    gust_north, gust_east = flight.gusts()
     wind_error = np.hypot(
-        column("wind_north_mps") - flight.wind_north, column("wind_east_mps") - flight.wind_east
+        column("wind_north_mps") - flight.wind_north - gust_north,
+        column("wind_east_mps") - flight.wind_east - gust_east,
     )
     speed, course = column("own_seen_speed_mps"), column("own_seen_course_rad")
     own_error = np.hypot(
@@ -304,8 +328,8 @@ class _Commands(NamedTuple):
 
 
 def _turn_ratios(flight: _Flight) -> Ratios:
-    """Return by how much nearer turns led than predicted, over what is kept: the largest along each
-    turn, at the time of its start.
+    """Return by how much less turns led away than predicted, over what is kept: the largest along
+    each turn, at the time of its start.
     """
     guard, column = flight.guard, flight.column
     rate_max, n = guard.heading_rate_max, len(flight.time)
@@ -327,8 +351,9 @@ def _turn_ratios(flight: _Flight) -> Ratios:
     sides = np.sign(commands.given[starts])
     entry = sides * np.minimum(0.0, sides * pending[starts])
     kept = _kept_for_response(flight, commands, starts, sides, rates[starts] + entry)
-    path = _PredictedTurns(flight, starts, rates[starts])
+    path = _PredictedTurns(flight, starts, rates[starts], sides)
     largest, most = np.full(len(starts), -math.inf), np.zeros(len(starts))
+    nearest = np.zeros(len(starts))
     going = np.ones(len(starts), dtype=np.bool_)
     entry_step = round(guard.delay / step)
     for k in range(steps):
@@ -348,9 +373,8 @@ def _turn_ratios(flight: _Flight) -> Ratios:
         ratio = nearer / np.maximum(reckoned, POSITION_RESOLUTION)
         largest = np.where(going & (ratio > largest), ratio, largest)
         most = np.where(going & (reckoned > most), reckoned, most)
-    # A turn that came no nearer than predicted used nothing of what is kept.
-    flown = np.isfinite(largest)
-    largest = np.maximum(largest, 0.0)
+        nearest = np.where(going & (nearer > nearest), nearer, nearest)
+    flown = nearest > POSITION_RESOLUTION
     flown &= (most > POSITION_RESOLUTION) | (largest > 1.0)
     return Ratios(flight.time[starts], np.where(flown, largest, math.nan))
 
@@ -369,12 +393,13 @@ def _commands(flight: _Flight, rates: Array, step: float) -> _Commands:
     before = time - guard.delay
     delayed = np.interp(before, time, course) + np.minimum(0.0, before - time[0]) * rates[0]
     given = np.diff(course) / step
-    at_turn_speed = column("airspeed_command_mps") <= _AT_TURN_SPEED * flight.plan.guidance.speed
-    away = (column("guard") > 0.0) | at_turn_speed
-    share = _FULL
-    if flight.budget.turbulence.sigma > 0.0:
-        # There airspeed is commanded for the gust of the moment, and its range is checked instead.
-        share, away = _FULL_IN_TURBULENCE, np.ones(len(time), dtype=np.bool_)
+    # The airspeed is commanded that keeps the pace in the gust of the moment (``gnc.airspeed``).
+    measured, turned_at = column("own_seen_speed_mps"), flight.plan.guidance.speed
+    airspeed = column("airspeed_mps")
+    gust = np.where(np.isfinite(airspeed), airspeed - measured, 0.0)
+    off_speed = np.abs(column("airspeed_command_mps") - gust - turned_at)
+    away = (column("guard") > 0.0) | (off_speed <= _SPEED_BAND * turned_at)
+    share = _FULL_IN_TURBULENCE if flight.budget.turbulence.sigma > 0.0 else _FULL
     return _Commands(
         given=np.clip(given, -flyable, flyable),
         acting=np.clip(np.diff(delayed) / step, -flyable, flyable),
@@ -443,14 +468,16 @@ class _PredictedTurns:
     flight : that they are of
     starts : samples at which they begin
     rates : heading rates there [rad/s]
+    sides : of the turns, 1 to the right and -1 to the left
 
     Attributes
     ----------
     heading_rate : now, shape (turns,) [rad/s]
     """
 
-    def __init__(self, flight: _Flight, starts: Indices, rates: Array) -> None:
+    def __init__(self, flight: _Flight, starts: Indices, rates: Array, sides: Array) -> None:
         column = flight.column
+        self._sides = sides
         self._flight = flight
         self._north, self._east = column("north_m")[starts], column("east_m")[starts]
         self._estimated: tuple[Array, Array] | None = None
@@ -463,6 +490,7 @@ class _PredictedTurns:
             column("velocity_east_mps")[starts] - wind_east,
             column("velocity_north_mps")[starts] - wind_north,
         )
+        self._turned = np.zeros(len(starts))
         self.heading_rate = np.array(rates)
 
     def _wind(self, at: Indices) -> tuple[Array, Array]:
@@ -499,15 +527,18 @@ class _PredictedTurns:
         self._north = self._north + way * np.cos(middle) + wind_north * step
         self._east = self._east + way * np.sin(middle) + wind_east * step
         self._course = self._course + turned
+        self._turned = self._turned + self._sides * turned
 
     def nearer(self, at: Indices) -> Array:
-        """Return how much nearer to the vessel the vehicle is than predicted [m]."""
+        """Return how much less the turns led away than predicted, in the worst direction [m]."""
         column = self._flight.column
-        north, east = column("north_m")[at], column("east_m")[at]
-        to_north, to_east = column("vessel_north_m")[at] - north, column("vessel_east_m")[at] - east
-        distance = np.maximum(1e-9, np.hypot(to_north, to_east))
-        ahead = (north - self._north) * to_north + (east - self._east) * to_east
-        return np.asarray(ahead / distance)
+        lack_north = self._north - column("north_m")[at]
+        lack_east = self._east - column("east_m")[at]
+        away = self._course[:, None] + self._sides[:, None] * (0.5 * math.pi - _LEANS)
+        lack = lack_north[:, None] * np.cos(away) + lack_east[:, None] * np.sin(away)
+        # A disc that draws ahead is nearest before the turn has come so far.
+        passed = (_LEANS < 0.0) & (self._turned[:, None] > 0.5 * math.pi + _LEANS)
+        return np.asarray(np.max(np.where(passed, -math.inf, lack), axis=1))
 
 
 def _displacement(flight: _Flight, starts: Indices, elapsed: float) -> Array:

@@ -10,8 +10,7 @@ from common.columns import Column, described
 from scenarios.engine.task import Row
 from scenarios.flight.outcome import Outcome
 from scenarios.flight.record import FlightRecord
-from scenarios.measures.figures import crossings_of, in_vessel_frame
-from scenarios.measures.sample import rms
+from scenarios.measures.figures import crossings_of, in_vessel_frame, rms
 from scenarios.planning.flight_plan import FlightPlan
 
 WINDOW_COLUMNS = described(

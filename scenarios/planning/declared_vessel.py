@@ -14,7 +14,6 @@ from gnc.estimation.vessel import KEPT, VesselLimits, VesselReport, radius_after
 from scenarios.scenario.scenario import Scenario
 from scenarios.world.ais.track import AisVessel
 from scenarios.world.vessel import (
-    ManoeuvringVessel,
     SteadyVessel,
     VesselTruth,
     largest_acceleration,
@@ -24,7 +23,7 @@ from scenarios.world.vessel import (
 )
 
 _INCONSISTENCY_MAX = 0.01
-"""By how much the way of a track of one's own may differ from the integral of its velocity [m].
+"""By how much the way of a user's track may differ from the integral of its velocity [m].
 
 That is a sum: of curves and splines whose velocity is exact they differ by up to 0.6 mm in an hour.
 """
@@ -51,41 +50,34 @@ def check_vessel(scenario: Scenario, vessel: VesselTruth, limits: VesselLimits) 
 def check_declared(scenario: Scenario, vessel: VesselTruth) -> None:
     """Raise an InfeasibleError for a vessel that does more than is declared to the keep-out guard.
 
-    Also where she is known exactly: what she does during a turn away is not known when the turn
+    Also where it is known exactly: what it does during a turn away is not known when the turn
     begins.
     """
     if not scenario.guidance.keepout_guard:
         return
-    # A steady vessel does at any time what she does at first.
-    f, duration = (
-        scenario.following,
-        0.0 if type(vessel) is SteadyVessel else scenario.flight.duration_max_s,
-    )
+    f, duration = scenario.following, scenario.flight.duration_max_s
+    if type(vessel) is SteadyVessel:
+        # It does at any time what it does at first.
+        duration = 0.0
     acceleration, speed = largest_acceleration(vessel, duration), largest_speed(vessel, duration)
-    other = "fly another time of its file (place.utc)" if isinstance(vessel, AisVessel) else ""
-    scripted = (
-        "vessel.manoeuvres"
-        if isinstance(vessel, ManoeuvringVessel)
-        else f"vessel.track '{scenario.vessel.track}'"
-    )
+    relied = "on which the keep-out guard relies: declare more, or fly another time or track"
     if acceleration > f.vessel_acceleration_mps2:
         raise InfeasibleError(
-            f"the vessel accelerates by {_at_least(acceleration)} m/s2, changes of speed and course together; declared are at most"
-            f" following.vessel_acceleration_mps2 = {f.vessel_acceleration_mps2:g}, on which the keep-out guard relies: declare"
-            f" more, or {other or f'manoeuvre more gently ({scripted})'}"
+            f"the vessel accelerates by {_at_least(acceleration)} m/s2, changes of speed and course"
+            " together; declared are at most following.vessel_acceleration_mps2 ="
+            f" {f.vessel_acceleration_mps2:g}, {relied}"
         )
     if f.vessel_speed_max_mps is not None and speed > f.vessel_speed_max_mps:
         raise InfeasibleError(
-            f"the vessel moves at up to {_at_least(speed)} m/s over the ground; it is declared to stay within"
-            f" following.vessel_speed_max_mps = {f.vessel_speed_max_mps:g}, on which the keep-out guard relies: declare more, or"
-            f" {other or 'sail more slowly'}"
+            f"the vessel moves at up to {_at_least(speed)} m/s over the ground; it is declared to"
+            f" stay within following.vessel_speed_max_mps = {f.vessel_speed_max_mps:g}, {relied}"
         )
-    # Not a number is no agreement.
+    # NaN is no agreement.
     if not (off := largest_inconsistency(vessel, duration)) <= _INCONSISTENCY_MAX:
         raise InfeasibleError(
-            f"vessel.track '{scenario.vessel.track}': its places and the integral of the velocity that motion() returns differ"
-            f" by up to {off:.2g} m; {_INCONSISTENCY_MAX:g} m are allowed for rounding: let the velocity be the derivative of the"
-            " place, on which the keep-out guard relies"
+            f"vessel.track '{scenario.vessel.track}': its places and the integral of the velocity"
+            f" that motion() returns differ by up to {off:.2g} m; {_INCONSISTENCY_MAX:g} m are"
+            " allowed for rounding: let the velocity be the derivative of the place"
         )
 
 
@@ -120,10 +112,8 @@ def _check_reports(vessel: AisVessel, limits: VesselLimits, duration: float) -> 
             report.north,
             report.east,
         )
-        velocity, allowed = (
-            np.array([report.velocity_north, report.velocity_east]),
-            radius_after(limits, age),
-        )
+        velocity = np.array([report.velocity_north, report.velocity_east])
+        allowed = radius_after(limits, age)
         drifted = "reports.velocity_sigma_mps and following.vessel_acceleration_mps2"
         _check_within(vessel, report, age, way - age[:, None] * velocity, allowed, drifted)
         if limits.speed_max < math.inf:
@@ -162,25 +152,23 @@ def _check_within(
     worst = int(np.argmax(off - allowed))
     if off[worst] > allowed[worst]:
         raise InfeasibleError(
-            f"the report of {utc_text(vessel.place.utc + report.time)} and the smooth track through all reports lie"
-            f" {off[worst]:.1f} m apart after {age[worst]:.1f} s; {allowed[worst]:.1f} m are allowed for by"
-            f" reports.position_sigma_m and {declared}: declare more, delete the report, or fly another time"
-            " of its file (place.utc)"
+            f"the report of {utc_text(vessel.place.utc + report.time)} and the smooth track through"
+            f" all reports lie {off[worst]:.1f} m apart after {age[worst]:.1f} s;"
+            f" {allowed[worst]:.1f} m are allowed for by reports.position_sigma_m and {declared}:"
+            " declare more, delete the report, or fly another time of its file (place.utc)"
         )
 
 
 def _within_for_good(report: VesselReport, vessel: AisVessel, limits: VesselLimits) -> bool:
-    """Return whether errors of a report are so small that a vessel that keeps to her acceleration
+    """Return whether errors of a report are so small that a vessel that keeps to its acceleration
     never leaves its disc.
 
     With errors e_p and e_v of place and velocity, (e_p/sigma_p)^2 + (e_v/sigma_v)^2 <= k^2, Cauchy
     and Schwarz have e_p + e_v s <= k hypot(sigma_p, sigma_v s).
     """
     north, east, velocity_north, velocity_east = vessel.motion(report.time)
-    place, velocity = (
-        limits.deviations * limits.position_sigma,
-        limits.deviations * limits.velocity_sigma,
-    )
+    place = limits.deviations * limits.position_sigma
+    velocity = limits.deviations * limits.velocity_sigma
     if not (place > 0.0 and velocity > 0.0):
         return False
     wrong_place = math.hypot(report.north - north, report.east - east)

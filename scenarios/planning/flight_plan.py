@@ -7,7 +7,7 @@ from typing import Any
 from gnc.estimation.vessel import VesselReport
 from gnc.guidance import GuidanceParameters
 from gnc.reference.reference import PeriodicPath
-from scenarios.planning.bounded_steering import Steering
+from scenarios.planning.guidance import Steering
 from scenarios.planning.limits import omega_max
 from scenarios.planning.margin.keepout_margin import KeepoutMargin
 from scenarios.scenario.scenario import Scenario
@@ -71,13 +71,13 @@ class FlightPlan:
     log_interval : of the record, in guidance steps
     payload : instruments on board
     until_verdict : whether it leaves as soon as a sniffer has enough
-    nu : speed ratio at the start; not a number without a vessel [-]
+    nu : speed ratio at the start; NaN without a vessel [-]
     world : vessel, plume, air, faults; none where the reference circles without a vessel
     sensing : sensors and reports; none where everything is known exactly
     oscillation : of the reference at that ratio
     periods : of the oscillation at equal steps of nu from 0 to ``speed_ratio_max``, where the
         reference is steered [s]
-    centre_distance : r_CO where it is fixed, else not a number [m]
+    centre_distance : r_CO where it is fixed, else NaN [m]
     margin : planned on top of r_min, where the reference is steered
     apparent_wind : of the vessel, where the reference is steered
     """

@@ -50,8 +50,9 @@ def check_flyable(guidance: GuidanceConfig, title: str, envelope: Envelope) -> N
     bank = bank_for_heading_rate(omega_max(guidance), airspeed)
     if bank > envelope.bank_max:
         raise InputError(
-            f"guidance asks for {math.degrees(bank):.1f} deg of bank; the autopilot of {title} stops at"
-            f" {math.degrees(envelope.bank_max):.0f}: lower guidance.bank_deg or guidance.heading_rate_max_rad_s"
+            f"guidance asks for {math.degrees(bank):.1f} deg of bank; the autopilot of {title}"
+            f" stops at {math.degrees(envelope.bank_max):.0f}: lower guidance.bank_deg or"
+            " guidance.heading_rate_max_rad_s"
         )
 
 
@@ -85,28 +86,12 @@ def check_recorded(scenario: Scenario) -> None:
     seen to 4.2 cm.
     """
     g, rate = scenario.guidance, scenario.flight.log_rate_hz
-    if (
-        scenario.fidelity != "kinematic"
-        or scenario.circles
-        or (error := path_error_max(scenario, rate)) <= _PATH_ERROR_MAX
-    ):
+    error = path_error_max(scenario, rate)
+    if scenario.fidelity != "kinematic" or scenario.circles or error <= _PATH_ERROR_MAX:
         return
-    steps = range(round(g.rate_hz / rate) - 1, 0, -1)
-    enough = next(
-        (
-            g.rate_hz / n
-            for n in steps
-            if path_error_max(scenario, g.rate_hz / n) <= _PATH_ERROR_MAX
-        ),
-        None,
-    )
-    remedy = (
-        "record and guide more often (guidance.rate_hz)"
-        if enough is None
-        else f"set it to {enough:g}"
-    )
     raise InfeasibleError(
-        f"flight.log_rate_hz is {rate:g} Hz; at {omega_max(g):.3g} rad/s and {g.airspeed_mps:.4g} m/s the path between two samples,"
-        f" and with it keep-out figures, may be wrong by {error:.2g} m, and the limit is {_PATH_ERROR_MAX:g} m: {remedy}, or lower"
-        " guidance.heading_rate_max_rad_s"
+        f"flight.log_rate_hz is {rate:g} Hz; at {omega_max(g):.3g} rad/s and {g.airspeed_mps:.4g}"
+        " m/s the path between two samples, and with it keep-out figures, may be wrong by"
+        f" {error:.2g} m, and the limit is {_PATH_ERROR_MAX:g} m: record and guide more often"
+        " (flight.log_rate_hz, guidance.rate_hz), or lower guidance.heading_rate_max_rad_s"
     )

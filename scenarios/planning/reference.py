@@ -78,7 +78,8 @@ def oscillation_at(guidance: GuidanceConfig, reference: ReferenceConfig, nu: flo
     orbit = asked(
         part,
         f"failed in design() at nu = {nu:.4g}",
-        "nu, speed, vessel_heading_rate, heading_rate_max, reserve and roll_rate_max, each by its name",
+        "nu, speed, vessel_heading_rate, heading_rate_max, reserve and roll_rate_max, each by its"
+        " name",
         shape.design,
         nu=nu,
         speed=guidance.airspeed_mps,
@@ -92,9 +93,12 @@ def oscillation_at(guidance: GuidanceConfig, reference: ReferenceConfig, nu: flo
     steps = orbit.crossing_interval * guidance.rate_hz
     if steps < STEPS_MIN:
         raise InfeasibleError(
-            f"speed ratio nu is {nu:.9g}, so near 1 that at {guidance.roll_rate_max_deg_s:g} deg/s of roll rate the reference"
-            f" crosses every {orbit.crossing_interval:.2g} s, {steps:.1f} steps of the guidance; at least {STEPS_MIN} show an"
-            " oscillation: fly faster, lower guidance.roll_rate_max_deg_s, or raise guidance.rate_hz"
+            f"speed ratio nu is {nu:.9g}, so near 1 that at {guidance.roll_rate_max_deg_s:g} deg/s"
+            " of roll rate the reference"
+            f" crosses every {orbit.crossing_interval:.2g} s, {steps:.1f} steps of the guidance; at"
+            f" least {STEPS_MIN} show an"
+            " oscillation: fly faster, lower guidance.roll_rate_max_deg_s, or raise"
+            " guidance.rate_hz"
         )
     return orbit
 
@@ -208,7 +212,8 @@ def circle(scenario: Scenario) -> CirclingReference:
     least = speed / omega_max(scenario.guidance)
     if radius < least:
         raise InfeasibleError(
-            f"reference.radius_m is {radius:g} m; at {speed:g} m/s and omega_max = {speed / least:.3f} rad/s it must be at least"
+            f"reference.radius_m is {radius:g} m; at {speed:g} m/s and omega_max ="
+            f" {speed / least:.3f} rad/s it must be at least"
             f" {least:.1f} m: widen the circle or raise omega_max"
         )
     return CirclingReference(

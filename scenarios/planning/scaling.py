@@ -14,10 +14,9 @@ from typing import Any
 
 from aircraft.spec import Envelope
 from common.physics import heading_rate_for_bank
-from scenarios.scenario.effect_rules import LAW_KEYS
-from scenarios.scenario.load import with_values
+from scenarios.scenario.files import with_values
 from scenarios.scenario.scenario import Scenario
-from scenarios.scenario.sections.guidance import GuidanceConfig
+from scenarios.scenario.sections.guidance import LAW_KEYS, GuidanceConfig
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -102,7 +101,7 @@ def scaled_law_defaults(envelope: Envelope) -> dict[str, float]:
     unit, defaults = units(envelope), GuidanceConfig()
     return {
         f"guidance.{name}": getattr(defaults, name) * _SCALED[f"guidance.{name}"](unit)
-        for name, _, _ in LAW_KEYS
+        for name in LAW_KEYS
     }
 
 

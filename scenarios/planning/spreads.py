@@ -13,10 +13,10 @@ from innerloop.store import Designed
 from scenarios.errors import InputError
 from scenarios.planning.guidance import speed_hold, tracking_parameters
 from scenarios.planning.limits import omega_max
-from scenarios.planning.margin.tracking_spread import SpreadTable, tracking_spreads
+from scenarios.planning.margin.keepout_margin import SpreadTable
 from scenarios.planning.reference import oscillation_at
 from scenarios.planning.scaling import scaled_law_defaults
-from scenarios.scenario.load import with_values
+from scenarios.scenario.files import with_values
 from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 
@@ -57,8 +57,8 @@ class PredictedSpreads:
             raise InfeasibleError(self.refused[key])
         if key not in self.tables:
             raise InputError(
-                "guidance is sampled from a continuous distribution in turbulence, where each value takes a margin of its own;"
-                " give it a choice of values instead"
+                "guidance is sampled from a continuous distribution in turbulence, where each"
+                " value takes a margin of its own; give it a choice of values instead"
             )
         return self.tables[key]
 
@@ -115,18 +115,17 @@ def _planned_for(scenario: Scenario, defaults: Mapping[str, float]) -> Scenario:
 
 
 def _spread_table(scenario: Scenario, found: Designed, setup: VehicleSetup) -> SpreadTable:
-    # It needs python-control, which a flight in calm air does without.
+    # They need python-control, which a flight in calm air does without.
+    from scenarios.planning.margin.tracking_spread import tracking_spreads
     from scenarios.planning.margin.turn_spread import turn_deviation
 
     schedule = found.design.schedule
     air = low_altitude_turbulence(
         scenario.altitude, TURBULENCE[scenario.turbulence.level].wind_at_20ft
     )
-    tracking, hold, span = (
-        tracking_parameters(scenario, setup),
-        speed_hold(scenario, setup),
-        _wing_span(schedule.spec),
-    )
+    tracking = tracking_parameters(scenario, setup)
+    hold = speed_hold(scenario, setup)
+    span = _wing_span(schedule.spec)
     orbits = dict(_orbits(scenario))
     return SpreadTable(
         speed_ratios=tuple(orbits),

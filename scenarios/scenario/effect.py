@@ -4,13 +4,16 @@ would use it.
 
 import functools
 from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+from pydantic import BaseModel
 
 from common.registry import PluginError
 from scenarios.errors import InputError
-from scenarios.scenario.effect_rules import OPERATIONAL, RULES, Rule
-from scenarios.scenario.experiment_checks import unsteady
-from scenarios.scenario.keys import known_keys
+from scenarios.scenario.consistency import unsteady
+from scenarios.scenario.errors import fields_along, known_keys, models_in
 from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.needs import Need
 
 _DISPLACED_BY = {
     "start.distance_m": ("start.range_m", "start.place_m"),
@@ -19,13 +22,40 @@ _DISPLACED_BY = {
 }
 """Keys that other keys put aside, where flights have these."""
 
-_OF_LAW = ("guidance.law", "guidance.tuning")
+_OF_LAW = {"guidance.law", "guidance.tuning"}
 """Keys of which it is looked at what they are set to; others count as making what depends on them
 act.
 """
 
 
-def refuse_unused(
+class _Watched:
+    """A scenario, or a section of one, that notes which keys a need reads: keys that depend on
+    these act where flights differ in them.
+
+    Parameters
+    ----------
+    of : the scenario or the section
+    above : its key with a dot behind it; empty for the scenario
+    read : the keys, and beginnings of keys that end in a dot, that were read so far
+    """
+
+    def __init__(self, of: BaseModel, above: str, read: set[str]) -> None:
+        self._of, self._above, self._read = of, above, read
+
+    def __getattr__(self, name: str) -> Any:
+        declared = getattr(type(self._of), name, None)
+        if isinstance(declared, property) and declared.fget:
+            # What follows from keys notes these, as it reads them here.
+            return declared.fget(self)
+        value = getattr(self._of, name)
+        if isinstance(value, BaseModel) and name != "sweep":
+            return _Watched(value, f"{self._above}{name}.", self._read)
+        whole = callable(value) or name.startswith("__")
+        self._read.add(self._above if whole else f"{self._above}{name}")
+        return value
+
+
+def reject_unused_keys(
     scenario: Scenario, given: Iterable[str], *, overridden: Scenario | None = None
 ) -> None:
     """Refuse keys that no part of a scenario's flights uses, those among them that are swept or
@@ -51,13 +81,14 @@ def refuse_unused(
             raise InputError(f"key '{key}' has no effect here: it is used by {user}")
         if overridden and (other := _put_aside_by(scenario, key)):
             raise InputError(
-                f"key '{key}' has no effect here: '{other}' is swept or sampled in every flight, and takes its place; set '{other}'"
-                " instead, or leave it out of sweep and draws"
+                f"key '{key}' has no effect here: '{other}' is swept or sampled in every flight,"
+                f" and takes its place; set '{other}', or leave it out of sweep and draws"
             )
     for section, key in _varied_by(scenario, given):
         if key == "fidelity":
             raise InputError(
-                "key 'fidelity' has no effect in sweep; leave it out there, and set fidelity to 'both'"
+                "key 'fidelity' has no effect in sweep; leave it out there, and set fidelity to"
+                " 'both'"
             )
         # What is said of an unknown key comes when it is set.
         if _is_known(key) and (user := unused(scenario, key)):
@@ -83,35 +114,54 @@ def unused(scenario: Scenario, key: str) -> str:
     """Return the part that would use a dotted key, where no part of a scenario's flights does;
     otherwise nothing.
     """
-    # A mission that is given does not follow from the air, the vessel or the equipment.
-    mission = ("guidance.mission", *(OPERATIONAL if scenario.guidance.mission is None else ()))
-    for rule in _rules_of(key):
-        depends = (*rule.depends, *(mission if rule.by_mission else ()))
-        if not rule.acts(scenario) and not (depends and _acts_in_some(rule, scenario, depends)):
-            return rule.user
+    for need in needs_of(key):
+        read: set[str] = set()
+        if not need.acts(_Watched(scenario, "", read)) and not _acts_in_some(need, scenario, read):
+            return need.user
     return ""
 
 
-def _acts_in_some(rule: Rule, scenario: Scenario, depends: tuple[str, ...]) -> bool:
-    """Return whether a rule's keys act in some flights, as what that depends on differs from flight
-    to flight.
+@functools.lru_cache(maxsize=1024)
+def needs_of(key: str) -> tuple[Need, ...]:
+    """Return what a dotted key needs to act: first what stands at the key, then what stands at the
+    section that it is in.
     """
+    needs: list[Need] = []
+    section: Any = Scenario
+    parts = [part for part in key.split(".") if not part.isdecimal()]
+    for depth, field in enumerate(fields_along(Scenario, parts)):
+        if field is None:
+            of_part = getattr(section, "PART_NEEDS", {}).get(parts[depth], ())
+            return (*of_part, *needs)
+        needs = [*(of for of in field.metadata if isinstance(of, Need)), *needs]
+        if depth + 1 < len(parts):
+            section = next(models_in(field.annotation), (None, False))[0]
+            needs += getattr(section, "NEEDS", ())
+    return tuple(dict.fromkeys(needs))
+
+
+def _acts_in_some(need: Need, scenario: Scenario, read: set[str]) -> bool:
+    """Return whether flights that differ in keys that a need has read may have it."""
     for values in differing(scenario):
-        if not (other := {key: value for key, value in values.items() if named_by(key, depends)}):
-            continue
-        if not all(key in _OF_LAW and isinstance(value, str) for key, value in other.items()):
+        other = {key: value for key, value in values.items() if _is_read(key, read)}
+        if any(key not in _OF_LAW or not isinstance(of, str) for key, of in other.items()):
             return True
-        guidance = scenario.guidance.model_copy(
-            update={key.partition(".")[2]: value for key, value in other.items()}
-        )
+        changed = {key.partition(".")[2]: value for key, value in other.items()}
+        guidance = scenario.guidance.model_copy(update=changed)
         try:
-            acts = rule.acts(scenario.model_copy(update={"guidance": guidance}))
+            if other and need.acts(scenario.model_copy(update={"guidance": guidance})):
+                return True
         except PluginError:
             # A law that is unknown is refused where it is named.
-            acts = True
-        if acts:
             return True
     return False
+
+
+def _is_read(key: str, read: set[str]) -> bool:
+    """Return whether a key, or one above or below it, is among those that were read."""
+    return any(
+        key == of or key.startswith(f"{of.rstrip('.')}.") or of.startswith(f"{key}.") for of in read
+    )
 
 
 def differing(scenario: Scenario) -> Iterator[Mapping[str, object]]:
@@ -156,15 +206,3 @@ def _is_known(key: str) -> bool:
 @functools.cache
 def _known_keys() -> frozenset[str]:
     return frozenset(known_keys(Scenario))
-
-
-@functools.lru_cache(maxsize=1024)
-def _rules_of(key: str) -> tuple[Rule, ...]:
-    return tuple(rule for rule in RULES if named_by(key, rule.keys))
-
-
-def named_by(key: str, names: Iterable[str]) -> bool:
-    """Return whether a dotted key is among the names, of which those that end in a dot are
-    beginnings of keys.
-    """
-    return any(key == name or (name.endswith(".") and key.startswith(name)) for name in names)

@@ -5,15 +5,16 @@ sets.
 import json
 import re
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from datetime import datetime
 from typing import Any
 
-from pydantic import BaseModel
+from pydantic import BaseModel, RootModel
 
+from common.text import at_or_below
 from scenarios.errors import InputError
-from scenarios.scenario.experiment_checks import swept_key
-from scenarios.scenario.keys import displaced, entry_model, example_value, key_parts
+from scenarios.scenario.errors import entry_model, models_in, shown
+from scenarios.scenario.sections.experiment import SPEED_KEYS, swept_key
 
 Document = dict[str, Any]
 """A scenario as read from TOML, before it is checked."""
@@ -33,34 +34,34 @@ def parse_override(override: str) -> tuple[str, object]:
         raise InputError(
             f"--set '{override}' is not of the form key=value, e.g. --set guidance.preview=false"
         )
+    key, start = key.strip(), shown(text.strip())
+    if key == "extends":
+        raise InputError(f"--set '{override}': extends stands in a scenario file alone")
     try:
         document = tomllib.loads(f"value = {text}")
     except tomllib.TOMLDecodeError as error:
         if text.strip().startswith(("[", "{")):
             raise InputError(
-                f"--set '{override}' is not valid TOML: {error}; words in a list are quoted: 'key=[\"word\"]'"
+                f"--set {key}={start} is not valid TOML: {error}; words in a list are quoted"
             ) from None
-        value = text
-    except RecursionError:
+        return key, text
+    except (RecursionError, ValueError):
+        # Python reads neither brackets nor digits by the thousand.
+        raise InputError(f"--set {key}={start} has too many brackets or digits") from None
+    value = document.pop("value")
+    if document:
         raise InputError(
-            f"--set {key.strip()}: value {text.strip()[:20]}... has too many brackets within each other"
-        ) from None
-    except ValueError:
-        # Python reads no whole number of more than some thousand digits.
-        raise InputError(
-            f"--set {key.strip()}: value {text.strip()[:20]}... has too many digits; give a number with fewer"
-        ) from None
-    else:
-        value = document.pop("value")
-        if document:
-            raise InputError(
-                f"--set {key.strip()}: a line break, and {next(iter(document))!r} after it; give each key a --set of its own"
-            )
-    if key.strip() == "extends":
-        raise InputError(
-            f"--set '{override}': extends stands in a scenario file; name the scenario to fly instead"
+            f"--set {key}={start}: a line break, and {next(iter(document))!r} after it; give each"
+            " key a --set of its own"
         )
-    return key.strip(), value
+    return key, value
+
+
+def displaced(key: str, given: Iterable[str]) -> bool:
+    """Return whether what varies a dotted key gives way to given keys: to the key itself, to one
+    above it, or, for the vessel's speed and its speed ratio, to the other one of the two.
+    """
+    return any(at_or_below(key, of) or {key, of} == SPEED_KEYS for of in given)
 
 
 def apply_override(document: Document, key: str, value: object, kind: type[BaseModel]) -> None:
@@ -160,63 +161,55 @@ def set_value(document: Document, dotted: str, value: object, kind: type[BaseMod
     InputError : the key goes through a value that is not a table, or to an entry that a list does
         not have
     """
-    parts = key_parts(kind, dotted)
+    parts = _parts(kind, dotted)
     section: Any = tabled(document)
     for depth, name in enumerate(parts[:-1]):
-        if isinstance(section, list):
-            key: Any = _index(section, parts, depth, value, kind)
-            child = section[key]
-        else:
-            key = name
-            if (
-                parts[depth + 1].isdecimal()
-                and not section.get(name)
-                and entry_model(kind, parts[: depth + 1])
-            ):
+        key: Any = _index(section, parts, depth, kind) if isinstance(section, list) else name
+        if isinstance(section, dict):
+            is_list = parts[depth + 1].isdecimal() and entry_model(kind, parts[: depth + 1])
+            if is_list and not section.get(name):
                 section[name] = []
-            child = section.setdefault(name, {})
-        if isinstance(child, tuple):
-            section[key] = child = list(child)
-        if not isinstance(child, dict | list):
+            section.setdefault(name, {})
+        if isinstance(section[key], tuple):
+            section[key] = list(section[key])
+        section = section[key]
+        if not isinstance(section, dict | list):
             raise InputError(f"unknown key '{dotted}'; '{name}' is a value, not a section")
-        section = child
-    last: Any = (
-        _index(section, parts, len(parts) - 1, value, kind)
-        if isinstance(section, list)
-        else parts[-1]
+    last = len(parts) - 1
+    section[_index(section, parts, last, kind) if isinstance(section, list) else parts[last]] = (
+        value
     )
-    section[last] = value
 
 
-def _index(
-    entries: list[Any], parts: list[str], depth: int, value: object, kind: type[BaseModel]
-) -> int:
+def _parts(kind: type[BaseModel], dotted: str) -> list[str]:
+    """Return the parts of a dotted key; a section that has keys of other sections, such as sweep,
+    takes the rest whole.
+    """
+    section, _, rest = dotted.partition(".")
+    field = kind.model_fields.get(section)
+    of_others = field and any(issubclass(of, RootModel) for of, _ in models_in(field.annotation))
+    return [section, rest.strip('"')] if rest and of_others else dotted.split(".")
+
+
+def _index(entries: list[Any], parts: list[str], depth: int, kind: type[BaseModel]) -> int:
     """Return the index that a part of a dotted key names.
 
     Raises
     ------
-    InputError : the list has no such entry; the message says how to add one to an empty list
+    InputError : the list has no such entry
     """
-    name, parents = parts[depth], parts[:depth]
+    name, above = parts[depth], ".".join(parts[:depth])
     if name.isdecimal() and int(name) < len(entries):
         return int(name)
-    message = f"unknown key '{'.'.join(parts)}'; {'.'.join(parents)} "
-    model = entry_model(kind, parents)
-    if entries or model is None:
-        entry = "entry" if len(entries) == 1 else "entries"
-        raise InputError(
-            f"{message}has {len(entries)} {entry}, numbered from 0, and '{name}' is not one of them"
-        )
-    given = {".".join(parts[depth + 1 :]): value} if depth + 1 < len(parts) else {}
-    needed = {
-        key: example_value(field)
-        for key, field in model.model_fields.items()
-        if field.is_required() and key not in given
-    }
-    items = ", ".join(f"{key}={as_toml(item)}" for key, item in (needed | given).items())
-    raise InputError(
-        f"{message}has no entries; add one with --set '{'.'.join(parents)}=[{{{items}}}]'"
+    message = (
+        f"unknown key '{'.'.join(parts)}'; {above} has {len(entries)} entries, numbered from 0"
     )
+    if not entries and (model := entry_model(kind, parts[:depth])):
+        needed = [key for key, field in model.model_fields.items() if field.is_required()]
+        message += (
+            f": add one, as in --set '{above}=[{{{', '.join(f'{of}=...' for of in needed)}}}]'"
+        )
+    raise InputError(message)
 
 
 def as_toml(value: object) -> str:
@@ -237,9 +230,11 @@ def as_toml(value: object) -> str:
     if isinstance(value, list | tuple):
         return f"[{', '.join(map(as_toml, value))}]"
     if isinstance(value, Mapping):
-        return f"{{{', '.join(f'{_toml_key(str(key))}={as_toml(item)}' for key, item in value.items())}}}"
+        entries = (f"{_toml_key(str(key))}={as_toml(item)}" for key, item in value.items())
+        return f"{{{', '.join(entries)}}}"
     raise InputError(
-        f"value is {value!r}; a scenario has numbers, words, truth values, times, lists and tables alone"
+        f"value is {shown(value)}; a scenario has numbers, words, truth values, times, lists and"
+        " tables alone"
     )
 
 

@@ -1,152 +1,281 @@
-"""A scenario file: whether its keys go together."""
-
-import math
-
-from pydantic import model_validator
-
-from gnc.laws import ON_CIRCLE, ON_OSCILLATION
-from scenarios.scenario.experiment_checks import check_together
-from scenarios.scenario.scenario_keys import DEFAULT_AIRCRAFT, ScenarioKeys
-from scenarios.scenario.sections.equipment import REPORTS_MAX
-from scenarios.scenario.sections.guidance import law_refusal
-from scenarios.scenario.sections.section import check_divides, check_ordered
-
-POINTS_MAX = 10_000
-"""Most points of an experiment: all are checked before the first flight, in a millisecond and 20 kB
-each.
+"""A scenario file: world, equipment, guidance, start, flight and criteria of its flights, and the
+experiment on them.
 """
 
+from typing import Annotated, Literal
 
-class Scenario(ScenarioKeys):
-    """A whole scenario file of flights."""
+from pydantic import Field, model_validator
+
+from measurement.emission import stack_height_of
+from scenarios.scenario.consistency import check_consistency
+from scenarios.scenario.sections.equipment import (
+    FaultConfig,
+    KinematicConfig,
+    PayloadConfig,
+    SensorsConfig,
+    VesselReportsConfig,
+)
+from scenarios.scenario.sections.experiment import (
+    FLIGHTS_MAX,
+    ArenaConfig,
+    CaseConfig,
+    ComparisonConfig,
+    DrawConfig,
+    Sampling,
+    SearchConfig,
+    StatisticsConfig,
+    SubsetConfig,
+    SweepConfig,
+)
+from scenarios.scenario.sections.flight import CriteriaConfig, FlightConfig, StartConfig
+from scenarios.scenario.sections.guidance import FollowingConfig, GuidanceConfig, ReferenceConfig
+from scenarios.scenario.sections.needs import Need, not_patrol, of_study
+from scenarios.scenario.sections.patrol import PatrolConfig
+from scenarios.scenario.sections.report import ReportConfig
+from scenarios.scenario.sections.section import Range, Section, Seed, Title
+from scenarios.scenario.sections.world import (
+    AirConfig,
+    EmissionConfig,
+    KeepoutConfig,
+    PlaceConfig,
+    PlumeConfig,
+    TurbulenceConfig,
+    VesselConfig,
+    WindConfig,
+)
+
+DEFAULT_AIRCRAFT = "x8"
+
+
+class Scenario(Section):
+    """A whole scenario file of flights, and what follows from its keys."""
+
+    study: str = "flights"
+    """flights; paper, with its bounds on commands; monte_carlo, with statistics; falsify, a search;
+    arena, laws side by side; patrol, several ships one after the other; or FILE.py:NAME."""
+    title: Title
+    """What reports and lists call it."""
+    description: str = ""
+    """One or two sentences at the top of the report."""
+    aircraft: Annotated[str, Field(coerce_numbers_to_str=True)] = DEFAULT_AIRCRAFT
+    """The aircraft, by its name (plume-flight design --list), by the folder of its JSBSim model,
+    DIR/NAME, or FILE.py:NAME.
+    """
+    fidelity: Literal["six_dof", "kinematic", "both"] = "six_dof"
+    """Vehicle: the aircraft in six degrees of freedom, the paper's kinematic vehicle, or both."""
+    seed: Seed = 1
+    """Seed of the study, from which every flight's own seed follows [-]."""
+    flights: Annotated[
+        int,
+        Field(ge=1, le=FLIGHTS_MAX),
+        Need(
+            lambda s: s.study != "monte_carlo" or s.method != "subset",
+            "plain sampling; subset simulation flies subset.flights_per_level in each level of each"
+            " of subset.repeats: set these, or set method to 'plain'",
+        ),
+        Need(
+            lambda s: s.study != "falsify",
+            "other studies; a search flies search.population times one more than"
+            " search.generations, at most, and then search.confirmations of each of search.kept"
+            " flights: set these",
+        ),
+    ] = 1
+    """Flights of each point of the experiment, each with a seed and a sample of the random
+    variables of its own [-].
+    """
+    flight_seed: Seed | None = None
+    """Seed of start, air and noise of every flight; if not given, each flight has its own, from
+    seed, name and number [-].
+    """
+    histories: Annotated[
+        int,
+        Field(ge=0, le=100_000),
+        not_patrol("a patrol keeps no time histories: leave it out"),
+    ] = 200
+    """Number of time histories to be kept, evenly spaced over the flights [-]. Those of flights
+    that did not meet what is required are kept as well; of missions that were not completed, that
+    of the first of each trial."""
+    speed_ratio: Annotated[Range, Need(lambda s: s.draws, "random variables: give draws")] = (
+        0.0,
+        1e9,
+    )
+    """Flights whose nu leaves this range, at the start or after a manoeuvre, are sampled again [-].
+    """
+    method: Annotated[
+        Literal["plain", "subset"], of_study("monte_carlo", "a Monte Carlo study")
+    ] = "plain"
+    """How a Monte Carlo study samples: plain, or by subset simulation, towards rare keep-out
+    violations.
+    """
+    sampling: Annotated[
+        Sampling,
+        Need(
+            lambda s: s.study == "monte_carlo" and s.method == "plain" and s.draws,
+            "a Monte Carlo study with random variables and plain sampling: set study to"
+            " 'monte_carlo' and method to 'plain', and give draws",
+        ),
+    ] = "sobol"
+    """How samples are spread: evenly over all random variables together (sobol), over each of them
+    (latin_hypercube), or not at all (random)."""
+    sweep: SweepConfig = SweepConfig()
+    common_random_numbers: Annotated[
+        bool | None,
+        Need(lambda s: s.sweep.root, "a sweep: give sweep several values of a key"),
+    ] = None
+    """Whether the points of a sweep have the same starts, noise, sampled instruments and random
+    variables, so that they differ in what is swept alone; if false, each point has its own. If not
+    given: false with instruments on board, else true, but for speed ratios of one flight each.
+    """
+    cases: tuple[CaseConfig, ...] = ()
+    draws: tuple[DrawConfig, ...] = ()
+    comparison: ComparisonConfig = ComparisonConfig()
+    statistics: StatisticsConfig = StatisticsConfig()
+    subset: SubsetConfig = SubsetConfig()
+    search: SearchConfig = SearchConfig()
+    laws: Annotated[tuple[str, ...], of_study("arena", "laws side by side")] = ()
+    """Laws that take part in an arena in addition to its own, each by its name or FILE.py:NAME."""
+    arena: ArenaConfig = ArenaConfig()
+    patrol: PatrolConfig = PatrolConfig()
+    place: PlaceConfig = PlaceConfig()
+    vessel: VesselConfig = VesselConfig()
+    plume: PlumeConfig = PlumeConfig()
+    keepout: KeepoutConfig = KeepoutConfig()
+    wind: WindConfig = WindConfig()
+    turbulence: TurbulenceConfig = TurbulenceConfig()
+    air: AirConfig = AirConfig()
+    reports: VesselReportsConfig = VesselReportsConfig()
+    sensors: SensorsConfig = SensorsConfig()
+    fault: FaultConfig = FaultConfig()
+    emission: EmissionConfig = EmissionConfig()
+    payload: PayloadConfig = PayloadConfig()
+    kinematic: KinematicConfig = KinematicConfig()
+    reference: ReferenceConfig = ReferenceConfig()
+    guidance: GuidanceConfig = GuidanceConfig()
+    following: FollowingConfig = FollowingConfig()
+    start: StartConfig = StartConfig()
+    flight: FlightConfig = FlightConfig()
+    criteria: CriteriaConfig = CriteriaConfig()
+    report: ReportConfig = ReportConfig()
 
     @model_validator(mode="after")
     def _consistent(self) -> "Scenario":
-        check_divides("flight.log_rate_hz", self.flight.log_rate_hz, self.guidance.rate_hz)
-        check_ordered("speed_ratio", self.speed_ratio)
-        if self.circles and (self.follows or self.sweep.root or self.draws):
-            raise ValueError(
-                "reference.path is 'circle' beside wind, a vessel that is followed, a sweep or draws; a circle has no vessel:"
-                " set reference.path to 'oscillation', or put it into a case of its own"
-            )
-        if self.circles and self.criteria.required == "keep_out":
-            raise ValueError(
-                "criteria.required is 'keep_out', and a circle has no area to keep out of; set it to 'criteria'"
-            )
-        if self.fidelity == "six_dof" and not self.guidance.command_limit:
-            raise ValueError(
-                "guidance.command_limit is false; an aircraft cannot turn so fast: set fidelity to 'kinematic'"
-            )
-        if (
-            not (self.guidance.command_limit or self.follows or self.circles)
-            and self.guidance.approach
-        ):
-            raise ValueError(
-                "guidance.command_limit is false and guidance.approach true; the way to the orbit has turns at the limit:"
-                " set guidance.approach to false"
-            )
-        if not (self.guidance.command_limit or self.circles) and self.guidance.keepout_guard:
-            raise ValueError(
-                "guidance.command_limit is false; the keep-out guard predicts turns within the limit alone: set"
-                " guidance.command_limit to true, or guidance.keepout_guard to false"
-            )
-        if self.fidelity == "kinematic" and not self.turbulence.calm:
-            raise ValueError(
-                "turbulence.level or turbulence.gusts is set with fidelity 'kinematic', which feels the steady wind alone:"
-                " set fidelity to 'six_dof', or turbulence.level to 'none' and turbulence.gusts to 0"
-            )
+        check_consistency(self)
         return self
 
-    @model_validator(mode="after")
-    def _law_has_the_task(self) -> "Scenario":
-        law = self.guidance.law
-        if not self.circles and (
-            reason := law_refusal(law, ON_CIRCLE if self.stands_off else ON_OSCILLATION)
-        ):
-            raise ValueError(f"guidance.law is '{law}': {reason}")
-        return self
+    @property
+    def own_random_numbers(self) -> bool:
+        """Return whether each point of a sweep has random numbers of its own: what one sample of an
+        instrument reads wrong would be wrong at all of them.
+        """
+        if self.common_random_numbers is not None:
+            return not self.common_random_numbers
+        return bool(self.payload.instruments) or "payload.instruments" in self.sweep.root
 
-    @model_validator(mode="after")
-    def _starts_outside(self) -> "Scenario":
-        radius, start = self.keepout.radius_m, self.start
-        # A default distance is scaled to the aircraft later, and checked then.
-        to_be_scaled = (
-            start.range_m is None
-            and "distance_m" not in start.model_fields_set
-            and self.aircraft != DEFAULT_AIRCRAFT
+    @property
+    def circles(self) -> bool:
+        """Return whether the reference circles, without a vessel."""
+        return self.reference.path == "circle"
+
+    @property
+    def follows(self) -> bool:
+        """Return whether the mission follows what it estimates: where that says so, or air or
+        vessel are not steady and known.
+        """
+        if self.guidance.mission is not None:
+            return self.guidance.mission != "track"
+        return (
+            bool(self.unsteady_keys)
+            or self.plume.model != "straight"
+            or self.plume.direction == "apparent_wind"
         )
-        if self.circles:
-            return self
-        if start.place_m is not None:
-            nearest, where = math.hypot(*start.place_m), "start.place_m lies at"
-        elif start.range_m is not None:
-            nearest, where = start.range_m, "start.range_m is"
-        elif to_be_scaled or any(draw.key == "start.range_m" for draw in self.draws):
-            # Each flight's own distance is checked once it is sampled.
-            return self
-        else:
-            nearest, where = start.distance_m[0], "start.distance_m begins at"
-        if nearest <= radius:
-            raise ValueError(
-                f"{where} {nearest:g} m; it must exceed keepout.radius_m, {radius:g} m"
-            )
-        return self
 
-    @model_validator(mode="after")
-    def _fits_into_the_flight(self) -> "Scenario":
-        air, room = self.turbulence, self.flight.duration_max_s
-        if self.fault.kind != "none" and self.fault.at_s[1] >= room:
-            raise ValueError(
-                f"fault.at_s ends at {self.fault.at_s[1]:g} s; it must lie within flight.duration_max_s, {room:g} s:"
-                " fly longer, or let it fail earlier"
-            )
-        if air.gusts * 2.0 * air.gust_length_s > 0.9 * room:
-            raise ValueError(
-                f"turbulence.gusts is {air.gusts}, each {2.0 * air.gust_length_s:g} s long; they do not fit into"
-                f" flight.duration_max_s, {room:g} s: give fewer or shorter ones"
-            )
-        interval = 0.5 * sum(self.reports.interval_s)
-        if not self.reports.exact and room > REPORTS_MAX * interval:
-            raise ValueError(
-                f"reports.interval_s is {list(self.reports.interval_s)} s; in flight.duration_max_s, {room:g} s, this makes"
-                f" more than {REPORTS_MAX} reports: let at least {room / REPORTS_MAX:.2g} s pass between them on average, or fly"
-                " shorter"
-            )
-        return self
+    @property
+    def unsteady_keys(self) -> tuple[str, ...]:
+        """Return the keys by which air or vessel are not steady and known, whatever is swept or
+        sampled beside.
+        """
+        air, sensors = self.turbulence, self.sensors.model_dump()
+        given = {
+            "wind.table": self.wind.table is not None,
+            "wind.speed_mps": self.wind.speed_mps > 0.0,
+            "turbulence.level": air.level != "none",
+            "turbulence.gusts": air.gusts > 0,
+            "emission.ship": self.emission.ship is not None,
+            "vessel.manoeuvres": bool(self.vessel.manoeuvres),
+            "vessel.track": self.vessel.track != "manoeuvres",
+            "reports.interval_s": not self.reports.exact,
+            **{f"sensors.{name}": error > 0.0 for name, error in sensors.items()},
+            "fault.kind": self.fault.kind != "none",
+        }
+        return tuple(key for key, has in given.items() if has)
 
-    @model_validator(mode="after")
-    def _track_has_its_own_speed(self) -> "Scenario":
-        given = [
-            key
-            for key in ("nu", "vessel.speed_ratio", "vessel.speed_mps")
-            if key in self.sweep.root
+    @property
+    def vessel_known(self) -> bool:
+        """Return whether the vessel's motion is known at all times, and not from reports."""
+        return self.reports.exact and not self.vessel.from_file
+
+    @property
+    def stands_off(self) -> bool:
+        """Return whether the vessel is circled, without an oscillation."""
+        return self.guidance.mission == "standoff"
+
+    @property
+    def finds(self) -> bool:
+        """Return whether a plume is searched for, given, or measured until there is a verdict."""
+        return self.following.plume != "predicted" or self.flight.until == "verdict"
+
+    @property
+    def source_height(self) -> float:
+        """Return the height of the funnel's mouth above the sea: as it is given, else that of the
+        ship [m].
+        """
+        return stack_height_of(self.plume.source_height_m, self.emission.ship)
+
+    @property
+    def altitude(self) -> float:
+        """Return the altitude at the start, for which the autopilot is designed [m]."""
+        flight, height = self.flight, self.source_height
+        if flight.altitude_m is not None:
+            return flight.altitude_m
+        return (
+            height
+            if self.emission.ship is None
+            else flight.altitude_beside(height, self.turbulence.level)
+        )
+
+    @property
+    def declared_faults(self) -> frozenset[str]:
+        """Return the kinds of faults that its flights may have, and those that they declare."""
+        drawn = [
+            value for draw in self.draws if draw.key == "fault.kind" for value in draw.choice or ()
         ]
-        if self.vessel.from_file and given:
-            raise ValueError(
-                f"sweep has {given[0]} beside vessel.track, a file that the vessel's speed comes from; leave one of them out"
-            )
-        return self
+        varied = [*map(str, drawn), *map(str, self.sweep.root.get("fault.kind", ()))]
+        return frozenset({self.fault.kind, *self.fault.declared, *varied} - {"none"})
 
-    @model_validator(mode="after")
-    def _experiment(self) -> "Scenario":
-        names = [case.name for case in self.cases]
-        if len(set(names)) < len(names):
-            raise ValueError(f"cases are named {', '.join(names)}; give each a name of its own")
-        if self.cases and self.sweep.root:
-            raise ValueError(
-                f"sweep has {', '.join(self.sweep.root)} beside {len(names)} cases; give one of the two"
-            )
-        if (points := math.prod(map(len, self.sweep.root.values()))) > POINTS_MAX:
-            raise ValueError(
-                f"sweep has {points} points; the most is {POINTS_MAX}: give fewer values, or sample keys at random"
-            )
-        if self.study == "paper" and not self.cases:
-            raise ValueError(
-                "study is 'paper' without cases; give it cases, or set study to 'flights'"
-            )
-        return self
+    @property
+    def plume_by_wind(self) -> bool:
+        """Return whether the plume trails behind the vessel's motion through the air."""
+        return self.plume.direction == "apparent_wind" or (
+            self.plume.direction is None and self.follows
+        )
 
-    @model_validator(mode="after")
-    def _together(self) -> "Scenario":
-        check_together(self)
-        return self
+    @property
+    def vessel_speed(self) -> float:
+        """Return the vessel's speed over the ground before any manoeuvre [m/s]."""
+        ratio = self.vessel.speed_ratio
+        return self.vessel.speed_mps if ratio is None else ratio * self.guidance.airspeed_mps
+
+    @property
+    def nu_over_ground(self) -> float:
+        """Return the vessel's speed over the ground over V_r, which is nu in still air [-]."""
+        ratio = self.vessel.speed_ratio
+        return self.vessel.speed_mps / self.guidance.airspeed_mps if ratio is None else ratio
+
+    @property
+    def several_points(self) -> bool:
+        """Return whether its experiment has points that differ otherwise than at random: by a
+        sweep, cases, a comparison or two vehicles."""
+        return (
+            bool(self.sweep.root or self.cases or self.comparison.variants)
+            or self.fidelity == "both"
+        )

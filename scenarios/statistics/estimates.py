@@ -1,4 +1,5 @@
-"""Estimates of a Monte Carlo study and their confidence intervals: ``statistics.json``.
+"""Estimates of a Monte Carlo study and their confidence intervals: ``statistics.json``; when the study
+may stop; and how the premises of the keep-out guard held.
 
 Intervals assume independent flights. Noise, turbulence and sensors are independent, because every
 flight has its own seeds; the random variables are independent in plain sampling only. In a Latin
@@ -9,21 +10,151 @@ probabilities, and quantiles, which are probabilities of lying below a value. So
 are used for Latin hypercubes and tend to be too wide. A bound on a variance is not a bound on the
 tails of an interval: this is an argument, not a proof. For a scrambled Sobol' sequence the same
 paper bounds the ratio of the variances by e = 2.72, whatever the figure.
+
+A study that evaluates its intervals repeatedly, and stops as soon as they look good, is wrong more
+often than their confidence says. Here intervals are evaluated only after fixed numbers of flights
+(looks), and the intervals of look k may be wrong with probability alpha/(k (k + 1)), where alpha is
+one minus the confidence. The sum over all looks is alpha, however many there are: with the stated
+confidence no look is wrong, and so neither is the one at which the study stops. The union bound
+over looks at geometrically growing numbers of flights is that of V. Mnih, C. Szepesvari and J.-Y.
+Audibert, "Empirical Bernstein stopping", ICML 2008; spending alpha over looks is that of K. K. G.
+Lan and D. L. DeMets, "Discrete sequential boundaries for clinical trials", Biometrika 70 (1983).
 """
 
 import math
 from collections import Counter
-from dataclasses import asdict
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
+from common.columns import Column, described
 from common.intervals import Interval, clopper_pearson, quantile_interval, upper_bound
+from common.physics import SECONDS_PER_HOUR
+from common.premises import TERMS, ratio_column
+from scenarios.flight.outcome import Outcome
 from scenarios.statistics.sensitivity import sensitivity_indices
-from scenarios.statistics.stopping import confidence_at
-from scenarios.statistics.violations import Violations, count_violations
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Violations:
+    """Counts of flights by keep-out violation.
+
+    Attributes
+    ----------
+    flights : number of all flights
+    measured : number of flights with a measured distance
+    events : number of measured flights with a keep-out violation
+    unknown : names of the flights without a recorded violation that were not measured to their end,
+        by outcome: flights without any measurement, and flights that went out of control
+    """
+
+    flights: int
+    measured: int
+    events: int
+    unknown: dict[str, list[str]]
+
+    @property
+    def events_at_most(self) -> int:
+        """Number of flights with a violation, if every unknown flight had one."""
+        return self.events + sum(len(flights) for flights in self.unknown.values())
+
+
+def count_violations(rows: pd.DataFrame) -> Violations:
+    """Count the flights of a summary that violated the keep-out area at any time, each once.
+
+    Parameters
+    ----------
+    rows : a row per flight with ``flight_id``, ``outcome``, ``min_distance_m`` and
+        ``keepout_violations``
+    """
+    measured = np.isfinite(_numbers(rows, "min_distance_m"))
+    entered = measured & (_numbers(rows, "keepout_violations") > 0.0)
+    lost = rows[~entered & (~measured | (rows["outcome"] == Outcome.DIVERGED.value).to_numpy())]
+    return Violations(
+        flights=len(rows),
+        measured=int(np.count_nonzero(measured)),
+        events=int(np.count_nonzero(entered)),
+        unknown={
+            str(outcome): [str(i) for i in members["flight_id"]]
+            for outcome, members in lost.groupby("outcome")
+        },
+    )
+
+
+FIRST_LOOK = 256
+"""Number of flights before the first look; a Sobol' sequence is balanced at powers of two."""
+
+
+def looks(planned: int) -> list[int]:
+    """Return the numbers of flights at which a study is evaluated: 256, doubled each time, and all
+    that are planned.
+
+    A look evaluates the first flights of the plan, not those that happened to be done first: the
+    result does not depend on the number of processes.
+
+    Parameters
+    ----------
+    planned : number of flights, above 0
+    """
+    numbers = []
+    flights = FIRST_LOOK
+    while flights < planned:
+        numbers.append(flights)
+        flights *= 2
+    return [*numbers, planned]
+
+
+def confidence_at(look_number: int, confidence: float) -> float:
+    """Return the confidence of the intervals of one look, such that all looks together hold with
+    ``confidence``.
+
+    A study without a stopping rule is evaluated once, at its end, with all of ``confidence``.
+
+    Parameters
+    ----------
+    look_number : number of the look, from 1
+    confidence : confidence of all looks together, between 0 and 1
+    """
+    return 1.0 - (1.0 - confidence) / (look_number * (look_number + 1))
+
+
+def tight_enough(
+    rows: pd.DataFrame,
+    *,
+    look_number: int,
+    confidence: float,
+    violation_upper: float | None = None,
+    distance_quantile_width_m: float | None = None,
+    distance_quantile: float = 0.01,
+) -> bool:
+    """Return whether a study may stop at a look: every demanded interval is narrow enough.
+
+    Parameters
+    ----------
+    rows : rows of the summary of the first flights of the plan
+    look_number, confidence : as in ``confidence_at``
+    violation_upper : demanded one-sided upper bound of the probability of a keep-out violation;
+        flights for which that is unknown count as violations [-]
+    distance_quantile_width_m : demanded width of the two-sided interval of a quantile of the
+        closest approach [m]
+    distance_quantile : probability of that quantile
+    """
+    level = confidence_at(look_number, confidence)
+    if violation_upper is not None:
+        found = count_violations(rows)
+        if upper_bound(found.events_at_most, found.flights, level) > violation_upper:
+            return False
+    if distance_quantile_width_m is not None:
+        distances = _numbers(rows, "min_distance_m")
+        interval = quantile_interval(distances[np.isfinite(distances)], distance_quantile, level)
+        # If a limit is missing the width is NaN, and this comparison is false.
+        return interval.width <= distance_quantile_width_m
+    return True
+
 
 PROBABILITIES = (0.01, 0.05, 0.5, 0.95, 0.99)
 """Probabilities of the quantiles that are given for every figure."""
@@ -37,10 +168,19 @@ NAMED_MAX = 10
 """Largest number of flights that are named for each outcome; ``summary.csv`` has all."""
 
 COLUMNS = (
-    "flight_id", "outcome", "mode_at_end", "min_distance_m", "keepout_radius_m", "keepout_violations", "crossing_interval_mean_s",
-    "crossing_interval_predicted_s", "crossing_distance_min_m", "crossing_clearance_min_m", "tracking_error_rms_m",
+    "flight_id",
+    "outcome",
+    "mode_at_end",
+    "min_distance_m",
+    "keepout_radius_m",
+    "keepout_violations",
+    "crossing_interval_mean_s",
+    "crossing_interval_predicted_s",
+    "crossing_distance_min_m",
+    "crossing_clearance_min_m",
+    "tracking_error_rms_m",
     "settling_time_s",
-)  # fmt: skip
+)
 """Columns of the summary that the estimates use."""
 
 DRIVEN = ("clearance_m", "tracking_error_rms_m", "crossing_interval_error", "settling_time_s")
@@ -59,7 +199,7 @@ def study_statistics(
     look_number: int | None = None,
     per_sample: int = 1,
 ) -> Json:
-    """Return the content of ``statistics.json``; values that are not a number become None.
+    """Return the content of ``statistics.json``; NaN becomes None.
 
     Parameters
     ----------
@@ -69,7 +209,7 @@ def study_statistics(
     confidence : confidence of each interval, between 0 and 1; not of all of them together
     seed : seed of the random numbers for the sensitivity indices
     look_number : number of the look at which the study stopped, from 1; intervals are widened for
-        the looks before it (``scenarios.statistics.stopping``). None for a study that is evaluated
+        the looks before it (``scenarios.statistics.estimates``). None for a study that is evaluated
         only at its end
     per_sample : flights that share what is random, as those of the points of a sweep do [-]
     """
@@ -107,7 +247,7 @@ def study_statistics(
 
 
 def interval_confidence(confidence: float, look_number: int | None) -> float:
-    """Return the confidence of each interval, by that of the study and its look, as of
+    """Return the confidence of each interval, by that of the study and its look, same as
     ``study_statistics``.
     """
     return confidence if look_number is None else confidence_at(look_number, confidence)
@@ -121,28 +261,30 @@ def pessimistic_share(found: Violations, level: float, *, per_sample: int) -> Js
 
 
 def study_figures(rows: pd.DataFrame) -> dict[str, Array]:
-    """Return the figures of each flight, shape (n,); not a number where a flight has no such
+    """Return the figures of each flight, shape (n,); NaN where a flight has no such
     figure.
 
     Distances are in metres, and clearances are measured from r_min; the error of the mean crossing
     interval is relative to the predicted interval [-]; the settling time is in seconds, and a
     flight that never settled has none.
     """
-
-    def column(name: str) -> Array:
-        return pd.to_numeric(rows[name], errors="coerce").to_numpy(dtype=np.float64)
-
+    distance = _numbers(rows, "min_distance_m")
+    interval = _numbers(rows, "crossing_interval_mean_s")
+    predicted = _numbers(rows, "crossing_interval_predicted_s")
     return {
-        "min_distance_m": column("min_distance_m"),
-        "clearance_m": column("min_distance_m") - column("keepout_radius_m"),
-        "crossing_interval_error": column("crossing_interval_mean_s")
-        / column("crossing_interval_predicted_s")
-        - 1.0,
-        "crossing_distance_min_m": column("crossing_distance_min_m"),
-        "crossing_clearance_m": column("crossing_clearance_min_m"),
-        "tracking_error_rms_m": column("tracking_error_rms_m"),
-        "settling_time_s": column("settling_time_s"),
+        "min_distance_m": distance,
+        "clearance_m": distance - _numbers(rows, "keepout_radius_m"),
+        "crossing_interval_error": interval / predicted - 1.0,
+        "crossing_distance_min_m": _numbers(rows, "crossing_distance_min_m"),
+        "crossing_clearance_m": _numbers(rows, "crossing_clearance_min_m"),
+        "tracking_error_rms_m": _numbers(rows, "tracking_error_rms_m"),
+        "settling_time_s": _numbers(rows, "settling_time_s"),
     }
+
+
+def _numbers(rows: pd.DataFrame, name: str) -> Array:
+    """Return a column as numbers; NaN where a flight has none."""
+    return pd.to_numeric(rows[name], errors="coerce").to_numpy(dtype=np.float64)
 
 
 def named(found: Violations) -> Json:
@@ -211,3 +353,78 @@ def without_nan(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [without_nan(item) for item in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+TABLE_COLUMNS = described(
+    {
+        "case": Column("case of the flights", kind="text"),
+        "term": Column("term of the error budget", kind="text"),
+        "flights": Column("flights in which the term has a ratio", digits=0),
+        "ratio_median": "median over flights of the largest ratio of a flight",
+        "ratio_max": "largest ratio of all flights",
+        "flight_id": Column("flight of the largest ratio", title="Flight", kind="text"),
+        "flights_above": Column("flights with a ratio above 1", digits=0),
+        "flights_above_expected": "flights above 1 that the rate of the budget lets expect at most:"
+        " of processes in turbulence; none of a term that is a bound",
+    }
+)
+"""Of ``premises.csv``: a row per case and term."""
+
+_PROCESSES = ("wind", "turning", "drift")
+"""Terms that are processes in turbulence: each exceeds its budget at the budget's rate."""
+
+
+def premise_table(rows: pd.DataFrame, cases: Sequence[str], per_hour: float) -> pd.DataFrame:
+    """Return median and largest ratio of each term and case, and how many flights are above 1.
+
+    Parameters
+    ----------
+    rows : a row per flight, with the columns of the summary
+    cases : of each flight
+    per_hour : rate at which a process exceeds what is reckoned with [1/h]
+    """
+    found = []
+    for case, of_case in rows.groupby(np.asarray(cases), sort=False):
+        for term in TERMS:
+            ratios = pd.to_numeric(of_case[ratio_column(term)], errors="coerce").dropna()
+            if ratios.empty:
+                continue
+            known = of_case.loc[ratios.index]
+            gusty = (known["turbulence"] != "none") & (term in _PROCESSES)
+            hours = float(known["duration_s"][gusty].sum()) / SECONDS_PER_HOUR
+            largest = int(np.argmax(ratios))
+            found.append(
+                {
+                    "case": case,
+                    "term": term,
+                    "flights": len(ratios),
+                    "ratio_median": float(ratios.median()),
+                    "ratio_max": float(ratios.max()),
+                    "flight_id": known["flight_id"].iloc[largest],
+                    "flights_above": int((ratios > 1.0).sum()),
+                    "flights_above_expected": per_hour * hours,
+                }
+            )
+    return pd.DataFrame(found, columns=list(TABLE_COLUMNS))
+
+
+def premise_lines(table: pd.DataFrame) -> list[str]:
+    """Return the table for the console: for each case a line, for each term a column."""
+    terms = [term for term in TERMS if term in set(table["term"])]
+    width = max([len("case"), *map(len, table["case"])]) if len(table) else 0
+    lines = [f"  {'case':{width}}" + "".join(f"  {term:>14}" for term in terms)]
+    for case, of_case in table.groupby("case", sort=False):
+        cells = {row.term: _cell(row) for row in of_case.itertuples()}
+        lines.append(
+            f"  {case:{width}}" + "".join(f"  {cells.get(term, ''):>14}" for term in terms)
+        )
+    return [
+        "largest ratio of error to budget in a flight: median / largest (flights above 1)",
+        *lines,
+    ]
+
+
+def _cell(row: object) -> str:
+    median, largest = row.ratio_median, row.ratio_max  # type: ignore[attr-defined]
+    above = row.flights_above  # type: ignore[attr-defined]
+    return f"{median:.2f} / {largest:.2f}{f' ({above})' if above else ''}"

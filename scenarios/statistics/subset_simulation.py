@@ -43,16 +43,191 @@ function of them, of which smaller steps are accepted hardly more often, and lea
 A simulation is a generator: it yields the points of a whole wave, and is sent their values. So any
 number of processes can evaluate them, several simulations can go in step, and the result depends on
 the generator of the random numbers alone.
+
+What several subset simulations say together: probability and interval, the same over the
+threshold, and the inputs' shares.
+
+Estimates of a simulation are skewed, about log-normal. So the mean of the distribution is estimated
+from their logarithms, with the interval of Cox for the mean of a log-normal distribution, which for
+few values takes Student's t: U. Olsson, "Confidence intervals for the mean of a log-normal
+distribution", Journal of Statistics Education 13 (2005). Its deviation is that between the repeats,
+or that which Au and Beck's formula gives within them (for correlated chains, levels independent),
+whichever is larger: neither a lucky agreement of few repeats nor chains that hide their correlation
+makes it narrow. Tests measure how often it holds what is true.
+
+Where a simulation has reached no event, its estimate is 0 and its logarithm does not exist. There
+the upper end is what it leaves open: with 0 of n chains of its last level in the event, 1 - (1 -
+confidence)^(1/n) of that level's probability, as Clopper and Pearson have it. States of one chain
+are alike, and so are chains that began at copies of one state: n is the number of different states
+that they began at. If no simulation has reached any, all are judged at the threshold that even the
+least of them has reached: where some came much nearer than others, the probability of that
+threshold scatters, and the bound is the larger.
+
+What all simulations have in their first levels needs none of that: together these are a plain
+sample (Clopper and Pearson).
 """
 
 import math
 from collections.abc import Callable, Generator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 
 import numpy as np
-from scipy.special import ndtr
+import numpy.typing as npt
+import pandas as pd
+from scipy.special import ndtr, stdtrit
 
-from scenarios.statistics.subset_levels import Array, Counts, Indices, Level, Simulation, variation
+from common.intervals import clopper_pearson, upper_bound
+from scenarios.statistics.estimates import (
+    Json,
+    count_violations,
+    counted,
+    named,
+    share,
+    without_nan,
+)
+
+Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
+Indices = npt.NDArray[np.int64]
+
+
+@dataclass(slots=True, kw_only=True)
+class Counts:
+    """What was tried for the sample of a level.
+
+    Attributes
+    ----------
+    evaluated : number of points whose values were asked for
+    moved, accepted : moves of the inputs, and those that were accepted
+    blended, blended_accepted : moves of the blended noise, and those that were accepted
+    renewed, renewed_accepted : renewals of a seed on which the value depends, and those that were
+        accepted
+    outside : moves to points that are not allowed, which were not evaluated
+    """
+
+    evaluated: int = 0
+    moved: int = 0
+    accepted: int = 0
+    blended: int = 0
+    blended_accepted: int = 0
+    renewed: int = 0
+    renewed_accepted: int = 0
+    outside: int = 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Level:
+    """The sample of one level.
+
+    Attributes
+    ----------
+    below : values of the sample are at or below this; infinite for the first level
+    threshold : that of the next level; 0 for the last one
+    probability : fraction of the sample that passes ``threshold``: at or below it, and for the last
+        level below 0 [-]
+    variation : coefficient of variation of ``probability``, with the correlation within chains [-]
+    points : shape (n, inputs), in the unit cube: positions of the inputs in their distributions
+    dummies : shape (n, ``DUMMIES``), likewise
+    values : shape (n,); infinite where there is none
+    chains : number of the chain of each, shape (n,)
+    counts : of what was tried
+    scale, noise_scale : of the steps of inputs and of the blend at the end of the level [-]
+    """
+
+    below: float
+    threshold: float
+    probability: float
+    variation: float
+    points: Array
+    dummies: Array
+    values: Array
+    chains: Indices
+    counts: Counts
+    scale: float
+    noise_scale: float
+
+    @property
+    def beginnings(self) -> int:
+        """Return from how many different states its chains began: of states that passed, some are
+        copies of one that stayed.
+        """
+        _, first = np.unique(self.chains, return_index=True)
+        return len(np.unique(np.column_stack([self.points[first], self.values[first]]), axis=0))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Simulation:
+    """One subset simulation.
+
+    Attributes
+    ----------
+    levels : the first of them plain
+    stalled : whether no threshold below the last one could be found, because all of a level has one
+        value
+    """
+
+    levels: tuple[Level, ...]
+    stalled: bool
+
+    @property
+    def reached(self) -> float:
+        """Return the estimate of the probability of the last level [-]."""
+        return math.prod(level.probability for level in self.levels[:-1])
+
+    @property
+    def reached_variation(self) -> float:
+        """Return the coefficient of variation of ``reached`` [-]; see ``below``."""
+        return math.sqrt(sum(level.variation**2 for level in self.levels[:-1]))
+
+    def below(self, value: float) -> tuple[float, float]:
+        """Return the estimate of the probability of values below ``value``, and its coefficient of
+        variation [-].
+
+        The coefficient is that of Au and Beck (2001), as if levels were independent; infinite where
+        none is below.
+        """
+        reached, squares = 1.0, 0.0
+        for level in self.levels:
+            if value > level.threshold or level is self.levels[-1]:
+                event = level.values < value
+                return reached * float(np.mean(event)), math.hypot(
+                    math.sqrt(squares), variation(event, level.chains)
+                )
+            reached *= level.probability
+            squares += level.variation**2
+        raise ValueError("a simulation has one level at least")
+
+
+def variation(event: Mask, chains: Indices) -> float:
+    """Return the coefficient of variation of the fraction of a level that has an event [-], by Au
+    and Beck (2001).
+
+    Parameters
+    ----------
+    event : which states have it, shape (n,), those of each chain in their order
+    chains : number of the chain of each state, shape (n,)
+
+    Returns
+    -------
+    variation : infinite if no state has the event
+    """
+    share, count = float(np.mean(event)), len(event)
+    if share == 0.0:
+        return math.inf
+    order = np.argsort(chains, kind="stable")
+    chain, centred = chains[order], event[order].astype(np.float64) - share
+    factor, every = 1.0, share * (1.0 - share)
+    for lag in range(1, int(np.bincount(chains).max())):
+        together = chain[lag:] == chain[:-lag]
+        if every and together.any():
+            # Twice the covariance at this lag, by the number of pairs that have it.
+            factor += (
+                2.0
+                * float(np.sum(centred[lag:][together] * centred[:-lag][together]))
+                / (count * every)
+            )
+    return math.sqrt((1.0 - share) / (share * count) * max(factor, 1.0))
+
 
 ACCEPTANCE = 0.44
 """Acceptance rate that steps adapt to: Papaioannou et al. (2015)."""
@@ -228,10 +403,8 @@ class SubsetSimulation:
             states = yield from self._moved(states, threshold, scales, spread, generator, counts)
             moved, accepted = counts.moved - before.moved, counts.accepted - before.accepted
             scales.inputs = _adapted(scales.inputs, moved, accepted, wave)
-            moved, accepted = (
-                counts.blended - before.blended,
-                counts.blended_accepted - before.blended_accepted,
-            )
+            moved = counts.blended - before.blended
+            accepted = counts.blended_accepted - before.blended_accepted
             scales.blend = _adapted(scales.blend, moved, accepted, wave)
             parts.append(states)
             missing -= len(states.values)
@@ -250,11 +423,9 @@ class SubsetSimulation:
         """Propose a move of each chain; return the states after it."""
         count = len(states.values)
         kind = generator.random(count) if self.noise else np.ones(count)
-        renewed, blended, moved = (
-            kind < RENEWALS,
-            (kind >= RENEWALS) & (kind < RENEWALS + BLENDS),
-            kind >= RENEWALS + BLENDS,
-        )
+        renewed = kind < RENEWALS
+        blended = (kind >= RENEWALS) & (kind < RENEWALS + BLENDS)
+        moved = kind >= RENEWALS + BLENDS
         steps = np.minimum(1.0, scales.inputs * spread)
         proposed = np.sqrt(1.0 - steps**2) * states.normal + steps * generator.standard_normal(
             states.normal.shape
@@ -345,3 +516,396 @@ def _blended(noise: Point, seed: float, step: float) -> Point:
     kept = math.sqrt(1.0 - step**2)
     parts = [(noise[i], kept * noise[i + 1]) for i in range(1, len(noise), 2)] if kept else []
     return (noise[0], *(number for part in parts for number in part), seed, step)
+
+
+CURVE_POINTS = 80
+"""Thresholds at which the probability is given."""
+
+BINS = 20
+"""Classes of the histogram of an input."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RareProbability:
+    """A probability, estimated by several simulations.
+
+    Attributes
+    ----------
+    estimate : [-]; the mean of the estimates where some of them are 0
+    low, high : two-sided interval [-]
+    upper : one-sided bound [-]
+    reached : number of simulations that have reached the event
+    """
+
+    estimate: float
+    low: float
+    high: float
+    upper: float
+    reached: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class InputShift:
+    """How an input is distributed near the event, against how it is declared.
+
+    Attributes
+    ----------
+    key : of the input
+    distance : largest difference of the two cumulative distributions, of Kolmogorov [-]
+    median, median_near : medians as declared and near the event; None for words
+    edges : of the classes, one more than there are; empty for words
+    names : of the classes, for words; otherwise empty
+    declared, near : fraction in each class [-]
+    """
+
+    key: str
+    distance: float
+    median: float | None
+    median_near: float | None
+    edges: tuple[float, ...]
+    names: tuple[str, ...]
+    declared: tuple[float, ...]
+    near: tuple[float, ...]
+
+
+def rare_probability(
+    simulations: Sequence[Simulation], confidence: float, *, value: float = 0.0
+) -> RareProbability:
+    """Return the probability of values below ``value``, by all simulations together.
+
+    Parameters
+    ----------
+    simulations : repeats, three at least, with their own random numbers
+    confidence : of the interval, and of the one-sided bound, between 0 and 1
+    value : below 0 there is no level, and the last one gives what it has
+    """
+    found = np.array([simulation.below(value) for simulation in simulations])
+    estimates, reached = found[:, 0], found[:, 0] > 0.0
+    two_sided, one_sided = 0.5 + 0.5 * confidence, confidence
+    first = [simulation.levels[0] for simulation in simulations]
+    if reached.any() and all(
+        value > level.threshold or len(of.levels) == 1
+        for level, of in zip(first, simulations, strict=True)
+    ):
+        return _of_plain_samples(
+            np.concatenate([level.values for level in first]) < value,
+            int(reached.sum()),
+            confidence,
+        )
+    if reached.all():
+        centre, deviation = _log_mean(estimates, found[:, 1])
+        t = _t_quantile(two_sided, len(estimates)) * deviation
+        return RareProbability(
+            estimate=_at_most_one(centre),
+            low=_at_most_one(centre - t),
+            high=_at_most_one(centre + t),
+            upper=_at_most_one(centre + _t_quantile(one_sided, len(estimates)) * deviation),
+            reached=len(estimates),
+        )
+    high, upper = (
+        _left_open(simulations, estimates, found[:, 1], level) for level in (two_sided, one_sided)
+    )
+    return RareProbability(
+        estimate=float(estimates.mean()),
+        low=0.0,
+        high=high,
+        upper=upper,
+        reached=int(np.count_nonzero(reached)),
+    )
+
+
+def _of_plain_samples(
+    event: npt.NDArray[np.bool_], reached: int, confidence: float
+) -> RareProbability:
+    """Return a probability that is not rare: first levels are plain samples, of which there is an
+    exact interval.
+    """
+    events, trials = int(np.count_nonzero(event)), len(event)
+    interval = clopper_pearson(events, trials, confidence)
+    return RareProbability(
+        estimate=events / trials,
+        low=interval.low,
+        high=interval.high,
+        upper=upper_bound(events, trials, confidence),
+        reached=reached,
+    )
+
+
+def _left_open(
+    simulations: Sequence[Simulation], estimates: Array, variations: Array, confidence: float
+) -> float:
+    """Return an upper bound where some simulations have not reached the event.
+
+    What may go wrong is shared equally between the probability of the last levels and the fraction
+    of these.
+    """
+    half = 0.5 + 0.5 * confidence
+    chains = [simulation.levels[-1].beginnings for simulation in simulations]
+    if not estimates.any():
+        common = max(simulation.levels[-1].below for simulation in simulations)
+        if math.isinf(common):
+            # A simulation has a plain sample alone; all together have at least these.
+            return upper_bound(
+                0, sum(len(simulation.levels[0].values) for simulation in simulations), confidence
+            )
+        # The next number above it: states at the threshold belong to it.
+        levels, within = np.array(
+            [simulation.below(math.nextafter(common, math.inf)) for simulation in simulations]
+        ).T
+        factor = upper_bound(0, sum(chains), half)
+    else:
+        open_levels = [
+            simulation.reached * upper_bound(0, n, half)
+            for simulation, n in zip(simulations, chains, strict=True)
+        ]
+        levels = np.where(estimates > 0.0, estimates, open_levels)
+        within = np.where(
+            estimates > 0.0,
+            variations,
+            [simulation.reached_variation for simulation in simulations],
+        )
+        factor = 1.0
+    centre, deviation = _log_mean(levels, within)
+    return _at_most_one(math.log(factor) + centre + _t_quantile(half, len(levels)) * deviation)
+
+
+def _at_most_one(logarithm: float) -> float:
+    """Return the probability with this logarithm; estimates that scatter by decades have means and
+    bounds beyond any number.
+    """
+    return math.exp(min(0.0, logarithm))
+
+
+def _log_mean(estimates: Array, variations: Array) -> tuple[float, float]:
+    """Return the logarithm of the mean of a log-normal distribution, and its standard deviation."""
+    count, logarithms = len(estimates), np.log(estimates)
+    between = float(np.var(logarithms, ddof=1))
+    variance = max(between, math.log1p(float(np.mean(variations**2))))
+    return float(np.mean(logarithms)) + 0.5 * between, math.sqrt(
+        variance / count + variance**2 / (2.0 * (count - 1))
+    )
+
+
+def _t_quantile(probability: float, count: int) -> float:
+    return float(stdtrit(count - 1, probability))
+
+
+def curve(
+    simulations: Sequence[Simulation], confidence: float
+) -> list[tuple[float, RareProbability]]:
+    """Return the probability of values below each of some thresholds, from the lowest that all
+    simulations have reached.
+    """
+    lowest = max(float(simulation.levels[-1].values.min()) for simulation in simulations)
+    first = np.concatenate([simulation.levels[0].values for simulation in simulations])
+    known = first[np.isfinite(first)]
+    if not len(known) or not math.isfinite(lowest):
+        return []
+    highest = float(np.quantile(known, 0.9))
+    values = np.unique(
+        np.append(
+            np.linspace(lowest, highest, CURVE_POINTS), 0.0 if lowest < 0.0 < highest else lowest
+        )
+    )
+    found = [
+        (float(value), rare_probability(simulations, confidence, value=float(value)))
+        for value in values
+    ]
+    return [
+        (value, probability)
+        for value, probability in found
+        if probability.reached == len(simulations)
+    ]
+
+
+def near_event(simulations: Sequence[Simulation]) -> list[tuple[Simulation, Indices]]:
+    """Return of each simulation the indices of what its last level has below 0, or of all of it, if
+    no simulation has any.
+    """
+    inside = [np.flatnonzero(simulation.levels[-1].values < 0.0) for simulation in simulations]
+    every = [np.arange(len(simulation.levels[-1].values)) for simulation in simulations]
+    return list(
+        zip(simulations, inside if any(len(chosen) for chosen in inside) else every, strict=True)
+    )
+
+
+def input_shifts(
+    declared: pd.DataFrame, near: pd.DataFrame, at: tuple[Array, Array]
+) -> list[InputShift]:
+    """Return how the inputs near the event differ from those that are declared, the largest
+    distance first.
+
+    Parameters
+    ----------
+    declared, near : values of the inputs of the first levels and of those near the event, a column
+        per input
+    at : the same in the unit cube, shapes (n, inputs)
+    """
+    shifts = [
+        _shift(str(key), declared[key], near[key], distance(at[0][:, i], at[1][:, i]))
+        for i, key in enumerate(declared.columns)
+    ]
+    return sorted(shifts, key=lambda shift: -shift.distance)
+
+
+def noise_floor(simulations: Sequence[Simulation]) -> float:
+    """Return the largest distance of what has no effect at all: that of the dummies, which move
+    with the same chains.
+    """
+    first = np.concatenate([simulation.levels[0].dummies for simulation in simulations])
+    last = np.concatenate(
+        [simulation.levels[-1].dummies[chosen] for simulation, chosen in near_event(simulations)]
+    )
+    return max(distance(first[:, i], last[:, i]) for i in range(first.shape[1]))
+
+
+def distance(one: Array, other: Array) -> float:
+    """Return the largest difference of two cumulative distributions, of Kolmogorov and Smirnov [-]."""
+    every = np.sort(np.concatenate([one, other]))
+    shares = [
+        np.searchsorted(np.sort(values), every, side="right") / len(values)
+        for values in (one, other)
+    ]
+    return float(np.max(np.abs(shares[0] - shares[1])))
+
+
+def _shift(
+    key: str, declared: "pd.Series[float]", near: "pd.Series[float]", found: float
+) -> InputShift:
+    if pd.api.types.is_numeric_dtype(declared):
+        both = np.concatenate(
+            [declared.to_numpy(dtype=np.float64), near.to_numpy(dtype=np.float64)]
+        )
+        edges = np.histogram_bin_edges(both, bins=BINS)
+        shares = [
+            tuple((np.histogram(values, edges)[0] / len(values)).tolist())
+            for values in (declared, near)
+        ]
+        medians = (float(declared.median()), float(near.median()))
+        return InputShift(
+            key=key,
+            distance=found,
+            median=medians[0],
+            median_near=medians[1],
+            edges=tuple(edges.tolist()),
+            names=(),
+            declared=shares[0],
+            near=shares[1],
+        )
+    words = [declared.astype(str), near.astype(str)]
+    names = tuple(dict.fromkeys([*sorted(words[0].unique()), *words[1].unique()]))
+    counted = [tuple(float((values == name).mean()) for name in names) for values in words]
+    return InputShift(
+        key=key,
+        distance=found,
+        median=None,
+        median_near=None,
+        edges=(),
+        names=names,
+        declared=counted[0],
+        near=counted[1],
+    )
+
+
+def subset_statistics(
+    rows: pd.DataFrame,
+    simulations: Sequence[Simulation],
+    shifts: Sequence[InputShift],
+    *,
+    confidence: float,
+) -> Json:
+    """Return the content of ``statistics.json``; NaN becomes None.
+
+    Flights of the first levels are a plain random sample, which gives a bound by itself. Of those
+    that have no measurement, or were lost without a violation, nobody knows where they would have
+    gone: the pessimistic bound takes their probability as that of violations, too.
+
+    Parameters
+    ----------
+    rows : columns ``COLUMNS`` of the summary, a row per flight in the order in which they were
+        flown
+    simulations : the repeats, at least three
+    shifts : of the inputs
+    confidence : of each interval, between 0 and 1
+    """
+    plain = count_violations(
+        rows.head(sum(len(simulation.levels[0].values) for simulation in simulations))
+    )
+    every = count_violations(rows)
+    found = rare_probability(simulations, confidence)
+    content: Json = without_nan(
+        {
+            "method": "subset",
+            "confidence": confidence,
+            "flights": {"done": every.flights, "measured": every.measured, "unknown": named(every)},
+            "outcomes": counted(rows["outcome"]),
+            "modes_at_end": counted(rows["mode_at_end"]),
+            "violation": {
+                **asdict(found),
+                "repeats": len(simulations),
+                "events": every.events,
+                "pessimistic": {
+                    "upper": pessimistic_upper(
+                        simulations,
+                        found,
+                        plain.events_at_most - plain.events,
+                        plain.flights,
+                        confidence,
+                    )
+                },
+                "first_levels": share(plain.events, plain.measured, confidence),
+                "first_levels_unknown": plain.events_at_most - plain.events,
+            },
+            "simulations": [_simulation(simulation) for simulation in simulations],
+            "curve": [
+                {"clearance_m": value, **asdict(point)}
+                for value, point in curve(simulations, confidence)
+            ],
+            "inputs": [asdict(shift) for shift in shifts],
+            "noise_floor": noise_floor(simulations),
+        }
+    )
+    return content
+
+
+def pessimistic_upper(
+    simulations: Sequence[Simulation],
+    found: RareProbability,
+    unknown: int,
+    flights: int,
+    confidence: float,
+) -> float:
+    """Return the bound if flights of unknown end were violations; what may go wrong is shared
+    equally between the two.
+    """
+    if not unknown:
+        return found.upper
+    half = 0.5 + 0.5 * confidence
+    return min(1.0, rare_probability(simulations, half).upper + upper_bound(unknown, flights, half))
+
+
+def _simulation(simulation: Simulation) -> Json:
+    probability, variation = simulation.below(0.0)
+    return {
+        "probability": probability,
+        "variation": variation,
+        "stalled": simulation.stalled,
+        "levels": [_level(level) for level in simulation.levels],
+    }
+
+
+def _level(level: Level) -> Json:
+    counts = asdict(level.counts)
+    flights = counts.pop("evaluated")
+    return {
+        "below_m": level.below,
+        "threshold_m": level.threshold,
+        "probability": level.probability,
+        "variation": level.variation,
+        "flights": flights,
+        "nearest_m": float(level.values.min()),
+        "without_measurement": int(sum(math.isinf(value) for value in level.values)),
+        **counts,
+        "scale": level.scale,
+        "noise_scale": level.noise_scale,
+    }

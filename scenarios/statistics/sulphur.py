@@ -24,10 +24,22 @@ overlap.
 """
 
 COLUMNS = (
-    "flight_id", "seed", "sensor", "fsc_fuel_percent", "fsc_expected_percent", "sulphur_limit_percent", "sulphur_verdict",
-    "verdict_2min", "areas_fsc_separate_percent",
-    *(f"{method}_{figure}percent" for method in METHODS.values() for figure in _FIGURES if figure != "separate_"),
-)  # fmt: skip
+    "flight_id",
+    "seed",
+    "sensor",
+    "fsc_fuel_percent",
+    "fsc_expected_percent",
+    "sulphur_limit_percent",
+    "sulphur_verdict",
+    "verdict_2min",
+    "areas_fsc_separate_percent",
+    *(
+        f"{method}_{figure}percent"
+        for method in METHODS.values()
+        for figure in _FIGURES
+        if figure != "separate_"
+    ),
+)
 """Columns of the summary that these statistics use."""
 
 _CALLED_BY = ["sensor", "sulphur_limit_percent", "fsc_fuel_percent"]

@@ -17,16 +17,16 @@ from gnc.reference.reference import REFERENCE_SHAPES
 from scenarios.errors import InputError
 from scenarios.experiment.draws import check_draws
 from scenarios.experiment.requests import Experiment
-from scenarios.flight.failure import failure
+from scenarios.flight.ending import failure
 from scenarios.measures.own_instruments import check_instruments
 from scenarios.planning.declared_vessel import check_declared
 from scenarios.planning.limits import check_flyable, check_recorded
-from scenarios.planning.plume.axis import flown_altitudes, sniffer_on_board
+from scenarios.planning.plume import flown_altitudes, sniffer_on_board
 from scenarios.scenario.extension_points import PAYLOADS, PLUME_MODELS, VESSEL_TRACKS
 from scenarios.scenario.parts import names_file, part_names
 from scenarios.scenario.scenario import Scenario
-from scenarios.world.exhaust import Smoke, without_smoke
 from scenarios.world.faults import NOT_OF_AIRCRAFT
+from scenarios.world.plume import Smoke, without_smoke
 from scenarios.world.vessel import check_manoeuvres
 from scenarios.world.world import mean_wind, vessel_of
 

@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from pydantic import BaseModel
@@ -14,22 +14,29 @@ from aircraft.spec import AircraftError
 from common.provenance import provenance
 from common.registry import PluginError, file_hash, file_of
 from common.run_layout import FORMAT, LOGO
+from gnc.mission.mission import Mode
 from measurement.emission import Ship
 from measurement.gases import UNITS
 from measurement.sniffer.channel import Channel
 from measurement.sniffer.spec import SnifferSpec
-from scenarios.engine.fingerprint import fingerprint
-from scenarios.engine.run_directory import RunDirectory
+from scenarios.engine.run_directory import RunDirectory, fingerprint
 from scenarios.errors import InputError
-from scenarios.scenario.documented_parts import (
+from scenarios.experiment.sampling import (
+    flights_per_sample,
+    is_random_sample,
+    random_numbers_of_points,
+)
+from scenarios.planning.scaling import scaled_keys
+from scenarios.planning.theory import theory_over_speed_ratio
+from scenarios.scenario.documentation import (
     DIMENSIONLESS,
     DocumentedKey,
     described_fields,
     documented_part_keys,
 )
 from scenarios.scenario.effect import differing, unused
-from scenarios.scenario.keys import line, split_unit
-from scenarios.scenario.load import AnyStudy
+from scenarios.scenario.errors import line, split_unit
+from scenarios.scenario.files import AnyStudy
 from scenarios.scenario.parts import names_file, names_folder, part_names
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.guidance import GuidanceConfig
@@ -68,6 +75,32 @@ def initial_manifest(scenario: AnyStudy, name: str, overrides: Sequence[str]) ->
         "parameters": parameters(scenario),
         "report": report_entry(scenario.report),
         **provenance(),
+    }
+
+
+def trial_entries(
+    trials: Mapping[str, Scenario], *, as_read: Mapping[str, Scenario]
+) -> dict[str, Any]:
+    """Return what the manifest says of the trials of a study of flights.
+
+    Parameters
+    ----------
+    trials : that are flown, by name
+    as_read : the trials before they were scaled to an aircraft; empty if they were not
+    """
+
+    def of_each(entry: Callable[[Scenario], object]) -> dict[str, object]:
+        return {trial: entry(scenario) for trial, scenario in trials.items()}
+
+    return {
+        "modes": [mode.value for mode in Mode],
+        "trial_parameters": of_each(parameters),
+        "unused_parameters": of_each(unused_parameters),
+        "scaled_parameters": {trial: scaled_keys(of) for trial, of in as_read.items()},
+        "sampled_at_random": of_each(is_random_sample),
+        "flights_per_sample": of_each(flights_per_sample),
+        "random_numbers_of_points": of_each(random_numbers_of_points),
+        "theory": of_each(theory_over_speed_ratio),
     }
 
 

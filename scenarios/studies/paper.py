@@ -14,14 +14,13 @@ from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Progress
 from scenarios.engine.task import Row
 from scenarios.experiment.requests import FlightRequest
-from scenarios.planning.bounded_steering import farthest_start, largest_speed, search_steering
+from scenarios.planning.guidance import farthest_start, largest_speed, search_steering
 from scenarios.planning.limits import omega_max
-from scenarios.planning.planner import plan_flight
+from scenarios.planning.missions import plan_flight
 from scenarios.planning.reference import circle, oscillation_at
-from scenarios.scenario.load import with_values
+from scenarios.scenario.files import with_values
 from scenarios.scenario.sections.guidance import GuidanceConfig
-from scenarios.studies.flight_study import FlightStudy
-from scenarios.studies.study import study
+from scenarios.studies.base import FlightStudy, study
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 
 SEARCH_STATES = 1_000_000
@@ -160,5 +159,5 @@ class PaperStudy(FlightStudy):
         progress("bounding commands", self.planned, self.planned)
         ((_, scenario),) = self.trials.items()
         ((_, experiment),) = self.experiments.items()
-        requests = [experiment.request(number) for number in range(experiment.flights)]
+        requests = list(experiment.requests())
         run.write_json(run.bounds, bounds_record(requests, scenario.seed))

@@ -12,10 +12,8 @@ from gnc.estimation.error_budget import EXCEEDED_PER_HOUR
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import StudySummary
-from scenarios.statistics.premises import TABLE_COLUMNS, premise_lines, premise_table
-from scenarios.studies.flight_study import FlightStudy
-from scenarios.studies.rows import frame
-from scenarios.studies.study import study
+from scenarios.statistics.estimates import TABLE_COLUMNS, premise_lines, premise_table
+from scenarios.studies.base import FlightStudy, frame, study
 
 _COLUMNS = ("flight_id", "turbulence", "duration_s", *PREMISE_COLUMNS)
 """Columns of the summary that the table is made of."""
@@ -43,9 +41,7 @@ class PremisesStudy(FlightStudy):
 
     def _table(self, journal: Journal) -> pd.DataFrame:
         numbered = list(journal.numbered(SUMMARY))
-        cases = []
-        for number, _ in numbered:
-            (experiment,) = self.experiments.values()
-            cases.append(experiment.label(number))
+        (experiment,) = self.experiments.values()
+        cases = [experiment.point_of(number)[0].label for number, _ in numbered]
         rows = frame((row for _, row in numbered), _COLUMNS)
         return premise_table(rows, cases, EXCEEDED_PER_HOUR)

@@ -29,11 +29,6 @@ class KinematicVehicle:
     wind : velocity of the air over time and height
     """
 
-    __slots__ = (
-        "_altitude", "_course", "_east", "_heading_rate", "_lag", "_north", "_speed", "_time", "_time_step", "_wind",
-        "_wind_east", "_wind_north",
-    )  # fmt: skip
-
     def __init__(
         self,
         *,
@@ -112,7 +107,8 @@ class KinematicVehicle:
     def fail(self, name: str) -> None:
         """Raise InputError: equation (1) has no parts."""
         raise InputError(
-            f"'{name}' cannot fail in a kinematic flight, which has no parts; fly it with fidelity six_dof"
+            f"'{name}' cannot fail in a kinematic flight, which has no parts; fly it with fidelity"
+            " six_dof"
         )
 
     def fault(self, sample: tuple[float, ...]) -> str:

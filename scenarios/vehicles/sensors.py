@@ -57,8 +57,7 @@ class SensorErrors:
             self.airspeed_bias + sensors.airspeed_sigma_mps * white[4],
             heading_bias + math.radians(sensors.heading_sigma_deg) * white[5],
         ]
-        # One flat list: thousands of small ones take longer to make than all of them to read.
-        self._errors: list[float] = np.column_stack(errors).ravel().tolist()
+        self._errors: list[list[float]] = np.column_stack(errors).tolist()
 
     def read(
         self,
@@ -78,15 +77,13 @@ class SensorErrors:
         airspeed, heading : true ones [m/s, rad]
         satellites : whether satellite navigation works
         """
-        north, east, v_north, v_east, air, turned = self._errors[6 * step : 6 * step + 6]
-        fix = (
-            SatelliteFix(
+        north, east, v_north, v_east, air, turned = self._errors[step]
+        fix = None
+        if satellites:
+            fix = SatelliteFix(
                 motion.north + north,
                 motion.east + east,
                 motion.velocity_north + v_north,
                 motion.velocity_east + v_east,
             )
-            if satellites
-            else None
-        )
         return fix, airspeed + air, heading + turned

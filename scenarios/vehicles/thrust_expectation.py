@@ -10,11 +10,11 @@ import numpy.typing as npt
 
 from aircraft.fdm import Fdm
 from aircraft.spec import Envelope
+from aircraft.state import EquatorFrame
 from aircraft.trim import Trim
 from aircraft.weather import TURBULENCE, Weather, low_altitude_turbulence
 from common.physics import METRES_PER_FOOT, SECONDS_PER_HOUR, heading_rate_for_bank
 from gnc.estimation.health import CHECK_INTERVAL
-from gnc.estimation.navigation import EngineReadings
 from gnc.estimation.thrust import (
     EXPECTED_SHARE,
     ThrustModel,
@@ -24,14 +24,12 @@ from gnc.estimation.thrust import (
 )
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.thrust_map import (
-    DOWNWARD_FORCE,
-    FORWARD_FORCE,
     THRUST,
     WEIGHT,
     measure_thrust,
 )
-from innerloop.jsbsim.system import CONTROL_COMMAND
 from innerloop.schedule import Schedule
+from scenarios.vehicles.jsbsim import Telemetry
 
 _COMMAND_STEP = 0.05
 """Time for which commands are held in a hard flight [s], as long as by the guidance at 20 Hz."""
@@ -60,7 +58,6 @@ _SEED = 20261128
 """Seed of the flights that errors are measured in."""
 
 Array = npt.NDArray[np.float64]
-
 
 FALSE_ALARM_HOURS = 1e6
 """Flight hours of a sound aircraft in which errors of measurement once take its thrust for lost
@@ -193,16 +190,6 @@ class ThrustExpectation:
         )
 
 
-def engine_readings(fdm: Fdm) -> tuple[float, float, float]:
-    """Return what ``gnc.estimation.navigation.EngineReadings`` has, of an aircraft [-]."""
-    weight = fdm.read(WEIGHT)
-    return (
-        fdm.read(CONTROL_COMMAND.format("throttle")),
-        fdm.read(FORWARD_FORCE) / weight,
-        -fdm.read(DOWNWARD_FORCE) / weight,
-    )
-
-
 def thrust_expectation(
     aircraft: AutopilotedAircraft, schedule: Schedule, start: Trim
 ) -> ThrustExpectation:
@@ -281,10 +268,11 @@ def _errors(
     weather: Weather,
 ) -> ThrustErrors:
     fdm = aircraft.fdm
+    read_engine = Telemetry(fdm, EquatorFrame(start.altitude)).engine
     flight = hard_flight(aircraft, envelope, start, weather, np.random.default_rng(_SEED))
     lacks = []
     for airspeed in itertools.islice(flight, round(_MEASURED_TIME / CHECK_INTERVAL)):
-        engine = EngineReadings(*engine_readings(fdm))
+        engine = read_engine()
         shown = model.measured_thrust(airspeed, engine.forward, engine.upward)
         lacks.append(fdm.read(THRUST) / fdm.read(WEIGHT) - shown)
     lack = float(np.mean(lacks))

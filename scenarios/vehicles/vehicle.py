@@ -20,7 +20,7 @@ SAMPLE_COLUMNS = (
     "throttle",
     "rudder",
 )
-"""What a vehicle's ``sample`` returns, in order; not a number where it has no such thing. Controls
+"""What a vehicle's ``sample`` returns, in order; NaN where it has no such thing. Controls
 are commands [-], or the effect by which a surface is commanded whose travel is unequal
 (``aircraft.controls``).
 """

@@ -20,13 +20,13 @@ from common.files import write_tree
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.part_failure import PartFailure, measure_part_failure
 from innerloop.flight.turn_reversal import TurnReversalResponse, reversal_record
+from innerloop.flight.weave import Weave, measure_weaves
 from innerloop.jsbsim.system import write_root
 from innerloop.schedule import Schedule
 from innerloop.store import Designed, designed
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
-from scenarios.scenario.scenario import Scenario
-from scenarios.scenario.scenario_keys import DEFAULT_AIRCRAFT
+from scenarios.scenario.scenario import DEFAULT_AIRCRAFT, Scenario
 from scenarios.vehicles.thrust_expectation import ThrustExpectation, thrust_expectation
 
 KINEMATIC_BANDWIDTH = 1.0
@@ -87,6 +87,7 @@ class VehicleSetup:
         empty without a limit [m/s, rad/s]
     crab_banks, crab_offsets : banks in steady turns, and course through the air minus heading at
         each [rad]
+    weaves : in still air, as sensors see them; none if not measured
     aircraft : in six degrees of freedom, or none for the kinematic vehicle
     """
 
@@ -106,6 +107,7 @@ class VehicleSetup:
     turn_rates: tuple[float, ...] = ()
     crab_banks: tuple[float, ...] = (-1.0, 1.0)
     crab_offsets: tuple[float, ...] = (0.0, 0.0)
+    weaves: tuple[Weave, ...] = ()
     aircraft: Aircraft | None = None
 
     def turning_airspeed(self, heading_rate: float) -> float:
@@ -199,22 +201,27 @@ def aircraft_setup(
         reversal = reversal_record(
             schedule.spec, run.model, start, max(bank, schedule.envelope.bank), slow_lag
         )
-    level, climbing, parts = None, None, fault_names(schedule.spec)
-    if failing := [setting for setting in settings if setting.declared_faults.intersection(parts)]:
+    parts = fault_names(schedule.spec)
+    failing = [setting for setting in settings if setting.declared_faults.intersection(parts)]
+    level = climbing = None
+    if failing:
         failable = AutopilotedAircraft(schedule.spec, run.model, failable=True)
-        gradient, turn = (
-            max(setting.following.climb_gradient for setting in failing),
-            max(bank, schedule.envelope.bank),
-        )
-        level, climbing = (
-            measure_part_failure(failable, start, turn, schedule.envelope.airspeed_min, each)
-            for each in (0.0, gradient)
-        )
-        climbing = climbing.or_worse(level)
-    thrust = None
+        gradient = max(setting.following.climb_gradient for setting in failing)
+        turn, slowest = max(bank, schedule.envelope.bank), schedule.envelope.airspeed_min
+        level = measure_part_failure(failable, start, turn, slowest, 0.0)
+        climbing = measure_part_failure(failable, start, turn, slowest, gradient).or_worse(level)
+    thrust: ThrustExpectation | None = None
+    weaves: tuple[Weave, ...] = ()
     if any(setting.follows for setting in settings):
         sound = AutopilotedAircraft(schedule.spec, run.model)
         thrust = thrust_expectation(sound, schedule, start)
+        weaves = measure_weaves(
+            sound,
+            start,
+            max(bank, schedule.envelope.bank),
+            schedule.envelope.airspeed_min,
+            schedule.envelope.airspeed_max,
+        )
     return VehicleSetup(
         lag=slow_lag,
         reversal=TurnReversalResponse(delay=reversal["delay_s"], lag=reversal["lag_s"]),
@@ -236,6 +243,7 @@ def aircraft_setup(
         turn_rates=_slower_turns(schedule),
         crab_banks=tuple(turn.roll for turn in turns),
         crab_offsets=tuple(turn.course_offset() for turn in turns),
+        weaves=weaves,
         aircraft=Aircraft(
             spec=schedule.spec, envelope=schedule.envelope, start=start, model=run.model
         ),
@@ -247,16 +255,9 @@ def _slower_turns(schedule: Schedule) -> tuple[float, ...]:
     airspeed [rad/s].
     """
     tangent = math.tan(schedule.envelope.bank_max)
-    return tuple(
-        min(
-            abs(
-                float(
-                    np.interp(
-                        side * tangent, np.tan([t.roll for t in row]), [t.yaw_rate for t in row]
-                    )
-                )
-            )
-            for side in (-1.0, 1.0)
-        )
-        for row in schedule.trims
-    )
+    slower = []
+    for row in schedule.trims:
+        tangents, rates = np.tan([turn.roll for turn in row]), [turn.yaw_rate for turn in row]
+        left, right = (float(np.interp(each, tangents, rates)) for each in (-tangent, tangent))
+        slower.append(min(abs(left), abs(right)))
+    return tuple(slower)

@@ -38,6 +38,10 @@ class TimedFault:
         """Return whether a fault of this kind is on."""
         return kind == self.kind and self.begins <= time < self.ends
 
+    def interval(self, kind: str) -> tuple[float, float]:
+        """Return when a fault of this kind begins and ends; never where it is of another kind [s]."""
+        return (self.begins, self.ends) if kind == self.kind else (math.inf, math.inf)
+
     def of_aircraft(self) -> bool:
         """Return whether it is a part of the aircraft that fails."""
         return self.kind not in NOT_OF_AIRCRAFT

@@ -1,15 +1,19 @@
-"""Where the vessel really is, at any time: at constant velocity, or through its manoeuvres."""
+"""Where the vessel really is, at any time: at constant velocity, or through its manoeuvres; and where
+on earth a flight begins.
+"""
 
 import math
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
+from common.geodesy import LocalFrame
 from gnc.errors import InfeasibleError
 from scenarios.scenario.extension_points import VESSEL_TRACKS
-from scenarios.scenario.sections.world import VesselConfig
+from scenarios.scenario.sections.world import PlaceConfig, VesselConfig
 
 TRACK_STEP = 0.05
 """Time step of a tabled track [s]; between its points the track is a parabola to 1e-5 m."""
@@ -18,9 +22,6 @@ _ROUNDING = 1e-6
 """Relative error of what is taken from a table of velocities [-]: 4e-13 of vessels at their limit;
 in 5 minutes, millimetres.
 """
-
-_COLUMNS = 5
-"""Of the table: north, east, their rates, the course."""
 
 Array = npt.NDArray[np.float64]
 
@@ -38,7 +39,7 @@ class VesselTruth(Protocol):
 
     @property
     def manoeuvres_end(self) -> float:
-        """Time at which the last manoeuvre ends, not a number without any [s]."""
+        """Time at which the last manoeuvre ends, NaN without any [s]."""
 
 
 vessel_track = VESSEL_TRACKS.register
@@ -52,8 +53,6 @@ class SteadyVessel:
     ----------
     speed, course : over the ground [m/s, rad]
     """
-
-    __slots__ = ("_course", "_v_east", "_v_north", "manoeuvres_end")
 
     def __init__(self, speed: float, course: float) -> None:
         self._course = course
@@ -77,7 +76,7 @@ class TabledVessel:
     ----------
     velocity : north and east, shape (n, 2) [m/s]
     course : shape (n,) [rad]
-    manoeuvres_end : when the last manoeuvre ends, not a number without any [s]
+    manoeuvres_end : when the last manoeuvre ends, NaN without any [s]
     """
 
     def __init__(self, velocity: Array, course: Array, manoeuvres_end: float) -> None:
@@ -98,18 +97,17 @@ class TabledVessel:
         return self._table[:, :2]
 
     @cached_property
-    def _flat(self) -> list[float]:
-        """The table as plain floats, row after row, for one look at a time."""
-        return self._table.ravel().tolist()
+    def _rows(self) -> list[list[float]]:
+        """North, east, their rates and the course as plain floats, for one time after the other."""
+        rows: list[list[float]] = self._table.tolist()
+        return rows
 
     def motion(self, time: float) -> tuple[float, float, float, float]:
         """Return north, east [m] and their rates [m/s] at a time [s]."""
         step, last = int(time / TRACK_STEP), self._last
         step = step if step < last else last
-        at = _COLUMNS * step
-        north, east, v_north, v_east, _, _, _, v_north_after, v_east_after = self._flat[
-            at : at + _COLUMNS + 4
-        ]
+        north, east, v_north, v_east, _ = self._rows[step]
+        _, _, v_north_after, v_east_after, _ = self._rows[step + 1]
         since = time - step * TRACK_STEP
         half = 0.5 * since * since / TRACK_STEP
         fraction = since / TRACK_STEP
@@ -122,9 +120,10 @@ class TabledVessel:
 
     def course(self, time: float) -> float:
         """Return the course [rad] at a time [s]."""
-        at = _COLUMNS * min(int(time / TRACK_STEP), self._last)
-        course, after = self._flat[at + 4], self._flat[at + _COLUMNS + 4]
-        return course + (time / TRACK_STEP - at // _COLUMNS) * (after - course)
+        step = min(int(time / TRACK_STEP), self._last)
+        *_, course = self._rows[step]
+        *_, after = self._rows[step + 1]
+        return course + (time / TRACK_STEP - step) * (after - course)
 
 
 @vessel_track("manoeuvres")
@@ -180,8 +179,9 @@ def check_manoeuvres(vessel: VesselConfig, speed: float) -> None:
     ):
         if m.at_s < end - TRACK_STEP:
             raise InfeasibleError(
-                f"vessel.manoeuvres.{i} begins at {m.at_s:g} s, before an earlier one has ended, at {end:g} s; let it begin later,"
-                " or turn faster (turn_rate_deg_s) or accelerate harder (acceleration_mps2), or make one manoeuvre of both"
+                f"vessel.manoeuvres.{i} begins at {m.at_s:g} s, before an earlier one has ended, at"
+                f" {end:g} s; let it begin later, or turn faster (turn_rate_deg_s) or accelerate"
+                " harder (acceleration_mps2), or make one manoeuvre of both"
             )
         end = max(end, until)
 
@@ -239,4 +239,36 @@ def sampled(vessel: VesselTruth, duration: float) -> tuple[Array, Array]:
     times = track_times(duration).tolist()
     return np.array([vessel.motion(time)[2:] for time in times]), np.array(
         [vessel.course(time) for time in times]
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Place:
+    """Where and when a flight begins; what is not known is NaN.
+
+    Attributes
+    ----------
+    latitude, longitude : of the origin [rad]
+    altitude : at which north and east metres are counted [m]
+    utc : of the start, since 1970 [s]
+    """
+
+    latitude: float
+    longitude: float
+    altitude: float
+    utc: float
+
+    @cached_property
+    def frame(self) -> LocalFrame:
+        """The frame that north and east metres are in."""
+        return LocalFrame(self.latitude, self.longitude, self.altitude)
+
+
+def given_place(config: PlaceConfig, altitude: float) -> Place:
+    """Return the place that a scenario gives, with metres at an altitude [m]."""
+    return Place(
+        latitude=math.nan if config.latitude_deg is None else math.radians(config.latitude_deg),
+        longitude=math.nan if config.longitude_deg is None else math.radians(config.longitude_deg),
+        altitude=altitude,
+        utc=math.nan if config.utc is None else config.utc.timestamp(),
     )

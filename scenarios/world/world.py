@@ -13,15 +13,18 @@ from common.registry import PluginError
 from scenarios.scenario.extension_points import PLUME_MODELS, VESSEL_TRACKS
 from scenarios.scenario.scenario import Scenario
 from scenarios.world.ais.track import AisVessel, ais_vessel
-from scenarios.world.background import UNIFORM, Background
-from scenarios.world.exhaust import Exhaust
 from scenarios.world.faults import TimedFault
 from scenarios.world.own_part import are_numbers, asked, is_number, is_own, refuse_answer
-from scenarios.world.place import Place, given_place
-from scenarios.world.plume import Plume
-from scenarios.world.vessel import SteadyVessel, VesselTruth, sampled, track_times
-from scenarios.world.weather import wind_of
-from scenarios.world.wind_table import first_time
+from scenarios.world.plume import UNIFORM, Background, Exhaust, Plume
+from scenarios.world.vessel import (
+    Place,
+    SteadyVessel,
+    VesselTruth,
+    given_place,
+    sampled,
+    track_times,
+)
+from scenarios.world.wind import first_time, wind_of
 
 TRACK_MARGIN = 5.0
 """How long the track goes on after the longest flight [s]."""
@@ -110,7 +113,8 @@ def _check_track(part: str, track: VesselTruth, duration: float) -> None:
     """
     if not is_number(getattr(track, "manoeuvres_end", None), finite=False):
         raise PluginError(
-            f"{part} has no manoeuvres_end, the time at which its last manoeuvre ends [s]; give it one, math.nan without any"
+            f"{part} has no manoeuvres_end, the time at which its last manoeuvre ends [s]; give it"
+            " one, math.nan without any"
         )
     for time in np.arange(0.0, duration, _LOOK_STEP).tolist():
         motion = asked(part, f"failed in motion({time:g})", "the time [s]", track.motion, time)
@@ -132,7 +136,8 @@ def _check_track(part: str, track: VesselTruth, duration: float) -> None:
         north, east, v_north, v_east = map(float, motion)
         if time == 0.0 and math.hypot(north, east) > _ORIGIN_MAX:
             raise PluginError(
-                f"{part} begins at {north:g} m north and {east:g} m east; let it begin at the origin: motion(0)"
+                f"{part} begins at {north:g} m north and {east:g} m east; let it begin at the"
+                " origin: motion(0)"
             )
         flown = math.atan2(v_east, v_north)
         if (
@@ -140,7 +145,8 @@ def _check_track(part: str, track: VesselTruth, duration: float) -> None:
             and abs(math.remainder(course - flown, math.tau)) > _COURSE_MAX
         ):
             raise PluginError(
-                f"{part}: course({time:g}) is {course:.4g} rad, and the velocity of motion({time:g}) points to {flown:.4g} rad; let"
+                f"{part}: course({time:g}) is {course:.4g} rad, and the velocity of"
+                f" motion({time:g}) points to {flown:.4g} rad; let"
                 f" them agree to {_COURSE_MAX:.2g} rad, clockwise from north"
             )
 
@@ -169,17 +175,13 @@ def plume_of(scenario: Scenario, vessel: VesselTruth) -> Plume:
     ------
     PluginError : there is no such plume model, or it cannot be made, or its axis is of no use
     """
-    part, called_with = (
-        f"plume.model '{scenario.plume.model}'",
-        "plume, vessel, wind, duration, by_wind=...",
-    )
+    part = f"plume.model '{scenario.plume.model}'"
+    called_with = "plume, vessel, wind, duration, by_wind=..."
     model = PLUME_MODELS.get(scenario.plume.model)
     duration = scenario.flight.duration_max_s + TRACK_MARGIN
     section = scenario.plume.model_copy(update={"source_height_m": scenario.source_height})
-    given, by_wind = (
-        (section, vessel, mean_wind(scenario, vessel), duration),
-        scenario.plume_by_wind,
-    )
+    given = (section, vessel, mean_wind(scenario, vessel), duration)
+    by_wind = scenario.plume_by_wind
     plume: Plume = asked(part, "cannot be made", called_with, model, *given, by_wind=by_wind)
     if is_own(plume):
         for time in np.arange(0.0, duration, _LOOK_STEP).tolist():

@@ -11,7 +11,7 @@ import pytest
 
 from common.command_line import run_command
 from scenarios.cli.main import commands
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 
 ROOT = Path(__file__).parents[2]
 PAGES = ("README.md", "CONTRIBUTING.md")

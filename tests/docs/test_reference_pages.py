@@ -16,7 +16,7 @@ from measurement.log.config import LogConfig
 from measurement.log.read import read_flight
 from measurement.log.run_files import SAMPLE_MEANINGS, samples
 from scenarios.cli.main import commands
-from scenarios.scenario.documented import documented_keys
+from scenarios.scenario.documentation import documented_keys
 
 
 def test_every_key_of_a_scenario_is_on_its_page_with_its_meaning():

@@ -31,7 +31,7 @@ def test_the_cells_of_a_tutorial_run(name, designs, tmp_path, monkeypatch, capsy
     # At whatever altitude, with the autopilot that other tests have: to design another takes
     # seconds.
     monkeypatch.setattr(
-        "scenarios.studies.flight_study.design_of", lambda spec, _: (designs(spec.name), "")
+        "scenarios.studies.base.design_of", lambda spec, _: (designs(spec.name), "")
     )
     cells = re.findall(
         r"^```\{code-cell\}[^\n]*\n(.*?)^```$",

@@ -53,7 +53,7 @@ from gnc.reference.moving_centre import CentreParameters
 from gnc.reference.shapes import Sinusoid
 from gnc.unicycle import unicycle_move
 
-# 0.75 of the tracking allowance of 1 m about its 200 m (scenarios/planning/tracking_flight.py).
+# 0.75 of the tracking allowance of 1 m about its 200 m (scenarios/planning/missions.py).
 # These vehicles answer at once.
 QUICK_GUARD = GuardParameters(
     radius=200.75,

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pandas as pd
 
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.engine.processes import InProcessExecutor
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study
 from tests.run_tables import rows_of
 
 AT_THE_SHIP = (

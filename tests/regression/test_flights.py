@@ -8,8 +8,8 @@ import pytest
 
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.task import Task
-from scenarios.scenario.load import load_study
-from scenarios.studies.flight_study import FlightStudy
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import FlightStudy
 from tests.run_tables import history_in
 
 SPEED = 19.42
@@ -20,7 +20,7 @@ def fly(tmp_path):
     def run(*overrides, nu=0.5, scenario="sweep_nu"):
         settings = load_study(scenario, [f"sweep.nu=[{nu}]", "comparison.variants=[]", *overrides])
         study = FlightStudy(settings, scenario, {scenario: settings})
-        result = study.work(RunDirectory(tmp_path)).fly(Task(number=0))
+        result = study.work(RunDirectory(tmp_path)).run(Task(number=0))
         (row,) = result.tables["summary.csv"]
         return row, history_in(result)
 

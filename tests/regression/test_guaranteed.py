@@ -8,9 +8,9 @@ import pytest
 from reports.registry import content
 from reports.render.html import write_html
 from reports.run.run_data import read_run
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.engine.processes import InProcessExecutor
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study
 
 
 @pytest.fixture(scope="module")

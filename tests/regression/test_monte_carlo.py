@@ -7,9 +7,9 @@ import json
 import pandas as pd
 import pytest
 
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.engine.processes import InProcessExecutor
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study
 
 FLIGHTS = 6
 

@@ -18,10 +18,10 @@ from reports.document.blocks import Table
 from reports.registry import content
 from reports.render.html import write_html
 from reports.run.run_data import read_run
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.scenario.load import load_study
+from scenarios.engine.processes import InProcessExecutor
+from scenarios.scenario.files import load_study
 from scenarios.studies import paper
-from scenarios.studies.registry import run_study
+from scenarios.studies.base import run_study
 from tests.run_tables import rows_of
 
 FEW_RESERVES = (0.0, 0.015, 0.2, 0.4, 0.6)

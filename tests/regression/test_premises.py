@@ -7,9 +7,9 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.engine.processes import InProcessExecutor
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study
 
 LAW = f"guidance.law={Path(__file__).parent}/law_past_the_ship.py:PastTheShip"
 STANDOFF = (
@@ -95,3 +95,12 @@ def test_an_ordinary_flight_without_satellites_in_moderate_turbulence_keeps_out(
     rows = pd.read_csv(tmp_path / "summary.csv")
     assert set(rows.outcome) == {"completed"}
     assert (rows.min_distance_m >= rows.keepout_radius_m).all()
+
+
+def test_in_steady_wind_every_premise_holds(tmp_path):
+    # Before the crab angles of turns counted, the wind's ratio was above 1 in nearly every flight.
+    study = load_study("sea_wind", ("flights=3",))
+    run_study(study, "sea_wind", tmp_path, executor_factory=InProcessExecutor)
+    rows = pd.read_csv(tmp_path / "summary.csv", keep_default_na=False)
+    assert set(rows.premises_exceeded) == {"none"}
+    assert (rows.premise_wind_ratio_max.astype(float) > 0.2).all()

@@ -2,9 +2,9 @@
 
 import pandas as pd
 
-from scenarios.engine.executors import ExecutorFactory
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.engine.runner import ExecutorFactory
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study
 
 LISTED = """
 study = "trials"

@@ -1,8 +1,8 @@
 """A sound aircraft keeps its mission when it is ordered to speed up from a slow pace."""
 
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.engine.processes import InProcessExecutor
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study
 from tests.run_tables import rows_of
 
 # Of the issue: in light turbulence a c172p is ordered from its slowest airspeed to 1.35 times that,

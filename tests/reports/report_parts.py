@@ -7,9 +7,9 @@ from matplotlib.figure import Figure
 from reports.build import build_reports
 from reports.document.chart import Chart
 from reports.render import matplotlib_charts
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.engine.processes import InProcessExecutor
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study
 
 
 def flown(tmp_path_factory, scenario, overrides):

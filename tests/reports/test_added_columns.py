@@ -20,9 +20,9 @@ from reports.output import write_report
 from reports.registry import content
 from reports.run.run_data import read_run
 from scenarios.api.results import Run
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.engine.processes import InProcessExecutor
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study
 
 METER = """
 import numpy as np
@@ -177,8 +177,8 @@ def test_python_has_its_unit_and_meaning(paths):
 
 STUDY = """
 from common.columns import Column
-from scenarios.flight_runner import FlightWork
-from scenarios.studies.flight_study import FlightStudy
+from scenarios.flight_runner import FlightRunner
+from scenarios.studies.base import FlightStudy
 from dataclasses import fields
 
 class Spare(FlightStudy):
@@ -188,7 +188,7 @@ class Spare(FlightStudy):
         of = super().work(run)
         return SpareWork(**{field.name: getattr(of, field.name) for field in fields(of)})
 
-class SpareWork(FlightWork):
+class SpareWork(FlightRunner):
     def more_tables(self, request, plan, record, row):
         row["spare_m"] = row["min_distance_m"] - row["keepout_radius_m"]
         return {}

@@ -24,7 +24,7 @@ from reports.document.blocks import Table
 from reports.document.chart import Chart
 from reports.registry import content
 from reports.run.run_data import read_run
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.arena.entrants import Entrant
 from scenarios.studies.arena.results import estimates
 from tests.reports.report_parts import blocks_of, built, flown

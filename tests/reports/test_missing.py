@@ -11,9 +11,9 @@ from reports.output import flight_figure
 from reports.registry import content
 from reports.run.run_data import read_run
 from reports.run.trials import read_trials
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.engine.processes import InProcessExecutor
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study
 from tests.in_process import assert_refused, run_command
 from tests.run_tables import change_manifest, manifest_of, write_manifest
 from tests.scenarios.short_trial import short_trial
@@ -212,7 +212,7 @@ def test_an_export_into_a_link_is_refused(copy, tmp_path):
         (
             "summary.csv",
             lambda text: text.replace(",", ";"),
-            "' is separated by semicolons; separate its columns by commas",
+            "' is not separated by commas: it was saved by another program",
         ),
         (
             "summary.csv",

@@ -15,11 +15,12 @@ from common.verdict import INTERRUPTED, MET, NOT_MET, UNEXPLAINED, read_verdict
 from reports.registry import content
 from reports.run.run_data import read_run
 from scenarios.api.results import Run
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from tests.in_process import run_command
 
 SCENARIO = """
-study = "sea"
+extends = "operational"
+study = "flights"
 title = "Two"
 fidelity = "kinematic"
 guidance.rate_hz = 10.0
@@ -93,12 +94,12 @@ class SecondFlight(InProcessExecutor):
 
     def _flown(self, task):
         if task.number != 1 or self._outcome == "completed":
-            return self._given.fly(task)
+            return self._given.run(task)
         if self._outcome == "interrupted":
             raise KeyboardInterrupt
         if self._outcome == "unknown":
             return self._given.lost(task, "its process was killed")
-        result = self._given.fly(task)
+        result = self._given.run(task)
         (row,) = result.tables["summary.csv"]
         if self._outcome == "could_not_fly":
             row = {key: row[key] for key in UNPLANNED}
@@ -112,7 +113,7 @@ def flown(request, tmp_path, monkeypatch):
     scenario = tmp_path / "two.toml"
     scenario.write_text(SCENARIO, encoding="utf-8")
     monkeypatch.setattr(
-        "scenarios.engine.executors.ExecutorFactory",
+        "scenarios.engine.runner.ExecutorFactory",
         lambda **_: lambda work: SecondFlight(work, request.param),
     )
     monkeypatch.setattr("reports.render.figure_files.draw", lambda _: Figure(figsize=(1.0, 1.0)))
@@ -184,8 +185,8 @@ def test_console_exit_status_pages_comparison_and_python_say_what_the_verdict_sa
 @pytest.fixture(scope="module")
 def run_path_of_two(tmp_path_factory):
     """Return the directory of a run of both flights."""
-    from scenarios.scenario.load import load_study
-    from scenarios.studies.registry import run_study
+    from scenarios.scenario.files import load_study
+    from scenarios.studies.base import run_study
 
     folder = tmp_path_factory.mktemp("both")
     (folder / "two.toml").write_text(SCENARIO, encoding="utf-8")

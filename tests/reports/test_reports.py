@@ -28,10 +28,10 @@ from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
 from reports.render.html import write_html
 from reports.run.run_data import read_run
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.effect import unused
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study
 from tests.run_tables import change_manifest, manifest_of, write_manifest
 
 # Three crossings are too few for the study's own criteria.

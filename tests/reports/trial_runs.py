@@ -8,14 +8,15 @@ from report_parts import blocks_of
 
 from reports.document.blocks import FlightPicker, Table
 from reports.document.chart import Chart
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.sections.experiment import TrialList
-from scenarios.studies.registry import run_study
+from scenarios.studies.base import run_study
 
 # Both settle and cross a few times, within some 150 s; after that the vessel of the second turns,
 # which takes it 40 s at most.
 STEADY = """
-study = "sea"
+extends = "operational"
+study = "flights"
 title = "Steady"
 fidelity = "kinematic"
 guidance.rate_hz = 10.0
@@ -27,7 +28,8 @@ crossings = 3
 crossing_interval_error = 0.0321
 """
 TURNS = """
-study = "sea"
+extends = "operational"
+study = "flights"
 title = "Turns"
 fidelity = "kinematic"
 guidance.rate_hz = 10.0

@@ -10,10 +10,10 @@ import numpy as np
 from gnc.mission.mission import Mode
 from scenarios.engine.task import Task
 from scenarios.experiment.requests import Experiment
-from scenarios.flight_runner import FlightWork
-from scenarios.planning.planner import plan_flight
+from scenarios.flight_runner import FlightRunner
+from scenarios.planning.missions import plan_flight
 from scenarios.planning.spreads import PredictedSpreads
-from scenarios.scenario.load import OPERATIONAL, bases
+from scenarios.scenario.files import OPERATIONAL, bases
 from scenarios.scenario.overrides import merged
 from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import kinematic_setup
@@ -43,7 +43,7 @@ def plan(given, *, seed=1, setup=None, **spreads):
 def work(**changes):
     """Return the work on the one flight of a scenario."""
     experiment = Experiment("trial", scenario(**changes))
-    return FlightWork(
+    return FlightRunner(
         experiments=(experiment,), histories=1, setup=None, spreads=PredictedSpreads()
     )
 
@@ -59,7 +59,7 @@ class Flown:
 
 def fly(**changes):
     """Fly one flight as a run does."""
-    result = work(**changes).fly(Task(number=0))
+    result = work(**changes).run(Task(number=0))
     (row,) = result.tables["summary.csv"]
     return Flown(row=row, tables=result.tables, history=history_in(result))
 

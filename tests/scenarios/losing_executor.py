@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator
 
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.engine.task import Result, Task, Work
 
 
@@ -18,7 +18,7 @@ class LosingExecutor(InProcessExecutor):
         return (
             self._work.lost(task, "was killed")
             if task.number in self._numbers
-            else self._work.fly(task)
+            else self._work.run(task)
             for task in tasks
         )
 

@@ -2,9 +2,9 @@
 
 import pandas as pd
 
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.engine.processes import InProcessExecutor
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study
 
 POPULATION, GENERATIONS, KEPT, CONFIRMATIONS = 12, 7, 3, 2
 

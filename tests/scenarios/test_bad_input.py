@@ -45,7 +45,6 @@ def folder(tmp_path, monkeypatch):
                 "reports.interval_s is [1e-09, 1e-09] s",
                 "more than 200000 reports",
                 "at least 2.5e-05 s pass",
-                "or fly shorter",
             ],
         ),
         (

@@ -123,7 +123,7 @@ def test_help_and_list_answer():
         (["sweep_nu", "--set", "keepout.radius=5"], ["unknown key 'keepout.radius'"]),
         (
             ["sweep_nu", "--set", "keepout.radius_m=-1"],
-            ["keepout.radius_m is -1; it must be at least 10 m"],
+            ["keepout.radius_m is -1; input should be greater than or equal to 10"],
         ),
         (["sweep_nu", "--set", "guidance.airspeed_mps=nan"], ["guidance.airspeed_mps", "nan"]),
         (
@@ -404,7 +404,7 @@ def test_an_interrupted_run_is_resumed_by_what_was_typed_with_its_directory(run_
     def interrupted(_study, _stem, directory, **_):
         return interrupted_run(directory, planned=9, done=2, comparisons_left=3)
 
-    monkeypatch.setattr("scenarios.studies.registry.run_study", interrupted)
+    monkeypatch.setattr("scenarios.studies.base.run_study", interrupted)
     typed = [
         "sweep_nu",
         "--jobs",

@@ -10,12 +10,12 @@ import pytest
 
 from common.registry import ENTRY_POINTS, file_hash
 from gnc.laws import STEERING_LAWS
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.engine.runner import fly_study
 from scenarios.errors import InputError
-from scenarios.scenario.load import load_study, with_values
+from scenarios.scenario.files import load_study, with_values
+from scenarios.studies.base import run_study
 from scenarios.studies.manifest import parameters
-from scenarios.studies.registry import run_study
 from scenarios.studies.replay import Replay
 from tests.run_tables import manifest_of, rows_of
 from tests.scenarios.plugin_files import LAW, PARTS, TRACK, line_of, write_scenario

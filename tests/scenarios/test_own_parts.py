@@ -180,7 +180,7 @@ def test_a_shape_that_fails_at_one_point_of_a_sweep_leaves_the_others(tmp_path):
 
 
 STUDY = """
-from scenarios.studies.flight_study import FlightStudy
+from scenarios.studies.base import FlightStudy
 
 class Ends(FlightStudy):
     def postprocess(self, run, journal, progress): raise SystemExit(7)

@@ -11,9 +11,9 @@ from PIL import Image
 from common.run_layout import REPORT_SETTINGS
 from scenarios import fly
 from scenarios.errors import InputError
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.scenario.sections.report import ReportConfig
-from scenarios.studies.registry import study_of
+from scenarios.studies.base import study_of
 from tests.in_process import run_command
 from tests.run_tables import manifest_of
 

@@ -13,9 +13,9 @@ import pytest
 from scipy.interpolate import BPoly
 from scipy.optimize import brentq, minimize_scalar
 
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.engine.processes import InProcessExecutor
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study
 
 # Issue: to 1 mm and 1e-5 s.
 METRES, SECONDS = 1e-3, 1e-5

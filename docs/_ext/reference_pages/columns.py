@@ -6,7 +6,7 @@ from reference_pages.markdown import literal, plain, table
 from reports.compare.figures import COMPARED
 from reports.export.tracks_csv import COLUMNS as TRACK_COLUMNS
 from scenarios.flight.guard_belief import GuardBelief
-from scenarios.flight.plume_readings import BELIEF_COLUMNS
+from scenarios.flight.onboard import BELIEF_COLUMNS
 from scenarios.flight.record import HISTORY_COLUMNS
 from scenarios.instruments.sniffer import SnifferOnBoard
 from scenarios.measures.columns import (
@@ -20,7 +20,7 @@ from scenarios.measures.columns import (
     SUMMARY_COLUMNS,
 )
 from scenarios.measures.window import MEASURED_COLUMNS, WINDOW_COLUMNS
-from scenarios.statistics.premises import TABLE_COLUMNS as PREMISE_COLUMNS
+from scenarios.statistics.estimates import TABLE_COLUMNS as PREMISE_COLUMNS
 from scenarios.studies.arena.study import TUNING_COLUMNS
 from scenarios.studies.convergence.ensemble import COLUMNS as CONVERGENCE_COLUMNS
 from scenarios.studies.patrol.tables import PATROL_COLUMNS, PHASE_COLUMNS, SHIP_COLUMNS

@@ -4,12 +4,13 @@ from collections.abc import Iterator
 
 from reference_pages.markdown import literal, plain, table
 from scenarios.cli.describe import value_text
-from scenarios.scenario.documented import DocumentedSection, documented_sections
-from scenarios.scenario.documented_parts import (
+from scenarios.scenario.documentation import (
     DIMENSIONLESS,
     FLIGHT_STUDIES,
     DocumentedKey,
+    DocumentedSection,
     documented_part_keys,
+    documented_sections,
 )
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.convergence import ConvergenceScenario

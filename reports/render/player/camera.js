@@ -32,7 +32,7 @@ class Camera {
     const {target} = this.controls, offset = new THREE.Vector3();
     if (mode === "follow") {
       target.copy(this.focus(flight, time));
-      offset.set(0, 0.3, 1).multiplyScalar(enlarged ? 110 : 11);
+      offset.set(0, 0.3, 1).multiplyScalar(enlarged ? 70 : 11);
       offset.applyAxisAngle(UP, -this.direction(flight, time));
       this.turn = this.direction(flight, time);
     } else if (mode === "vessel") {

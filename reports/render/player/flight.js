@@ -35,8 +35,12 @@ class Flight {
     this.distances = data.distances;
     this.keepout = data.keepout;
     this.hull = data.hull;
-    this.plumes = data.plumes;
+    this.utc = data.utc;
+    this.events = data.events;
+    this.gas = data.gas;
+    this.estimate = data.estimate;
     this.columns = Object.fromEntries(Object.entries(data.columns).map(([name, c]) => [name, decodedColumn(c, data.samples)]));
+    this.smoke = data.smoke ? new ParcelSmoke(data.smoke, this) : new AxisSmoke(data.axis, this);
   }
 
   // A column at a time [s]: the cubic of Catmull and Rom through its samples, so that paths have no corners.
@@ -63,10 +67,26 @@ class Flight {
     return now;
   }
 
-  // Number of the shape that the plume has at a time.
-  plumeAt(time) {
-    const later = this.plumes.findIndex(([from]) => from > time);
-    return Math.max(0, (later < 0 ? this.plumes.length : later) - 1);
+  // Change of a column [1/s].
+  rate(name, time) {
+    const half = 0.5 * this.interval, from = Math.max(this.start, time - half), to = Math.min(this.end, time + half);
+    return (this.value(name, to) - this.value(name, from)) / (to - from);
+  }
+
+  // Where the vessel is over the ground; before the flight it came on its first course.
+  vesselAt(time) {
+    const early = Math.min(0, time - this.start);
+    return ["vessel_north", "vessel_east"].map((name) => this.value(name, time) + (early ? early * this.rate(name, this.start) : 0));
+  }
+
+  // Crossings of the plume until a time.
+  crossingsUntil(time) {
+    return this.crossings.filter((crossed) => crossed <= time).length;
+  }
+
+  // The latest estimate of the fuel's sulphur at a time: a row of time [s], content and its interval [%]; null before the first.
+  estimateAt(time) {
+    return this.estimate ? (this.estimate.rows.filter(([at]) => at <= time).at(-1) ?? null) : null;
   }
 
   // What the keep-out guard does at a time: null, "guard", or "guardLost" where it cannot hold its radius.

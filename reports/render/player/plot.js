@@ -1,4 +1,4 @@
-// Distance to the vessel and bank over time, and the time shown as a line through both. Distances are shown as far as in the
+// Distance to the vessel, bank and, where there is an instrument, gas over time, and the time shown as a line through all. Distances are shown as far as in the
 // figures of the flight: of one that begins far away how near it comes would not be seen beside that.
 
 const MARGIN = {left: 58, right: 14, top: 18, bottom: 30}, GAP = 16, POINTS = 1200;
@@ -20,12 +20,13 @@ class Plot {
 
   take(flight) {
     this.flight = flight;
-    const {radius} = flight.keepout, distance = [], bank = [];
+    const {radius} = flight.keepout, distance = [], bank = [], gas = [];
     this.times = Array.from({length: POINTS + 1}, (_, i) => flight.start + ((flight.end - flight.start) * i) / POINTS);
     for (const time of this.times) {
       const now = flight.at(time);
       distance.push(now.distance);
       bank.push((now.roll * 180) / Math.PI);
+      if (flight.gas) gas.push(now.gas);
     }
     const [low, high] = flight.distances, most = Math.max(10, ...bank.map(Math.abs));
     const beyond = Math.max(...distance) > high ? `above ${Math.round(high)} m: not shown` : "";
@@ -33,6 +34,10 @@ class Plot {
       {label: "Distance [m]", values: distance, low, high, limit: radius, beyond},
       {label: "Bank [deg]", values: bank, low: -1.1 * most, high: 1.1 * most},
     ];
+    if (flight.gas) {
+      const [least, largest] = [Math.min(0, ...gas), Math.max(1e-9, ...gas)];
+      this.panels.push({label: flight.gas.label, values: gas, low: least, high: 1.05 * largest});
+    }
     this.resize();
   }
 
@@ -43,9 +48,15 @@ class Plot {
       canvas.height = Math.max(1, Math.round(clientHeight * ratio));
     }
     this.ratio = ratio;
+    const page = getComputedStyle(this.canvas);
+    [this.paper, this.ink, this.quiet, this.line] = ["--paper", "--ink", "--quiet", "--line"].map((name) => page.getPropertyValue(name).trim());
     this.width = clientWidth - MARGIN.left - MARGIN.right;
-    this.height = (clientHeight - MARGIN.top - MARGIN.bottom - GAP) / 2;
+    this.height = (clientHeight - MARGIN.top - MARGIN.bottom - (this.panels.length - 1) * GAP) / this.panels.length;
     if (this.width > 0) this.drawStill();
+  }
+
+  get bottom() {
+    return MARGIN.top + this.panels.length * (this.height + GAP) - GAP;
   }
 
   x(time) {
@@ -60,12 +71,12 @@ class Plot {
   drawStill() {
     const pen = this.still.getContext("2d");
     pen.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
-    pen.fillStyle = "#fff";
+    pen.fillStyle = this.paper;
     pen.fillRect(0, 0, this.still.width, this.still.height);
     pen.font = '12px system-ui, "Segoe UI", "DejaVu Sans", sans-serif';
     this.panels.forEach((panel, number) => this.drawPanel(pen, panel, MARGIN.top + number * (this.height + GAP)));
-    const bottom = MARGIN.top + 2 * this.height + GAP;
-    pen.fillStyle = "#5b6775";
+    const {bottom} = this;
+    pen.fillStyle = this.quiet;
     pen.textAlign = "center";
     for (const time of ticks(this.flight.start, this.flight.end, this.width / 90)) pen.fillText(String(Math.round(time)), this.x(time), bottom + 14);
     pen.textAlign = "right";
@@ -83,9 +94,9 @@ class Plot {
     pen.restore();
     pen.lineWidth = 1;
     for (const value of ticks(low, high, this.height / 22)) {
-      pen.strokeStyle = "#e6eaef";
+      pen.strokeStyle = this.line;
       this.stroke(pen, [[MARGIN.left, y(value)], [MARGIN.left + this.width, y(value)]]);
-      pen.fillStyle = "#5b6775";
+      pen.fillStyle = this.quiet;
       pen.textAlign = "right";
       pen.fillText(String(Math.round(value)).replace("-", "−"), MARGIN.left - 6, y(value) + 4);
     }
@@ -111,18 +122,18 @@ class Plot {
     pen.lineJoin = "round";
     this.stroke(pen, values.map((value, i) => [this.x(this.times[i]), y(value)]));
     pen.restore();
-    pen.strokeStyle = "#9aa5b1";
+    pen.strokeStyle = this.quiet;
     pen.strokeRect(MARGIN.left, top, this.width, this.height);
     pen.save();
     pen.translate(13, top + this.height / 2);
     pen.rotate(-Math.PI / 2);
     pen.textAlign = "center";
-    pen.fillStyle = "#1d2733";
+    pen.fillStyle = this.ink;
     pen.fillText(label, 0, 0);
     pen.restore();
     if (beyond) {
       pen.textAlign = "right";
-      pen.fillStyle = "#5b6775";
+      pen.fillStyle = this.quiet;
       pen.fillText(beyond, MARGIN.left + this.width, top - 5);
     }
   }
@@ -139,10 +150,10 @@ class Plot {
     pen.setTransform(1, 0, 0, 1, 0, 0);
     pen.drawImage(this.still, 0, 0);
     pen.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
-    pen.strokeStyle = pen.fillStyle = "#1d2733";
+    pen.strokeStyle = pen.fillStyle = this.ink;
     pen.lineWidth = 1.5;
-    this.stroke(pen, [[this.x(time), MARGIN.top], [this.x(time), MARGIN.top + 2 * this.height + GAP]]);
-    const now = this.flight.at(time), values = [now.distance, (now.roll * 180) / Math.PI];
+    this.stroke(pen, [[this.x(time), MARGIN.top], [this.x(time), this.bottom]]);
+    const now = this.flight.at(time), values = [now.distance, (now.roll * 180) / Math.PI, now.gas];
     this.panels.forEach(({low, high}, number) => {
       const top = MARGIN.top + number * (this.height + GAP), value = Math.min(Math.max(values[number], low), high);
       pen.beginPath();

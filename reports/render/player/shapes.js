@@ -1,6 +1,9 @@
 // What is drawn in three dimensions. East is x, up is y, south is z; everything points north before it is turned.
 
-const PALE = 0.3;
+const PALE = 0.5;
+
+// Height of a pixel at a distance of 1, shared by all lines.
+const PIXEL = {value: 0.001};
 
 function polyhedron(corners, faces, colours) {
   const places = [], shades = [];
@@ -73,47 +76,67 @@ function shipShape({length, beam, funnel: share, known}, height, colour) {
   return group;
 }
 
-// A plume as a tube that thins out: rows of distance from the funnel, height of the axis, half-width and half-height.
-function plumeShape(rows, colour) {
-  const around = 20, places = [], shades = [], triangles = [], {r, g, b} = new THREE.Color(colour);
-  rows.forEach(([distance, height, halfWidth, halfHeight], row) => {
-    for (let k = 0; k < around; k++) {
-      const angle = (2 * Math.PI * k) / around;
-      places.push(halfWidth * Math.cos(angle), Math.max(0.5, height + halfHeight * Math.sin(angle)), -distance);
-      shades.push(r, g, b, 0.32 - (0.26 * row) / (rows.length - 1));
-      if (row) {
-        const here = row * around + k, next = row * around + ((k + 1) % around);
-        triangles.push(here, next, here - around, next, next - around, here - around);
-      }
+// A line as wide on the picture everywhere [px]: a ribbon that faces the camera. Points are x, y, z one after the other;
+// shades a colour for each. With times [s] it is drawn from where it fades until a time; see World.show.
+function curve(points, {colour, width, shades = null, times = null}) {
+  const n = points.length / 3, places = new Float32Array(6 * n), nexts = new Float32Array(6 * n), sides = new Float32Array(2 * n);
+  const colours = new Float32Array(6 * n), stamps = new Float32Array(2 * n), triangles = new Uint32Array(6 * (n - 1));
+  const one = new THREE.Color(colour);
+  for (let i = 0; i < n; i++) {
+    const here = points.slice(3 * i, 3 * i + 3), [from, to] = i + 1 < n ? [i, i + 1] : [i - 1, i];
+    const ahead = here.map((value, k) => value + points[3 * to + k] - points[3 * from + k]);
+    const shade = shades ? shades.slice(3 * i, 3 * i + 3) : [one.r, one.g, one.b];
+    for (const side of [0, 1]) {
+      places.set(here, 6 * i + 3 * side);
+      nexts.set(ahead, 6 * i + 3 * side);
+      colours.set(shade, 6 * i + 3 * side);
+      sides[2 * i + side] = 2 * side - 1;
+      stamps[2 * i + side] = times ? times[i] : 0;
     }
-  });
+    if (i + 1 < n) triangles.set([2 * i, 2 * i + 1, 2 * i + 2, 2 * i + 2, 2 * i + 1, 2 * i + 3], 6 * i);
+  }
   const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(places), 3));
-  geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array(shades), 4));
-  geometry.setIndex(triangles);
-  const look = {vertexColors: true, transparent: true, depthWrite: false, side: THREE.DoubleSide};
-  return new THREE.Mesh(geometry, new THREE.MeshBasicMaterial(look));
-}
+  for (const [name, values, size] of [["position", places, 3], ["next", nexts, 3], ["shade", colours, 3], ["side", sides, 1], ["stamp", stamps, 1]])
+    geometry.setAttribute(name, new THREE.BufferAttribute(values, size));
+  geometry.setIndex(new THREE.BufferAttribute(triangles, 1));
+  const material = new THREE.ShaderMaterial({
+    transparent: true, depthWrite: false, side: THREE.DoubleSide,
+    uniforms: {halfWide: {value: 0.5 * width}, pixel: PIXEL, now: {value: 0}, fade: {value: 1e9}},
+    // In front of the camera and behind it alike: where a line passes it, what is behind is cut off as of any surface.
+    vertexShader: `attribute vec3 next, shade; attribute float side, stamp; uniform float halfWide, pixel; varying vec3 tint; varying float at;
+      void main() {
+        vec4 here = modelViewMatrix * vec4(position, 1.0), there = modelViewMatrix * vec4(next, 1.0);
+        vec3 across = cross(there.xyz - here.xyz, here.xyz);
+        here.xyz += side * halfWide * pixel * abs(here.z) * across / max(length(across), 1e-9);
+        tint = shade;
+        at = stamp;
+        gl_Position = projectionMatrix * here;
+      }`,
+    fragmentShader: `uniform float now, fade; varying vec3 tint; varying float at;
+      void main() {
+        float age = (now - at) / fade;
+        if (age > 1.0) discard;
+        gl_FragColor = vec4(tint, 1.0 - age * age);
+#include <colorspace_fragment>
 
-function curve(points, colour, width, shades = null) {
-  const geometry = new THREE.LineGeometry();
-  geometry.setPositions(points);
-  if (shades) geometry.setColors(shades);
-  const line = new THREE.Line2(geometry, new THREE.LineMaterial({color: shades ? 0xffffff : colour, linewidth: width, vertexColors: !!shades}));
+      }`,
+  });
+  const line = new THREE.Mesh(geometry, material);
   // What is drawn of it grows; its bounds are not worth the computing.
   line.frustumCulled = false;
+  line.renderOrder = 1;
   return line;
 }
 
 function ring(radius, height, colour, width) {
   const points = [];
   for (let k = 0; k <= 120; k++) points.push(radius * Math.sin((Math.PI * k) / 60), height, radius * Math.cos((Math.PI * k) / 60));
-  return curve(points, colour, width);
+  return curve(points, {colour, width});
 }
 
 // The keep-out area, with where it is widest and where it meets the sea.
 function keepoutShape({radius, shape, height}, colour) {
-  const group = new THREE.Group(), look = {color: colour, transparent: true, opacity: 0.1, depthWrite: false, side: THREE.DoubleSide};
+  const group = new THREE.Group(), look = {color: colour, transparent: true, opacity: 0.07, depthWrite: false, side: THREE.DoubleSide};
   if (shape === "cylinder") {
     const top = 2.5 * height, wall = new THREE.CylinderGeometry(radius, radius, top, 72, 1, true);
     wall.translate(0, top / 2, 0);
@@ -125,21 +148,5 @@ function keepoutShape({radius, shape, height}, colour) {
   ball.translate(0, height, 0);
   group.add(new THREE.Mesh(ball, new THREE.MeshBasicMaterial(look)), ring(radius, height, colour, 2.5));
   if (radius > height) group.add(ring(Math.sqrt(radius ** 2 - height ** 2), 0.4, colour, 1.5));
-  return group;
-}
-
-// Lines on the sea every 100 m, every fifth one darker.
-function seaGrid(size) {
-  const group = new THREE.Group();
-  for (const [step, colour] of [[100, "#c9d8e2"], [500, "#a9bfce"]]) {
-    const points = [];
-    // In pieces: some renderers leave out a line of which an end is far behind the camera.
-    for (let at = -size; at <= size; at += step)
-      for (let from = -size; from < size; from += 250) points.push(at, 0, from, at, 0, from + 250, from, 0, at, from + 250, 0, at);
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(points), 3));
-    group.add(new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({color: colour, depthWrite: false})));
-  }
-  group.children.forEach((lines) => { lines.renderOrder = -1; });
   return group;
 }

@@ -1,87 +1,98 @@
-// Sea, ship, plume, keep-out area and aircraft of one flight, each where it is at the time shown.
+// Sea, ship, smoke, keep-out area and aircraft of one flight, each where it is at the time shown.
 
-const SKY = "#f2f7fa", SEA = "#e3edf3", SPAN = 2.1, ENLARGED = 15, FAR = 5000, TRAIL = 0.1;
+const SPAN = 2.1, ENLARGED = 5, FAR = 5000, TRAIL = 0.1, CROSSINGS_SHOWN = 6, TRAIL_LEAST = 45;
+
+// Of Cividis, from the least to the largest value.
+const SCALE = ["#00224e", "#35456c", "#666970", "#948e77", "#c8b866", "#fee838"].map((shade) => new THREE.Color(shade));
+
+function scaled(share) {
+  const at = Math.min(Math.max(share, 0), 1) * (SCALE.length - 1), i = Math.min(Math.floor(at), SCALE.length - 2);
+  return SCALE[i].clone().lerp(SCALE[i + 1], at - i);
+}
 
 class World {
   constructor(flight, colours) {
     this.flight = flight;
     this.colours = colours;
     this.scene = new THREE.Scene();
-    this.scene.background = new THREE.Color(SKY);
-    this.scene.fog = new THREE.Fog(SKY, 0.3 * FAR, 0.9 * FAR);
-    const sun = new THREE.DirectionalLight("#ffffff", 1.6);
-    sun.position.set(-0.5, 1, 0.35);
-    this.scene.add(new THREE.HemisphereLight("#ffffff", "#8fa5b4", 1.9), sun);
-    this.sea = new THREE.Mesh(new THREE.PlaneGeometry(2 * FAR, 2 * FAR), new THREE.MeshBasicMaterial({color: SEA, depthWrite: false}));
-    // Below everything, in whatever order things are drawn.
-    this.sea.renderOrder = -2;
-    this.sea.rotation.x = -Math.PI / 2;
-    this.grid = seaGrid(3000);
+    const sun = new THREE.DirectionalLight("#fff4dd", 2.2);
+    sun.position.copy(SUN);
+    this.sky = skyShape(1.6 * FAR);
+    this.sea = seaShape(FAR);
+    this.wake = new Wake(flight.hull);
     this.vessel = new THREE.Group();
     this.ship = shipShape(flight.hull, flight.keepout.height, colours.ship);
-    this.plumes = flight.plumes.map(([, rows]) => plumeShape(rows, colours.plume));
-    this.vessel.add(this.ship, ...this.plumes, keepoutShape(flight.keepout, colours.limit));
+    this.vessel.add(this.ship, keepoutShape(flight.keepout, colours.limit));
+    this.smoke = new SmokeShape(flight.smoke, colours.plume);
     this.aircraft = aircraftShape(colours.aircraft);
     this.aircraft.rotation.order = "YXZ";
     const ball = new THREE.SphereGeometry(1, 16, 12);
     this.reference = new THREE.Mesh(ball, new THREE.MeshLambertMaterial({color: colours.reference}));
-    const faint = {color: "#33424e", transparent: true, opacity: 0.35};
+    const faint = {color: "#16242e", transparent: true, opacity: 0.4, depthWrite: false};
     this.shadow = new THREE.Mesh(new THREE.CylinderGeometry(0.5, 0.5, 0.01, 24), new THREE.MeshBasicMaterial(faint));
-    const plumb = new THREE.BufferGeometry();
-    plumb.setAttribute("position", new THREE.BufferAttribute(new Float32Array([0, 0, 0, 0, 1, 0]), 3));
-    this.plumb = new THREE.Line(plumb, new THREE.LineBasicMaterial(faint));
+    this.plumb = curve([0, 0, 0, 0, 1, 0], {colour: faint.color, width: 1});
     // Over the ground, and as seen from the vessel, which takes it along.
     this.trails = {ground: this.tracks(""), vessel: this.tracks("relative_")};
     this.vessel.add(this.trails.vessel);
-    this.scene.add(this.sea, this.grid, this.vessel, this.aircraft, this.reference, this.shadow, this.plumb, this.trails.ground);
+    this.scene.add(
+      new THREE.HemisphereLight("#ffffff", "#7f9aac", 1.5), sun, this.sky, this.sea, this.wake.mesh, this.vessel, this.smoke.mesh,
+      this.aircraft, this.reference, this.shadow, this.plumb, this.trails.ground,
+    );
     this.scale = ENLARGED;
+    // How long a trail stays: for some crossings.
+    const {crossings} = flight, span = crossings.length > 1 ? (crossings.at(-1) - crossings[0]) / (crossings.length - 1) : 0;
+    this.fade = Math.max(TRAIL_LEAST, CROSSINGS_SHOWN * span);
   }
 
-  // The whole path of aircraft and reference, a point every TRAIL seconds; of it what is flown is drawn.
+  // The whole path of aircraft and reference, a point every TRAIL seconds, in the colour of the gas that was read or simulated
+  // there; where there is none, in that of the flight. What the guard flew has the guard's.
   tracks(relative) {
-    const {flight, colours} = this, group = new THREE.Group();
+    const {flight, colours} = this, group = new THREE.Group(), {gas} = flight;
     const shade = Object.fromEntries(["flown", "guard", "guardLost"].map((name) => [name, new THREE.Color(colours[name])]));
-    const flown = [], reference = [], shades = [];
+    const flown = [], reference = [], shades = [], times = [];
     for (let time = flight.start; time <= flight.end + 1e-9; time += TRAIL) {
-      const now = flight.at(time), {r, g, b} = shade[flight.guardAt(time) ?? "flown"];
+      const now = flight.at(time), guard = flight.guardAt(time);
+      const {r, g, b} = guard ? shade[guard] : gas ? scaled(now.gas / gas.most) : shade.flown;
       flown.push(now[`${relative}east`], now.altitude, -now[`${relative}north`]);
       reference.push(now[`${relative}reference_east`], now.altitude, -now[`${relative}reference_north`]);
       shades.push(r, g, b);
+      times.push(time);
     }
-    group.add(curve(reference, colours.reference, 1.2), curve(flown, colours.flown, 2.6, shades));
+    if (times.length < 2) return group;
+    group.add(curve(reference, {colour: colours.reference, width: 1.2, times}), curve(flown, {colour: colours.flown, width: 3.4, shades, times}));
     return group;
   }
 
   // Put everything where it is at a time [s], and the sea about a point that the camera looks at.
-  show(time, {enlarged, aboutVessel, focus}) {
+  show(time, {enlarged, aboutVessel, focus, eye}) {
     const now = this.flight.at(time);
     this.scale = enlarged ? ENLARGED : 1;
     this.aircraft.position.set(now.east, now.altitude, -now.north);
     this.aircraft.rotation.set(now.pitch, -now.heading, -now.roll);
     this.aircraft.scale.setScalar(SPAN * this.scale);
     this.reference.position.set(now.reference_east, now.altitude, -now.reference_north);
-    this.reference.scale.setScalar(0.1 * SPAN * this.scale ** 0.7);
+    this.reference.scale.setScalar(0.12 * SPAN * this.scale ** 0.7);
     this.shadow.position.set(now.east, 0.3, -now.north);
     this.shadow.scale.setScalar(0.6 * SPAN * this.scale);
     this.plumb.position.set(now.east, 0, -now.north);
     this.plumb.scale.y = now.altitude;
     this.vessel.position.set(now.vessel_east, 0, -now.vessel_north);
     this.ship.rotation.y = -now.vessel_heading;
-    const shown = this.flight.plumeAt(time);
-    this.plumes.forEach((plume, number) => {
-      plume.visible = number === shown;
-      plume.rotation.y = -now.plume_axis;
-    });
+    this.smoke.show(time);
+    this.wake.lay(this.flight, time, now);
     this.trails.vessel.visible = aboutVessel;
     this.trails.ground.visible = !aboutVessel;
-    const segments = Math.floor((time - this.flight.start) / TRAIL + 1e-6);
+    const points = Math.floor((time - this.flight.start) / TRAIL + 1e-6) + 1;
+    const from = Math.max(0, Math.floor(points - this.fade / TRAIL));
     for (const trail of Object.values(this.trails))
       for (const line of trail.children) {
-        line.geometry.instanceCount = segments;
-        line.visible = segments > 0;
+        line.material.uniforms.now.value = time;
+        line.material.uniforms.fade.value = this.fade;
+        line.geometry.setDrawRange(6 * from, Math.max(0, 6 * (points - 1 - from)));
       }
     this.sea.position.set(focus.x, 0, focus.z);
-    this.grid.position.set(500 * Math.round(focus.x / 500), 0, 500 * Math.round(focus.z / 500));
+    this.sea.material.uniforms.time.value = time;
+    this.sky.position.copy(eye);
     return now;
   }
 

@@ -13,12 +13,13 @@ import numpy.typing as npt
 from aircraft.wind import WindField
 from gnc.estimation.error_budget import Bias, ErrorBudget, Growth, Process, TurnDeviation
 from gnc.estimation.navigation import NOISE_DEVIATIONS
-from scenarios.planning.air.estimated_wind import (
+from scenarios.planning.air.wind import (
     WIND_FOLLOWED,
     largest_wind_change,
     turbulence_met,
     wind_bias,
     wind_change,
+    wind_error_in_weaves,
     wind_followed,
     wind_noise,
     wind_noise_left,
@@ -65,18 +66,19 @@ def error_budget(
     """
     f, altitude_error = scenario.following, setup.altitude_error
     drift = drift_rate(scenario, wind, turn, altitude_error)
-    own_velocity = velocity_error(scenario, drift)
-    declared = f.speed_error_mps >= own_velocity
+    by_sensors, in_turns = velocity_error(scenario, drift), wind_error_in_weaves(scenario, setup)
+    own_velocity = Bias(
+        size=by_sensors + in_turns, key="sensors" if by_sensors >= in_turns else "aircraft"
+    )
+    if f.speed_error_mps >= own_velocity.size:
+        own_velocity = Bias(size=f.speed_error_mps, key="following.speed_error_mps")
     return ErrorBudget(
         own_position=Process(
             sigma=scenario.sensors.position_sigma_m,
             correlation_time=NAVIGATION_TIME,
             key="sensors.position_sigma_m",
         ),
-        own_velocity=Bias(
-            size=max(f.speed_error_mps, own_velocity),
-            key="following.speed_error_mps" if declared else "sensors",
-        ),
+        own_velocity=own_velocity,
         gusts=Bias(size=scenario.turbulence.gust_speed_mps, key="turbulence.gust_speed_mps"),
         wind_change=Bias(size=wind_change(scenario, wind, altitude_error), key="wind.table"),
         turbulence=turbulence_met(scenario),

@@ -1,39 +1,39 @@
-"""How far from the keep-out area the orbit is planned, so that turbulence hardly ever carries the
-aircraft into it.
+"""The spread of the tracking error that turbulence causes, from the linear closed loop and the
+spectrum of the turbulence.
 
-Predicted from the linear closed loop and the spectrum of the turbulence: the spread of the tracking
-error, how fast it varies, and by Rice's formula (S. O. Rice, "Mathematical Analysis of Random
-Noise", 1944) how often it goes beyond a margin.
-
-Of the linear loop this is an upper bound: the orbit touches the keep-out area only where it comes
+It is an upper bound for the linear loop: the orbit touches the keep-out area only where it comes
 closest, and is taken to be there all the time, at its largest bank, with its error in the worst
 direction.
 
-Gusts that exceed the range of the aircraft's airspeeds carry it along as long as they last. A
-Gaussian process near a high peak L is L (1 - (nu t)^2/2), where nu is the ratio of its rate's
-deviation to its own; what of it exceeds a limit adds up to a distance in closed form, and that is
-added to the margin, with the peak that is passed as often as touches are allowed.
+The guidance, linear about a turn, is closed around the linear aircraft frequency by frequency, with
+the hold of the commands and the step by which the last one is late. In axes along and across the
+reference's course, which turn at omega_r, the error e from aircraft to reference obeys
+e_along' = -dV + omega_r e_right and e_right' = -V dchi - omega_r e_along.
 
-Not in it is how hard the aircraft can brake. Where turbulence closes the throttle, the spread is
-larger than predicted: 1.4 to 2.9 times on the X8 in moderate turbulence, which the second part of
-the margin made up for in 13 hours of flights. In severe turbulence an X8 can lose its reference,
-and no such margin holds.
+The course swings through air whose gusts do not swing with it. A gust along a fixed direction is one
+along the path times the cosine of the course between them. With exp(i course) as a Fourier series
+of coefficients c_n over the orbit, the mean over the phases of cos(course now - course tau ago) is
+the sum of |c_n|^2 cos(n omega_0 tau): slow gusts come back as sidebands of the orbit's frequency,
+with these weights. For the sinusoid eta cos(omega_0 t + phase) they are J_n(eta)^2, and the mean is
+J_0(2 eta sin(omega_0 tau/2)) by Graf's addition theorem.
 """
 
+import functools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
+import control
 import numpy as np
 import numpy.typing as npt
 
 from aircraft.weather import GustStatistics
-from common.physics import SECONDS_PER_HOUR
 from gnc.airspeed import SpeedHold
-from gnc.estimation.error_budget import AS_COMMANDED, TurnDeviation
 from gnc.reference.reference import Orbit
 from gnc.tracker import TrackingParameters
+from innerloop.gusts import GUSTS, dryden_filters, gust_loop
+from innerloop.law import COMMANDS
 from innerloop.schedule import Schedule
+from scenarios.planning.margin.keepout_margin import STEERED_BY, Spread, steering_gains
 
 FREQUENCIES = np.logspace(-2.5, 1.9, 400)
 """Where spectra are integrated [rad/s]: from far below the corner of a gust, V/L = 0.09, to beyond
@@ -43,63 +43,8 @@ the hold of the commands.
 _ORBIT_POINTS = 60
 
 Array = npt.NDArray[np.float64]
+
 Complex = npt.NDArray[np.complex128]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Spread:
-    """Predicted standard deviations of a flight in turbulence.
-
-    Attributes
-    ----------
-    along, across : error along and across the reference's course, in the mean over the orbit [m]
-    radial, radial_rate : towards the vessel, and its rate: upper bounds [m, m/s]
-    airspeed, airspeed_rate : of the airspeed that keeping pace takes, as fast as the aircraft gives
-        it, and its rate [m/s, m/s^2]
-    airspeed_limit : how far airspeed may go from the reference's speed, to the nearer side [m/s]
-    """
-
-    along: float
-    across: float
-    radial: float
-    radial_rate: float
-    airspeed: float
-    airspeed_rate: float
-    airspeed_limit: float
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SpreadTable:
-    """Predicted spread of the tracking error.
-
-    Attributes
-    ----------
-    speed_ratios : nu, ascending [-]
-    spreads : at each of them
-    turning : of a turn away
-    """
-
-    speed_ratios: tuple[float, ...]
-    spreads: tuple[Spread, ...]
-    turning: TurnDeviation = AS_COMMANDED
-
-    def at(self, nu: float) -> Spread:
-        """Return the spread at the nearest speed ratio."""
-        return min(
-            zip(self.speed_ratios, self.spreads, strict=True), key=lambda entry: abs(entry[0] - nu)
-        )[1]
-
-
-CALM_AIR_SPREAD = Spread(
-    along=0.0,
-    across=0.0,
-    radial=0.0,
-    radial_rate=0.0,
-    airspeed=0.0,
-    airspeed_rate=0.0,
-    airspeed_limit=1.0,
-)
-"""The spread in air that does not move."""
 
 
 def tracking_spreads(
@@ -120,10 +65,6 @@ def tracking_spreads(
     turbulence, span : the air, and the wing that averages its rotation [m]
     oscillations, guidance, hold : references of one speed, and how they are tracked
     """
-    # They need python-control, which a flight in calm air does without.
-    from scenarios.planning.margin.gusts_on_orbit import gusts_on_orbit
-    from scenarios.planning.margin.tracking_response import RESPONSES, tracking_response
-
     (speed,) = {oscillation.speed for oscillation in oscillations}
     index = int(np.argmin(np.abs(np.array(schedule.airspeeds) - speed)))
     banks = range(len(schedule.gain_banks))
@@ -183,65 +124,6 @@ def _spread(
     )
 
 
-def planned_margin(spread: Spread, *, touches_per_hour: float) -> float:
-    """Return the margin [m] to plan between orbit and keep-out area.
-
-    Parameters
-    ----------
-    spread : in turbulence
-    touches_per_hour : how often the area may be touched, above 0 [1/h]
-
-    Raises
-    ------
-    ValueError : ``touches_per_hour`` is not above 0, or the spread has a deviation and never varies
-    """
-    return level_crossed(spread.radial, spread.radial_rate, touches_per_hour) + beyond_limits(
-        spread, touches_per_hour
-    )
-
-
-def level_crossed(sigma: float, sigma_rate: float, per_hour: float) -> float:
-    """Return the level that a Gaussian process goes above so often; 0 if it does so less often even
-    at its mean.
-
-    By Rice's formula it goes above a level L ``sigma_rate/(2 pi sigma) exp(-(L/sigma)^2/2)`` times
-    a second.
-
-    Parameters
-    ----------
-    sigma, sigma_rate : standard deviations of the process and of its rate [m, m/s]
-    per_hour : how often, above 0 [1/h]
-
-    Raises
-    ------
-    ValueError : ``per_hour`` is not above 0, or the process has a deviation and never varies
-    """
-    if not per_hour > 0.0:
-        raise ValueError(
-            f"crossings per hour are {per_hour:g}; no margin is large enough for none: allow some, such as 0.001"
-        )
-    if sigma == 0.0:
-        return 0.0
-    if not sigma_rate > 0.0:
-        raise ValueError(
-            f"the rate of an error of {sigma:g} m has a deviation of {sigma_rate:g} m/s; it must vary: give above 0"
-        )
-    mean_per_hour = SECONDS_PER_HOUR * sigma_rate / (2.0 * math.pi * sigma)
-    return sigma * math.sqrt(2.0 * math.log(max(1.0, mean_per_hour / per_hour)))
-
-
-def beyond_limits(spread: Spread, per_hour: float) -> float:
-    """Return how far gusts that the airspeed cannot make up carry the aircraft off its reference
-    [m], so often [1/h].
-    """
-    peak = level_crossed(spread.airspeed, spread.airspeed_rate, per_hour)
-    excess = peak - spread.airspeed_limit
-    if excess <= 0.0:
-        return 0.0
-    half_time = math.sqrt(2.0 * excess / peak) * spread.airspeed / spread.airspeed_rate
-    return 4.0 / 3.0 * excess * half_time
-
-
 def _integral(density: Array) -> Array:
     """Return the variance of a density over ``FREQUENCIES``."""
     return np.asarray(np.trapezoid(density, FREQUENCIES, axis=0) / math.pi)
@@ -254,3 +136,144 @@ def _over_turns(turns: Array, at: list[float], matrices: list[Array]) -> Array:
     stacked = np.stack(matrices)
     columns = [np.interp(turns, at, stacked[:, i, j]) for i in range(3) for j in range(3)]
     return np.column_stack(columns).reshape(-1, 3, 3)
+
+
+_SIDEBANDS = np.arange(-12, 13)
+"""J_13(2.4)^2 is below 1e-15, and eta is no more than 2.405; a course whose roll rate jumps leaves
+below 1e-6 beyond.
+"""
+
+_TURNED = (("gust_along", "gust_right"), ("gust_p", "gust_q"))
+"""Components that the course turns into each other."""
+
+
+def gusts_on_orbit(
+    turbulence: GustStatistics,
+    oscillation: Orbit,
+    frequencies: Array,
+    *,
+    airspeed: float,
+    span: float,
+) -> Array:
+    """Return the power spectral densities of ``GUSTS`` in the axes of the path, shape (frequencies,
+    6), averaged over the orbit.
+
+    The variance is the integral over positive frequencies over pi. Components are taken as
+    independent: those that the course turns into each other are so in the mean over the orbit, up
+    to the difference between their spectra.
+
+    Parameters
+    ----------
+    turbulence, airspeed, span : same as ``innerloop.gusts.dryden_filters``, in axes that do
+        not turn
+    oscillation : of the reference's course
+    frequencies : [rad/s], above 0
+    """
+    weights = tuple(oscillation.sidebands(_SIDEBANDS).tolist())
+    return _on_orbit(
+        turbulence, airspeed, span, oscillation.omega_0, weights, tuple(frequencies.tolist())
+    )
+
+
+@functools.lru_cache(maxsize=64)
+def _on_orbit(
+    turbulence: GustStatistics,
+    airspeed: float,
+    span: float,
+    omega_0: float,
+    weights: tuple[float, ...],
+    at: tuple[float, ...],
+) -> Array:
+    """Return what ``gusts_on_orbit`` does; kept, for trials in the same turbulence ask for the
+    same.
+    """
+    filters, frequencies = _filters(turbulence, airspeed=airspeed, span=span), np.array(at)
+    spectra = _spectra(filters, frequencies)
+    shifted = [_spectra(filters, np.abs(frequencies - n * omega_0)) for n in _SIDEBANDS]
+    for pair in _TURNED:
+        columns = [GUSTS.index(name) for name in pair]
+        mean = sum(
+            weight * s[:, columns].mean(axis=1) for weight, s in zip(weights, shifted, strict=True)
+        )
+        spectra[:, columns] = np.asarray(mean)[:, None]
+    spectra.flags.writeable = False
+    return spectra
+
+
+_filters = functools.lru_cache(maxsize=8)(dryden_filters)
+
+
+def _spectra(filters: control.StateSpace, frequencies: Array) -> Array:
+    response = np.moveaxis(filters(1j * frequencies, squeeze=False), -1, 0)
+    return np.asarray(np.sum(np.abs(response) ** 2, axis=2))
+
+
+RESPONSES = ("along", "right", "pace")
+"""Rows of ``tracking_response``: the error [m], and what the aircraft's own speed gives to keep
+pace, which is the commanded airspeed as far as it is followed [m/s]."""
+
+_READ = ("course_rate", "speed", "airspeed", "heading_rate")
+
+
+def tracking_response(
+    schedule: Schedule,
+    index: int,
+    bank_index: int,
+    guidance: TrackingParameters,
+    hold: SpeedHold,
+    speed: float,
+    frequencies: Array,
+) -> Complex:
+    """Return the response of ``RESPONSES`` to ``GUSTS`` over frequency, shape (frequencies, 3, 6).
+
+    Parameters
+    ----------
+    schedule, index, bank_index : the autopilot and where it flies, same as ``gust_loop``
+    guidance : whose steering it flies, its commands corrected by ``air_turn``
+    hold : by which it keeps pace
+    speed : V_r [m/s]
+    frequencies : [rad/s], above 0
+    """
+    loop = gust_loop(schedule, index, bank_index)
+    labels = list(loop.output_labels)
+    whole = np.moveaxis(loop(1j * frequencies, squeeze=False), -1, 0)[
+        :, [labels.index(name) for name in _READ]
+    ]
+    gusts = whole[:, :, len(COMMANDS) :]
+    commands = whole[
+        :, :, [COMMANDS.index("airspeed_command"), COMMANDS.index("heading_rate_command")]
+    ]
+    turn = schedule.gain_trim(index, bank_index).yaw_rate
+    steering = dict(zip(STEERED_BY, steering_gains(guidance, turn, speed), strict=True))
+    s = 1j * frequencies
+    hold_of_step = np.exp(-0.5 * s * guidance.time_step) * np.sinc(
+        0.5 * frequencies * guidance.time_step / np.pi
+    )
+
+    # Four equations for the error along and right and for the commanded airspeed and turn: left @
+    # unknowns = right @ gusts.
+    held, per_course = hold_of_step[:, None], (speed / s)[:, None]
+    left = np.zeros((len(s), 4, 4), dtype=complex)
+    right = np.zeros((len(s), 4, len(GUSTS)), dtype=complex)
+    left[:, 0, 0], left[:, 0, 1] = s, -turn
+    left[:, 0, 2:], right[:, 0] = commands[:, 1], -gusts[:, 1]
+    left[:, 1, 0], left[:, 1, 1] = turn, s
+    left[:, 1, 2:], right[:, 1] = per_course * commands[:, 0], -per_course * gusts[:, 0]
+    left[:, 2, 0] = -hold_of_step * hold.gain
+    left[:, 2, 2:], right[:, 2] = (
+        -held * (commands[:, 2] - commands[:, 1]),
+        held * (gusts[:, 2] - gusts[:, 1]),
+    )
+    left[:, 2, 2] += 1.0
+    read = np.column_stack(
+        [steering["course"] / s, *(np.full(len(s), steering[name]) for name in _READ[1:])]
+    )
+    left[:, 3, 0], left[:, 3, 1] = (
+        -hold_of_step * steering["along"],
+        -hold_of_step * steering["right"],
+    )
+    left[:, 3, 2:] = -held * np.einsum("fi,fij->fj", read, commands)
+    left[:, 3, 3] += 1.0 - steering["last"] * np.exp(-s * guidance.time_step)
+    right[:, 3] = held * np.einsum("fi,fij->fj", read, gusts)
+    found = np.linalg.solve(left, right)
+    return np.concatenate([found[:, :2], commands[:, 1, :1, None] * found[:, 2:3]], axis=1)

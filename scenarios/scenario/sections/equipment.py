@@ -7,6 +7,7 @@ from typing import Annotated, Any, ClassVar
 from pydantic import Field, field_validator, model_validator
 
 from scenarios.scenario.extension_points import PAYLOADS
+from scenarios.scenario.sections.needs import OPERATIONAL, Need
 from scenarios.scenario.sections.part_section import PartSection
 from scenarios.scenario.sections.section import NonNegative, Positive, Section, check_ordered
 
@@ -16,18 +17,25 @@ fastest; with 0.4 kB each, 80 MB.
 """
 
 
+_NOW_AND_THEN = Need(
+    lambda s: not s.vessel_known, "reports that come now and then: set reports.interval_s"
+)
+
+
 class VesselReportsConfig(Section):
     """Reports of the vessel's motion, as by AIS."""
 
+    NEEDS: ClassVar[tuple[Need, ...]] = (OPERATIONAL,)
+
     interval_s: tuple[NonNegative, NonNegative] = (0.0, 0.0)
     """Shortest and longest time between reports; 0 for exact knowledge at all times [s]."""
-    position_sigma_m: NonNegative = 5.0
+    position_sigma_m: Annotated[NonNegative, _NOW_AND_THEN] = 5.0
     """Error of each coordinate of a report, one sigma [m]."""
-    velocity_sigma_mps: NonNegative = 0.15
+    velocity_sigma_mps: Annotated[NonNegative, _NOW_AND_THEN] = 0.15
     """Error of each component of the velocity, one sigma [m/s]."""
-    latency_max_s: NonNegative = 0.0
+    latency_max_s: Annotated[NonNegative, _NOW_AND_THEN] = 0.0
     """Longest delay between the time that a report states and its reception [s]."""
-    missing: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.0
+    missing: Annotated[float, Field(ge=0.0, lt=1.0), _NOW_AND_THEN] = 0.0
     """Fraction of reports that are never received [-]."""
 
     @model_validator(mode="after")
@@ -43,6 +51,8 @@ class VesselReportsConfig(Section):
 
 class SensorsConfig(Section):
     """Errors of the UAV's sensors. Biases are sampled for each flight, within these limits."""
+
+    NEEDS: ClassVar[tuple[Need, ...]] = (OPERATIONAL,)
 
     position_sigma_m: NonNegative = 0.0
     """Error of each coordinate of satellite navigation, one sigma; it drifts with a time constant
@@ -63,17 +73,34 @@ class SensorsConfig(Section):
 class FaultConfig(Section):
     """A fault in flight."""
 
+    NEEDS: ClassVar[tuple[Need, ...]] = (OPERATIONAL,)
+
     kind: Annotated[str, Field(pattern=r"^[A-Za-z0-9_.\-]+$")] = "none"
     """Kind of fault: none, vessel_data, satellite_navigation, sniffer_dead, sniffer_saturated,
     engine, or the name of an actuator of the aircraft (the error message for an unknown name lists
     them)."""
-    at_s: tuple[NonNegative, NonNegative] = (100.0, 250.0)
+    at_s: Annotated[
+        tuple[NonNegative, NonNegative],
+        Need(lambda s: s.fault.kind != "none", "a fault: set fault.kind"),
+    ] = (100.0, 250.0)
     """Earliest and latest time of the fault, which is sampled in between; or one number, the time
     itself [s].
     """
-    vessel_data_s: Positive = 60.0
+    vessel_data_s: Annotated[
+        Positive,
+        Need(
+            lambda s: s.fault.kind == "vessel_data",
+            "a loss of vessel data: set fault.kind to 'vessel_data'",
+        ),
+    ] = 60.0
     """How long vessel data are lost [s]."""
-    satellite_navigation_s: Positive = 10.0
+    satellite_navigation_s: Annotated[
+        Positive,
+        Need(
+            lambda s: s.fault.kind == "satellite_navigation",
+            "a loss of satellites: set fault.kind to 'satellite_navigation'",
+        ),
+    ] = 10.0
     """How long satellite navigation is lost [s]; any other fault lasts to the end of the flight."""
     declared: tuple[str, ...] = ()
     """Kinds of fault that the keep-out guard and its margin allow for, besides the flight's own and
@@ -121,6 +148,13 @@ class PayloadConfig(PartSection):
 
 class KinematicConfig(Section):
     """The paper's vehicle, eq. (1)."""
+
+    NEEDS: ClassVar[tuple[Need, ...]] = (
+        Need(
+            lambda s: s.fidelity in ("kinematic", "both"),
+            "the kinematic vehicle: set fidelity to 'kinematic'",
+        ),
+    )
 
     heading_rate_lag_s: NonNegative = 0.0
     """Time constant of the heading rate behind its command; 0 for eq. (1) as it stands [s]."""

@@ -4,11 +4,12 @@ statistics, a search.
 
 import math
 import sys
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, RootModel, field_validator, model_validator
 
 from common.registry import PluginError
+from scenarios.scenario.sections.needs import Need, of_study
 from scenarios.scenario.sections.report import ReportConfig
 from scenarios.scenario.sections.section import (
     Fraction,
@@ -40,6 +41,15 @@ NU_MAX = 10.0
 """Largest speed ratio of a sweep [-]; from 1 on there is no solution, and the flight is a row that
 says so.
 """
+
+
+SPEED_KEYS = frozenset({"vessel.speed_mps", "vessel.speed_ratio"})
+"""Keys that give the vessel's speed, each in its own way."""
+
+
+def swept_key(name: str) -> str:
+    """Return the key that a sweep means by a name: ``nu`` stands for the speed ratio."""
+    return "vessel.speed_ratio" if name == "nu" else name
 
 
 class SweepConfig(RootModel[dict[str, tuple[Any, ...]]]):
@@ -103,9 +113,23 @@ class ComparisonConfig(Section):
     in the verdict.
     """
 
-    nu: tuple[Annotated[float, Field(ge=0.0, lt=1.0)], ...] = ()
+    nu: Annotated[
+        tuple[Annotated[float, Field(ge=0.0, lt=1.0)], ...],
+        Need(
+            lambda s: (
+                not s.comparison.nu
+                or (s.comparison.variants and {*s.comparison.nu} <= {*s.sweep.nu})
+            ),
+            "variants that are flown at swept speed ratios: give comparison.variants, and these"
+            " ratios in sweep.nu, too, or use comparison.flights",
+        ),
+    ] = ()
     """Swept speed ratios at which the variants are flown; all of them if not given [-]."""
-    flights: Annotated[int, Field(ge=1, le=1_000_000)] | None = None
+    flights: Annotated[
+        int | None,
+        Field(ge=1, le=1_000_000),
+        Need(lambda s: s.comparison.variants, "variants: give comparison.variants"),
+    ] = None
     """Number of flights at each point of the experiment that are flown with each variant; all of
     them if not given [-].
     """
@@ -158,19 +182,21 @@ class DrawConfig(Section):
         ]
         if len(given) != 1:
             raise ValueError(
-                f"draw of '{self.key}' has {' and '.join(given) or 'none'} of uniform, normal, weibull and choice; give one"
+                f"draw of '{self.key}' has {' and '.join(given) or 'none'} of uniform, normal,"
+                " weibull and choice; give one"
             )
         for name in ("uniform", "within"):
             check_ordered(f"{name} of the draw of '{self.key}'", getattr(self, name))
         if self.within is not None and given[0] not in ("normal", "weibull"):
             raise ValueError(
-                f"draw of '{self.key}' has within beside {given[0]}; it cuts off a normal or a weibull"
+                f"draw of '{self.key}' has within beside {given[0]}; it cuts off normal or weibull"
             )
         if self.weights is not None and not (
             len(self.weights) == len(self.choice or ()) and 0.0 < sum(self.weights) < math.inf
         ):
             raise ValueError(
-                f"draw of '{self.key}' has weights {list(self.weights)}; give each choice one, with a sum above 0"
+                f"draw of '{self.key}' has weights {list(self.weights)}; give each choice one,"
+                " with a sum above 0"
             )
         return self
 
@@ -188,6 +214,8 @@ class DrawConfig(Section):
 class StatisticsConfig(Section):
     """Confidence of the figures of a Monte Carlo study, and when the study may stop."""
 
+    NEEDS: ClassVar[tuple[Need, ...]] = (of_study("monte_carlo", "a Monte Carlo study"),)
+
     confidence: Fraction = 0.95
     """Confidence level of every interval [-]."""
     violation_upper: Fraction | None = None
@@ -197,7 +225,13 @@ class StatisticsConfig(Section):
     """The study stops once the interval of the quantile of the closest approach is as narrow as
     this [m].
     """
-    distance_quantile: Fraction = 0.01
+    distance_quantile: Annotated[
+        Fraction,
+        Need(
+            lambda s: s.method == "plain",
+            "plain sampling, which may stop by it: set method to 'plain'",
+        ),
+    ] = 0.01
     """Quantile of the closest approach whose interval may stop the study [-]."""
 
     @property
@@ -208,6 +242,13 @@ class StatisticsConfig(Section):
 
 class SubsetConfig(Section):
     """Subset simulation: levels of flights, each starting from the nearest of the level before."""
+
+    NEEDS: ClassVar[tuple[Need, ...]] = (
+        Need(
+            lambda s: s.study == "monte_carlo" and s.method == "subset",
+            "subset simulation: set study to 'monte_carlo' and method to 'subset'",
+        ),
+    )
 
     flights_per_level: Annotated[int, Field(ge=50, le=1_000_000)] = 500
     """Flights of a level, including those that pass on from the level before. At least 10 have to
@@ -236,15 +277,25 @@ class SubsetConfig(Section):
     @model_validator(mode="after")
     def _enough(self) -> "SubsetConfig":
         if self.passing < CHAINS_MIN:
+            least = math.ceil(CHAINS_MIN / self.conditional_probability)
             raise ValueError(
-                f"conditional_probability times flights_per_level is {self.passing} flights that pass on; it must be {CHAINS_MIN}"
-                f" at least: set subset.flights_per_level to {math.ceil(CHAINS_MIN / self.conditional_probability)} or more"
+                f"conditional_probability times flights_per_level is {self.passing} flights that"
+                f" pass on; it must be {CHAINS_MIN} at least: set subset.flights_per_level to"
+                f" {least} or more"
             )
         return self
 
 
+_EVOLVES = Need(
+    lambda s: "differential_evolution" in s.search.methods,
+    "differential evolution: put 'differential_evolution' into search.methods",
+)
+
+
 class SearchConfig(Section):
     """A search over the ranges of the random variables, by methods that take turns."""
+
+    NEEDS: ClassVar[tuple[Need, ...]] = (of_study("falsify", "a search"),)
 
     methods: Annotated[tuple[str, ...], Field(min_length=1)] = (
         "corners",
@@ -255,19 +306,33 @@ class SearchConfig(Section):
     """Search methods, which take turns in this order; each by its name or FILE.py:NAME."""
     population: Annotated[int, Field(ge=8, le=10_000)] = 64
     """Flights of a turn, and members of differential evolution [-]."""
-    generations: Annotated[int, Field(ge=0, le=10_000)] = 30
+    generations: Annotated[
+        int,
+        Field(ge=0, le=10_000),
+        Need(
+            lambda s: s.search.time_s is None,
+            "a search without a time: leave search.time_s out",
+        ),
+    ] = 30
     """Number of turns after the first, summed over all methods [-]."""
     time_s: Positive | None = None
     """Time after which no further batch is flown, instead of a number of generations [s]; in a
     resumed run it starts again at 0.
     """
-    restarts: Annotated[int, Field(ge=0, le=100_000)] = 100
+    restarts: Annotated[
+        int,
+        Field(ge=0, le=100_000),
+        Need(
+            lambda s: s.search.methods != ("corners",),
+            "methods that may become stuck: put 'local' or 'cma' into search.methods",
+        ),
+    ] = 100
     """How often a method that no longer improves restarts, from another of the worst flights or
     from a random one [-].
     """
-    mutation: tuple[Positive, Positive] = (0.5, 1.0)
+    mutation: Annotated[tuple[Positive, Positive], _EVOLVES] = (0.5, 1.0)
     """Range of differential evolution's weight, which is sampled for each generation [-]."""
-    recombination: Fraction = 0.7
+    recombination: Annotated[Fraction, _EVOLVES] = 0.7
     """Crossover probability of differential evolution: that a key is taken from the mutant [-]."""
     kept: Annotated[int, Field(ge=1, le=1000)] = 10
     """Number of worst flights, unlike one another, that are kept as scenario files and confirmed
@@ -315,7 +380,9 @@ class ConditionConfig(Section):
 
 
 class ArenaConfig(Section):
-    """A comparison of steering laws: which take part, in which conditions, and how each is tuned."""
+    """A comparison of steering laws: which take part, in which conditions, how each is tuned."""
+
+    NEEDS: ClassVar[tuple[Need, ...]] = (of_study("arena", "laws side by side"),)
 
     tracking: tuple[str, ...] = ()
     """Laws that track the oscillating reference."""

@@ -1,11 +1,12 @@
-"""What a scenario file may say of a flight: where it starts, when it ends, and what it must show."""
+"""What a scenario file may say of a flight: its start, its end, and what it must show."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, field_validator, model_validator
 
 from common.text import did_you_mean
 from gnc.mission.mission import Mode
+from scenarios.scenario.sections.needs import EXHAUST, SNIFFER, VESSEL, Need, not_patrol
 from scenarios.scenario.sections.section import (
     Angle,
     Limit,
@@ -35,9 +36,22 @@ class StartConfig(Section):
     plume's axis on any course.
     """
 
-    distance_m: tuple[Positive, Positive] = (400.0, 800.0)
+    distance_m: Annotated[
+        tuple[Positive, Positive],
+        Need(
+            lambda s: s.start.place_m is None and s.start.range_m is None,
+            "a random distance: leave out start.place_m and start.range_m",
+        ),
+    ] = (400.0, 800.0)
     """Smallest and largest distance from the vessel, which is sampled in between [m]."""
-    spread_deg: Annotated[float, Field(ge=0.0, le=180.0)] = 30.0
+    spread_deg: Annotated[
+        float,
+        Field(ge=0.0, le=180.0),
+        Need(
+            lambda s: s.start.place_m is None and s.start.aspect_deg is None,
+            "a random bearing: leave out start.place_m and start.aspect_deg",
+        ),
+    ] = 30.0
     """Largest bearing from the plume's axis, to either side [deg]."""
     range_m: Positive | None = None
     """Distance from the vessel; random within distance_m if not given [m]."""
@@ -63,30 +77,50 @@ class StartConfig(Section):
 class FlightConfig(Section):
     """When a flight ends and what is recorded."""
 
-    crossings: Annotated[int, Field(ge=0, le=10_000)] = 30
+    crossings: Annotated[
+        int,
+        Field(ge=0, le=10_000),
+        VESSEL,
+        not_patrol("a flight of a patrol ends with a verdict or its patience: leave it out"),
+    ] = 30
     """Crossings to fly after settling; 0 to fly for the whole duration [-]."""
-    after_settling_s: Positive | None = None
+    after_settling_s: Annotated[Positive | None, VESSEL] = None
     """Time to fly after settling, and at least until the crossings are complete; only crossings
     count if not given [s].
     """
-    measured_s: Positive | None = None
+    measured_s: Annotated[
+        Positive | None,
+        Need(lambda s: s.payload.instruments, "instruments: set payload.instruments"),
+    ] = None
     """Time before the end of the flight over which instruments are evaluated, settled or not; from
     settling on if not given [s].
     """
-    duration_max_s: Annotated[float, Field(gt=0.0, le=100_000.0)] = 1500.0
+    duration_max_s: Annotated[
+        float,
+        Field(gt=0.0, le=100_000.0),
+        not_patrol("flights of a patrol are as long as patrol.patience_s allows: set that"),
+    ] = 1500.0
     """Longest flight [s]; gusts, reports and the noise of sensors and exhaust are sampled for the
     whole of it, so another value changes them from the start on, with the same seed, too."""
-    until: Literal["flown", "verdict"] = "flown"
+    until: Annotated[Literal["flown", "verdict"], SNIFFER] = "flown"
     """When the flight ends: flown, with its crossings and its duration; verdict, also once the
     sniffer's readings allow a verdict on the fuel, or cannot any more."""
-    altitude_m: Annotated[float, Field(ge=ALTITUDE_MIN)] | None = None
+    altitude_m: Annotated[
+        float | None,
+        Field(ge=ALTITUDE_MIN),
+        Need(
+            lambda s: s.follows and not s.stands_off,
+            "the mission that follows the vessel; the others fly at the height of the plume: set"
+            " guidance.mission to 'follow'",
+        ),
+    ] = None
     """Altitude at the start, for which the autopilot is designed; if not given, the height of the
     funnel's mouth, beside a ship with exhaust 3 m or more within altitude_min_m and altitude_max_m
     [m]."""
-    altitude_min_m: NonNegative = 20.0
+    altitude_min_m: Annotated[NonNegative, EXHAUST] = 20.0
     """Lowest altitude at which rising exhaust is crossed, and a flight beside it starts: of what is
     commanded; a search stays 3 to 15 m away from it, by the turbulence [m]."""
-    altitude_max_m: Positive = 120.0
+    altitude_max_m: Annotated[Positive, EXHAUST] = 120.0
     """Highest altitude at which rising exhaust is crossed, and a flight beside it starts, likewise
     [m].
     """
@@ -100,8 +134,8 @@ class FlightConfig(Section):
     def _altitudes(self) -> "FlightConfig":
         if self.altitude_min_m >= self.altitude_max_m:
             raise ValueError(
-                f"altitude_min_m is {self.altitude_min_m:g} m and altitude_max_m {self.altitude_max_m:g} m; the first must be"
-                " the lower one"
+                f"altitude_min_m is {self.altitude_min_m:g} m and altitude_max_m"
+                f" {self.altitude_max_m:g} m; the first must be the lower one"
             )
         return self
 
@@ -109,8 +143,8 @@ class FlightConfig(Section):
     def _long_enough(self) -> "FlightConfig":
         if self.duration_max_s < (least := 1.0 / self.log_rate_hz):
             raise ValueError(
-                f"duration_max_s is {self.duration_max_s:g} s; at log_rate_hz, {self.log_rate_hz:g} Hz, nothing is recorded in it:"
-                f" fly {least:g} s or longer"
+                f"duration_max_s is {self.duration_max_s:g} s; at log_rate_hz,"
+                f" {self.log_rate_hz:g} Hz, nothing is recorded in less than {least:g} s"
             )
         return self
 
@@ -133,10 +167,21 @@ _PAIRS = ("crossing_interval_s", "crossing_distance_m")
 """Criteria of a least and a largest value."""
 
 
+_SETTLES = Need(
+    lambda s: s.criteria.settles, "flights that must settle: set criteria.settles to true"
+)
+
+
 class CriteriaConfig(Section):
     """Criteria of a flight, in addition to keeping out and completing its mission; ``false`` for
     what is not judged.
     """
+
+    NEEDS: ClassVar[tuple[Need, ...]] = (
+        not_patrol(
+            "a patrol is judged by patrol.oracle_share_min and patrol.wrong_share_max: set these"
+        ),
+    )
 
     required: Literal["criteria", "keep_out"] = "criteria"
     """What exit status 0 requires of the flight: to meet every criterion, or only to keep out, as
@@ -146,19 +191,19 @@ class CriteriaConfig(Section):
     """Whether tracking, airspeed and altitude are judged after settling; a flight beside a vessel
     must settle in either case.
     """
-    tracking_error_rms_m: Limit = 1.5
+    tracking_error_rms_m: Annotated[Limit, _SETTLES] = 1.5
     """Largest rms distance to the reference after settling [m]."""
-    airspeed_error_rms_mps: Limit = 0.3
+    airspeed_error_rms_mps: Annotated[Limit, _SETTLES] = 0.3
     """Largest rms difference of airspeed from its command [m/s]."""
-    altitude_error_max_m: Limit = 1.5
+    altitude_error_max_m: Annotated[Limit, _SETTLES] = 1.5
     """Largest difference of altitude from its command [m]."""
-    crossing_interval_error: Limit = 0.01
+    crossing_interval_error: Annotated[Limit, VESSEL] = 0.01
     """Largest relative difference of the mean crossing interval from pi/omega_0 [-]."""
     tracking_error_end_m: Limit = False
     """Largest distance to the reference at the end [m]."""
-    crossing_interval_s: tuple[Positive, Positive] | None = None
+    crossing_interval_s: Annotated[tuple[Positive, Positive] | None, VESSEL] = None
     """Least and largest mean crossing interval, or ``false`` [s]."""
-    crossing_distance_m: tuple[Positive, Positive] | None = None
+    crossing_distance_m: Annotated[tuple[Positive, Positive] | None, VESSEL] = None
     """Least and largest mean crossing distance from the vessel, or ``false`` [m]."""
     law_beyond_heading_rate_max: bool = False
     """Whether the law must command more than omega_max, to show that it does; how commands are
@@ -166,17 +211,23 @@ class CriteriaConfig(Section):
     """
     law_within_heading_rate_max: bool = False
     """Whether the law itself, before commands are limited, must not command more than omega_max."""
-    resumes_within_periods: Limit = False
+    resumes_within_periods: Annotated[
+        Limit,
+        Need(
+            lambda s: s.vessel.manoeuvres or s.vessel.track != "manoeuvres",
+            "a vessel that manoeuvres: set vessel.manoeuvres or vessel.track",
+        ),
+    ] = False
     """Largest time from the end of the last manoeuvre to the next crossing, in periods of the
     oscillation [-].
     """
-    time_to_find_s: Limit = False
+    time_to_find_s: Annotated[Limit, SNIFFER] = False
     """Largest time from reaching the orbit to the first reading of the plume [s]."""
-    within_altitudes: bool = False
+    within_altitudes: Annotated[bool, SNIFFER] = False
     """Whether altitude must stay within flight.altitude_min_m and altitude_max_m, except that of an
     aircraft with a fault.
     """
-    modes_at_end: tuple[str, ...] = ()
+    modes_at_end: Annotated[tuple[str, ...], VESSEL] = ()
     """Modes in which the flight may end; any if empty."""
 
     @model_validator(mode="before")
@@ -201,7 +252,6 @@ class CriteriaConfig(Section):
         known = [*(mode.value for mode in Mode), DITCHED]
         for mode in modes:
             if mode not in known:
-                raise ValueError(
-                    f"'{mode}' is not a mode{did_you_mean(mode, known) or ';'} modes are {', '.join(known)}"
-                )
+                meant = did_you_mean(mode, known) or ";"
+                raise ValueError(f"'{mode}' is not a mode{meant} modes are {', '.join(known)}")
         return modes

@@ -9,8 +9,7 @@ from pydantic import ConfigDict, TypeAdapter, ValidationError, model_validator
 
 from common.registry import PluginError
 from common.text import did_you_mean
-from scenarios.scenario.sections.section import Section, refuse_truth_values
-from scenarios.scenario.sections.wrong_value import must_be
+from scenarios.scenario.sections.section import Section, reject_truth_values
 
 
 class PartSection(Section):
@@ -90,18 +89,15 @@ class PartSection(Section):
         return self
 
     def _check(self, part: Any) -> None:
-        refuse_truth_values(part.SETTINGS, self.model_extra or {})
         try:
-            self.settings(part)
+            made = self.settings(part)
         except ValidationError as error:
             first = error.errors()[0]
             key = ".".join(map(str, first["loc"]))
             text = first["msg"].removeprefix("Value error, ")
-            demanded = (
-                must_be(first, key=key, default=self.part_keys.get(key))
-                or f"{text[0].lower()}{text[1:]}"
-            )
-            raise ValueError(f"{key} is {first['input']!r}; {demanded}" if key else text) from None
+            text = f"{text[0].lower()}{text[1:]}"
+            raise ValueError(f"{key} is {first['input']!r}; {text}" if key else text) from None
+        reject_truth_values(self.model_extra or {}, made)
 
     def keys_lost_with(self, changed: Mapping[str, object]) -> list[str]:
         """Return the keys given here that no part takes any more when fields of the section are

@@ -2,10 +2,11 @@
 expected of serving them.
 """
 
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from pydantic import Field
 
+from scenarios.scenario.sections.needs import Need, of_study
 from scenarios.scenario.sections.section import NonNegative, Positive, Section
 
 SHIPS_MAX = 12
@@ -18,6 +19,8 @@ class PatrolConfig(Section):
     Random variables whose keys begin with ``wind.`` are sampled for each patrol, the others for
     each ship.
     """
+
+    NEEDS: ClassVar[tuple[Need, ...]] = (of_study("patrol", "several ships one after the other"),)
 
     ships: Annotated[int, Field(ge=1, le=SHIPS_MAX)] = 6
     """Number of ships [-]."""

@@ -1,87 +1,67 @@
 """What sections of a scenario file are made of."""
 
-import functools
-import typing
-from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, Literal
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ModelWrapValidatorHandler,
+    model_validator,
+)
+
+from scenarios.scenario.sections.needs import Need
 
 
 class Section(BaseModel):
     """Frozen; unknown keys, numbers that are not finite, and truth values in the place of numbers
     are refused.
+
+    A field is a key: its type has the limits and what the key needs to have an effect (``needs``),
+    its docstring the meaning and the unit, ``"Meaning [unit]."``.
     """
 
     model_config = ConfigDict(
         extra="forbid", frozen=True, allow_inf_nan=False, use_attribute_docstrings=True
     )
 
-    @model_validator(mode="before")
+    NEEDS: ClassVar[tuple[Need, ...]] = ()
+    """What each of its keys needs."""
+
+    PART_NEEDS: ClassVar[Mapping[str, tuple[Need, ...]]] = {}
+    """What keys need that its parts bring."""
+
+    @model_validator(mode="wrap")
     @classmethod
-    def _numbers_are_numbers(cls, given: Any) -> Any:
-        if isinstance(given, dict):
-            refuse_truth_values(cls, given)
-        return given
+    def _numbers_are_numbers(cls, given: Any, validate: ModelWrapValidatorHandler[Self]) -> Self:
+        made = validate(given)
+        if isinstance(given, Mapping):
+            reject_truth_values(given, made)
+        return made
 
 
-def refuse_truth_values(kind: Any, given: Mapping[str, Any]) -> None:
-    """Raise a ValueError where a key that takes a number, of a section or of a part's settings, has
-    ``true`` or ``false``.
+def reject_truth_values(given: Mapping[str, Any], made: object) -> None:
+    """Raise a ValueError where a key has ``true`` or ``false`` and became a number.
+
+    Parameters
+    ----------
+    given : as written
+    made : a section or a part's settings, with the values of the same names
     """
-    numbers = _number_keys(kind)
     for key, value in given.items():
-        if (
-            isinstance(value, bool | list | tuple)
-            and (words := numbers.get(key)) is not None
-            and _has_other_truth(value, words)
+        if isinstance(value, bool | list | tuple) and _became_number(
+            value, getattr(made, key, None)
         ):
-            or_false = ", or false" if words else ""
-            raise ValueError(
-                f"{key} is {str(value).lower()}; a truth value is no number: give a number{or_false}"
-            )
+            raise ValueError(f"{key} is {str(value).lower()}; it must be a number")
 
 
-def _has_other_truth(value: object, words: tuple[bool, ...]) -> bool:
-    """Return whether a value is, or a list holds, a truth value that is not one of the words that
-    the key takes.
-    """
-    if isinstance(value, list | tuple):
-        return any(_has_other_truth(item, words) for item in value)
-    return isinstance(value, bool) and value not in words
-
-
-@functools.cache
-def _number_keys(kind: Any) -> dict[str, tuple[bool, ...]]:
-    """Return the keys that take numbers, each with the truth values that it takes as words beside
-    them.
-    """
-    fields = (
-        {name: field.annotation for name, field in kind.model_fields.items()}
-        if issubclass(kind, BaseModel)
-        else None
-    )
-    leaves = {
-        name: list(_leaves(annotation))
-        for name, annotation in (fields or typing.get_type_hints(kind)).items()
-    }
-    return {
-        name: tuple(word for word in of if isinstance(word, bool))
-        for name, of in leaves.items()
-        if (int in of or float in of) and not (bool in of or Any in of or object in of)
-    }
-
-
-def _leaves(annotation: Any) -> Iterator[Any]:
-    """Yield the types and the words that an annotation is made of."""
-    origin, parts = typing.get_origin(annotation), typing.get_args(annotation)
-    if origin is Annotated:
-        parts = parts[:1]
-    elif origin is Literal or not parts:
-        yield from parts or (annotation,)
-        return
-    for part in parts:
-        yield from _leaves(part)
+def _became_number(given: object, made: object) -> bool:
+    if isinstance(given, list | tuple) and isinstance(made, list | tuple):
+        return any(map(_became_number, given, made))
+    return isinstance(given, bool) and isinstance(made, int | float) and not isinstance(made, bool)
 
 
 def _no_zero(given: Any) -> Any:

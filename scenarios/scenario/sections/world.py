@@ -2,6 +2,8 @@
 is absent is ideal.
 """
 
+from collections.abc import Callable, Mapping
+from dataclasses import fields
 from datetime import datetime
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
@@ -12,7 +14,17 @@ from common.files import is_data_file
 from common.registry import is_file_part
 from measurement.emission import fuel_preset, ship_of, stack_height_of
 from measurement.gases import FUEL_SULPHUR_MOST
+from measurement.plume.spread import PlumeSettings
 from scenarios.scenario.extension_points import PLUME_MODELS, VESSEL_TRACKS
+from scenarios.scenario.sections.needs import (
+    BLOWS,
+    EXHAUST,
+    OPERATIONAL,
+    OWN_TRACK,
+    SNIFFER,
+    VESSEL,
+    Need,
+)
 from scenarios.scenario.sections.part_section import PartSection
 from scenarios.scenario.sections.section import Angle, NonNegative, Positive, Section
 
@@ -41,27 +53,41 @@ class ManoeuvreConfig(Section):
     """Rate of the change of speed [m/s2]."""
 
 
+_FILE = Need(
+    lambda s: s.vessel.from_file,
+    "a track from a file: set vessel.track to a file of AIS reports",
+)
+_NO_RATIO = Need(
+    lambda s: (
+        not {"nu", "vessel.speed_ratio"} & s.sweep.root.keys() and s.vessel.speed_ratio is None
+    ),
+    "a vessel whose speed is not given by sweep.nu or vessel.speed_ratio: leave one of them out",
+)
+
+
 class VesselConfig(Section):
     """The ship."""
 
-    speed_mps: Annotated[float, Field(ge=0.0, le=300.0)] = 8.0
+    NEEDS: ClassVar[tuple[Need, ...]] = (VESSEL,)
+
+    speed_mps: Annotated[float, Field(ge=0.0, le=300.0), OWN_TRACK, _NO_RATIO] = 8.0
     """Speed over the ground, before any manoeuvre [m/s]."""
-    speed_ratio: Annotated[float, Field(ge=0.0, le=10.0)] | None = None
+    speed_ratio: Annotated[float | None, Field(ge=0.0, le=10.0), OWN_TRACK] = None
     """Speed over the ground over the UAV's airspeed, nu in calm air [-]; replaces speed_mps if
     given.
     """
-    course_deg: Angle = 0.0
+    course_deg: Annotated[Angle, OWN_TRACK] = 0.0
     """Course, clockwise from north [deg]."""
-    track: str = "manoeuvres"
+    track: Annotated[str, OPERATIONAL] = "manoeuvres"
     """Track of the vessel: by its speed, course and manoeuvres, from a file of AIS reports (.csv,
     .nmea, .txt), or FILE.py:NAME.
     """
-    mmsi: Annotated[int, Field(ge=0, le=999_999_999)] | None = None
+    mmsi: Annotated[int | None, Field(ge=0, le=999_999_999), _FILE] = None
     """MMSI of the vessel in a file of AIS reports; not needed if the file has only one vessel [-].
     """
-    gap_max_s: Positive = GAP_MAX
+    gap_max_s: Annotated[Positive, _FILE] = GAP_MAX
     """Longest gap between reports of a file over which the track is interpolated [s]."""
-    manoeuvres: tuple[ManoeuvreConfig, ...] = ()
+    manoeuvres: Annotated[tuple[ManoeuvreConfig, ...], OWN_TRACK, OPERATIONAL] = ()
     """Manoeuvres of the vessel, in the order of their times."""
 
     @field_validator("track")
@@ -70,7 +96,7 @@ class VesselConfig(Section):
         file = Path(track).suffix and not (is_file_part(track) or is_data_file(track))
         if file and track not in VESSEL_TRACKS:
             raise ValueError(
-                f"track is '{track}'; the name of a file of AIS reports ends in .csv, .nmea or .txt: rename it"
+                f"track is '{track}'; the name of a file of AIS reports ends in .csv, .nmea or .txt"
             )
         return track
 
@@ -90,9 +116,11 @@ class VesselConfig(Section):
 class PlaceConfig(Section):
     """Where on earth a flight begins, and when; a track from a file has a place of its own."""
 
-    latitude_deg: Annotated[float, Field(ge=-90.0, le=90.0)] | None = None
+    NEEDS: ClassVar[tuple[Need, ...]] = (VESSEL,)
+
+    latitude_deg: Annotated[float | None, Field(ge=-90.0, le=90.0), OWN_TRACK] = None
     """Geodetic latitude of the vessel at the start [deg]."""
-    longitude_deg: Annotated[float, Field(ge=-180.0, le=180.0)] | None = None
+    longitude_deg: Annotated[float | None, Field(ge=-180.0, le=180.0), OWN_TRACK] = None
     """Longitude of the vessel at the start, east of Greenwich [deg]."""
     utc: datetime | None = None
     """Time of the start, as in 2026-06-01T12:00:00Z; for a track from a file, that of the first
@@ -115,7 +143,8 @@ class PlaceConfig(Section):
             raise ValueError(f"value is {utc.isoformat()}; give a time from 1970 to 2199")
         if utc is not None and utc.tzinfo is None:
             raise ValueError(
-                f"value is {utc.isoformat()}, without a zone; give a time in UTC, as in {utc.isoformat()}Z"
+                f"value is {utc.isoformat()}, without a zone; give a time in UTC, as in"
+                f" {utc.isoformat()}Z"
             )
         return utc
 
@@ -128,24 +157,65 @@ class PlaceConfig(Section):
         return self
 
 
+def _has_smoke(setting: str) -> Callable[[Any], object]:
+    """Return whether the project's smoke has a setting; what another plume model means by one of
+    that name is its own.
+    """
+    return lambda s: (
+        s.plume.model != "fluctuating"
+        or (s.plume.model_extra or {}).get(setting, getattr(PlumeSettings, setting))
+    )
+
+
+_SMOKE = Need(
+    lambda s: s.plume.model != "fluctuating" or s.emission.ship is not None,
+    "smoke: set emission.ship",
+)
+_REALISED = Need(
+    lambda s: s.plume.model != "fluctuating" or not _has_smoke("mean")(s),
+    "a realisation of smoke: leave plume.mean out",
+)
+_MEANDERS = Need(_has_smoke("meander"), "smoke that meanders: leave plume.meander out")
+_STRUCTURED = Need(
+    _has_smoke("structure_intensity"),
+    "fluctuations within smoke: set plume.structure_intensity",
+)
+_NO_SMOKE = Need(
+    lambda s: s.plume.model != "fluctuating" or s.emission.ship is None,
+    "an axis without smoke; smoke rises by its own heat: leave it out",
+)
+_GIVEN_ANGLE = Need(
+    lambda s: not s.plume_by_wind,
+    "a plume at an angle from the bow: set plume.direction to 'given'",
+)
+
+
 class PlumeConfig(PartSection):
     """The smoke plume: its axis, a half-line from the funnel, and what its model adds."""
 
     NAMED_IN: ClassVar[str] = "plume.model"
+    PART_NEEDS: ClassVar[Mapping[str, tuple[Need, ...]]] = {
+        **dict.fromkeys((of.name for of in fields(PlumeSettings)), (_SMOKE,)),
+        "meander": (_SMOKE, _REALISED),
+        "meander_length_across": (_SMOKE, _REALISED, _MEANDERS),
+        "meander_length_up": (_SMOKE, _REALISED, _MEANDERS),
+        "structure_intensity": (_SMOKE, _REALISED),
+        "structure_length": (_SMOKE, _REALISED, _STRUCTURED),
+    }
 
-    model: str = "straight"
+    model: Annotated[str, VESSEL] = "straight"
     """straight: an axis without smoke; fluctuating: smoke that disperses, meanders and bends; or
     FILE.py:NAME.
     """
-    direction: Literal["apparent_wind", "given"] | None = None
+    direction: Annotated[Literal["apparent_wind", "given"] | None, VESSEL] = None
     """Behind the vessel's motion through the air, or, as in the paper, at heading_deg from the bow.
 
     If not given: as in the paper in still air where the vessel is steady and known, else by the
     apparent wind.
     """
-    heading_deg: Angle = 180.0
+    heading_deg: Annotated[Angle, VESSEL, _GIVEN_ANGLE] = 180.0
     """Direction chi_P, clockwise from the vessel's bow [deg]; 180 is straight astern."""
-    elevation_deg: Annotated[float, Field(ge=0.0, le=60.0)] = 0.0
+    elevation_deg: Annotated[float, Field(ge=0.0, le=60.0), VESSEL, _NO_SMOKE] = 0.0
     """Elevation alpha_P above the horizon [deg]."""
     source_height_m: Annotated[float, Field(ge=SOURCE_HEIGHT_MIN, le=500.0)] | None = None
     """Height of the funnel's mouth above the sea, where the axis starts; at most 200 for exhaust of
@@ -178,14 +248,16 @@ def _known_ship(given: Any) -> Any:
 class EmissionConfig(Section):
     """What comes out of the funnel."""
 
+    NEEDS: ClassVar[tuple[Need, ...]] = (OPERATIONAL,)
+
     ship: Annotated[str | dict[str, Any] | None, BeforeValidator(_known_ship)] = None
     """The ship that emits the exhaust, one of measurement/ships.toml, or a table of one's
     own with the keys of these; no exhaust if not given."""
-    fuel: str = "mgo"
+    fuel: Annotated[str, EXHAUST] = "mgo"
     """Fuel of the ship, one of measurement/fuels.toml."""
-    sulphur_percent: Annotated[float, Field(ge=0.0, le=FUEL_SULPHUR_MOST)] | None = None
+    sulphur_percent: Annotated[float | None, Field(ge=0.0, le=FUEL_SULPHUR_MOST), EXHAUST] = None
     """Sulphur content of the fuel by mass; the usual one of that fuel if not given [% m/m]."""
-    load: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
+    load: Annotated[float | None, Field(gt=0.0, le=1.0), EXHAUST] = None
     """Load of the engine, a fraction as 0.85; if not given, that at the vessel's speed, which the
     guidance expects [-].
     """
@@ -202,6 +274,8 @@ class KeepoutConfig(Section):
     through it.
     """
 
+    NEEDS: ClassVar[tuple[Need, ...]] = (VESSEL,)
+
     shape: Shape = "sphere"
     """A sphere, as in the paper, which is narrower above and below; or a cylinder, as wide at every
     height.
@@ -210,27 +284,39 @@ class KeepoutConfig(Section):
     """r_min, radius of the keep-out area [m]."""
 
 
+_NO_TABLE = Need(
+    lambda s: s.wind.table is None,
+    "a wind that is not read from a table: leave out this key, or wind.table",
+)
+_PROFILE = Need(
+    lambda s: s.wind.roughness_m is not None,
+    "a wind with a profile over height: set wind.roughness_m",
+)
+
+
 class WindConfig(Section):
     """The mean wind: constant, or from a table; the same at every height, or with a profile. And
     the air in which exhaust rises.
     """
 
-    speed_mps: Annotated[float, Field(ge=0.0, le=40.0)] = 0.0
+    NEEDS: ClassVar[tuple[Need, ...]] = (OPERATIONAL,)
+
+    speed_mps: Annotated[float, Field(ge=0.0, le=40.0), _NO_TABLE] = 0.0
     """Wind speed [m/s]."""
-    from_deg: Angle = 0.0
+    from_deg: Annotated[Angle, _NO_TABLE, BLOWS] = 0.0
     """Direction that the wind comes from, clockwise from north [deg]."""
-    temperature_c: Annotated[float, Field(ge=-40.0, le=50.0)] = 15.0
+    temperature_c: Annotated[float, Field(ge=-40.0, le=50.0), EXHAUST] = 15.0
     """Temperature of the air in which exhaust rises [degC]."""
-    stability_per_s: Annotated[float, Field(ge=0.0, le=0.1)] = 0.0
+    stability_per_s: Annotated[float, Field(ge=0.0, le=0.1), EXHAUST] = 0.0
     """Brunt-Vaisala frequency of the air in which exhaust rises; 0 for neutral air [1/s]."""
     table: str | None = None
     """A file with the wind over time, height or both: a table (.csv), or netCDF as of ERA5 (.nc).
     """
-    roughness_m: Annotated[float, Field(ge=1e-8, le=1.0)] | None = None
+    roughness_m: Annotated[float | None, Field(ge=1e-8, le=1.0), BLOWS] = None
     """Roughness length of a logarithmic profile over height, about 0.0002 over the sea; no profile
     if not given [m].
     """
-    height_m: Annotated[float, Field(ge=2.0, le=500.0)] = 10.0
+    height_m: Annotated[float, Field(ge=2.0, le=500.0), BLOWS, _PROFILE] = 10.0
     """Height above the sea of the given wind, for a logarithmic profile [m]."""
 
     @field_validator("table")
@@ -246,21 +332,28 @@ class WindConfig(Section):
         return self.speed_mps > 0.0 or self.table is not None
 
 
+_VARIES = Need(lambda s: s.air.background != "none", "a background that varies: set air.background")
+
+
 class AirConfig(Section):
     """The air that a sniffer reads beside the exhaust: clean, but for a CO2 that may vary."""
+
+    NEEDS: ClassVar[tuple[Need, ...]] = (SNIFFER,)
 
     background: Literal["none", "haze", "sine", "steps"] = "none"
     """How the CO2 of the air varies along a flight: not at all; as an Ornstein-Uhlenbeck process
     (haze); as a sine of any phase; or by steps at random times.
     """
-    background_ppm: NonNegative = 2.0
+    background_ppm: Annotated[NonNegative, _VARIES] = 2.0
     """Standard deviation of haze, amplitude of a sine, or standard deviation of a step [ppm]."""
-    background_s: Annotated[float, Field(ge=1.0, le=10_000.0)] = 30.0
+    background_s: Annotated[float, Field(ge=1.0, le=10_000.0), _VARIES] = 30.0
     """Correlation time of haze, period of a sine, or mean time between steps [s]."""
 
 
 class TurbulenceConfig(Section):
     """Turbulence of MIL-F-8785C, and discrete gusts."""
+
+    NEEDS: ClassVar[tuple[Need, ...]] = (OPERATIONAL,)
 
     level: Literal["none", "light", "moderate", "severe"] = "none"
     """Severity of the turbulence; light, moderate and severe are 15, 30 and 45 knots of wind at 20
@@ -270,15 +363,17 @@ class TurbulenceConfig(Section):
     """Number of 1-cosine gusts, at random times and from random directions [-]."""
     gust_speed_mps: NonNegative = 0.0
     """Peak speed of the gusts [m/s]."""
-    gust_length_s: Positive = 4.0
+    gust_length_s: Annotated[
+        Positive, Need(lambda s: s.turbulence.gusts > 0, "gusts: set turbulence.gusts")
+    ] = 4.0
     """Time in which a gust rises, and in which it falls [s]."""
 
     @model_validator(mode="after")
     def _gusts(self) -> "TurbulenceConfig":
         if (self.gusts > 0) != (self.gust_speed_mps > 0.0):
             raise ValueError(
-                f"gusts is {self.gusts} with a gust_speed_mps of {self.gust_speed_mps:g}; give turbulence.gusts and"
-                " turbulence.gust_speed_mps, or neither"
+                f"gusts is {self.gusts} with a gust_speed_mps of {self.gust_speed_mps:g}; give"
+                " turbulence.gusts and turbulence.gust_speed_mps, or neither"
             )
         return self
 

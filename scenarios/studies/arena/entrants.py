@@ -7,8 +7,8 @@ from typing import Any
 from common.registry import PluginError, is_file_part
 from gnc.laws import ON_CIRCLE, ON_OSCILLATION, STEERING_LAWS
 from scenarios.errors import InputError
-from scenarios.scenario.keys import displaced
-from scenarios.scenario.load import with_values
+from scenarios.scenario.files import with_values
+from scenarios.scenario.overrides import displaced
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.guidance import GuidanceConfig, law_refusal
 

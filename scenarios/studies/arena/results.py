@@ -14,7 +14,7 @@ import numpy.typing as npt
 from common.intervals import CONFIDENCE
 from scenarios.engine.task import Row
 from scenarios.measures.window import MEASURED_COLUMNS
-from scenarios.planning.theory.speed_ratio import crossing_limit
+from scenarios.planning.theory import crossing_limit
 from scenarios.scenario.sections.experiment import ArenaConfig
 from scenarios.scenario.sections.guidance import GuidanceConfig
 from scenarios.statistics.estimates import without_nan

@@ -13,7 +13,7 @@ from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary
 from scenarios.engine.task import Row, Task
 from scenarios.errors import InputError
-from scenarios.flight_runner import FlightWork
+from scenarios.flight_runner import FlightRunner
 from scenarios.measures.columns import ANY_KEY, FLIGHT_COLUMNS
 from scenarios.measures.window import MEASURED_COLUMNS, WINDOW_COLUMNS
 from scenarios.scenario.scenario import Scenario
@@ -22,8 +22,7 @@ from scenarios.studies.arena.entrants import cases_of, conditions_of, entrants_o
 from scenarios.studies.arena.results import estimates, limits, tuned_record
 from scenarios.studies.arena.tuning import Tuner
 from scenarios.studies.arena.work import ArenaWork
-from scenarios.studies.flight_study import FlightStudy
-from scenarios.studies.study import study
+from scenarios.studies.base import FlightStudy, study
 
 TUNING_COLUMNS = described(
     {
@@ -99,7 +98,7 @@ class ArenaStudy(FlightStudy):
         self.entrants, self._refused = entrants_of(self._scenario)
         return conditions_of(self._scenario, name, self.entrants)
 
-    def work(self, run: RunDirectory) -> FlightWork:
+    def work(self, run: RunDirectory) -> FlightRunner:
         """Return the work on its flights and on the tuning, after writing the aircraft's autopilot
         into the run directory.
         """

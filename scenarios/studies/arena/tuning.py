@@ -17,12 +17,11 @@ from scipy.optimize import minimize
 
 from scenarios.engine.task import Row
 from scenarios.experiment.requests import Experiment
-from scenarios.flight.closed_loop import fly
-from scenarios.flight.failure import failure
-from scenarios.flight.release import release
+from scenarios.flight.closed_loop import fly, release
+from scenarios.flight.ending import failure
 from scenarios.measures.window import window_figures
-from scenarios.planning.planner import plan_flight
-from scenarios.scenario.load import with_values
+from scenarios.planning.missions import plan_flight
+from scenarios.scenario.files import with_values
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.experiment import ArenaConfig
 from scenarios.studies.arena.entrants import TUNING, Entrant, draws_left

@@ -7,10 +7,10 @@ from common.run_layout import TUNING_TABLE, WINDOW_TABLE
 from scenarios.engine.task import Result, Row, Task
 from scenarios.experiment.requests import FlightRequest
 from scenarios.flight.record import FlightRecord
-from scenarios.flight_runner import FlightWork
+from scenarios.flight_runner import FlightRunner
 from scenarios.measures.window import measured_figures, window_figures
 from scenarios.planning.flight_plan import FlightPlan
-from scenarios.scenario.load import with_values
+from scenarios.scenario.files import with_values
 from scenarios.studies.arena.entrants import Entrant
 from scenarios.studies.arena.tuning import Tuner
 
@@ -18,8 +18,8 @@ _GUIDANCE = "guidance."
 
 
 @dataclass(frozen=True, kw_only=True)
-class ArenaWork(FlightWork):
-    """Tunes laws, and flies them; other attributes are those of ``FlightWork``.
+class ArenaWork(FlightRunner):
+    """Tunes laws, and flies them; other attributes are those of ``FlightRunner``.
 
     Attributes
     ----------
@@ -30,11 +30,11 @@ class ArenaWork(FlightWork):
     entrants: tuple[Entrant, ...]
     tuner: Tuner
 
-    def fly(self, task: Task) -> Result:
+    def run(self, task: Task) -> Result:
         """Tune a law, or fly a flight."""
         entrant = self._tuned(task)
         if entrant is None:
-            return super().fly(task)
+            return super().run(task)
         began = time.perf_counter()
         rows = list(self.tuner.rows(entrant))
         for row in rows:

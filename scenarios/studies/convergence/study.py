@@ -57,7 +57,7 @@ class ConvergenceWork:
         """Return the same work: it needs no files."""
         return self
 
-    def fly(self, task: Task) -> Result:
+    def run(self, task: Task) -> Result:
         """Fly a block."""
         block = self.blocks[task.number]
         return Result(task=task, tables={SUMMARY: fly_block(block)}, items=len(block.cases))
@@ -109,7 +109,7 @@ class ConvergenceStudy:
             )
         except InfeasibleError as error:
             raise InputError(f"guidance: {error}") from None
-        self.planned, self.beside = scenario.ensemble.trajectories * len(g.laws), 0
+        self.planned, self.comparisons = scenario.ensemble.trajectories * len(g.laws), 0
         self._manifest = initial_manifest(scenario, name, overrides)
         self.config_hash = str(self._manifest["config_hash"])
 

@@ -11,10 +11,9 @@ from scenarios.errors import InputError
 from scenarios.experiment.draws import sampled_flight
 from scenarios.scenario.scenario import Scenario
 from scenarios.studies.patrol.legs import Air, Mover, least_distance
-from scenarios.world.exhaust import fuel_of
-from scenarios.world.place import given_place
-from scenarios.world.vessel import check_manoeuvres
-from scenarios.world.weather import wind_of
+from scenarios.world.plume import fuel_of
+from scenarios.world.vessel import check_manoeuvres, given_place
+from scenarios.world.wind import wind_of
 
 _TRIES = 2000
 """Places that are tried for a ship."""

@@ -13,11 +13,10 @@ from scenarios.engine.runner import Fly, Progress, StudySummary
 from scenarios.engine.task import Task
 from scenarios.errors import InputError
 from scenarios.scenario.scenario import Scenario
-from scenarios.studies.flight_study import FlightStudy
+from scenarios.studies.base import FlightStudy, study
 from scenarios.studies.patrol.ships import sampled_patrol
 from scenarios.studies.patrol.tables import PATROL_COLUMNS, PHASE_COLUMNS, SHIP_COLUMNS
 from scenarios.studies.patrol.work import SNIFFER, PatrolWork
-from scenarios.studies.study import study
 
 _PLACES = ("start.aspect_deg", "start.place_m", "start.range_m")
 """Keys of a place to begin at."""

@@ -15,11 +15,11 @@ import pandas as pd
 from common.run_layout import HISTORY_SUFFIX, PHASES, SHIPS, SUMMARY
 from scenarios.engine.task import Result, Row, Task
 from scenarios.experiment.requests import Experiment
-from scenarios.flight.failure import failure
+from scenarios.flight.ending import failure
 from scenarios.flight.outcome import Outcome
-from scenarios.flight_runner import FlightWork
+from scenarios.flight_runner import FlightRunner
 from scenarios.scenario.extension_points import PAYLOADS
-from scenarios.scenario.load import with_values
+from scenarios.scenario.files import with_values
 from scenarios.scenario.scenario import Scenario
 from scenarios.studies.patrol.beside import phases, start_beside, taken
 from scenarios.studies.patrol.legs import Leg, nearest_on, route
@@ -64,12 +64,12 @@ class _Uav:
 
 
 @dataclass(frozen=True, kw_only=True)
-class PatrolWork(FlightWork):
-    """Flies patrols; attributes are those of ``FlightWork``, with one experiment of as many flights
+class PatrolWork(FlightRunner):
+    """Flies patrols; attributes are those of ``FlightRunner``, with one experiment of as many flights
     as there are patrols.
     """
 
-    def fly(self, task: Task) -> Result:
+    def run(self, task: Task) -> Result:
         """Fly a patrol, then a flight beside each of its ships with the true axis of her plume, and
         find the oracle's order.
         """
@@ -216,14 +216,14 @@ class PatrolWork(FlightWork):
     def _flown(self, patrol: Patrol, ship: int, name: str, values: dict[str, object]) -> _Flown:
         """Fly beside a ship, by the work of any flight."""
         scenario = with_values(patrol.ships[ship].scenario, values)
-        work = FlightWork(
+        work = FlightRunner(
             experiments=(Experiment(name, scenario),),
             histories=1,
             setup=self.setup,
             spreads=self.spreads,
             refusal=self.refusal,
         )
-        result = work.fly(Task(number=0))
+        result = work.run(Task(number=0))
         (row,) = result.tables[SUMMARY]
         histories = [
             content for file, content in result.files.items() if file.endswith(HISTORY_SUFFIX)

@@ -1,23 +1,89 @@
-"""Reports of one vessel from a file, without those that are of no use, which are counted."""
+"""Reports of one vessel from a file: a table in one of the known layouts, or NMEA sentences as received
+(``!AIVDM,...``, decoded by pyais). Unusable rows are left out and counted.
+"""
 
-import bisect
 import math
+import re
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
-from itertools import pairwise
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from datetime import UTC, datetime
+from itertools import islice, pairwise
 from numbers import Integral
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from common.geodesy import cartesian
 from common.physics import METRES_PER_SECOND_PER_KNOT
+from common.tables import Table, TableError, longitude_within, read_table
+from common.text import install_words, other_units
 from scenarios.errors import InputError
-from scenarios.world.ais.layouts import rows_of
-from scenarios.world.ais.rows import AisRow
-from scenarios.world.ais.units import check_units
+from scenarios.scenario.sections.world import GAP_MAX
+
+
+class AisRow(NamedTuple):
+    """A report as its file has it; NaN where it says nothing.
+
+    Attributes
+    ----------
+    line : of the file, from 1
+    time : since 1970 in UTC [s]
+    latitude, longitude : [deg]
+    speed, course : over the ground, course from true north [kt, deg]
+    """
+
+    line: int
+    time: float
+    latitude: float
+    longitude: float
+    speed: float
+    course: float
+
+
+@dataclass(frozen=True, slots=True)
+class ShipSize:
+    """A ship's size as its reports say it.
+
+    Attributes
+    ----------
+    length, beam : [m]
+    to_bow, to_port : from the antenna whose place is reported, or None where it is not said [m]
+    """
+
+    length: float
+    beam: float
+    to_bow: float | None = None
+    to_port: float | None = None
+
+    def described(self) -> str:
+        """Return the size in words."""
+        size = f"{self.length:g} m by {self.beam:g} m"
+        return size if self.to_bow is None else f"{size}, antenna {self.to_bow:g} m from the bow"
+
+
+def ship_size(
+    *,
+    length: float = math.nan,
+    width: float = math.nan,
+    a: float = math.nan,
+    b: float = math.nan,
+    c: float = math.nan,
+    d: float = math.nan,
+) -> ShipSize | None:
+    """Return the size by the distances of the antenna from bow, stern, port and starboard (``a`` to
+    ``d`` of ITU-R M.1371-5, figure 41), or by length and width [m]; None where neither is said.
+
+    0 says nothing. With 0 to bow and port the antenna's place is not known.
+    """
+    along, across = a + b, c + d
+    if along > 0.0 and across > 0.0:
+        placed = a > 0.0 or c > 0.0
+        return ShipSize(along, across, a if placed else None, c if placed else None)
+    return ShipSize(length, width) if length > 0.0 and width > 0.0 else None
+
 
 Array = npt.NDArray[np.float64]
 
@@ -33,10 +99,26 @@ satellite navigation [m/s, m].
 """
 
 NO_TIME, NO_PLACE, NO_SPEED, DUPLICATE, OUT_OF_ORDER, OUT_OF_REACH = (
-    "without a time", "without a possible position", "without speed or course", "with the time of another", "out of order",
+    "without a time",
+    "without a possible position",
+    "without speed or course",
+    "with the time of another",
+    "out of order",
     "out of reach of others",
-)  # fmt: skip
-"""Why rows are of no use."""
+)
+"""Why rows are not used."""
+
+_DROPPED_MOST = 0.1
+"""Share of a vessel's rows that may be dropped without a warning; duplicates do not count."""
+
+_METRES_PER_DEGREE = 111_195.0
+"""Of latitude, on a sphere."""
+
+_ALONE = 3600.0
+"""Time to the nearest report of a vessel from which on a clock may be wrong [s]."""
+
+_SECTORS, _SECTOR_ROWS = 12, 3
+"""Directions of travel that are told apart, and dropped rows of one that are no chance."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -52,6 +134,8 @@ class AisReports:
     speed, course : over the ground, course from true north [m/s, rad]
     rows : of the vessel in the file
     dropped : number of rows of no use, by why they are
+    size : of the vessel, where the file says it
+    lost_directions : directions of travel [deg], by sectors, of which all rows were dropped
     """
 
     path: Path
@@ -64,12 +148,44 @@ class AisReports:
     course: Array
     rows: int
     dropped: dict[str, int]
+    size: ShipSize | None = None
+    lost_directions: tuple[int, ...] = ()
+
+    @property
+    def warning(self) -> str:
+        """What a reader of results has to know of the reports that were dropped; else empty."""
+        if self.lost_directions:
+            towards = ", ".join(f"{course} deg" for course in self.lost_directions)
+            return (
+                f"{self.path.name}: all reports of MMSI {self.mmsi} on the way towards {towards} were"
+                " dropped: its track there is not known"
+            )
+        lost = sum(count for why, count in self.dropped.items() if why != DUPLICATE)
+        share = lost / self.rows
+        if share <= _DROPPED_MOST:
+            return ""
+        return f"{self.path.name}: {share:.0%} of the reports of MMSI {self.mmsi} were dropped"
+
+    def lines(self) -> list[str]:
+        """Return what a console says of the file: how it was used, and a warning if there is one."""
+        return [self.described(), *([f"warning: {self.warning}"] if self.warning else [])]
+
+    def record(self) -> dict[str, Any]:
+        """Return for JSON how the file was used, and the ship's size where it says one."""
+        return {
+            "rows": self.rows,
+            "used": len(self.time),
+            "dropped": self.dropped,
+            "warning": self.warning,
+            "size": asdict(self.size) if self.size else None,
+        }
 
     def described(self) -> str:
         """Return how many rows were used and dropped, in a line."""
         dropped = ", ".join(f"{count} {why}" for why, count in self.dropped.items())
         used = f"{self.path.name}: {len(self.time)} of {self.rows} rows of MMSI {self.mmsi} used"
-        return f"{used}; dropped: {dropped}" if dropped else used
+        size = f"; {self.size.described()}" if self.size else ""
+        return f"{used}{size}; dropped: {dropped}" if dropped else f"{used}{size}"
 
 
 def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
@@ -88,29 +204,26 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
     path = Path(path)
     if mmsi is not None and (isinstance(mmsi, bool) or not isinstance(mmsi, Integral)):
         raise InputError(f"{path}: mmsi is {mmsi!r}; give a whole number, as in mmsi=219999001")
-    identity, rows = rows_of(path, mmsi)
+    identity, rows, size = rows_of(path, mmsi)
     dropped: Counter[str] = Counter()
     first: dict[str, int] = {}
     kept = rows
-    for sorted_out in (_by_what_they_say, _by_their_times, _by_their_places):
+    for sorted_out in (_by_what_they_say, _by_their_clock, _by_their_times, _by_their_places):
         reasons = sorted_out(kept)
         for row, reason in zip(kept, reasons, strict=True):
             if reason:
                 dropped[reason] += 1
                 first.setdefault(reason, row.line)
         kept = [row for row, reason in zip(kept, reasons, strict=True) if not reason]
+        if sorted_out is _by_their_clock:
+            kept.sort(key=lambda row: row.time)
     if len(kept) < 2:
         why = ", ".join(
             f"{count} {reason} (first in line {first[reason]})" for reason, count in dropped.items()
         )
-        remedy = (
-            "sort the file by time"
-            if dropped[OUT_OF_ORDER]
-            else "correct the rows, or give another file"
-        )
         raise InputError(
             f"{path}: {len(kept)} of {len(rows)} rows of MMSI {identity} used, two are needed;{f' dropped: {why};' if why else ''}"
-            f" {remedy}"
+            " correct the rows, or give another file"
         )
     columns = np.array(kept).T
     directed = np.isfinite(columns[5]) & (columns[5] < 360.0)
@@ -126,6 +239,8 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
         course=np.radians(np.where(directed, columns[5], 0.0)),
         rows=len(rows),
         dropped=dict(dropped),
+        size=size,
+        lost_directions=_lost_directions(rows, kept),
     )
     check_units(
         path, reports.time, reports.latitude, reports.longitude, reports.speed, reports.course
@@ -134,7 +249,7 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
 
 
 def _by_what_they_say(rows: Sequence[AisRow]) -> list[str]:
-    """Return why each row is of no use by its own values, empty where it is: ITU-R M.1371-5 has 91,
+    """Return why a row is not used by its own values, empty where it is: ITU-R M.1371-5 has 91,
     181, 102.3 and 360 for none.
     """
     reasons = []
@@ -150,37 +265,56 @@ def _by_what_they_say(rows: Sequence[AisRow]) -> list[str]:
     return reasons
 
 
-def _by_their_times(rows: Sequence[AisRow]) -> list[str]:
-    """Return why each row is of no use by its time: the longest run of rows whose times rise is
-    kept.
+def _by_their_clock(rows: Sequence[AisRow]) -> list[str]:
+    """Return why each row is of no use by its clock: it is far before or after all others in time,
+    and stands among them in the file.
     """
-    last: list[int] = []
-    times: list[float] = []
-    before = [-1] * len(rows)
-    for i, row in enumerate(rows):
-        at = bisect.bisect_left(times, row.time)
-        before[i] = last[at - 1] if at else -1
-        if at < len(times):
-            # Of rows with the same time the first one stays.
-            if times[at] > row.time:
-                times[at], last[at] = row.time, i
-        else:
-            times.append(row.time)
-            last.append(i)
-    kept = set()
-    i = last[-1] if last else -1
-    while i >= 0:
-        kept.add(i)
-        i = before[i]
-    known = {rows[i].time for i in kept}
+    lines = {row.line for row in rows}
+    ends = (min(lines), max(lines)) if lines else ()
+    by_time = sorted(rows, key=lambda row: row.time)
+    alone = set()
+    for run in (by_time, by_time[::-1]):
+        for row, following in pairwise(run):
+            if abs(following.time - row.time) <= _ALONE or row.line in ends:
+                break
+            alone.add(row.line)
+    return [OUT_OF_ORDER if row.line in alone else "" for row in rows]
+
+
+def _by_their_times(rows: Sequence[AisRow]) -> list[str]:
+    """Return why each row is of no use by its time: of rows at the same time the first one stays."""
     return [
-        "" if i in kept else DUPLICATE if row.time in known else OUT_OF_ORDER
-        for i, row in enumerate(rows)
+        DUPLICATE if number and row.time == rows[number - 1].time else ""
+        for number, row in enumerate(rows)
     ]
 
 
+def _lost_directions(rows: Sequence[AisRow], kept: Sequence[AisRow]) -> tuple[int, ...]:
+    """Return the directions of travel in which rows were dropped, and none was kept [deg].
+
+    The direction is that of the way to the next place, whatever the row says of its course.
+    """
+    used = {row.line for row in kept}
+    taken: Counter[int] = Counter()
+    lost: Counter[int] = Counter()
+    timed = sorted((row for row in rows if math.isfinite(row.time)), key=lambda row: row.time)
+    placed = [row for row in timed if abs(row.latitude) <= 90.0 and abs(row.longitude) <= 180.0]
+    for row, after in pairwise(placed):
+        north = after.latitude - row.latitude
+        east = (after.longitude - row.longitude) * math.cos(math.radians(row.latitude))
+        if math.hypot(north, east) > _WAY_MIN / _METRES_PER_DEGREE:
+            course = math.degrees(math.atan2(east, north)) % 360.0
+            sector = round(course * _SECTORS / 360.0) % _SECTORS
+            (taken if row.line in used else lost)[sector] += 1
+    return tuple(
+        sector * 360 // _SECTORS
+        for sector, count in sorted(lost.items())
+        if count >= _SECTOR_ROWS and not taken[sector]
+    )
+
+
 def _by_their_places(rows: Sequence[AisRow]) -> list[str]:
-    """Return why each row is of no use by its place: a vessel could not have come from the row
+    """Return why a row is not used by its place: a vessel could not have come from the row
     before, nor gone to the next.
     """
     _, time, latitude, longitude, _, _ = (
@@ -199,3 +333,421 @@ def _by_their_places(rows: Sequence[AisRow]) -> list[str]:
         not near[-1] and near[-2],
     ]
     return [OUT_OF_REACH if row_alone else "" for row_alone in alone]
+
+
+_NAMED = 5
+"""Vessels of a file that a message names at most."""
+
+_COUNTED = 100_000
+"""Rows of a file in which other vessels are looked for, where it has none of the vessel asked for.
+"""
+
+_SHOWN = 60
+"""Letters of a header that a message quotes at most."""
+
+
+_LOOKED_AT = 200
+"""Lines of a file in which a sentence of AIS is looked for."""
+
+_SENTENCE = re.compile(r"![A-Z]{2}VD[MO],\d,\d,[^*]*\*[0-9A-Fa-f]{2}")
+"""A sentence of AIS of any talker: AI of a ship, BS of a base station, AB, AN, SA and others."""
+
+_SIGNED_SPEED, _SIGNED_COURSE = 102.4, 409.6
+"""What negative speeds and courses lack in Marine Cadastre's files of 2015 to 2017: their ten and
+twelve bits were read as signed numbers [kt, deg]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """Columns of a table of reports.
+
+    Attributes
+    ----------
+    name : of the layout
+    columns : heads of time, identity, latitude, longitude, speed [kt] and course [deg], in lower
+        case
+    time_format : of the first of them, empty for ISO 8601
+    signed : whether speeds and courses may have been read as signed numbers
+    """
+
+    name: str
+    columns: tuple[str, ...]
+    time_format: str = ""
+    signed: bool = False
+
+
+LAYOUTS = (
+    Layout("plain", ("time_utc", "mmsi", "lat_deg", "lon_deg", "sog_kn", "cog_deg")),
+    Layout(
+        "Danish Maritime Authority",
+        ("timestamp", "mmsi", "latitude", "longitude", "sog", "cog"),
+        "%d/%m/%Y %H:%M:%S",
+    ),
+    Layout(
+        "Marine Cadastre up to 2024",
+        ("basedatetime", "mmsi", "lat", "lon", "sog", "cog"),
+        signed=True,
+    ),
+    Layout(
+        "Marine Cadastre from 2025",
+        ("base_date_time", "mmsi", "latitude", "longitude", "sog", "cog"),
+    ),
+)
+"""The project's own; that of the Danish Maritime Authority ("# Timestamp,Type of mobile,MMSI,...");
+and those of NOAA's Marine Cadastre ("MMSI,BaseDateTime,LAT,LON,...", and
+"mmsi,base_date_time,longitude,latitude,...")."""
+
+
+class _Said(NamedTuple):
+    """What a line of a file says of a vessel: a report, its size, or both."""
+
+    mmsi: int
+    row: AisRow | None = None
+    size: ShipSize | None = None
+
+
+def _all_said(path: Path, mmsi: int | None) -> Iterator[_Said]:
+    """Yield what a file says of vessels, in its order; of others than the given one not all.
+
+    Raises
+    ------
+    InputError : the file cannot be read, or its layout is unknown
+    """
+    try:
+        with path.open("rb") as file:
+            begin = b"".join(islice(file, _LOOKED_AT))
+        if not begin.strip():
+            raise InputError(f"{path}: the file is empty; give a file of AIS reports")
+        # Whatever the file is called, and whatever other receivers write above the first report.
+        if _SENTENCE.search(begin.decode("latin-1")) or path.suffix.lower() == ".nmea":
+            with path.open(encoding="utf-8-sig", errors="replace") as lines:
+                yield from _from_sentences(lines, path)
+        else:
+            yield from _from_table(path, mmsi)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}; check the path") from None
+    except TableError as error:
+        raise InputError(f"{path}: {error}") from None
+
+
+def _from_table(path: Path, mmsi: int | None) -> Iterator[_Said]:
+    identifier = "" if mmsi is None else str(mmsi)
+    names = [name for layout in LAYOUTS for name in layout.columns]
+    # Files of a day have millions of lines: those of other vessels are passed over as they are.
+    table = read_table(path, head=names, keep=lambda line: identifier in line)
+    heads = {name.lower(): name for name in reversed(table.names)}
+    layout = next((layout for layout in LAYOUTS if set(layout.columns) <= set(heads)), None)
+    if layout is None:
+        plain = LAYOUTS[0].columns
+        remedy = other_units(heads, plain) or "rename the columns to these"
+        raise InputError(
+            f"{path}, line {table.head_line}: the header is {','.join(table.names)[:_SHOWN]!r}; known"
+            " are those of the Danish Maritime Authority and of Marine Cadastre, and"
+            f" {','.join(plain)}: {remedy}"
+        )
+    lower = [name.lower() for name in table.names]
+    if twice := [column for column in layout.columns if lower.count(column) > 1]:
+        raise InputError(
+            f"{path}, line {table.head_line}: the header has '{twice[0]}' twice; leave one of the"
+            " columns out"
+        )
+    time, identities, *others = (heads[column] for column in layout.columns)
+    latitude, longitude, speed, course = (table.numbers(name, words=True) for name in others)
+    if layout.signed:
+        speed = np.where(speed < 0.0, speed + _SIGNED_SPEED, speed)
+        course = np.where(course < 0.0, course + _SIGNED_COURSE, course)
+    seconds = table.times(time, usual=layout.time_format).seconds
+    columns = seconds, latitude, longitude_within(longitude), speed, course
+    size_of = _sizes(table, heads)
+    for number, (line, identity) in enumerate(
+        zip(table.lines, table.column(identities), strict=True)
+    ):
+        # Tables that had a gap in this column have whole numbers with decimals.
+        digits = identity.removesuffix(".0")
+        if digits.isdigit():
+            row = AisRow(line, *(float(column[number]) for column in columns))
+            yield _Said(int(digits), row, size_of(number))
+
+
+def _sizes(table: Table, heads: Mapping[str, str]) -> Callable[[int], ShipSize | None]:
+    """Return the size that each row of a table says by its number, None where it says none."""
+    known = {
+        key: table.numbers(heads[key], words=True)
+        for key in ("length", "width", "a", "b", "c", "d")
+        if key in heads
+    }
+    return lambda number: ship_size(**{key: float(of[number]) for key, of in known.items()})
+
+
+def rows_of(path: Path, mmsi: int | None) -> tuple[int, list[AisRow], ShipSize | None]:
+    """Return the vessel's identity, its rows in the order of the file, and its size if it is said.
+
+    Parameters
+    ----------
+    path : of a table with one of ``LAYOUTS``, or of NMEA sentences
+    mmsi : of the vessel; may be left out where the file has one vessel alone
+
+    Raises
+    ------
+    InputError : the file cannot be read, its layout is unknown, or it has no rows of the vessel
+    """
+    found: list[AisRow] = []
+    counts: Counter[int] = Counter()
+    sizes: dict[int, ShipSize] = {}
+    for said in _all_said(path, mmsi):
+        if said.size is not None:
+            sizes.setdefault(said.mmsi, said.size)
+        if said.row is not None:
+            counts[said.mmsi] += 1
+            if mmsi is None or said.mmsi == mmsi:
+                found.append(said.row)
+    if mmsi is None and len(counts) > 1:
+        raise InputError(
+            f"{path}: it has {len(counts)} vessels, {_most(counts)}; name one of them by its MMSI"
+            " (vessel.mmsi)"
+        )
+    if not found:
+        raise _no_row(path, mmsi)
+    identity = mmsi if mmsi is not None else next(iter(counts))
+    return identity, found, sizes.get(identity)
+
+
+def _no_row(path: Path, mmsi: int | None) -> InputError:
+    """Return what says that the file has no row of the vessel, and whose rows it has."""
+    said = islice(_all_said(path, None), _COUNTED)
+    counts = Counter(of.mmsi for of in said if of.row is not None)
+    if counts:
+        return InputError(
+            f"{path}: no row of MMSI {mmsi}; it has {_most(counts)}: check the number (vessel.mmsi)"
+        )
+    return InputError(
+        f"{path}: no row below the header has an MMSI in digits, as 219999001, in the column of its"
+        " name; give a file of AIS reports"
+    )
+
+
+def _most(counts: Counter[int]) -> str:
+    named = ", ".join(
+        f"{identity} ({rows} row{'s' * (rows > 1)})"
+        for identity, rows in counts.most_common(_NAMED)
+    )
+    return f"{named}, ..." if len(counts) > _NAMED else named
+
+
+_TAG_TIME = re.compile(r"[\\,]c:(\d+)")
+"""Time of reception in a tag block of NMEA 4.10: seconds since 1970, or milliseconds."""
+
+_AROUND_TIMES = " \t\r\n,;"
+"""What may stand between a time and its sentence."""
+
+_POSITION_REPORTS = (1, 2, 3, 18, 19)
+"""Message types with position, speed and course (ITU-R M.1371-5): class A, and class B."""
+
+_MILLISECONDS_FROM, _DATE_FROM = 100_000_000_000, 10_000_000_000_000
+"""Times since 1970 from which on they are milliseconds, of seconds from the year 5138 on; and from
+which on they are no time, but a date without its marks, as 20260601100000, of milliseconds from the
+year 2286 on."""
+
+
+def _from_sentences(lines: Iterable[str], path: Path) -> Iterator[_Said]:
+    """Yield what each sentence says; lines that cannot be decoded are passed over.
+
+    Raises
+    ------
+    InputError : pyais is not installed, a report has no time, or there is no position report
+    """
+    try:
+        import pyais
+    except ImportError:
+        raise InputError(
+            f"{path}: NMEA sentences need pyais; install the extra: {install_words('ais')}"
+        ) from None
+    others: set[int] = set()
+    read = False
+    parts: dict[tuple[str, str], list[str]] = {}
+    for number, line in enumerate(lines, start=1):
+        found = _SENTENCE.search(line)
+        if found is None:
+            continue
+        whole = [found[0]]
+        _, count, _, group, channel, *_ = found[0].split(",")
+        if count != "1":
+            # The last sentence of a message completes it.
+            whole = parts.setdefault((group, channel), [])
+            whole.append(found[0])
+            if len(whole) < int(count):
+                continue
+            del parts[group, channel]
+        try:
+            said: dict[str, Any] = pyais.decode(*whole).asdict()
+        except Exception:  # noqa: BLE001 - whatever radio and decoder make of a line, it is one that says nothing
+            continue
+        identity = int(said["mmsi"])
+        if said["msg_type"] in _POSITION_REPORTS:
+            read = True
+            time = _time_of(line[: found.start()], line[found.end() :], path, number)
+            values = (_value(said, name) for name in ("lat", "lon", "speed", "course"))
+            yield _Said(identity, AisRow(number, time, *values))
+        else:
+            others.add(int(said["msg_type"]))
+        if "to_bow" in said:
+            a, b, c, d = (
+                _value(said, f"to_{end}") for end in ("bow", "stern", "port", "starboard")
+            )
+            yield _Said(identity, size=ship_size(a=a, b=b, c=c, d=d))
+    if not read:
+        types = (
+            f"messages of type {', '.join(map(str, sorted(others)))} alone"
+            if others
+            else "no sentence that can be decoded"
+        )
+        raise InputError(
+            f"{path}: it has {types}; position reports of types"
+            f" {', '.join(map(str, _POSITION_REPORTS))} are read, others have no"
+            " speed and course, or none that is exact enough: give a file with these"
+        )
+
+
+def _value(said: dict[str, Any], name: str) -> float:
+    value = said.get(name)
+    return math.nan if value is None else float(value)
+
+
+def _time_of(before: str, after: str, path: Path, number: int) -> float:
+    """Return the time of reception: of the tag block, or a time in ISO 8601 or seconds since 1970
+    before the sentence or after its checksum.
+    """
+    found = _TAG_TIME.search(before)
+    text = found[1] if found else before.strip(_AROUND_TIMES) or after.strip(_AROUND_TIMES)
+    try:
+        time = float(text) if text.replace(".", "", 1).isdigit() else _seconds_of(text)
+    except ValueError:
+        raise InputError(
+            f"{path}, line {number}: the sentence has no time; give each its time of reception, as"
+            " in \\c:1780315200*5A\\!AIVDM,... or 2026-06-01T12:00:00Z !AIVDM,..."
+        ) from None
+    if time >= _DATE_FROM:
+        raise InputError(
+            f"{path}, line {number}: the time {text} is beyond milliseconds since 1970, and no date"
+            " without its marks is read; give"
+            " seconds since 1970, as 1780315200, or 2026-06-01T12:00:00Z"
+        )
+    return time / 1000.0 if time >= _MILLISECONDS_FROM else time
+
+
+def _seconds_of(text: str) -> float:
+    """Return seconds since 1970 of a time in ISO 8601, in UTC unless it names its zone.
+
+    Raises
+    ------
+    ValueError : it is not such a time
+    """
+    time = datetime.fromisoformat(text)
+    return (time if time.tzinfo else time.replace(tzinfo=UTC)).timestamp()
+
+
+_PAIRS_MIN = 10
+"""Pairs of neighbouring reports from which on they are judged: of fewer, scattered places decide.
+"""
+
+_WAY_MIN, _TIME_MAX = 30.0, 60.0
+"""Least way between the places of a pair [m], which scatter by some, and longest time [s]: in it
+the vessel goes nearly straight.
+"""
+
+_TURN_MAX, _FASTER_MAX = math.radians(10.0), 1.2
+"""Change of course [rad], and larger over smaller speed [-], up to which it went straight and
+evenly in a longer time.
+"""
+
+_RATIO = (0.7, 1.4)
+"""Speeds over those between places, in the median [-]: metres per second for knots are 0.51, km/h
+are 1.85.
+"""
+
+_CLOSE = 0.3
+"""Share of these that places which are swapped have to keep to: then they fit, and not by chance.
+"""
+
+_OFF_MAX = 30.0
+"""Difference of courses from those between places, in the median [deg]."""
+
+
+def check_units(
+    path: Path, time: Array, latitude: Array, longitude: Array, speed: Array, course: Array
+) -> None:
+    """Raise an InputError where speeds [m/s] or courses [rad] are not those between places [rad],
+    in the median of all pairs.
+    """
+    judged = _against_places(time, latitude, longitude, speed, course)
+    if judged is None or _agree(*judged):
+        return
+    ratio, off = judged
+    swapped = _against_places(time, longitude, latitude, speed, course)
+    if swapped is not None and _agree(*swapped, share=_CLOSE):
+        raise InputError(
+            f"{path}: latitude and longitude are swapped: only so are speeds and courses those"
+            " between places; swap the columns' names"
+        )
+    if not _RATIO[0] <= ratio <= _RATIO[1]:
+        raise InputError(
+            f"{path}: reported speeds are {ratio:.2f} of those between places, in the median; they"
+            " must be in knots (column"
+            " sog_kn or SOG), and latitude and longitude in degrees: convert them"
+        )
+    raise InputError(
+        f"{path}: reported courses are {off:.0f} deg off those between places, in the median; they"
+        " must be over the ground, in"
+        " degrees from true north (column cog_deg or COG): convert them, or take another column"
+    )
+
+
+def _against_places(
+    time: Array, latitude: Array, longitude: Array, speed: Array, course: Array
+) -> tuple[float, float] | None:
+    """Return the median ratio of speeds to those between places [-], and of differences of course
+    [deg]; none of too few pairs.
+    """
+    way = np.diff(cartesian(latitude, longitude), axis=0)
+    apart, passed = np.linalg.norm(way, axis=-1), np.diff(time)
+    mean = 0.5 * (speed[1:] + speed[:-1])
+    far = (np.maximum(apart, mean * passed) > _WAY_MIN * np.maximum(1.0, passed / _TIME_MAX)) & (
+        apart > 0.0
+    )
+    judged = far & (passed <= _TIME_MAX)
+    if np.count_nonzero(judged) < _PAIRS_MIN:
+        judged |= far & _straight(passed, speed, course)
+    if np.count_nonzero(judged) < _PAIRS_MIN:
+        return None
+    sin_lat, cos_lat, sin_lon, cos_lon = (
+        f(of[:-1]) for of in (latitude, longitude) for f in (np.sin, np.cos)
+    )
+    north = -sin_lat * cos_lon * way[:, 0] - sin_lat * sin_lon * way[:, 1] + cos_lat * way[:, 2]
+    east = cos_lon * way[:, 1] - sin_lon * way[:, 0]
+    middle = np.angle(np.exp(1j * course[1:]) + np.exp(1j * course[:-1]))
+    off = np.abs(np.angle(np.exp(1j * (np.arctan2(east, north) - middle))))
+    return float(np.median((mean * passed / np.maximum(apart, 1e-9))[judged])), float(
+        np.degrees(np.median(off[judged]))
+    )
+
+
+def _straight(passed: Array, speed: Array, course: Array) -> npt.NDArray[np.bool_]:
+    """Return which pairs, shape (n - 1,), that a track bridges lie within a straight and even
+    stretch, with both neighbours.
+    """
+    turned = np.abs(np.angle(np.exp(1j * np.diff(course))))
+    slower, faster = np.minimum(speed[1:], speed[:-1]), np.maximum(speed[1:], speed[:-1])
+    even = (passed <= GAP_MAX) & (turned <= _TURN_MAX) & (faster <= _FASTER_MAX * slower)
+    around = np.concatenate([[True], even, [True]])
+    straight: npt.NDArray[np.bool_] = even & around[:-2] & around[2:]
+    return straight
+
+
+def _agree(ratio: float, off: float, share: float = 1.0) -> bool:
+    """Return whether speeds and courses are those between places, within a share of what is
+    allowed.
+    """
+    return (
+        1.0 + share * (_RATIO[0] - 1.0) <= ratio <= 1.0 + share * (_RATIO[1] - 1.0)
+        and off <= share * _OFF_MAX
+    )

@@ -1,9 +1,12 @@
-"""A vessel that sails as a file of AIS reports says: smoothly through them, and reported as it was."""
+"""A vessel on a smooth track through the reports of a file, and reports of any vessel as they arrive
+on board: every few seconds, noisy, late, or not at all.
+"""
 
 import math
 from datetime import datetime
 from functools import lru_cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -12,11 +15,13 @@ from common.geodesy import LocalFrame
 from common.text import utc_text
 from gnc.estimation.vessel import VesselReport
 from scenarios.errors import InputError
+from scenarios.scenario.sections.equipment import VesselReportsConfig
 from scenarios.scenario.sections.world import VesselConfig
 from scenarios.world.ais.reports import AisReports, read_ais
-from scenarios.world.ais.smoothing import smooth_motion
-from scenarios.world.place import Place
-from scenarios.world.vessel import TRACK_STEP, TabledVessel, track_times
+from scenarios.world.vessel import TRACK_STEP, Place, TabledVessel, VesselTruth, track_times
+
+if TYPE_CHECKING:
+    from scipy.interpolate import BPoly
 
 Array = npt.NDArray[np.float64]
 
@@ -100,7 +105,7 @@ def ais_vessel(
 
     Raises
     ------
-    InputError : the file is of no use, or does not cover the flight
+    InputError : the file is not usable, or does not cover the flight
     """
     path = Path(config.track)
     try:
@@ -121,8 +126,9 @@ def _check_covered(reports: AisReports, begin: float, end: float, gap_max: float
     """
     if not reports.time[0] <= begin < end <= reports.time[-1]:
         raise InputError(
-            f"{reports.path}: reports of MMSI {reports.mmsi} go from {utc_text(reports.time[0])} (line {reports.line[0]:.0f}) to"
-            f" {utc_text(reports.time[-1])} (line {reports.line[-1]:.0f}); the longest flight goes from {utc_text(begin)} to"
+            f"{reports.path}: reports of MMSI {reports.mmsi} go from {utc_text(reports.time[0])}"
+            f" (line {reports.line[0]:.0f}) to {utc_text(reports.time[-1])} (line"
+            f" {reports.line[-1]:.0f}); the longest flight goes from {utc_text(begin)} to"
             f" {utc_text(end)}: set place.utc or flight.duration_max_s"
         )
     gaps = np.diff(reports.time)
@@ -130,9 +136,10 @@ def _check_covered(reports: AisReports, begin: float, end: float, gap_max: float
     worst = int(np.argmax(np.where(used, gaps, 0.0)))
     if gaps[worst] > gap_max:
         raise InputError(
-            f"{reports.path}, line {reports.line[worst]:.0f}: after {utc_text(reports.time[worst])} there is no report of MMSI"
-            f" {reports.mmsi} for {gaps[worst]:.0f} s; the track is bridged over vessel.gap_max_s = {gap_max:g} s at"
-            " most: set it, or fly another time (place.utc, flight.duration_max_s)"
+            f"{reports.path}, line {reports.line[worst]:.0f}: after {utc_text(reports.time[worst])}"
+            f" there is no report of MMSI {reports.mmsi} for {gaps[worst]:.0f} s; the track is"
+            f" bridged over vessel.gap_max_s = {gap_max:g} s at most: set it, or fly another time"
+            " (place.utc, flight.duration_max_s)"
         )
 
 
@@ -192,10 +199,142 @@ def _course_of(velocity: Array) -> Array:
 
 
 def _manoeuvres_end(velocity: Array) -> float:
-    """Return when the vessel last changed its velocity as in a manoeuvre [s]; not a number if it
+    """Return when the vessel last changed its velocity as in a manoeuvre [s]; NaN if it
     never did.
     """
     window = round(_MANOEUVRE_TIME / TRACK_STEP)
     change = np.hypot(*(velocity[window:] - velocity[:-window]).T) / _MANOEUVRE_TIME
     manoeuvring = np.flatnonzero(change > _MANOEUVRE)
     return TRACK_STEP * float(manoeuvring[-1] + window // 2) if len(manoeuvring) else math.nan
+
+
+POSITION_SIGMA, VELOCITY_SIGMA = 5.0, 0.15
+"""Errors of a report that the motion is smoothed by, one sigma: satellite navigation on board,
+whose fix is up to a second old [m, m/s]."""
+
+JERK_DENSITY = 5e-4
+"""Density of the white noise that the rate of acceleration is taken for: in 20 s a ship's
+acceleration changes by 0.1 m/s^2 and more [m^2/s^5]."""
+
+
+def smooth_motion(time: Array, place: Array, velocity: Array) -> "BPoly":
+    """Return place over time: of degree 5 between reports, with continuous velocity and
+    acceleration.
+
+    It is the mean of a motion whose jerk is white noise, given all reports (H. E. Rauch, F. Tung,
+    C. T. Striebel, AIAA J. 3:1445, 1965): between two reports that mean is the polynomial of degree
+    5 through both smoothed states.
+
+    Parameters
+    ----------
+    time : of the reports, rising, shape (n,) [s]
+    place, velocity : as reported, shape (n, 2) [m, m/s]
+    """
+    from scipy.interpolate import BPoly
+
+    filtered, predicted = [], []
+    # Nothing is known of the acceleration at first but that it is a ship's.
+    state = np.stack([place[0], velocity[0], np.zeros(2)])
+    covariance = np.diag([POSITION_SIGMA**2, VELOCITY_SIGMA**2, 0.1**2])
+    errors = np.diag([POSITION_SIGMA**2, VELOCITY_SIGMA**2])
+    for i, step in enumerate(np.diff(time, prepend=time[0]).tolist()):
+        transition = _transition(step)
+        if i:
+            state = transition @ state
+            covariance = transition @ covariance @ transition.T + _noise(step)
+            predicted.append((state, covariance, transition))
+            gain = np.linalg.solve(covariance[:2, :2] + errors, covariance[:2]).T
+            state = state + gain @ (np.stack([place[i], velocity[i]]) - state[:2])
+            left = np.eye(3) - gain @ np.eye(2, 3)
+            # Joseph's form: it stays positive definite where a gap has made the covariance large.
+            covariance = left @ covariance @ left.T + gain @ errors @ gain.T
+        filtered.append((state, covariance))
+    smoothed = [state]
+    for (state_before, covariance_before), (ahead, ahead_covariance, transition) in zip(
+        reversed(filtered[:-1]), reversed(predicted), strict=True
+    ):
+        gain = np.linalg.solve(ahead_covariance, transition @ covariance_before).T
+        smoothed.append(state_before + gain @ (smoothed[-1] - ahead))
+    return BPoly.from_derivatives(time, np.stack(smoothed[::-1]))
+
+
+def _transition(step: float) -> Array:
+    return np.array([[1.0, step, 0.5 * step**2], [0.0, 1.0, step], [0.0, 0.0, 1.0]])
+
+
+def _noise(step: float) -> Array:
+    """Return the covariance that white jerk adds in a time step (Bar-Shalom et al., Estimation with
+    Applications, 6.2.3).
+    """
+    t = step
+    return JERK_DENSITY * np.array(
+        [
+            [t**5 / 20.0, t**4 / 8.0, t**3 / 6.0],
+            [t**4 / 8.0, t**3 / 3.0, t**2 / 2.0],
+            [t**3 / 6.0, t**2 / 2.0, t],
+        ]
+    )
+
+
+def received_reports(
+    reports: VesselReportsConfig,
+    vessel: VesselTruth,
+    *,
+    duration: float,
+    outage: tuple[float, float],
+    generator: np.random.Generator,
+) -> list[tuple[float, VesselReport]]:
+    """Return the reports that are received, with the time at which each is [s], in the order in
+    which they are received.
+
+    The first one, at time 0, always is: a flight begins with a vessel that is known.
+
+    Parameters
+    ----------
+    reports : how they come; exact knowledge needs none of this
+    vessel : its motion
+    duration : of the flight [s]
+    outage : nothing is received between these times [s]
+    generator : of the random numbers
+    """
+    if isinstance(vessel, AisVessel):
+        return _received_from_file(reports, vessel, outage=outage, generator=generator)
+    received = []
+    time = 0.0
+    while time <= duration:
+        late = float(generator.uniform(0.0, reports.latency_max_s)) if time > 0.0 else 0.0
+        missed = bool(generator.random() < reports.missing)
+        errors = generator.standard_normal(4)
+        north, east, v_north, v_east = vessel.motion(time)
+        report = VesselReport(
+            time=time,
+            north=north + reports.position_sigma_m * float(errors[0]),
+            east=east + reports.position_sigma_m * float(errors[1]),
+            velocity_north=v_north + reports.velocity_sigma_mps * float(errors[2]),
+            velocity_east=v_east + reports.velocity_sigma_mps * float(errors[3]),
+        )
+        if time == 0.0 or not (missed or outage[0] <= time + late < outage[1]):
+            received.append((time + late, report))
+        time += float(generator.uniform(*reports.interval_s))
+    return sorted(received, key=lambda entry: entry[0])
+
+
+def _received_from_file(
+    reports: VesselReportsConfig,
+    vessel: AisVessel,
+    *,
+    outage: tuple[float, float],
+    generator: np.random.Generator,
+) -> list[tuple[float, VesselReport]]:
+    """Return the file's own reports as they are received: late or missing where the scenario says
+    so, but for those before.
+    """
+    received = []
+    for report in vessel.reports:
+        late = float(generator.uniform(0.0, reports.latency_max_s))
+        missed = bool(generator.random() < reports.missing)
+        if report.time <= 0.0:
+            received.append((report.time, report))
+        elif not (missed or outage[0] <= report.time + late < outage[1]):
+            received.append((report.time + late, report))
+    return sorted(received, key=lambda entry: entry[0])

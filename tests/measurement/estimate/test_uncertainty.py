@@ -60,10 +60,6 @@ def test_the_stated_noise_of_the_regression_is_its_scatter(spec):
     assert np.mean(misfits) == pytest.approx(1.0, abs=0.2 if drifts else 0.05)
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="windows of passes are chosen from noisy CO2: the slope is 2.4 % low (issue 60)",
-)
 def test_noise_in_co2_does_not_attenuate_the_slope():
     air = crossings(0.25, duration=120.0, step=1.0, width=1.5, peak=60.0)
     exact, spec = plain_sniffer(), plain_sniffer(co2_noise=4.0)

@@ -65,18 +65,12 @@ def since(start):
         ("time_s,so2_ppb\n1,2\n", ["no CO2 column 'co2_ppm', but 'time_s', 'so2_ppb'"]),
         ("time_s,so2_ppb,so2_ppb,co2_ppm\n1,2,2,420\n", ["'so2_ppb'", "twice"]),
         ("time_s,so2_ppb,so2_ppb ,co2_ppm\n1,2,2,420\n", ["'so2_ppb'", "twice"]),
-        ("# UAV 3\n# flight 7\n" + HEAD + ROWS, ["line 3", "('# UAV 3')"]),
-        ("# UAV 3\n" + HEAD + ROWS, ["('# UAV 3')"]),
         (HEAD + ROWS.replace("\n", ",7\n"), ["more values", "time_s,so2_ppb,co2_ppm"]),
         (HEAD + ROWS.replace(".", ","), ["write decimals with a point"]),
         (ROWS, ["no head line", "time_s, so2_ppb, co2_ppm"]),
         (ROWS.replace(".0", ".5").replace("2.5", "0.5"), ["no head line"]),
         (HEAD + '"' + ROWS, ["quotation mark in line 2"]),
-        (HEAD.replace(",", ";") + "1.0;2.0;420.0\n", ["semicolons", "commas"]),
-        (HEAD.replace(",", ";") + "1,0;2,0;420,0\n", ["semicolons", "commas"]),
-        (HEAD.replace(",", "\t") + "1\t2\t420\n", ["tabs", "commas"]),
-        (HEAD + '0,"2,5",420\n', ["'so2_ppb' has '2,5' in row 2", "as in 2.5"]),
-        (HEAD + '"0,0","2,5","420,1"\n', ["2024-05-01T12:00:00.0", "as in 0.0"]),
+        (HEAD + '0.0,"2,5",420\n', ["'so2_ppb' has '2,5' in row 2", "as in 2.5"]),
         (HEAD + "1,2,420\n2,inf,420\n", ["'so2_ppb' is infinite in row 3"]),
         (HEAD + "1,two,420\n", ["'so2_ppb' has 'two' in row 2"]),
         (HEAD + "soon,2,420\n", ["'soon'", "'time_s'", "row 2"]),
@@ -97,10 +91,10 @@ def test_a_file_that_is_no_log_is_refused(tmp_path, content, quoted):
     ("name", "content", "quoted"),
     [
         ("cut.csv.gz", b"\x1f\x8b\x08", "Compressed file ended"),
-        ("no.csv.gz", b"time_s", "Not a gzipped file"),
-        ("no.csv.zip", b"PK", "File is not a zip file"),
-        ("no.csv.xz", b"time_s", "Input format not supported by decoder"),
-        ("utf_16.csv", (HEAD + "1,2,420\n").encode("utf-16"), "UTF-8"),
+        ("no.csv.gz", b"\x1f\x8btime_s", "cannot be unpacked"),
+        ("no.csv.zip", b"PK\x03\x04", "File is not a zip file"),
+        ("no.csv.xz", b"\xfd7zXtime_s", "cannot be unpacked"),
+        ("image.csv", b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR", "not a table as text"),
     ],
 )
 def test_bytes_that_are_no_text_are_refused(tmp_path, name, content, quoted):
@@ -154,7 +148,8 @@ def test_columns_units_and_places_are_mapped(logged):
     renamed.to_csv(other, index=False)
     config.write_text(
         '[columns]\ntime = "Zeit"\nso2 = "SO2 [ppm]"\nco2 = "CO2"\nno = "NO"\nno2 = "NO2"\n'
-        'latitude = "lat"\nlongitude = "lon"\n[scale]\nso2 = 1000.0\n',
+        'latitude = "lat"\nlongitude = "lon"\n[scale]\nso2 = 1000.0\n'
+        '[units]\nco2 = "ppm"\nno = "ppb"\nno2 = "ppb"\n',
         encoding="utf-8",
     )
     found = read_flight(other, read_config(config))
@@ -219,10 +214,9 @@ def test_a_row_without_a_time_is_named(logged, dates):
     assert "no time in row 22" in refusal(logged)
 
 
-@pytest.mark.parametrize(("row", "word"), [(301, "Mean"), (100, "time_s"), (0, "s")])
+@pytest.mark.parametrize(("row", "word"), [(301, "Mean"), (100, "time_s")])
 def test_a_row_of_words_among_readings_is_named(logged, row, word):
-    # A summary below the readings, head lines of two logs in one file, and units below the head
-    # line.
+    # A summary below the readings, and head lines of two logs in one file.
     lines = logged.read_text(encoding="utf-8").splitlines()
     lines.insert(1 + row, word + "," * lines[0].count(","))
     logged.write_text("\n".join(lines), encoding="utf-8")

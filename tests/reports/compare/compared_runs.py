@@ -8,9 +8,9 @@ import pandas as pd
 
 from reports.compare.runs import Run
 from reports.run.run_data import RunData
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.engine.processes import InProcessExecutor
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study
 from tests.reports.run_columns import RUN_COLUMNS
 
 SWEEP = (

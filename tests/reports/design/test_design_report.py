@@ -217,8 +217,10 @@ def test_how_to_fly_it_elsewhere_names_the_files_that_are_there(report, tmp_path
 
 def test_a_sweeps_report_takes_from_a_design_only_what_belongs_to_level_flight():
     design = record()
-    section = innerloop_section(design)
-    steps, margins, trims = (block for block in section.blocks if isinstance(block, Table))
+    line, fold = innerloop_section(design).blocks
+    # In print there is the line alone.
+    assert "innerloop.json; plume-flight design" in line.text
+    steps, margins, trims = (block for block in fold.blocks if isinstance(block, Table))
     assert len(steps.rows) == len(design["responses"])
     assert [row[0] for row in margins.rows] == [
         *(loop.replace("_", " ") for loop in LOOPS),
@@ -226,7 +228,7 @@ def test_a_sweeps_report_takes_from_a_design_only_what_belongs_to_level_flight()
     ]
     # Of all banks the one that the envelope says is flown.
     assert {float(row[1]) for row in trims.rows} == {0.0, 27.0}
-    assert section.blocks[-2] == Heading("Equilibria: level, and at 27 degrees of bank")
+    assert fold.blocks[-2] == Heading("Equilibria: level, and at 27 degrees of bank")
     curves = loop_charts(complete(design))[0].panels[0].lines
     assert all(line.x.tolist() == AIRSPEEDS for line in curves)
     assert len(loop_charts(complete(design))[2].panels[1].lines) == len(LOOPS)

@@ -152,9 +152,7 @@ def test_colours_on_the_screen_are_those_of_the_criteria(built):
     assert {colour for colour, _ in cards} == set(meaning)
 
 
-def test_page_1_holds_everything_that_is_for_the_client_and_the_contents_stand_on_page_2(
-    built, report
-):
+def test_page_1_holds_everything_that_is_for_the_client(built, report):
     first, second, *others = built[1]
     flat = " ".join(first.split())
     for words in (
@@ -166,7 +164,6 @@ def test_page_1_holds_everything_that_is_for_the_client_and_the_contents_stand_o
     ):
         assert " ".join(words.split()) in flat
     assert f"page 1 of {2 + len(others)}" in flat
-    assert "Contents" in second
     assert "short" in second.splitlines()[0]
 
 
@@ -178,7 +175,7 @@ def test_single_flights_stand_in_print_below_the_words_on_them(built, report):
     ]
     assert picker.flights[0].title.split(":")[0] in page
     assert "printed flights" not in built[1][1]
-    assert built[1][1].count("Single flights") == 1
+    assert sum(text.count("Single flights") for text in built[1]) == 1
 
 
 def test_a_tile_does_not_break_between_figure_and_unit_and_plots_have_names(report, tmp_path):
@@ -200,7 +197,7 @@ def test_page_1_is_one_page_however_much_failed(report, tmp_path):
     first, second, *_ = pages_of(tmp_path / "report.pdf")
     assert "Figure 1." in first
     assert "and 5 more" in first
-    assert second.splitlines()[1] == "Contents"
+    assert "Figure 1." not in second
 
 
 def test_the_provenance_is_last_and_names_command_hashes_and_kind_of_host(built, report):

@@ -9,9 +9,9 @@ from reports.errors import ReportError
 from reports.registry import content
 from reports.run.letterhead import parse_settings
 from reports.run.run_data import read_run
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.engine.processes import InProcessExecutor
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study
 from tests.in_process import run_command
 from tests.run_tables import change_manifest, manifest_of, write_manifest
 

@@ -14,9 +14,9 @@ from reports.measurement.facts import flown_facts
 from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import read_run
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.engine.processes import InProcessExecutor
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study
 
 QUICK = (
     "fidelity=kinematic", "guidance.rate_hz=10",

@@ -23,8 +23,8 @@ from reports.monte_carlo.tables import percent
 from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import RunData, read_run
-from scenarios.scenario.documented import documented_keys
-from scenarios.scenario.load import load_study
+from scenarios.scenario.documentation import documented_keys
+from scenarios.scenario.files import load_study
 from scenarios.statistics.estimates import study_statistics
 from scenarios.studies.manifest import initial_manifest, parameters
 from tests.reports.run_columns import RUN_COLUMNS

@@ -18,8 +18,7 @@ from reports.monte_carlo.subset import (
 from reports.monte_carlo.tables import percent
 from reports.render import matplotlib_charts, plotly_charts
 from scenarios.measures.columns import DERIVED_COLUMNS
-from scenarios.statistics.subset_estimates import input_shifts, near_event
-from scenarios.statistics.subset_statistics import subset_statistics
+from scenarios.statistics.subset_simulation import input_shifts, near_event, subset_statistics
 from tests.scenarios.statistics.rare_events import DIMENSION, linear, noisy, simulated
 from tests.scenarios.study_rows import study_rows
 

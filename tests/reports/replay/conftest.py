@@ -3,10 +3,10 @@
 import pytest
 from trial_runs import small_trials
 
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.scenario.load import load_study
+from scenarios.engine.processes import InProcessExecutor
+from scenarios.scenario.files import load_study
 from scenarios.studies import paper
-from scenarios.studies.registry import run_study
+from scenarios.studies.base import run_study
 
 OVERRIDES = {
     "sweep_nu": ("sweep.nu=[0.5]", "flight.crossings=3", "comparison={}"),

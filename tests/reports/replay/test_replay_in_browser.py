@@ -131,9 +131,7 @@ def test_the_time_slider_takes_the_aircraft_to_where_it_was(kind, browser, runs,
         )
         assert turned(place["heading"], heading) < 0.02
         assert turned(place["roll"], np.nan_to_num(sample["roll_rad"])) < 0.06
-        assert (
-            browser.run("window.replay.world.plumes.filter((plume) => plume.visible).length") == 1
-        )
+        assert browser.run("window.replay.world.smoke.mesh.geometry.instanceCount") > 50
     assert browser.errors == []
 
 
@@ -151,9 +149,73 @@ def test_nothing_is_asked_of_a_network_and_what_is_drawn_is_not_blank(browser, p
     assert shades > 200
 
 
+def test_a_flight_opens_before_its_closest_approach_and_plays_once_it_is_seen(browser, runs, page):
+    # Played from the top of the page, where the replay is not seen yet.
+    browser.open(page, WIDTH, HEIGHT)
+    flight = picked(browser, "sulphur/").removeprefix("sulphur/")
+    history = runs["sulphur"].history(flight)
+    north, east = (history[f"{axis}_m"] - history[f"vessel_{axis}_m"] for axis in ("north", "east"))
+    # The least distance is that of a sample of the replay, 0.2 s apart, and the height is the same.
+    nearest = history["time_s"].iloc[np.hypot(north, east).argmin()]
+    opened = browser.run("window.replay.time")
+    # Four seconds before, to a sample of 0.2 s; it may have begun to play.
+    assert nearest - 4.5 <= opened <= nearest + 8.0
+    browser.run("document.getElementById('replay').scrollIntoView()")
+    moves = "new Promise((done) => setTimeout(() => done(window.replay.playing), 500))"
+    assert browser.run(moves) is True
+    assert browser.run("window.replay.time") > nearest - 4.5
+    browser.run("window.replay.play(false)")
+    jumps = "[...document.querySelectorAll('[data-part=jumps] button')].map((b) => b.textContent)"
+    assert {"start", "closest approach", "end"} <= set(browser.run(jumps))
+
+
+def test_smoke_is_where_the_parcels_are_and_the_gas_is_that_of_the_file(browser, runs, page):
+    show(browser, page)
+    flight = picked(browser, "sulphur/").removeprefix("sulphur/")
+    run = runs["sulphur"]
+    smoke, history = run.smoke(flight), run.history(flight)
+    when = 30.0
+    drawn = {
+        number: (north, east, up)
+        for number, north, east, up in browser.run(
+            f"(() => {{ const all = []; window.replay.flight.smoke.each({when}, (i, p) =>"
+            " all.push([i, p.north, p.east, p.height])); return all; })()"
+        )
+    }
+    assert len(drawn) > 20
+    north, east, across = (np.array(smoke[name]) for name in ("north", "east", "across"))
+    emitted = smoke["first"] + smoke["step"] * np.arange(len(north))
+    drift = [np.interp(when, emitted, smoke[f"drift_{axis}"]) for axis in ("north", "east")]
+    ages = np.linspace(0.0, smoke["age_max"], len(smoke["table"][0]))
+    for i, place in drawn.items():
+        height, _, _, meander_y, meander_z = (
+            np.interp(when - emitted[i], ages, [row[k] for row in smoke["table"][0]])
+            for k in range(5)
+        )
+        away = np.array([north[i - 1] - north[i + 1], east[i - 1] - east[i + 1]])
+        along = away / np.hypot(*away)
+        expected = (
+            north[i] + drift[0] - meander_y * across[i] * along[1],
+            east[i] + drift[1] + meander_y * across[i] * along[0],
+            abs(height + meander_z * smoke["up"][i]),
+        )
+        # What is sent is rounded to 5 cm, and to a hundredth of a meander of 10 m.
+        assert place == pytest.approx(expected, abs=0.25)
+    read = history["co2_reading_ppm"].to_numpy()
+    for time in (20.0, 40.0, 60.0):
+        gas = browser.run(f"window.replay.flight.at({time}).gas")
+        # The cubic between samples of a reading that stays and jumps.
+        near = read[np.abs(history["time_s"] - time) < 0.5] - np.nanquantile(read, 0.05)
+        assert near.min() - 0.1 * np.ptp(near) - 0.1 <= gas <= near.max() + 0.1 * np.ptp(near) + 0.1
+    assert browser.errors == []
+
+
 def test_the_keyboard_moves_time_camera_and_play(browser, page):
     show(browser, page)
-    browser.run("window.replay.seek(0), document.querySelector('[data-part=stage]').focus()")
+    browser.run(
+        "window.replay.play(false), window.replay.seek(0),"
+        " document.querySelector('[data-part=stage]').focus()"
+    )
     browser.press("ArrowRight")
     browser.press("ArrowRight")
     browser.press("ArrowLeft")
@@ -215,6 +277,7 @@ def test_another_flight_is_picked_and_those_without_a_history_have_no_replay(bro
     flight = picked(browser)
     assert flight != before
     history = runs["trials"].history(flight.removeprefix("trials/"))
+    browser.run("window.replay.play(false), window.replay.seek(0)")
     assert browser.run("window.replay.place()")["north"] == pytest.approx(
         history["north_m"].iloc[0], abs=0.05
     )

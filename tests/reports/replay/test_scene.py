@@ -78,12 +78,16 @@ def test_what_is_sent_is_the_scene_to_half_a_step(scene):
     data = replay.draw_scene(scene)
     for name, values in scene.columns.items():
         sent = decoded(data["columns"][name], data["samples"])
-        # A step is 1 cm or 2 mrad; 1e-6 is what a column that is sent as straight may deviate.
-        step = 0.002 if name in ("heading", "pitch", "roll") else 0.01
+        # A step is 1 cm or 2 mrad, that of speeds and gases coarser; 1e-6 is what a column that is
+        # sent as straight may deviate.
+        step = 0.002 if name in ("heading", "pitch", "roll") else STEPS.get(name, 0.01)
         assert sent == pytest.approx(values, abs=0.5001 * step + 1e-6), name
     # A ship on her course is sent by two numbers.
     assert set(data["columns"]["vessel_north"]) == {"first", "last"}
     json.dumps(data, allow_nan=False)
+
+
+STEPS = {"gas": 0.1, "airspeed": 0.05, "wind_north": 0.05, "wind_east": 0.05, "apparent_drift": 0.1}
 
 
 @given(values=arrays(np.float64, st.integers(2, 40), elements=st.floats(-1e7, 1e7)))
@@ -95,9 +99,9 @@ def test_any_column_arrives_to_half_a_step(values):
 
 def test_a_second_of_flight_takes_some_sixty_bytes(scene):
     columns = json.dumps(replay.draw_scene(scene)["columns"])
-    # Eight columns that are not straight, five samples a second, most of a byte, 4/3 letters of
+    # Nine columns that are not straight, five samples a second, most of a byte, 4/3 letters of
     # base64 to a byte, and their names.
-    assert len(columns) < 65 * scene.interval * len(scene.columns["north"]) + 1000
+    assert len(columns) < 75 * scene.interval * len(scene.columns["north"]) + 1500
 
 
 def test_stretches_of_the_guard_are_told_by_whether_it_held(trial, row):
@@ -118,25 +122,61 @@ def test_courses_have_no_jumps_and_what_is_not_known_stays(trial, row):
     assert scene.columns["altitude"][-1] == pytest.approx(57.0)
 
 
-def test_smoke_is_drawn_anew_when_the_ship_has_slowed_down(run_of):
+def test_parcels_of_the_exhaust_that_was_flown_in_are_in_the_scene(run_of):
+    run = read_run(run_of("sulphur"))
+    measured = read_trials(run)[0]
+    flight = measured.rows.iloc[0]
+    scene = flight_scene(measured, flight, history_of(measured, flight))
+    sent = replay.draw_scene(scene)["smoke"]
+    for name in ("north", "east", "wind", "across", "up", "drift_north", "drift_east"):
+        # Half a step of 5 cm, or of a hundredth of a standard deviation, and what the file rounds.
+        assert decoded(sent[name], sent["count"]) == pytest.approx(scene.smoke[name], abs=0.031)
+    # From those that are old at the start to those of the flight's end.
+    time = sent["first"] + sent["step"] * np.arange(sent["count"])
+    assert time[0] < 0.0 < history_of(measured, flight)["time_s"].iloc[-1] < time[-1] + sent["step"]
+
+
+def test_the_track_is_coloured_by_the_gas_above_its_background(run_of):
     measured = read_trials(read_run(run_of("sulphur")))[0]
     flight = measured.rows.iloc[0]
     history = history_of(measured, flight)
-    slower = np.where(history["time_s"] < 30.0, 1.0, 0.5)
-    slowed = {
-        f"vessel_velocity_{axis}_mps": slower * history[f"vessel_velocity_{axis}_mps"]
-        for axis in ("north", "east")
-    }
-    (begun, before), *others, (last, after) = with_history(measured, flight, **slowed).plumes
-    assert (begun, last) == (history["time_s"].iloc[0], pytest.approx(30.0, abs=0.11))
-    assert not others
-    # In a slower flow past the funnel exhaust is older, and so wider, at the same distance.
-    assert after.half_width[-1] > 1.2 * before.half_width[-1]
-    swaying = {
-        name: (1.0 + 0.5 * np.sin(0.15 * history["time_s"])) * column
-        for name, column in slowed.items()
-    }
-    assert 5 < len(with_history(measured, flight, **swaying).plumes) <= 25
+    scene = flight_scene(measured, flight, history)
+    assert (scene.gas.name, scene.gas.unit, scene.gas.source) == ("CO2", "ppm", "as read")
+    read = history["co2_reading_ppm"].to_numpy()
+    background = np.nanquantile(read, 0.05)
+    at = np.interp(0.2 * np.arange(len(scene.columns["gas"])), history["time_s"], read)
+    assert scene.columns["gas"] == pytest.approx(at - background, abs=1e-6)
+    assert 0.0 < scene.gas.most < np.nanmax(read) - background
+
+
+def test_the_estimate_in_the_scene_is_that_of_the_runs_table(run_of):
+    run = read_run(run_of("sulphur"))
+    measured = read_trials(run)[0]
+    flight = measured.rows.iloc[0]
+    estimate = flight_scene(measured, flight, history_of(measured, flight)).estimate
+    final = estimate.rows[-1]
+    assert final[1:4] == pytest.approx([
+        flight["fsc_percent"], flight["fsc_low_percent"], flight["fsc_high_percent"]
+    ])  # fmt: skip
+    assert list(estimate.limits) == [flight["sulphur_limit_percent"]]
+    assert final[0] <= history_of(measured, flight)["time_s"].iloc[-1] + 1.0
+
+
+def test_one_can_go_to_the_closest_approach_and_to_what_happened(trial, row):
+    history = history_of(trial, row)
+    guard = np.where(history["time_s"] >= 10.0, 1.0, 0.0)
+    happened = row.copy()
+    happened["fault_time_s"] = 7.5
+    scene = flight_scene(trial, happened, history.assign(guard=guard))
+    events = dict(scene.events)
+    assert list(events.values()) == sorted(events.values())
+    assert (events["fault"], events["guard acts"]) == (7.5, 10.0)
+    nearest = np.hypot(
+        history["north_m"] - history["vessel_north_m"], history["east_m"] - history["vessel_east_m"]
+    ).argmin()
+    assert events["closest approach"] == pytest.approx(
+        history["time_s"].iloc[nearest], abs=INTERVAL
+    )
 
 
 def test_a_ship_whose_size_is_not_known_is_told_from_one_of_a_known_class(scene):
@@ -155,9 +195,15 @@ def test_a_ship_whose_size_is_not_known_is_told_from_one_of_a_known_class(scene)
     assert "a coaster, 90 m by 14 m" in sent[1]["words"]
 
 
-def test_an_axis_without_smoke_has_one_shape(trial, row):
-    velocity = np.linspace(0.0, 12.0, len(history_of(trial, row)))
-    assert len(with_history(trial, row, vessel_velocity_north_mps=velocity).plumes) == 1
+def test_an_axis_without_smoke_drifts_with_the_air_past_the_ship(trial, row):
+    scene = flight_scene(trial, row, history_of(trial, row))
+    assert scene.smoke is None
+    history = history_of(trial, row)
+    # In calm air as fast as the ship.
+    speed = np.hypot(history["vessel_velocity_north_mps"], history["vessel_velocity_east_mps"])
+    assert np.diff(scene.columns["apparent_drift"]) == pytest.approx(
+        INTERVAL * speed.iloc[0], rel=1e-6
+    )
 
 
 def test_a_vessel_at_rest_points_along_its_course(trial, row):

@@ -16,9 +16,9 @@ from reports.flights.single_flight import flight_charts
 from reports.run.run_data import read_run
 from reports.run.surroundings import surroundings
 from reports.run.trials import read_trials
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.engine.processes import InProcessExecutor
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study
 
 RISING = [(0.0, 2.0), (100.0, 6.0)]
 """Time [s] and speed [m/s] of a wind from the west."""

@@ -27,9 +27,9 @@ from reports.registry import content
 from reports.run.columns import column
 from reports.run.run_data import read_run
 from reports.run.trials import read_trials
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.engine.processes import InProcessExecutor
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study
 
 KINEMATIC = """
 description = "Flights for a test."

@@ -17,7 +17,7 @@ from report_parts import assert_axes_read_quantity_and_unit, blocks_of, draw_all
 from trial_runs import charts_of, rows_of, with_criterion, with_values
 
 from reports.build import build_reports
-from reports.document.blocks import FlightPicker, Table, Text
+from reports.document.blocks import FlightPicker, Fold, Table, Text
 from reports.errors import ReportError
 from reports.flights.trials.panels_over import PanelsOver, by_violation
 from reports.flights.trials.tables import FAILED_MAX
@@ -25,7 +25,7 @@ from reports.output import write_report
 from reports.registry import content
 from reports.run.run_data import read_run
 from reports.run.trials import Kind, Trial, read_trials
-from scenarios.scenario.load import OPERATIONAL, bases, load_study
+from scenarios.scenario.files import OPERATIONAL, bases, load_study
 from scenarios.scenario.overrides import given_keys
 from scenarios.studies.manifest import parameters
 from tests.reports.run_columns import RUN_COLUMNS
@@ -257,7 +257,8 @@ def test_a_long_list_of_failed_flights_is_cut_and_says_so(run):
 
 
 def test_parameters_say_what_a_trial_sets_and_samples_and_nothing_else(report):
-    *tables, defaults = blocks_of(report, Table, "parameters")
+    tables = [block for fold in blocks_of(report, Fold, "parameters") for block in fold.blocks]
+    *tables, defaults = tables
     steady, turns = ({row[0]: row[1:3] for row in table.rows} for table in tables)
     assert steady["wind.speed_mps"] == ["uniform from 2 to 4", "0"]
     assert steady["criteria.crossing_interval_error"] == ["0.0321", "0.01"]

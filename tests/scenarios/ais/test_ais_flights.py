@@ -7,12 +7,12 @@ from flight_cases import fly, plan, scenario
 
 from gnc.errors import InfeasibleError
 from scenarios.errors import InputError
-from scenarios.scenario.load import CATALOG, load_study
+from scenarios.scenario.files import CATALOG, load_study
 from scenarios.scenario.scenario import Scenario
-from scenarios.studies.flight_study import FlightStudy
+from scenarios.studies.base import FlightStudy
 from scenarios.world.ais.reports import read_ais
 
-DANISH = {"track": str(CATALOG / "ais" / "made_danish.csv"), "mmsi": 219999001}
+DANISH = {"track": str(CATALOG / "ais" / "synthetic_danish.csv"), "mmsi": 219999001}
 DECLARED = {"vessel_acceleration_mps2": 0.1, "vessel_speed_max_mps": 8.0, "speed_error_mps": 0.5}
 LONG = {"crossings": 0, "duration_max_s": 2760.0}
 
@@ -69,7 +69,7 @@ def test_the_vessel_is_received_at_the_times_of_the_file_alone(flown):
 
 
 def test_its_row_says_where_and_when_and_how_fast_the_ship_was(flown):
-    # 57.2 N, 11.3 E at 10 o'clock, at 12 kn (scenarios.world.ais.made); the smooth track begins
+    # 57.2 N, 11.3 E at 10 o'clock, at 12 kn (scenarios.world.ais.synthetic); the smooth track begins
     # within its reports' errors.
     assert flown.row["place_latitude_deg"] == pytest.approx(57.2, abs=1e-4)
     assert flown.row["place_longitude_deg"] == pytest.approx(11.3, abs=2e-4)
@@ -85,7 +85,7 @@ def test_its_row_says_where_and_when_and_how_fast_the_ship_was(flown):
             [
                 "accelerates by",
                 "following.vessel_acceleration_mps2 = 0.03",
-                "declare more, or fly another time of its file",
+                "declare more, or fly another time or track",
             ],
         ),
         (
@@ -93,7 +93,7 @@ def test_its_row_says_where_and_when_and_how_fast_the_ship_was(flown):
             [
                 "moves at up to",
                 "following.vessel_speed_max_mps = 5",
-                "more, or fly another time of its file (place.utc)",
+                "more, or fly another time or track",
             ],
         ),
     ],
@@ -112,7 +112,7 @@ def test_a_ship_that_does_more_than_is_declared_is_a_row_with_that_reason(change
 
 def test_a_start_is_judged_by_the_report_that_the_guard_has_and_not_by_where_the_ship_is(tmp_path):
     lines = (
-        (CATALOG / "ais" / "made_marine_cadastre.csv")
+        (CATALOG / "ais" / "synthetic_marine_cadastre.csv")
         .read_text(encoding="utf-8")
         .splitlines(keepends=True)
     )
@@ -237,7 +237,7 @@ def test_a_folder_of_files_may_have_an_equals_sign_in_its_name(tmp_path):
     # As archives that are parted by days have it.
     (tmp_path / "day=2026-06-01").mkdir()
     (tmp_path / "day=2026-06-01" / "ship.csv").write_bytes(
-        (CATALOG / "ais" / "made_danish.csv").read_bytes()
+        (CATALOG / "ais" / "synthetic_danish.csv").read_bytes()
     )
     text = 'extends = "ship_from_ais"\ntitle = "mine"\nvessel.track = "day=2026-06-01/ship.csv"\n'
     (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
@@ -247,7 +247,7 @@ def test_a_folder_of_files_may_have_an_equals_sign_in_its_name(tmp_path):
 
 
 def test_a_track_file_is_relative_to_the_scenario_file_and_its_hash_is_in_the_manifest(tmp_path):
-    (tmp_path / "ship.csv").write_bytes((CATALOG / "ais" / "made_danish.csv").read_bytes())
+    (tmp_path / "ship.csv").write_bytes((CATALOG / "ais" / "synthetic_danish.csv").read_bytes())
     (tmp_path / "mine.toml").write_text(
         'extends = "ship_from_ais"\ntitle = "mine"\nfidelity = "kinematic"\nvessel.track = "ship.csv"\n',
         encoding="utf-8",

@@ -7,23 +7,24 @@ import numpy as np
 import pytest
 
 from scenarios.errors import InputError
-from scenarios.scenario.load import CATALOG
+from scenarios.scenario.files import CATALOG
 from scenarios.scenario.sections.world import VesselConfig
-from scenarios.world.ais.made import MADE
-from scenarios.world.ais.smoothing import (
+from scenarios.world.ais.synthetic import SYNTHETIC
+from scenarios.world.ais.track import (
     JERK_DENSITY,
     POSITION_SIGMA,
     VELOCITY_SIGMA,
+    ais_vessel,
     smooth_motion,
+    usual_intervals,
 )
-from scenarios.world.ais.track import ais_vessel, usual_intervals
 from scenarios.world.vessel import largest_acceleration, sampled
 
 HOUR = 3600.0
 
 
-def vessel(name="made_danish.csv", *, utc=None, duration=HOUR, **changes):
-    config = VesselConfig(track=str(CATALOG / "ais" / name), mmsi=MADE[name], **changes)
+def vessel(name="synthetic_danish.csv", *, utc=None, duration=HOUR, **changes):
+    config = VesselConfig(track=str(CATALOG / "ais" / name), mmsi=SYNTHETIC[name], **changes)
     return ais_vessel(config, altitude=60.0, utc=utc, duration=duration, margin=5.0)
 
 
@@ -45,8 +46,8 @@ def residuals(of):
     # Errors of the made reports: 2.5 m and 0.8 m of each coordinate, and up to a second of their
     # time at 6 m/s, 1.8 m rms.
     [
-        ("made_danish.csv", math.sqrt(2.0) * math.hypot(2.5, 0.8, 1.3)),
-        ("made_marine_cadastre.csv", 0.0),
+        ("synthetic_danish.csv", math.sqrt(2.0) * math.hypot(2.5, 0.8, 1.3)),
+        ("synthetic_marine_cadastre.csv", 0.0),
     ],
 )
 def test_the_track_keeps_to_the_reports_but_for_their_scatter(name, scatter):
@@ -61,7 +62,7 @@ def test_the_track_keeps_to_the_reports_but_for_their_scatter(name, scatter):
 def test_it_turns_and_slows_as_the_ship_did():
     ship = vessel()
     # 90 degrees from 1200 s on at 0.5 deg/s, and from 12 to 7 kn from 2400 s on
-    # (scenarios.world.ais.made).
+    # (scenarios.world.ais.synthetic).
     assert math.degrees(ship.course(1500.0) - ship.course(1100.0)) == pytest.approx(90.0, abs=2.0)
     speeds = [math.hypot(*ship.motion(time)[2:]) / (1852.0 / 3600.0) for time in (2300.0, 3000.0)]
     assert speeds == pytest.approx([12.0, 7.0], abs=0.2)
@@ -124,7 +125,7 @@ def test_usual_intervals_leave_out_the_longest_gaps():
 def test_a_file_that_does_not_cover_the_flight_is_refused(changes, words):
     with pytest.raises(InputError) as refusal:
         vessel(**changes)
-    for word in ["made_danish.csv", *words]:
+    for word in ["synthetic_danish.csv", *words]:
         assert word in str(refusal.value)
 
 
@@ -172,7 +173,7 @@ def test_smoothing_is_the_least_squares_solution_of_its_model():
 def thinned(path, rows, **changes):
     """Return the settings of a vessel of which some rows of a made file are known."""
     lines = (
-        (CATALOG / "ais" / "made_marine_cadastre.csv")
+        (CATALOG / "ais" / "synthetic_marine_cadastre.csv")
         .read_text(encoding="utf-8")
         .splitlines(keepends=True)
     )
@@ -209,6 +210,6 @@ def test_a_long_gap_that_is_allowed_is_bridged_between_the_reports_at_both_of_it
     config = thinned(tmp_path / "gap.csv", [0, 2, 4, 26], gap_max_s=1500.0)
     begin = {"altitude": 60.0, "utc": datetime(2026, 6, 1, 10, 0, 30, tzinfo=UTC), "margin": 5.0}
     end = ais_vessel(config, duration=900.0, **begin).motion(900.0)
-    true = vessel("made_marine_cadastre.csv", utc=begin["utc"], duration=900.0).motion(900.0)
+    true = vessel("synthetic_marine_cadastre.csv", utc=begin["utc"], duration=900.0).motion(900.0)
     assert math.dist(end[:2], true[:2]) < 600.0
     assert math.hypot(*end[2:]) == pytest.approx(math.hypot(*true[2:]), abs=0.5)

@@ -11,7 +11,10 @@ import pytest
 from aircraft.fleet.x8 import X8
 from gnc.laws import LineOfSightLaw
 from gnc.reference.shapes import Sinusoid
-from scenarios import InputError, fly, load, read_ais, run
+from scenarios import fly, run
+from scenarios.api.scenario import load
+from scenarios.errors import InputError
+from scenarios.world.ais.reports import read_ais
 
 SHORT = {
     "title": "One short flight",

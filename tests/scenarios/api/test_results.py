@@ -14,8 +14,10 @@ import pytest
 from matplotlib.figure import Figure
 
 from common.intervals import clopper_pearson, upper_bound
-from scenarios import InputError, fly, load, run
+from scenarios import fly, run
+from scenarios.api.scenario import load
 from scenarios.api.statistics import statistics_of
+from scenarios.errors import InputError
 
 SHORT = {
     "title": "Short <b>flights</b>",

@@ -8,9 +8,11 @@ import tomllib
 import pandas as pd
 import pytest
 
-from scenarios import InputError, fly, load, run
-from scenarios.engine.fingerprint import fingerprint
-from scenarios.scenario.load import load_study
+from scenarios import fly, run
+from scenarios.api.scenario import load
+from scenarios.engine.run_directory import fingerprint
+from scenarios.errors import InputError
+from scenarios.scenario.files import load_study
 from tests.in_process import run_command
 from tests.run_tables import manifest_of
 

@@ -12,9 +12,9 @@ from scenarios.cli.describe import described
 from scenarios.cli.main import commands
 from scenarios.cli.template import template
 from scenarios.experiment.points import points_of
-from scenarios.scenario.documented import documented_sections
+from scenarios.scenario.documentation import documented_sections
 from scenarios.scenario.effect import unused
-from scenarios.scenario.load import catalog, load_study
+from scenarios.scenario.files import catalog, load_study
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.experiment import TrialList
 from tests.in_process import assert_refused, run_command

@@ -7,10 +7,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from common.verdict import RunVerdict
-from scenarios.engine.executors import ExecutorFactory
-from scenarios.engine.fingerprint import fingerprint
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.engine.runner import StudySummary, fly_study, write_tables
+from scenarios.engine.processes import InProcessExecutor
+from scenarios.engine.run_directory import fingerprint
+from scenarios.engine.runner import ExecutorFactory, StudySummary, fly_study, write_tables
 from scenarios.engine.task import Result, Task
 
 TABLE = "rows.csv"
@@ -36,7 +35,7 @@ class Squares:
     def moved(self, _):
         return self
 
-    def fly(self, task):
+    def run(self, task):
         (self.marks / f"{task.number}-{os.getpid()}-{uuid.uuid4().hex}").touch()
         if task.number in self.does:
             self.does[task.number]()
@@ -82,7 +81,7 @@ class SquareStudy:
             recorded,
             config_hash,
         )
-        self.planned, self.beside = sum(map(len, batches)), 0
+        self.planned, self.comparisons = sum(map(len, batches)), 0
         self.seen = []
 
     def initial_manifest(self):

@@ -16,11 +16,11 @@ import pandas as pd
 import pytest
 
 from scenarios.engine.dask_executor import _WorkPlugin
-from scenarios.engine.executors import ExecutorFactory
+from scenarios.engine.runner import ExecutorFactory
 from scenarios.engine.task import Limits
 from scenarios.errors import InputError
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study
 
 SETTINGS = [
     "flights=6",
@@ -117,7 +117,7 @@ class Reading:
     def moved(self, model):
         return Reading(model)
 
-    def fly(self, _task):
+    def run(self, _task):
         return (self.model / "autopilot.xml").read_text(encoding="utf-8")
 
 
@@ -128,9 +128,9 @@ def test_runs_that_share_a_worker_keep_models_of_their_own_until_they_end(tmp_pa
         (tmp_path / run / "autopilot.xml").write_text(run, encoding="utf-8")
         plugins.append(_WorkPlugin(run, Reading(tmp_path / run), 100.0))
         plugins[-1].setup(worker)
-    assert [plugin.fly(None) for plugin in plugins] == ["one", "two"]
+    assert [plugin.run(None) for plugin in plugins] == ["one", "two"]
     plugins[0].teardown(worker)
-    assert plugins[1].fly(None) == "two"
+    assert plugins[1].run(None) == "two"
     assert [path.name for path in (tmp_path / "worker").iterdir()] == ["two"]
 
 

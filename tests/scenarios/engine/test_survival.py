@@ -15,9 +15,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from scenarios.engine.executors import ExecutorFactory
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.engine.runner import ExecutorFactory
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study
 from tests.scenarios.short_trial import short_trial
 
 FLIGHTS = 60

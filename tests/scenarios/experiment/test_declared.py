@@ -7,10 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from scenarios.experiment.declared import beyond_declared
 from scenarios.experiment.requests import Experiment
-from scenarios.experiment.search_space import search_space
-from scenarios.scenario.load import load_study
+from scenarios.experiment.sampling import beyond_declared, search_space
+from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
 
 SPEED = 19.42

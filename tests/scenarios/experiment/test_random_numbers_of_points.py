@@ -4,10 +4,10 @@ import pytest
 
 from reports.registry import content
 from reports.run.run_data import read_run
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.experiment.requests import Experiment
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study, study_of
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study, study_of
 from scenarios.world.noise import PAYLOAD, own_generator
 from tests.run_tables import manifest_of, rows_of
 

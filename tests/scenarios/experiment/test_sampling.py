@@ -2,12 +2,12 @@ import numpy as np
 import pytest
 from scipy.stats import qmc
 
-from scenarios.experiment.sampling import Points
+from scenarios.experiment.sampling import SamplingDesign
 
 
 def points(sampling, count, **changes):
     values = {"dimension": 5, "flights": 1024, "seed": 3} | changes
-    made = Points(sampling, **values)
+    made = SamplingDesign(sampling, **values)
     return np.array([made.at(number) for number in range(count)])
 
 
@@ -15,7 +15,7 @@ def points(sampling, count, **changes):
 def test_a_point_depends_on_its_number_and_the_studys_seed_alone(sampling):
     whole = points(sampling, 600)
     # Asked for one by one and backwards, as tasks come from processes in any order.
-    other = Points(sampling, dimension=5, flights=1024, seed=3)
+    other = SamplingDesign(sampling, dimension=5, flights=1024, seed=3)
     assert [other.at(number) for number in (599, 3, 256, 255)] == [
         tuple(whole[number]) for number in (599, 3, 256, 255)
     ]

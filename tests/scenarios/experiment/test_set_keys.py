@@ -6,11 +6,11 @@ import pytest
 
 from scenarios.experiment.draws import sampled_flight
 from scenarios.experiment.requests import Experiment
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
 from scenarios.studies.arena.entrants import draws_left, entrants_of
 from scenarios.studies.arena.tuning import Tuner
-from scenarios.studies.registry import study_of
+from scenarios.studies.base import study_of
 
 DRAWS = [
     {"key": "wind.speed_mps", "uniform": [3.0, 8.0]},

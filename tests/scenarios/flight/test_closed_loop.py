@@ -8,9 +8,9 @@ from flight_cases import ASTERN, SPEED, fly, plan, scenario
 
 from common.columns import unit_of
 from scenarios.flight import closed_loop
+from scenarios.flight.closed_loop import release
 from scenarios.flight.guard_belief import GuardBelief
 from scenarios.flight.record import COLUMNS, HISTORY_COLUMNS
-from scenarios.flight.release import release
 from scenarios.instruments.instrument import payload
 from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.kinematic import KinematicVehicle

@@ -9,8 +9,7 @@ import pytest
 from gnc.estimation.health import Fault
 from gnc.estimation.navigation import MeasuredMotion
 from gnc.mission.mission import Mode
-from scenarios.flight.ending import Ending
-from scenarios.flight.judge import Enough
+from scenarios.flight.ending import Ending, StopReason
 from scenarios.flight.outcome import Outcome
 from scenarios.scenario.sections.equipment import FaultConfig
 from scenarios.world.faults import sampled_fault
@@ -29,7 +28,7 @@ def ended(
     trouble="",
     vessel=True,
     after=math.inf,
-    enough=None,
+    reason=None,
     tracked=0.0,
     centre_error=math.inf,
     guarded=False,
@@ -49,17 +48,19 @@ def ended(
     vehicle = SimpleNamespace(fault=lambda _: trouble)
     guidance = SimpleNamespace(monitor=SimpleNamespace(fault=fault), mode=mode)
     guidance.target = SimpleNamespace(north=0.0, east=0.0)
-    judge = (
+    early_stop = (
         SimpleNamespace(
-            enough=enough, over=lambda *_: True, words=f"{enough and enough.value}: it left"
+            reason=reason,
+            has_left=lambda *_: True,
+            message=f"{reason and reason.value}: it left",
         )
-        if enough
+        if reason
         else None
     )
     settling = SimpleNamespace(
         at=settled, crossings=flown, tracked=tracked, centre_error=centre_error, centre_band=15.0
     )
-    ending = Ending(plan, vehicle, guidance, settling, judge)
+    ending = Ending(plan, vehicle, guidance, settling, early_stop)
     ending.guarded, ending.saturated = guarded, saturated
     ending.reached(
         300.0, MeasuredMotion(0.0, 0.0, 0.0, 0.0, 0.0), sample, complete=0 < asked <= flown
@@ -149,19 +150,23 @@ def ended(
         ),
         # A verdict is what such a flight is for, also where it has not settled for as long as is
         # asked for.
-        ({"enough": Enough.BELOW, "after": 400.0, "mode": Mode.DEPARTING}, Outcome.COMPLETED, ""),
         (
-            {"enough": Enough.OUT_OF_REACH, "mode": Mode.DEPARTING},
+            {"reason": StopReason.BELOW, "after": 400.0, "mode": Mode.DEPARTING},
+            Outcome.COMPLETED,
+            "",
+        ),
+        (
+            {"reason": StopReason.OUT_OF_REACH, "mode": Mode.DEPARTING},
             Outcome.INCOMPLETE,
             "plume out of reach",
         ),
         (
-            {"enough": Enough.SENSOR, "settled": math.nan, "mode": Mode.DEPARTING},
+            {"reason": StopReason.SENSOR, "settled": math.nan, "mode": Mode.DEPARTING},
             Outcome.INCOMPLETE,
             "sensor failed",
         ),
         (
-            {"enough": Enough.ABOVE, "mode": Mode.GLIDING, "flown": 0},
+            {"reason": StopReason.ABOVE, "mode": Mode.GLIDING, "flown": 0},
             Outcome.AIRCRAFT_LOST,
             "gliding",
         ),

@@ -8,10 +8,10 @@ import pytest
 from flight_cases import scenario
 
 from gnc.mission.mission import Mode
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.scenario.load import load_study
+from scenarios.engine.processes import InProcessExecutor
+from scenarios.scenario.files import load_study
 from scenarios.scenario.sections.flight import DITCHED
-from scenarios.studies.registry import run_study
+from scenarios.studies.base import run_study
 from tests.run_tables import rows_of
 
 KINDS = ("engine", "throttle", "left_elevon", "right_elevon")
@@ -44,7 +44,7 @@ def flown(designs, tmp_path_factory):
     path = tmp_path_factory.mktemp("faults") / "run"
     with pytest.MonkeyPatch.context() as patch:
         # The design of the other tests, for 60 m.
-        patch.setattr("scenarios.studies.flight_study.design_of", lambda *_: (designs("x8"), ""))
+        patch.setattr("scenarios.studies.base.design_of", lambda *_: (designs("x8"), ""))
         run_study(flights, "faults", path, executor_factory=InProcessExecutor)
     return {
         row["fault"]: (row, pd.read_parquet(path / "flights" / f"{row['flight_id']}.parquet"))

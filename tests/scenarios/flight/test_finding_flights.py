@@ -9,10 +9,10 @@ from gnc.mission.mission import Mode
 from measurement.estimate.verdict import GUARD
 from scenarios.engine.task import Task
 from scenarios.experiment.requests import Experiment
-from scenarios.flight.judge import GONE
-from scenarios.flight_runner import FlightWork
+from scenarios.flight.ending import LEFT_BY
+from scenarios.flight_runner import FlightRunner
 from scenarios.planning.spreads import PredictedSpreads
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from tests.run_tables import history_in
 
 QUICK = (
@@ -37,13 +37,13 @@ QUICK = (
 
 def flown(*overrides):
     scenario = load_study("sulphur", (*QUICK, *overrides))
-    work = FlightWork(
+    work = FlightRunner(
         experiments=(Experiment("sulphur", scenario),),
         histories=1,
         setup=None,
         spreads=PredictedSpreads(),
     )
-    result = work.fly(Task(number=0))
+    result = work.run(Task(number=0))
     (row,) = result.tables["summary.csv"]
     return row, history_in(result)
 
@@ -80,7 +80,7 @@ def test_it_leaves_outwards_at_its_altitude_and_keeps_out(until_verdict):
     off = np.hypot(left["north_m"] - left["vessel_north_m"], left["east_m"] - left["vessel_east_m"])
     # Half a turn away takes it no nearer than its orbit by more than the turn's diameter; then
     # straight out.
-    assert off.iloc[-1] > off.iloc[0] + 0.9 * GONE
+    assert off.iloc[-1] > off.iloc[0] + 0.9 * LEFT_BY
     assert row["keepout_violations"] == 0
     assert np.ptp(left["altitude_command_m"]) == 0.0
     assert row["altitude_outside_s"] == 0.0

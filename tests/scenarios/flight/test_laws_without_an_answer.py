@@ -7,7 +7,7 @@ import pytest
 from flight_cases import ASTERN, fly
 
 from gnc.laws import STEERING_LAWS
-from scenarios.flight.failure import failure
+from scenarios.flight.ending import failure
 
 
 @dataclass(frozen=True)

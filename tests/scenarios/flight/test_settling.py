@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from scenarios.flight.settling import Settling
+from scenarios.flight.ending import Settling
 
 PERIOD = 19.0
 AXIS = 2.0

@@ -9,7 +9,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from scenarios.engine.task import Result, Task
-from scenarios.flight.plume_readings import BELIEF_COLUMNS
+from scenarios.flight.onboard import BELIEF_COLUMNS
 from scenarios.flight.record import HISTORY_COLUMNS
 from scenarios.flight.time_history import as_parquet, history_files, keeps_history
 from scenarios.instruments.sniffer import SnifferOnBoard
@@ -69,13 +69,18 @@ def test_a_history_comes_back_from_its_file_exactly():
             Task(number=0),
             history,
             {"fsc": 0.1},
+            b"{}",
             columns={},
             planned=1,
             kept=1,
             row=MET | {"flight_id": "a"},
         ),
     )
-    assert list(result.files) == ["flights/a.parquet", "flights/a.json"]
+    assert list(result.files) == [
+        "flights/a.parquet",
+        "flights/a.json",
+        "flights/a.smoke.json",
+    ]
     assert json.loads(result.files["flights/a.json"]) == {"fsc": 0.1}
     pd.testing.assert_frame_equal(history_in(result), history, check_exact=True)
 

@@ -7,9 +7,9 @@ from flight_cases import fly
 
 from scenarios import flight_runner
 from scenarios.errors import InputError
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import study_of
 from scenarios.studies.checks import check_without_design
-from scenarios.studies.registry import study_of
 
 INSTRUMENTS = """
 class Own:

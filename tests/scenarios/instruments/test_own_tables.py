@@ -11,9 +11,9 @@ from reports.output import write_report
 from reports.run.run_data import read_run
 from scenarios.errors import InputError
 from scenarios.experiment.points import points_of
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.checks import check_without_design
-from scenarios.world.exhaust import emission
+from scenarios.world.plume import emission
 from tests.in_process import run_command
 from tests.run_tables import manifest_of
 
@@ -156,7 +156,7 @@ def test_keys_of_a_table_are_set_and_swept_like_others():
         ("payload.sensor=5", "payload.sensor is 5; give the name of a preset, or a table"),
         (
             "payload.sensor.channels.so2.t90=3",
-            "payload.sensor is a table of no use: channel 'so2' of instrument 'own cells' has",
+            "payload.sensor is an invalid table: channel 'so2' of instrument 'own cells' has",
         ),
         (
             "payload.sensor={channels={so2={t90_s=3}}}",
@@ -164,11 +164,11 @@ def test_keys_of_a_table_are_set_and_swept_like_others():
         ),
         (
             "payload.sensor={}",
-            "payload.sensor is a table of no use: instrument 'own sniffer' has no channels",
+            "payload.sensor is an invalid table: instrument 'own sniffer' has no channels",
         ),
         (
             "payload.sensor={channels={so2={t90_s=3,delay_s=0,noise=1}}}",
-            "payload.sensor is a table of no use: its channels are so2, and co2, which shows the plume, is not among them: add the"
+            "payload.sensor is an invalid table: its channels are so2, and co2, which shows the plume, is not among them: add the"
             " table payload.sensor.channels.co2",
         ),
     ],

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from scenarios.instruments.plume_passes import INSIDE, PASS_FIGURES, pass_figures
+from scenarios.instruments.sniffer import INSIDE, PASS_FIGURES, pass_figures
 from scenarios.measures.columns import SUMMARY_COLUMNS
 
 TIME = 0.05 + 0.1 * np.arange(600)

@@ -10,9 +10,9 @@ from measurement.emission import expected_fsc, fuel_preset
 from scenarios.engine.task import Task
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
-from scenarios.flight_runner import FlightWork
+from scenarios.flight_runner import FlightRunner
 from scenarios.planning.spreads import PredictedSpreads
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from tests.run_tables import history_in
 
 # Astern of a ship on a straight course, where the kinematic vehicle settles within a minute or two.
@@ -33,13 +33,13 @@ PERFECT = ("payload.sensor=laser", "payload.exact=true")
 
 def flown(*overrides, every_step=False):
     scenario = load_study("sulphur", (*QUICK, *overrides))
-    work = FlightWork(
+    work = FlightRunner(
         experiments=(Experiment("sulphur", scenario),),
         histories=1,
         setup=None,
         spreads=PredictedSpreads(),
     )
-    result = work.fly(Task(number=0, every_step=every_step))
+    result = work.run(Task(number=0, every_step=every_step))
     (row,) = result.tables["summary.csv"]
     return row, history_in(result), result
 
@@ -175,12 +175,15 @@ def test_a_flight_without_payload_is_flown_alike(slow):
         ("payload.rule=eca_0.14", "payload.rule is 'eca_0.14'; did you mean 'eca_0.1"),
         (
             "payload.limit_percent=0.1%",
-            "payload.limit_percent is '0.1%'; it must be a number, e.g. limit_percent=0.1",
+            "payload.limit_percent is '0.1%'; input should be a valid number",
         ),
         ("payload.sensr=fast", "payload: key 'sensr' is not known; did you mean 'sensor'?"),
         ("emission.ship=canoe", "emission.ship: ship 'canoe' is not known; there are container"),
         ("emission.fuel=coal", "fuel 'coal' is not known; there are mgo"),
-        ("emission.sulphur_percent=7", "emission.sulphur_percent is 7; it must be at most 5 %"),
+        (
+            "emission.sulphur_percent=7",
+            "emission.sulphur_percent is 7; input should be less than or equal to 5 [% m/m]",
+        ),
         ("plume.richardson=5", "plume.richardson is 5; it must be 0.01 to 2"),
         ("flight.altitude_min_m=200", "altitude_min_m is 200 m and altitude_max_m 120 m"),
     ],

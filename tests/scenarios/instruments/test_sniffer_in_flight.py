@@ -7,8 +7,8 @@ import pytest
 
 from measurement.gases import GASES
 from scenarios.instruments.sniffer import SnifferOnBoard
-from scenarios.planning.planner import plan_flight
-from scenarios.scenario.load import load_study
+from scenarios.planning.missions import plan_flight
+from scenarios.scenario.files import load_study
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 from scenarios.world.noise import PAYLOAD, Noise, own_generator
 

@@ -12,7 +12,7 @@ from gnc.mission.mission import Mode
 from scenarios.flight.outcome import Outcome
 from scenarios.flight.record import COLUMNS, FlightRecord
 from scenarios.measures.columns import SUMMARY_COLUMNS
-from scenarios.measures.figures import flight_figures, plan_row
+from scenarios.measures.figures import flight_figures, plan_row, rms
 from scenarios.planning.flight_plan import Start
 from scenarios.scenario.scenario import Scenario
 
@@ -367,3 +367,9 @@ def test_both_kinds_of_flight_have_rows_of_the_same_columns(plan, tracking_plan)
         "resume_time_s",
         "resume_periods",
     }
+
+
+def test_the_rms_of_a_sine_over_its_period_is_its_amplitude_over_the_root_of_two():
+    phase = 2.0 * np.pi * np.arange(64) / 64
+    # Exact for equally spaced samples, up to rounding.
+    assert math.isclose(rms(3.0 * np.sin(phase)), 3.0 / math.sqrt(2.0), rel_tol=1e-14)

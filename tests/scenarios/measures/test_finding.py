@@ -49,7 +49,7 @@ def history(*, first=100.0, above=6.0, believed=80.0, deviation=4.0, duration=30
 
 
 def figures(made, **limits):
-    return finding_figures(made, FlightConfig(**limits), noise=NOISE, enough="")
+    return finding_figures(made, FlightConfig(**limits), noise=NOISE, stop_reason="")
 
 
 def test_the_time_to_find_counts_from_the_orbit_to_the_first_reading_of_the_plume():

@@ -10,6 +10,7 @@ import pytest
 from flight_cases import plan as planned
 from flight_cases import scenario
 
+from aircraft.weather import Gust
 from common.premises import EXCEEDED, TERMS, ratio_column, time_column
 from gnc.estimation.error_budget import (
     Bias,
@@ -19,11 +20,10 @@ from gnc.estimation.error_budget import (
     TurnDeviation,
     WindErrorByGusts,
 )
-from scenarios.flight.closed_loop import fly
+from scenarios.flight.closed_loop import fly, release
 from scenarios.flight.guard_belief import GuardBelief
 from scenarios.flight.outcome import Outcome
 from scenarios.flight.record import COLUMNS, FlightRecord
-from scenarios.flight.release import release
 from scenarios.measures.figures import flight_figures
 from scenarios.measures.premises import premise_figures
 from scenarios.vehicles.vehicle_setup import kinematic_setup
@@ -114,6 +114,17 @@ def test_wind_and_own_velocity_are_compared_with_all_that_may_make_them_wrong(pl
     assert ratio(budget, allowed | {"own_seen_speed_mps": 20.7}, "wind") == pytest.approx(0.7)
 
 
+def test_a_discrete_gust_is_an_error_of_the_wind_while_it_blows(plan):
+    budget = with_budget(plan, gusts=Bias(size=4.0))
+    gust = Gust(start=20.0, rise=4.0, fall=4.0, velocity_ned=(0.0, 3.0, 0.0))
+    gusty = replace(plan.world, weather=replace(plan.world.weather, gusts=(gust,)))
+    row = premise_figures(replace(budget, world=gusty), record({}))
+    assert row[ratio_column("wind")] == pytest.approx(0.75)
+    assert row[time_column("wind")] == pytest.approx(24.0)
+    # Half of it after half its rise, by 1 - cosine.
+    assert gust.share([22.0, 24.0, 26.0, 30.0]).tolist() == pytest.approx([0.5, 1.0, 0.5, 0.0])
+
+
 def test_in_turbulence_the_wind_has_k_standard_deviations_of_gusts_in_it(plan):
     turbulence = Process(sigma=2.0, correlation_time=10.0)
     budget = with_budget(plan, turbulence=turbulence)
@@ -189,15 +200,41 @@ def turn(plan, *, towards_vessel=0.0, at=None, begins=10.0):
 
 def test_a_turn_is_compared_with_its_response(plan):
     budget = with_budget(plan, response=Bias(size=10.0))
-    # As commanded: to the 3 cm that samples at 10 Hz leave of a path of 120 m.
-    assert ratio(budget, turn(budget), "response") == pytest.approx(0.0, abs=0.01)
+    # As commanded: what samples at 10 Hz leave of a path of 120 m is 3 cm, and counts as none.
+    assert math.isnan(ratio(budget, turn(budget), "response"))
     nearer = turn(budget, towards_vessel=5.0)
-    # The jump makes the way of its step 3.4 m longer, which counts as speed, at up to 0.04 rad from
-    # the direction across.
-    assert ratio(budget, nearer, "response") == pytest.approx(0.5, abs=0.1 * 3.4 * 0.04)
-    # What leads away is not counted.
-    assert ratio(budget, turn(budget, towards_vessel=-5.0), "response") < 0.01
+    # The jump makes the way of its step of 2 m longer, which counts as speed: ahead, where the
+    # vehicle is not.
+    missing_ahead = math.hypot(2.0, 5.0) - 2.0
+    expected = 0.1 * math.hypot(5.0, missing_ahead)
+    assert ratio(budget, nearer, "response") == pytest.approx(expected, rel=0.01)
+    # What leads away is not counted, but for what is missing ahead, where the disc closes in.
+    ahead = missing_ahead * math.cos(math.radians(30.0)) - 5.0 * math.sin(math.radians(30.0))
+    assert ratio(budget, turn(budget, towards_vessel=-5.0), "response") < 0.1 * ahead
     assert math.isnan(ratio(budget, nearer, "turning"))
+
+
+def test_a_turn_that_is_faster_than_predicted_turns_away_all_the_same(plan):
+    budget = with_budget(plan, response=Bias(size=1.0))
+    values = turn(budget)
+    # It turns on by 0.2 rad at once, after a radian: to the inner side.
+    rate = plan.guidance.guard.heading_rate_max
+    later = np.arange(0.0, 60.05, STEP) >= 10.0 + 1.0 / rate
+    for north, east in (("north_m", "east_m"), ("velocity_north_mps", "velocity_east_mps")):
+        about = values[north][later][0] + 1j * values[east][later][0]
+        about = about if north == "north_m" else 0.0
+        turned = about + (values[north] + 1j * values[east] - about) * np.exp(0.2j)
+        values[north] = np.where(later, turned.real, values[north])
+        values[east] = np.where(later, turned.imag, values[east])
+    # The vessel far ahead of the course at the end is nearer by metres, but no turn away leads there.
+    behind = {"vessel_north_m": -VESSEL_NORTH, "disc_north_m": -VESSEL_NORTH}
+    assert math.isnan(ratio(budget, values | behind, "response"))
+    # One that slows down is no turn away: the guard commands V_r.
+    late = turn(budget, towards_vessel=5.0)
+    late |= {"guard": 0.0, "airspeed_command_mps": plan.guidance.speed}
+    assert ratio(budget, late, "response") > 1.0
+    slowing = late | {"airspeed_command_mps": 0.8 * plan.guidance.speed}
+    assert math.isnan(ratio(budget, slowing, "response"))
 
 
 def test_in_turbulence_a_turn_is_compared_with_its_displacement_too(plan):
@@ -208,7 +245,9 @@ def test_in_turbulence_a_turn_is_compared_with_its_displacement_too(plan):
     # The jump is over in the first step of the turn: after it more and more would be kept.
     values = turn(budget, towards_vessel=5.0, at=10.0 + STEP)
     kept = 2.0 + ErrorBudget(**terms).displacement(wind=WindErrorByGusts(turbulence)).after(STEP)
-    assert ratio(budget, values, "turning") == pytest.approx(5.0 / kept, rel=0.01)
+    # It flies at the vessel yet: 30 degrees from where a turn away from one that draws ahead ends.
+    nearer = 5.0 * math.cos(math.radians(30.0))
+    assert ratio(budget, values, "turning") == pytest.approx(nearer / kept, rel=0.02)
     assert math.isnan(ratio(budget, values, "response"))
 
 

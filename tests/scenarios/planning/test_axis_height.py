@@ -5,9 +5,9 @@ expects.
 import pytest
 
 from measurement.plume.spread import downwash, rise
-from scenarios.planning.plume.axis import axis_height
-from scenarios.scenario.load import load_study
-from scenarios.world.exhaust import emission
+from scenarios.planning.plume import axis_height
+from scenarios.scenario.files import load_study
+from scenarios.world.plume import emission
 from scenarios.world.vessel import SteadyVessel
 
 

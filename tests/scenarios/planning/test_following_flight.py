@@ -11,7 +11,7 @@ from gnc.errors import InfeasibleError
 from gnc.estimation.navigation import WindFilter
 from gnc.mission.follow import FollowingParameters
 from innerloop.flight.part_failure import PartFailure
-from scenarios.planning.air.estimated_wind import navigation_parameters, wind_followed
+from scenarios.planning.air.wind import navigation_parameters, wind_followed
 from scenarios.planning.declared_vessel import check_declared
 from scenarios.vehicles.thrust_expectation import ThrustErrors, ThrustExpectation
 from scenarios.vehicles.vehicle_setup import kinematic_setup
@@ -160,11 +160,8 @@ class Swerving:
         return 8.0 * time, 40.0 * (1.0 - math.cos(0.1 * time)), 8.0, 4.0 * math.sin(0.1 * time)
 
 
-def test_a_track_of_ones_own_that_accelerates_more_than_is_declared_is_told_to_be_gentler_itself():
-    with pytest.raises(
-        InfeasibleError,
-        match=r"accelerates by 0\.4 m/s2.*: declare more, or manoeuvre more gently \(vessel\.track ",
-    ):
+def test_a_users_track_that_accelerates_more_than_is_declared_is_refused():
+    with pytest.raises(InfeasibleError, match=r"accelerates by 0\.4 m/s2.*: declare more"):
         check_declared(scenario(), Swerving())
 
 
@@ -209,7 +206,7 @@ def test_a_vessel_that_is_known_exactly_does_no_more_than_is_declared_either():
     }
     with pytest.raises(
         InfeasibleError,
-        match=r"by 0\.25 m/s2.*acceleration_mps2 = 0, on.* gently \(vessel\.manoeuvres\)",
+        match=r"by 0\.25 m/s2.*acceleration_mps2 = 0, on",
     ):
         plan(scenario(vessel=braking))
     plan(scenario(vessel=braking, following={"vessel_acceleration_mps2": 0.25}))

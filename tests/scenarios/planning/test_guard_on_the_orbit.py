@@ -10,8 +10,8 @@ from gnc.estimation.vessel import Tube
 from gnc.guard.guard import HeadingRateFilter
 from gnc.paper import PlumeAxis, distance_by_paper
 from innerloop.flight.turn_reversal import TurnReversalResponse
-from scenarios.planning.planner import plan_flight
-from scenarios.scenario.load import load_study, with_values
+from scenarios.planning.missions import plan_flight
+from scenarios.scenario.files import load_study, with_values
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 
 DEVIATION = 3.1

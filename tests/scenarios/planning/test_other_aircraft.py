@@ -15,11 +15,11 @@ from common.verdict import read_verdict
 from innerloop.store import DesignError, cache_directory
 from reports.output import write_report
 from reports.run.run_data import read_run
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.errors import InputError
 from scenarios.run import command
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study
 from tests.run_tables import manifest_of, rows_of
 
 SHORT = ["sweep.nu=[0.5]", "flight.crossings=2", "comparison.variants=[]"]

@@ -12,13 +12,12 @@ from gnc.estimation.plume.passes import equal_readings
 from gnc.mission.axis import PredictedPlume, SearchedPlume
 from measurement.sniffer.spec import sensor_preset, sensor_presets
 from scenarios.errors import InputError
-from scenarios.planning.planner import plan_flight
-from scenarios.planning.plume.axis import co2_sensor, plume_axis
-from scenarios.planning.plume.distance import additional_distance, information
-from scenarios.scenario.load import load_study
+from scenarios.planning.missions import plan_flight
+from scenarios.planning.plume import additional_distance, co2_sensor, information, plume_axis
+from scenarios.scenario.files import load_study
 from scenarios.scenario.sections.flight import ALTITUDE_MARGIN
 from scenarios.vehicles.vehicle_setup import kinematic_setup
-from scenarios.world.exhaust import emission
+from scenarios.world.plume import emission
 from scenarios.world.vessel import SteadyVessel
 
 VESSEL = SteadyVessel(8.0, 0.0)

@@ -13,14 +13,13 @@ from aircraft.fleet.x8 import X8
 from aircraft.spec import Envelope
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
-from scenarios.flight.closed_loop import fly
+from scenarios.flight.closed_loop import fly, release
 from scenarios.flight.outcome import Outcome
 from scenarios.flight.record import COLUMNS
-from scenarios.flight.release import release
 from scenarios.planning import scaling
-from scenarios.planning.planner import plan_flight
+from scenarios.planning.missions import plan_flight
 from scenarios.planning.scaling import scaled, units
-from scenarios.scenario.load import load_study, with_values
+from scenarios.scenario.files import load_study, with_values
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 
 SPEED, GRAVITY = 19.42, 9.80665

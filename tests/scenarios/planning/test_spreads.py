@@ -12,7 +12,7 @@ from gnc.errors import InfeasibleError
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
-from scenarios.planning.margin.tracking_spread import CALM_AIR_SPREAD, Spread, SpreadTable
+from scenarios.planning.margin.keepout_margin import CALM_AIR_SPREAD, Spread, SpreadTable
 from scenarios.planning.scaling import scaled
 from scenarios.planning.spreads import SPREAD_RATIOS, PredictedSpreads, predicted_spreads
 from scenarios.vehicles.vehicle_setup import aircraft_setup

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from gnc.errors import InfeasibleError
-from scenarios.planning.standoff import VesselCircle, vessel_circle
-from scenarios.scenario.load import load_study
+from scenarios.planning.missions import VesselCircle, vessel_circle
+from scenarios.scenario.files import load_study
 
 SPEED = 19.42
 

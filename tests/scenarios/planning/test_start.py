@@ -11,9 +11,9 @@ from gnc.estimation.navigation import MeasuredMotion
 from gnc.estimation.vessel import Tube
 from gnc.guard.guard import GuardParameters
 from scenarios.experiment.requests import Experiment
-from scenarios.planning.bounded_steering import farthest_start
-from scenarios.planning.start import Start, check_start
-from scenarios.scenario.load import load_study
+from scenarios.planning.guidance import farthest_start
+from scenarios.planning.missions import Start, check_start
+from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
 
 

@@ -6,12 +6,12 @@ from scipy.optimize import brentq
 
 from benchmarks.crossing_limit import designed
 from scenarios.planning.limits import omega_max
-from scenarios.planning.theory.speed_ratio import (
+from scenarios.planning.theory import (
     CROSSING_LIMITS,
     crossing_limit,
     theory_over_speed_ratio,
 )
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.scenario.sections.guidance import GuidanceConfig
 
 GUIDANCE = GuidanceConfig()

@@ -11,8 +11,8 @@ from gnc.estimation.vessel import Tube
 from gnc.guard.guard import HeadingRateFilter
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from scenarios.errors import InputError
-from scenarios.planning.planner import plan_flight
-from scenarios.scenario.load import load_study, with_values
+from scenarios.planning.missions import plan_flight
+from scenarios.scenario.files import load_study, with_values
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 
 SETUP = VehicleSetup(

@@ -1,10 +1,10 @@
-"""The catalog and its bases, and files that were written for earlier versions."""
+"""The catalog and its bases."""
 
 import tomllib
 
 import pytest
 
-from scenarios.scenario.load import CATALOG, bases, catalog, load_document, load_study
+from scenarios.scenario.files import CATALOG, bases, catalog, load_document, load_study
 
 
 def own(path):
@@ -77,33 +77,11 @@ def test_what_extends_a_shared_base_has_its_equipment():
     assert manoeuvres.sensors.heading_bias_deg == 0.0
 
 
-def test_a_file_of_an_earlier_version_is_read_as_the_operational_scenario_that_it_was(tmp_path):
-    path = tmp_path / "old.toml"
-    path.write_text('study = "sea"\ntitle = "old"\n[wind]\nspeed_mps = 3.0\n', encoding="utf-8")
-    old = load_study(str(path))
-    path.write_text(
-        'extends = "operational"\nstudy = "flights"\ntitle = "old"\n[wind]\nspeed_mps = 3.0\n',
-        encoding="utf-8",
-    )
-    assert old == load_study(str(path))
-    assert (old.guidance.mission, old.start.spread_deg, old.criteria.altitude_error_max_m) == (
-        "follow",
-        180.0,
-        False,
-    )
-
-
 @pytest.mark.parametrize("study", ["monte_carlo", "falsify"])
-def test_a_study_of_an_earlier_version_without_a_base_is_operational(tmp_path, study):
+def test_a_study_with_random_variables_and_without_a_base_is_operational(tmp_path, study):
     path = tmp_path / "old.toml"
     path.write_text(
         f'study = "{study}"\ntitle = "old"\n[[draws]]\nkey = "wind.speed_mps"\nuniform = [0, 5]\n',
         encoding="utf-8",
     )
     assert load_document(str(path))["guidance"] == {"mission": "follow"}
-
-
-def test_a_list_of_an_earlier_version_is_a_list_of_trials(tmp_path):
-    path = tmp_path / "old.toml"
-    path.write_text('study = "sea_trial"\ntitle = "old"\ntrials = ["sea_wind"]\n', encoding="utf-8")
-    assert (load_study(str(path)).study, load_study(str(path)).trials) == ("trials", ("sea_wind",))

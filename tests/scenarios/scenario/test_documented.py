@@ -6,10 +6,14 @@ import re
 import pytest
 from pydantic import RootModel
 
-from scenarios.scenario.documented import documented_keys, documented_sections, similar_key
-from scenarios.scenario.documented_parts import FLIGHT_STUDIES
-from scenarios.scenario.keys import known_keys
-from scenarios.scenario.load import KINDS
+from scenarios.scenario.documentation import (
+    FLIGHT_STUDIES,
+    documented_keys,
+    documented_sections,
+    similar_key,
+)
+from scenarios.scenario.errors import known_keys
+from scenarios.scenario.files import KINDS
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.convergence import ConvergenceScenario
 from scenarios.scenario.sections.experiment import SubsetConfig, TrialList

@@ -4,8 +4,8 @@ import pytest
 
 from scenarios.errors import InputError
 from scenarios.experiment.points import points_of
-from scenarios.scenario.experiment_checks import unsteady
-from scenarios.scenario.load import load_study
+from scenarios.scenario.consistency import unsteady
+from scenarios.scenario.files import load_study
 
 LAG = 'sweep."kinematic.heading_rate_lag_s" = [0.1, 0.2]\n'
 DIRECTION = '[[draws]]\nkey = "wind.from_deg"\nuniform = [0.0, 90.0]\n'
@@ -86,58 +86,9 @@ def test_a_swept_or_sampled_key_that_some_flights_use_is_accepted(tmp_path, text
     assert loaded(tmp_path, text).title == "own"
 
 
-@pytest.mark.parametrize(
-    ("scenario", "overrides", "words"),
-    [
-        ("plume_search", [], "following.plume 'estimated'"),
-        ("sulphur", ["flight.until=verdict"], "flight.until 'verdict'"),
-        ("patrol", [], "following.plume 'estimated' and flight.until 'verdict'"),
-        (
-            "plume_search",
-            ["following.plume=told", "comparison.variants=[]"],
-            "following.plume 'told'",
-        ),
-    ],
-)
-def test_a_circle_about_the_vessel_is_refused_where_exhaust_is_searched_for(
-    scenario, overrides, words
-):
-    with pytest.raises(InputError, match=words) as refused:
-        load_study(scenario, ["guidance.mission=standoff", *overrides])
-    assert "\n" not in str(refused.value)
-
-
 def test_what_the_refusal_of_a_circle_tells_to_set_is_accepted():
     remedies = ["following.plume=predicted", "flight.until=flown", "comparison.variants=[]"]
     assert load_study("plume_search", ["guidance.mission=standoff", *remedies]).stands_off
-
-
-def test_what_places_an_oscillation_in_exhaust_names_the_mission_beside_a_circle():
-    with pytest.raises(
-        InputError,
-        match=r"'following\.distance' has no effect here.*set guidance\.mission to 'follow'",
-    ):
-        load_study("sulphur", ["guidance.mission=standoff", "following.distance=best_measurement"])
-
-
-@pytest.mark.parametrize(
-    ("scenario", "overrides", "words"),
-    [
-        ("sulphur", ["plume.structure_length=0.5"], "set plume.structure_intensity"),
-        (
-            "sulphur",
-            ["plume.meander=false", "plume.meander_length_up=1"],
-            "leave plume.meander out",
-        ),
-        ("sulphur", ["plume.mean=true", "plume.structure_intensity=0.3"], "leave plume.mean out"),
-        ("sea_wind", ["plume.model=fluctuating", "plume.richardson=0.5"], "set emission.ship"),
-    ],
-)
-def test_a_setting_of_smoke_that_other_settings_leave_idle_is_refused(scenario, overrides, words):
-    with pytest.raises(
-        InputError, match=f"'{overrides[-1].partition('=')[0]}' has no effect here.*{words}"
-    ):
-        load_study(scenario, overrides)
 
 
 def test_a_setting_of_smoke_is_accepted_beside_what_it_needs():

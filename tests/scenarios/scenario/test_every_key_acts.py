@@ -10,10 +10,10 @@ import pytest
 from scenarios.engine.task import Task
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
-from scenarios.flight_runner import FlightWork
+from scenarios.flight_runner import FlightRunner
 from scenarios.planning.spreads import PredictedSpreads
-from scenarios.scenario.keys import known_keys
-from scenarios.scenario.load import load_study
+from scenarios.scenario.errors import known_keys
+from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
 
 SHORT = """
@@ -207,13 +207,13 @@ BEYOND_OR_WITHIN = {"criteria.law_beyond_heading_rate_max", "criteria.law_within
 
 def flown(document, *overrides):
     scenario = load_study(document, overrides)
-    work = FlightWork(
+    work = FlightRunner(
         experiments=(Experiment("short", scenario),),
         histories=1,
         setup=None,
         spreads=PredictedSpreads(),
     )
-    result = work.fly(Task(number=0))
+    result = work.run(Task(number=0))
     (row,) = result.tables["summary.csv"]
     return {key: repr(value) for key, value in row.items() if key != "wall_time_s"}, result
 

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import pytest
 
-from scenarios import load
+from scenarios.api.scenario import load
 from scenarios.errors import InputError
-from scenarios.planning.bounded_steering import steering_law
-from scenarios.scenario.load import load_study
+from scenarios.planning.guidance import steering_law
+from scenarios.scenario.files import load_study
 from scenarios.studies.arena.entrants import entrants_of
 
 

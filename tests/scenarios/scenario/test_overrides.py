@@ -8,8 +8,8 @@ from pydantic import BaseModel, RootModel
 from scenarios.errors import InputError
 from scenarios.experiment.points import points_of
 from scenarios.experiment.requests import Experiment
-from scenarios.scenario.keys import known_keys
-from scenarios.scenario.load import load_document, load_study
+from scenarios.scenario.errors import known_keys
+from scenarios.scenario.files import load_document, load_study
 from scenarios.scenario.overrides import given_keys, merged, set_value
 from scenarios.scenario.scenario import Scenario
 
@@ -29,61 +29,6 @@ def refusal(name, *overrides):
 
 
 @pytest.mark.parametrize(
-    ("scenario", "override", "key"),
-    [
-        ("sweep_nu", "nu=0.5", "sweep.nu=[0.5]"),
-        ("sweep_nu", "nu=[0.3, 0.5]", "sweep.nu=[0.3, 0.5]"),
-        ("paper", "nu=0.5", "sweep.nu=[0.5]"),
-        ("sea_approach", "nu=0.5", "vessel.speed_ratio=0.5"),
-        ("sea_approach", "nu=[0.3, 0.5]", "sweep.nu=[0.3, 0.5]"),
-    ],
-)
-def test_the_short_word_for_the_speed_ratio_gets_the_key_that_sets_it(scenario, override, key):
-    assert refusal(scenario, override) == f"unknown key 'nu'; did you mean '{key}'?"
-    # And that is taken.
-    load_study(scenario, [key])
-
-
-@pytest.mark.parametrize(
-    ("override", "words"),
-    [
-        ("wind.form_deg=3", "unknown key 'wind.form_deg'; did you mean 'wind.from_deg'?"),
-        ("wnd.speed_mps=3", "unknown key 'wnd'; did you mean 'wind'?"),
-        (
-            "speed_mps=3",
-            "unknown key 'speed_mps'; did you mean 'vessel.speed_mps' or 'wind.speed_mps'?",
-        ),
-        ("wind.direction=3", "unknown key 'wind.direction'; known in wind are speed_mps, from_deg"),
-        ("vessel.manoeuvres=[{at_s=1, turn_dg=3}]", "did you mean 'vessel.manoeuvres.0.turn_deg'?"),
-        (
-            "turbulence.level=sever",
-            "turbulence.level: value is 'sever'; did you mean 'severe'? it must be 'none', 'light'",
-        ),
-        (
-            "guidance.law=lyapunow",
-            "guidance.law: unknown steering law 'lyapunow'; did you mean 'lyapunov'? known are ardupilot_l1",
-        ),
-        (
-            "guidance.law=mine.py",
-            "steering law 'mine.py' names a file, and no part in it; give mine.py:NAME",
-        ),
-        (
-            "study=monte_karlo",
-            "study is 'monte_karlo'; did you mean 'monte_carlo'? it must be one of",
-        ),
-        ("extends=sim3", "extends stands in a scenario file"),
-        # A digit to Unicode that is no decimal.
-        (
-            "vessel.manoeuvres.².turn_deg=5",
-            "vessel.manoeuvres: value is {'²': {'turn_deg': 5}}; give a list",
-        ),
-    ],
-)
-def test_an_unknown_word_gets_the_nearest_known_one(override, words):
-    assert words in refusal("sea_approach", override)
-
-
-@pytest.mark.parametrize(
     ("name", "words"),
     [
         (
@@ -96,25 +41,6 @@ def test_an_unknown_word_gets_the_nearest_known_one(override, words):
 )
 def test_an_unknown_scenario_gets_the_nearest_known_one(name, words):
     assert words in refusal(name)
-
-
-def test_an_entry_of_an_empty_list_is_refused_with_how_to_add_one():
-    message = refusal("sea_approach", "vessel.manoeuvres.0.turn_deg=90")
-    assert (
-        "vessel.manoeuvres has no entries; add one with --set 'vessel.manoeuvres=[{at_s=100, turn_deg=90}]'"
-        in message
-    )
-    # And that is accepted.
-    (manoeuvre,) = load_study(
-        "sea_approach", ["vessel.manoeuvres=[{at_s=100, turn_deg=90}]"]
-    ).vessel.manoeuvres
-    assert (manoeuvre.at_s, manoeuvre.turn_deg) == (100.0, 90.0)
-
-
-def test_an_entry_of_a_list_that_does_not_exist_is_an_unknown_key():
-    assert refusal("sea_approach", "vessel.manouvres.0.turn_deg=90") == (
-        "unknown key 'vessel.manouvres'; did you mean 'vessel.manoeuvres'?"
-    )
 
 
 def test_a_file_with_a_byte_order_mark_is_read(tmp_path):
@@ -172,15 +98,6 @@ def test_a_description_is_of_the_scenario_that_gives_it_and_not_of_those_that_ex
     assert load_study({"extends": "sea_wind", "title": "of a program"}).description == ""
     # With a key set for it, it is still the scenario that is described.
     assert load_study("sea_wind", ["flights=2"]).description == load_study("sea_wind").description
-
-
-@pytest.mark.parametrize(
-    ("document", "words"),
-    [({1: 2}, "the scenario has the key 1"), ({"wind": {3: 4}}, "'wind' has the key 3")],
-)
-def test_a_mapping_whose_keys_are_no_text_is_refused(document, words):
-    with pytest.raises(InputError, match=f"{words}, a value of int; keys are words in text"):
-        load_study({"extends": "sea_wind", **document})
 
 
 def test_overrides_come_after_what_a_file_extends(tmp_path):
@@ -275,15 +192,6 @@ def test_a_key_that_a_base_samples_is_swept_in_place_of_that(override, tmp_path)
         assert len({wind.speed_mps for wind in flown}) >= study.flights
 
 
-def test_a_file_that_sweeps_and_samples_a_key_is_refused(tmp_path):
-    path = write(
-        tmp_path,
-        "both.toml",
-        'extends = "sea_wind"\nsweep.wind.from_deg = [0, 90]\n[[draws]]\nkey = "wind.from_deg"\nuniform = [0.0, 9.0]\n',
-    )
-    assert "'wind.from_deg' is in sweep and in draws; give it in one of them" in refusal(path)
-
-
 def test_an_override_of_a_speed_ends_a_sampled_speed_ratio_and_one_of_the_ratio_a_swept_speed(
     tmp_path,
 ):
@@ -301,48 +209,6 @@ def test_an_override_of_a_speed_ends_a_sampled_speed_ratio_and_one_of_the_ratio_
     ] == [9.71]
     # Of a sweep of ratios, of which a run is made, the speed does not end anything.
     assert "'vessel.speed_mps' has no effect here" in refusal("sweep_nu", "vessel.speed_mps=5")
-
-
-@pytest.mark.parametrize(
-    ("scenario", "override", "words"),
-    [
-        (
-            "monte_carlo",
-            ["start.distance_m=[300, 350]"],
-            "'start.range_m' is swept or sampled in every flight, and takes",
-        ),
-        (
-            "sea_approach",
-            ["vessel.speed_mps=5", 'draws=[{key="vessel.speed_ratio",uniform=[0.1,0.5]}]'],
-            "'vessel.speed_ratio' is swept or sampled in every flight",
-        ),
-        (
-            "monte_carlo",
-            ["start.spread_deg=10"],
-            "'start.aspect_deg' is swept or sampled in every flight",
-        ),
-        (
-            "sweep_nu",
-            ["sweep.start.range_m=[400, 500]", "start.distance_m=[300, 350]"],
-            "'start.range_m' is swept or sampled",
-        ),
-        (
-            "sea_approach",
-            [
-                "vessel.manoeuvres=[{at_s=9}]",
-                "sweep.vessel.manoeuvres=[[{at_s=9}]]",
-                "vessel.manoeuvres.0.turn_deg=5",
-            ],
-            "'vessel.manoeuvres' is swept or sampled in every flight",
-        ),
-    ],
-)
-def test_an_override_that_another_key_puts_aside_in_every_flight_is_refused(
-    scenario, override, words
-):
-    message = refusal(scenario, *override)
-    assert "has no effect here" in message
-    assert words in message
 
 
 def test_a_sweep_on_the_command_line_is_kept_beside_an_earlier_override(tmp_path):

@@ -5,9 +5,9 @@ import pytest
 
 from scenarios.errors import InputError
 from scenarios.experiment.points import points_of
-from scenarios.experiment.random_sample import flights_per_sample, is_random_sample
 from scenarios.experiment.requests import Experiment
-from scenarios.scenario.load import checked, load_study, with_values
+from scenarios.experiment.sampling import flights_per_sample, is_random_sample
+from scenarios.scenario.files import load_study, with_values
 from scenarios.scenario.scenario import Scenario
 
 WIND = {"key": "wind.speed_mps", "uniform": [0.0, 5.0]}
@@ -203,83 +203,6 @@ def test_a_distance_that_is_sampled_is_checked_by_its_own_value_and_not_by_that_
         with_values(study, {"start.range_m": 490.0})
 
 
-CASE = [{"name": "own", "set": {"seed": 3}}]
-
-
-@pytest.mark.parametrize(
-    ("keys", "words"),
-    [
-        (
-            {"draws": [{"key": "criteria.tracking_error_rms_m", "uniform": [1.0, 2.0]}]},
-            "draws has 'criteria.tracking_error_rms_m'",
-        ),
-        (
-            {"draws": [{"key": "search.kept", "choice": [1, 2]}]},
-            "draws has 'search.kept', which sets nothing of a flight",
-        ),
-        (
-            {"draws": [WIND, {"key": "draws.0.uniform", "choice": [[0, 1], [0, 2]]}]},
-            "draws has 'draws.0.uniform'",
-        ),
-        (
-            {"sweep": {"nu": [0.3], "vessel.speed_ratio": [0.4]}},
-            "sweep has 'nu' and 'vessel.speed_ratio', which are the same",
-        ),
-        (
-            {
-                "sweep": {"nu": [0.3]},
-                "draws": [{"key": "vessel.speed_ratio", "uniform": [0.2, 0.4]}],
-            },
-            "is in sweep and in draws",
-        ),
-        ({"cases": CASE}, "case 'own' sets 'seed', on which its flights do not depend"),
-        (
-            {"cases": [{"name": "own", "set_kinematic": {"flights": 3}}]},
-            "case 'own' sets 'flights'",
-        ),
-        (
-            {"cases": [{"name": "own", "set": {"sweep.wind.speed_mps": [3]}}]},
-            "case 'own' sets 'sweep.wind.speed_mps'",
-        ),
-        (
-            {"comparison": {"variants": [{"name": "own", "set": {"study": "paper"}}]}},
-            "comparison 'own' sets 'study'",
-        ),
-        (
-            {"comparison": {"variants": [{"name": "own", "set": {"search.kept": 9}}]}},
-            "comparison 'own' sets 'search.kept'",
-        ),
-        (
-            {"comparison": {"variants": [{"name": "own", "set": {"draws": []}}]}},
-            "comparison 'own' sets 'draws'",
-        ),
-        (
-            {"arena": {"conditions": [{"name": "own", "title": "Own", "set": {"flights": 2}}]}},
-            "condition 'own' sets 'flights'",
-        ),
-        (
-            {"arena": {"conditions": [{"name": "own", "title": "Own", "set": {"arena": {}}}]}},
-            "condition 'own' sets 'arena'",
-        ),
-    ],
-)
-def test_what_no_flight_depends_on_is_neither_sampled_nor_set_for_some_flights(keys, words):
-    with pytest.raises(InputError) as refusal:
-        checked({"title": "own", **keys}, Scenario)
-    assert words in str(refusal.value)
-    assert "\n" not in str(refusal.value)
-
-
-def test_two_comparisons_of_one_name_are_refused():
-    twice = [{"name": "own", "set": {"guidance.preview": of}} for of in (True, False)]
-    words = "2 comparisons are called 'own', and would count as one; give each a name of its own"
-    with pytest.raises(InputError, match=words):
-        checked({"title": "own", "comparison": {"variants": twice}}, Scenario)
-    cases = [{"name": "own", "comparison": True}, {"name": "other"}]
-    with pytest.raises(InputError, match=words):
-        checked({"title": "own", "cases": cases, "comparison": {"variants": twice[:1]}}, Scenario)
-
-
 def test_what_some_flights_may_depend_on_is_set_for_them():
     of_flights = {"flight_seed": 3, "criteria.settles": False, "wind": {"speed_mps": 3.0}}
     conditions = [
@@ -319,29 +242,6 @@ def test_swept_values_that_are_equal_are_flown_once():
         )
     )
     assert [point.scenario.wind.speed_mps for point in points] == [5.0, 6.0]
-
-
-def test_a_comparison_at_a_speed_ratio_that_is_not_swept_is_refused():
-    for nu in ("[0.33]", "[0.3, 0.33]"):
-        with pytest.raises(
-            InputError,
-            match=r"'comparison\.nu' has no effect here: .* these ratios in sweep\.nu, too",
-        ):
-            load_study("sweep_nu", ["sweep.nu=[0.3, 0.6]", f"comparison.nu={nu}"])
-    # That of the file is left aside by an override.
-    assert load_study("sweep_nu", ["sweep.nu=[0.3]"]).comparison.nu == (0.15, 0.5)
-
-
-def test_a_funnel_that_is_too_high_for_exhaust_is_refused_by_its_key_at_any_point():
-    # measurement.plume takes heights of 1 to 200 m; an axis without smoke may begin higher.
-    within = ["plume.source_height_m=200", "flight.altitude_m=100"]
-    assert load_study("sulphur", within).plume.source_height_m == 200.0
-    assert load_study("sweep_nu", ["plume.source_height_m=500"]).plume.source_height_m == 500.0
-    with pytest.raises(
-        InputError,
-        match=r"^plume\.source_height_m is 500 m beside emission\.ship; .* 200 m at most: lower it",
-    ):
-        load_study("sulphur", ["plume.source_height_m=500"])
 
 
 @pytest.mark.parametrize(
@@ -397,23 +297,3 @@ def test_ships_are_compared_from_one_altitude_or_funnel_height(varied):
     # Either gives all of them the one altitude for which the autopilot is designed.
     for given in ("flight.altitude_m=40", "plume.source_height_m=40"):
         assert load_study("sulphur", [ships, given]).altitude == 40.0
-
-
-@pytest.mark.parametrize(
-    ("keys", "words"),
-    [
-        (
-            ["flight.altitude_m=5"],
-            "flight.altitude_m is 5 m, below .* 20 to 120 m: set it in between, or lower ",
-        ),
-        (
-            ["flight.altitude_m=130"],
-            "flight.altitude_m is 130 m, above .* in between, or raise flight.altitude_max_m",
-        ),
-    ],
-)
-def test_a_start_outside_of_the_altitudes_at_which_exhaust_is_crossed_is_refused(keys, words):
-    with pytest.raises(InputError, match=words):
-        load_study("sulphur", keys)
-    # Without exhaust there are no such altitudes.
-    assert load_study("sweep_nu", ["plume.source_height_m=15"]).altitude == 15.0

@@ -8,10 +8,14 @@ import numpy as np
 import pytest
 
 from common.registry import PluginError
-from scenarios.search.coordinate import Coordinate
-from scenarios.search.method import SEARCH_METHODS, SearchSettings
-from scenarios.search.space import Space
-from scenarios.search.turns import methods_named, search_in_turns
+from scenarios.search.method import (
+    SEARCH_METHODS,
+    Coordinate,
+    SearchSettings,
+    Space,
+    methods_named,
+    search_in_turns,
+)
 
 METHODS = ("corners", "differential_evolution", "local", "cma")
 

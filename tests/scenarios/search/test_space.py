@@ -3,9 +3,7 @@
 import numpy as np
 import pytest
 
-from scenarios.search.coordinate import Coordinate
-from scenarios.search.found import Found
-from scenarios.search.space import Space
+from scenarios.search.method import Coordinate, Found, Space
 
 HALVES = (0.0, 0.5, 1.0)
 

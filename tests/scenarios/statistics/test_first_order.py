@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from scenarios.statistics.first_order import first_order_index
+from scenarios.statistics.sensitivity import first_order_index
 
 REPEATS = 100
 """Samples of each model and size: a share of 95 % is known to 2.2 %."""

@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 from common.premises import TERMS, ratio_column
-from scenarios.statistics.premises import premise_lines, premise_table
+from scenarios.statistics.estimates import premise_lines, premise_table
 
 
 def rows():

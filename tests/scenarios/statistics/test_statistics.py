@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 from common.intervals import clopper_pearson, quantile_interval, upper_bound
-from scenarios.statistics.estimates import NAMED_MAX, share, study_statistics
+from scenarios.statistics.estimates import NAMED_MAX, confidence_at, share, study_statistics
 from scenarios.statistics.sensitivity import sensitivity_indices
-from scenarios.statistics.stopping import confidence_at
 from tests.scenarios.study_rows import PREDICTED, RADIUS, few_indices, study_rows
 
 FLIGHTS = 250

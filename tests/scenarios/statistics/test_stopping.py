@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from common.intervals import upper_bound
-from scenarios.statistics.stopping import confidence_at, looks, tight_enough
+from scenarios.statistics.estimates import confidence_at, looks, tight_enough
 
 
 def rows_with(distances, entered=0, outcome="completed"):
@@ -118,15 +118,3 @@ def test_both_of_two_wishes_have_to_be_met():
     assert tight_enough(rows, **asked, violation_upper=0.01, distance_quantile_width_m=11.0)
     assert not tight_enough(rows, **asked, violation_upper=0.001, distance_quantile_width_m=11.0)
     assert not tight_enough(rows, **asked, violation_upper=0.01, distance_quantile_width_m=9.0)
-
-
-def test_a_stop_for_nothing_and_looks_that_cannot_be_are_refused():
-    with pytest.raises(
-        ValueError,
-        match="no interval is demanded; give violation_upper or distance_quantile_width_m",
-    ):
-        tight_enough(rows_with(np.full(3, 210.0)), look_number=1, confidence=0.95)
-    with pytest.raises(ValueError, match="planned flights are 0; plan one at least"):
-        looks(0)
-    with pytest.raises(ValueError, match="look number is 0; looks are counted from 1"):
-        confidence_at(0, 0.95)

@@ -12,15 +12,15 @@ import pytest
 from scipy.special import ndtri
 
 from common.intervals import upper_bound
-from scenarios.statistics.subset_estimates import (
+from scenarios.statistics.subset_simulation import (
     curve,
     distance,
     input_shifts,
     near_event,
     noise_floor,
     rare_probability,
+    subset_statistics,
 )
-from scenarios.statistics.subset_statistics import subset_statistics
 from tests.scenarios.statistics.rare_events import DIMENSION, linear, noisy, simulated
 from tests.scenarios.study_rows import study_rows
 

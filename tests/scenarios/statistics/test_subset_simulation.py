@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.special import ndtr
 
-from scenarios.statistics.subset_levels import variation
+from scenarios.statistics.subset_simulation import variation
 from tests.scenarios.statistics.rare_events import (
     DIMENSION,
     four_branches,

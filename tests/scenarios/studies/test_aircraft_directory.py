@@ -14,7 +14,7 @@ import pytest
 from measurement.emission import DEFAULT_STACK_HEIGHT
 from reports.output import write_report
 from reports.run.run_data import read_run
-from scenarios.scenario.load import load_document
+from scenarios.scenario.files import load_document
 from tests.in_process import assert_refused, run_command
 from tests.run_tables import manifest_of
 

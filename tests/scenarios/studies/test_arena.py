@@ -6,11 +6,11 @@ import pandas as pd
 import pytest
 
 from gnc.laws import STEERING_LAWS
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.errors import InputError
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.studies.arena.entrants import conditions_of, entrants_of
-from scenarios.studies.registry import run_study
+from scenarios.studies.base import run_study
 from tests.in_process import assert_refused, run_command
 from tests.run_tables import manifest_of, rows_of
 from tests.scenarios.plugin_files import LAW
@@ -214,7 +214,7 @@ class LosingTuner(InProcessExecutor):
     def fly(self, tasks):
         flights = self._work._ends[-1]
         return (
-            self._work.lost(task, "was killed") if task.number == flights else self._work.fly(task)
+            self._work.lost(task, "was killed") if task.number == flights else self._work.run(task)
             for task in tasks
         )
 

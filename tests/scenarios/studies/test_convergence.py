@@ -11,8 +11,7 @@ import pytest
 from gnc.analysis.ensemble_motion import Vehicle
 from gnc.analysis.turning_reference import averaged_settling_time
 from gnc.paper import look_ahead
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.engine.local_executor import LocalExecutor
+from scenarios.engine.processes import InProcessExecutor, LocalExecutor
 from scenarios.engine.task import Limits, Task
 from scenarios.errors import InputError
 from scenarios.studies.convergence.cases import REFERENCES, draw_case, references_of

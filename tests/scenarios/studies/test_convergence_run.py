@@ -8,12 +8,12 @@ import pytest
 from gnc.analysis.ensemble import DISTANCE_CONVERGED, PHI_CONVERGED
 from reports.output import write_report
 from reports.run.run_data import read_run
-from scenarios.engine.executors import ExecutorFactory
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
+from scenarios.engine.runner import ExecutorFactory
 from scenarios.errors import InputError
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.scenario.sections.convergence import ConvergenceScenario
-from scenarios.studies.registry import run_study
+from scenarios.studies.base import run_study
 from tests.run_tables import manifest_of
 
 FEW = ["ensemble.trajectories=12", "ensemble.distance_max_m=100", "ensemble.samples=2"]
@@ -177,7 +177,10 @@ def test_an_interrupt_while_time_histories_are_kept_leaves_a_run_that_can_be_res
         ('guidance.laws=["cascade", "cascade"]', ["laws is ['cascade', 'cascade']", "once"]),
         ("guidance.laws=cascade", ["guidance.laws", "'cascade'", "list in brackets"]),
         ('guidance.laws=["magic"]', ["guidance.laws.0", "'magic'", "lyapunov"]),
-        ("ensemble.trajectories=0", ["ensemble.trajectories is 0; it must be at least 1"]),
+        (
+            "ensemble.trajectories=0",
+            ["ensemble.trajectories is 0; input should be greater than or equal to 1"],
+        ),
         (
             "guidance.heading_rate_max_rad_s=0.4",
             ["heading_rate_max_rad_s", "0.4", "above 0.5 rad/s"],

@@ -5,11 +5,11 @@ both.
 import pandas as pd
 import pytest
 
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study
 from tests.run_tables import manifest_of, rows_of
 
 SLOW_STEPS = ("fidelity=kinematic", "guidance.rate_hz=5", "flight.log_rate_hz=5")

@@ -9,10 +9,10 @@ import pytest
 
 from aircraft.spec import AircraftError
 from common.verdict import read_verdict
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.errors import InputError
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study, study_of
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study, study_of
 from tests.run_tables import manifest_of, rows_of
 from tests.scenarios.short_trial import short_trial
 
@@ -146,7 +146,7 @@ def test_a_run_is_resumed_with_the_same_trials_only(tmp_path):
     one.write_text(TRIAL + "[keepout]\nradius_m = 190.0\n", encoding="utf-8")
     with pytest.raises(
         InputError,
-        match=r"configuration: keepout\.radius_m of one was 200\.0, and is 190\.0 now; resume",
+        match=r"configuration: one\.keepout\.radius_m was 200\.0, and is 190\.0 now; resume",
     ):
         run(listed, tmp_path / "run", "share=0.1", resume=True)
 
@@ -162,7 +162,7 @@ def test_a_run_is_resumed_with_the_same_trials_only(tmp_path):
         ('trials = ["sea_wind"]\nset = 5', "set: value is 5; give a list in brackets"),
         (
             'trials = ["sea_wind"]\nset = "share=1"',
-            "set: value is 'share=1'; give a list in brackets",
+            "set is 'share=1'; input should be a valid tuple",
         ),
         ('trials = ["sea_wind"]\nset = ["colour"]', "'colour' is not of the form key=value"),
         ('trials = ["sea_wind"]\nset = ["vessel.colour=1"]', "unknown key 'vessel.colour'"),
@@ -200,7 +200,7 @@ def test_what_the_aircraft_cannot_do_is_reported_in_one_line(listed, tmp_path, m
     def refused(*_args, **_keys):
         raise AircraftError("does not turn right: lower the bank")
 
-    monkeypatch.setattr("scenarios.studies.flight_study.predicted_spreads", refused)
+    monkeypatch.setattr("scenarios.studies.base.predicted_spreads", refused)
     with pytest.raises(InputError, match="x8: does not turn right: lower the bank"):
         run(listed, tmp_path / "run")
 

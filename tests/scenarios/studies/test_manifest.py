@@ -12,10 +12,10 @@ from measurement.emission import Ship
 from measurement.sniffer.channel import Channel
 from measurement.sniffer.spec import SnifferSpec
 from scenarios.errors import InputError
-from scenarios.scenario.documented_parts import described_fields
-from scenarios.scenario.load import load_study, with_values
+from scenarios.scenario.documentation import described_fields
+from scenarios.scenario.files import load_study, with_values
+from scenarios.studies.base import run_study
 from scenarios.studies.manifest import parameters, plugins, unused_parameters
-from scenarios.studies.registry import run_study
 from tests.scenarios.plugin_files import INSTRUMENT, LAW
 
 

@@ -6,14 +6,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from scenarios.engine.executors import ExecutorFactory
-from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.engine.journal import Journal
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.engine.run_directory import RunDirectory
+from scenarios.engine.runner import ExecutorFactory
 from scenarios.errors import InputError
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.statistics.sensitivity import sensitivity_indices
-from scenarios.studies.registry import run_study, study_of
+from scenarios.studies.base import run_study, study_of
 from tests.run_tables import manifest_of
 from tests.scenarios.losing_executor import losing
 
@@ -131,7 +131,7 @@ def test_the_console_says_the_bound_of_the_statistics_in_which_a_lost_flight_cou
 @pytest.fixture
 def frequent_looks(monkeypatch):
     """Look after 8, 16, 32 flights and so on: 256 would take too long here."""
-    monkeypatch.setattr("scenarios.statistics.stopping.FIRST_LOOK", 8)
+    monkeypatch.setattr("scenarios.statistics.estimates.FIRST_LOOK", 8)
 
 
 def test_a_study_stops_by_itself_where_the_interval_it_was_asked_for_is_tight_enough(
@@ -215,7 +215,7 @@ def test_copies_of_flights_are_refused_as_no_probability_follows_from_them(tmp_p
     [
         ("sampling=halton", ["sampling", "'halton'", "sobol"]),
         ("statistics.confidence=1.5", ["statistics.confidence", "1.5", "below 1"]),
-        ("flights=0", ["flights is 0; it must be at least 1"]),
+        ("flights=0", ["flights is 0; input should be greater than or equal to 1"]),
     ],
 )
 def test_bad_values_are_refused_in_one_line(override, words):

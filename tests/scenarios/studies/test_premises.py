@@ -7,11 +7,11 @@ import pandas as pd
 
 from common.premises import TERMS
 from common.run_layout import COLUMNS, FLIGHTS
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.flight.guard_belief import GuardBelief
 from scenarios.measures import figures
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study
 
 QUICK = [
     "fidelity='kinematic'", "flights=1", "flight.duration_max_s=40",

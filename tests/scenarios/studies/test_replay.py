@@ -9,13 +9,13 @@ import pytest
 from common.run_layout import flight_of
 from reports.registry import content
 from reports.run.run_data import read_run
-from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.engine.journal import Journal
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.engine.runner import fly_study
 from scenarios.engine.task import Result, Task
 from scenarios.errors import InputError
-from scenarios.scenario.load import is_flight, load_study
-from scenarios.studies.registry import run_study
+from scenarios.scenario.files import is_flight, load_study
+from scenarios.studies.base import run_study
 from scenarios.studies.replay import Replay
 from tests.in_process import assert_refused, run_command
 from tests.run_tables import change_manifest, manifest_of, write_manifest

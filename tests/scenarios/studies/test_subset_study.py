@@ -10,16 +10,16 @@ import pytest
 from common.intervals import clopper_pearson
 from reports.output import write_report
 from reports.run.run_data import read_run
-from scenarios.engine.executors import ExecutorFactory
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.engine.run_directory import RunDirectory
+from scenarios.engine.runner import ExecutorFactory
 from scenarios.engine.task import Task
 from scenarios.errors import InputError
-from scenarios.experiment.declared import beyond_declared
 from scenarios.experiment.draws import sampled_flight, value_at
 from scenarios.experiment.requests import Experiment
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study, study_of
+from scenarios.experiment.sampling import beyond_declared
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study, study_of
 from scenarios.studies.replay import Replay
 from scenarios.world.noise import Noise
 from tests.run_tables import manifest_of
@@ -272,7 +272,7 @@ def test_a_flight_depends_on_the_seed_beside_its_blend_in_turbulence_alone(tmp_p
     )
     assert not beyond_declared(study.trials["monte_carlo"], inputs)
     one, other = (
-        work.fly(Task(number=0, point=(*inputs, seed, 5.0, 1.0))).tables["summary.csv"][0]
+        work.run(Task(number=0, point=(*inputs, seed, 5.0, 1.0))).tables["summary.csv"][0]
         for seed in (17.0, 18.0)
     )
     assert one["min_distance_m"] > 0.0
@@ -339,7 +339,10 @@ def test_its_report_says_the_probability_and_shows_levels_and_inputs(whole, tmp_
             ["method=subset", "subset.flights_per_level=60"],
             ["6 flights that pass on", "must be 10", "100 or more"],
         ),
-        (["method=subset", "subset.repeats=2"], ["subset.repeats is 2; it must be at least 3"]),
+        (
+            ["method=subset", "subset.repeats=2"],
+            ["subset.repeats is 2; input should be greater than or equal to 3"],
+        ),
         (
             ["method=subset", "subset.conditional_probability=0.7"],
             ["subset.conditional_probability", "0.7", "0.5"],

@@ -10,11 +10,10 @@ from aircraft.wind import WindField, constant_wind
 from gnc.guidance import Guidance
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
-from scenarios.flight.closed_loop import fly
+from scenarios.flight.closed_loop import fly, release
 from scenarios.flight.outcome import Outcome
-from scenarios.flight.release import release
-from scenarios.planning.planner import plan_flight
-from scenarios.scenario.load import load_study
+from scenarios.planning.missions import plan_flight
+from scenarios.scenario.files import load_study
 from scenarios.vehicles.kinematic import KinematicVehicle
 from scenarios.vehicles.vehicle import SAMPLE_COLUMNS
 from scenarios.vehicles.vehicle_setup import kinematic_setup

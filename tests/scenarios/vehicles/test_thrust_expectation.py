@@ -11,18 +11,18 @@ import pytest
 import x8_published as x8
 
 from aircraft.faults import ENGINE
+from aircraft.state import EquatorFrame
 from aircraft.weather import TURBULENCE, Weather
 from common.physics import SECONDS_PER_HOUR, STANDARD_GRAVITY
 from gnc.estimation.health import CHECK_INTERVAL
-from gnc.estimation.navigation import EngineReadings
 from gnc.estimation.thrust import ThrustMonitor
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.jsbsim.system import write_root
+from scenarios.vehicles.jsbsim import Telemetry
 from scenarios.vehicles.thrust_expectation import (
     FALSE_ALARM_HOURS,
     ThrustErrors,
     airspeed_slope,
-    engine_readings,
     hard_flight,
     thrust_expectation,
 )
@@ -63,10 +63,11 @@ def tested(expectation):
 def monitored(aircraft, schedule, start, tested, weather, seed):
     """Yield the monitor of a hard flight after each check."""
     monitor = ThrustMonitor(tested.parameters, CHECK_INTERVAL)
+    read_engine = Telemetry(aircraft.fdm, EquatorFrame(start.altitude)).engine
     generator = np.random.default_rng(seed)
     for airspeed in hard_flight(aircraft, schedule.envelope, start, weather, generator):
         read = airspeed + 0.3 * generator.standard_normal()
-        monitor.update(read, EngineReadings(*engine_readings(aircraft.fdm)))
+        monitor.update(read, read_engine())
         yield monitor
 
 
@@ -116,13 +117,14 @@ def test_an_engine_that_fails_in_level_flight_is_noticed_within_the_stated_time(
 ):
     aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
     monitor = ThrustMonitor(tested.parameters, CHECK_INTERVAL)
+    read_engine = Telemetry(aircraft.fdm, EquatorFrame(start.altitude)).engine
     checks = itertools.count(1)
 
     def check():
         for _ in range(round(CHECK_INTERVAL / aircraft.fdm.time_step)):
             aircraft.run()
         airspeed = aircraft.fdm.read("velocities/vt-fps") * 0.3048
-        monitor.update(airspeed, EngineReadings(*engine_readings(aircraft.fdm)))
+        monitor.update(airspeed, read_engine())
 
     for _ in range(50):
         check()

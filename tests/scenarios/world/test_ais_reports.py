@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from scenarios.scenario.sections.equipment import VesselReportsConfig
-from scenarios.world.ais_reports import no_outage, received_reports
+from scenarios.world.ais.track import received_reports
 from scenarios.world.vessel import SteadyVessel
 
 DURATION = 4000.0
@@ -17,7 +17,7 @@ def received(*, outage=None, seed=3, duration=DURATION, **changes):
         VesselReportsConfig(**values),
         VESSEL,
         duration=duration,
-        outage=outage or no_outage(),
+        outage=outage or (math.inf, math.inf),
         generator=np.random.default_rng(seed),
     )
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from scenarios.scenario.sections.world import AirConfig
-from scenarios.world.background import sampled_background
+from scenarios.world.plume import sampled_background
 
 LONG = 40_000.0
 """So long that a mean over it has little scatter [s]."""

@@ -10,8 +10,8 @@ import pytest
 from aircraft.wind import WindField, constant_wind
 from measurement.errors import MeasurementError
 from measurement.plume.spread import MarineAir
-from scenarios.scenario.load import load_study
-from scenarios.world.exhaust import Exhaust, emission, exhaust_of, fuel_of
+from scenarios.scenario.files import load_study
+from scenarios.world.plume import Exhaust, emission, exhaust_of, fuel_of
 from scenarios.world.vessel import SteadyVessel
 from scenarios.world.world import mean_wind, plume_of, vessel_of
 

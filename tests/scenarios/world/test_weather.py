@@ -8,8 +8,8 @@ from pydantic import ValidationError
 from aircraft.fdm import TIME_STEP
 from aircraft.weather import ordered_gusts
 from scenarios.scenario.sections.world import WindConfig
-from scenarios.world.place import given_place
-from scenarios.world.weather import sampled_weather, wind_ned, wind_of
+from scenarios.world.vessel import given_place
+from scenarios.world.wind import sampled_weather, wind_ned, wind_of
 
 
 def sampled(given, seed=9):

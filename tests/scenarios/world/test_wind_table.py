@@ -8,12 +8,11 @@ import pytest
 from flight_cases import fly, scenario
 
 from scenarios.errors import InputError
-from scenarios.scenario.load import load_study
+from scenarios.scenario.files import load_study
 from scenarios.scenario.sections.world import WindConfig
-from scenarios.studies.flight_study import FlightStudy
-from scenarios.world.place import Place
-from scenarios.world.wind_netcdf import read_netcdf
-from scenarios.world.wind_table import first_time, tabled_wind
+from scenarios.studies.base import FlightStudy
+from scenarios.world.vessel import Place
+from scenarios.world.wind import first_time, read_netcdf, tabled_wind
 from scenarios.world.world import mean_wind, place_of, vessel_of
 
 HOURLY = """time_utc,speed_mps,from_deg
@@ -51,6 +50,19 @@ def test_an_hourly_table_is_timed_from_the_start_of_the_flight(table):
     assert first_time(table(HOURLY), KATTEGAT) == START
 
 
+@pytest.mark.parametrize(("separator", "decimal"), [(";", ","), ("\t", "."), (";", ".")])
+def test_a_table_of_another_country_is_the_same(table, separator, decimal):
+    plain = "height_m,speed_mps,from_deg\n10,5.5,0\n20,6.25,90\n"
+    other = plain.replace(".", decimal) if separator == "," else plain.replace(",", separator)
+    other = other.replace(".", decimal)
+    for height in (10.0, 15.0, 20.0):
+        assert wind(table(other)).now(0.0, height) == wind(table(plain)).now(0.0, height)
+
+
+def test_a_calm_row_needs_no_direction(table):
+    assert wind(table("height_m,speed_mps,from_deg\n10,0,\n20,5,90\n")).now(0.0, 10.0) == (0.0, 0.0)
+
+
 def test_a_table_over_height_holds_at_all_times(table):
     field = wind(table("height_m,speed_mps,from_deg\n100,10,270\n10,5,270\n"))
     assert field.now(1e6, 10.0) == pytest.approx((0.0, 5.0), abs=1e-12)
@@ -81,28 +93,27 @@ def test_a_table_over_time_may_have_a_profile_over_height(table):
 @pytest.mark.parametrize(
     ("text", "changes", "words"),
     [
-        ("", {}, ["the file is empty", "time_utc,speed_mps,from_deg"]),
-        ("\n , ,\n", {}, ["the file is empty"]),
+        ("", {}, ["empty"]),
+        ("\n , ,\n", {}, ["the header is"]),
         (
             "height_m,speed_mps,to_deg\n10,5,0\n", {},
             ["from_deg is where the wind comes from: add 180 deg to 'to_deg', less 360 where it is more, and rename it"],
         ),
         ("\nspeed_mps,from_deg\n5,0\n", {}, ["line 2", "the header is 'speed_mps,from_deg'"]),
-        ("height_m;speed_mps;from_deg\n10;5;0\n", {}, ["is separated by semicolons; separate its columns by commas"]),
         (
             "time_utc,speed_kn,from_deg\n2026-06-01T12:00:00Z,9,0\n", {},
             ["'speed_kn' is in another unit than 'speed_mps': convert its values before you rename it"],
         ),
         ("height_m,speed_mps,from_deg,speed_mps\n10,5,0,7\n", {}, ["line 1: the header has 'speed_mps' twice; leave one of"]),
         ("height_m,speed_mps,from_deg\n", {}, ["no row below the header"]),
-        ("\n" + HOURLY + "noon,5,0\n", {}, ["line 6", "'noon' is no time"]),
+        ("\n" + HOURLY + "noon,5,0\n", {}, ["row 6", "time 'noon' in column 'time_utc' cannot be read"]),
         (HOURLY + "2026-06-01T11:30:00Z,5,0\n", {}, ["line 5", "2026-06-01T11:30:00Z is before the line above", "sort"]),
         (HOURLY + "2026-06-01T12:00:00Z,5,0\n", {}, ["line 5", "once more"]),
         (HOURLY + "2026-06-01T13:00:00Z,-5,0\n", {}, ["line 5", "speeds go from 0 to 100 m/s"]),
-        (HOURLY + "2026-06-01T13:00:00Z,5,\n", {}, ["line 5 has '' for from_deg, which is not a number"]),
-        (HOURLY + "2026-06-01T13:00:00Z,5\n", {}, ["line 5 has 2 of 3 columns: '2026-06-01T13:00:00Z,5'; correct the line"]),
-        (HOURLY + "2026-06-01T13:00:00Z,calm,90\n", {}, ["line 5 has 'calm' for speed_mps, which is not a number"]),
-        (HOURLY + "2026-06-01T13:00:00Z,5,3,90\n", {}, ["line 5 has 4 values for 3 columns; write decimals with a point"]),
+        (HOURLY + "2026-06-01T13:00:00Z,5,\n", {}, ["line 5", "every row has its columns"]),
+        (HOURLY + "2026-06-01T13:00:00Z,5\n", {}, ["line 5", "every row has its columns"]),
+        (HOURLY + "2026-06-01T13:00:00Z,calm,90\n", {}, ["column 'speed_mps' has 'calm' in row 5"]),
+        (HOURLY + "2026-06-01T13:00:00Z,5,3,90\n", {}, ["line 5 has 4 values, more values than the head line has names"]),
         (HOURLY + "2026-06-01T13:00:00Z,5,400\n", {}, ["line 5", "directions"]),
         (HOURLY, {"duration": 8000.0}, ["T10:00:00Z (line 2) to 2026-06-01T12:00:00Z (line 4);", "2026-06-01T12:13:20Z"]),
         (HOURLY, {"place": replace(KATTEGAT, utc=START - 60.0)}, ["goes from 2026-06-01T09:59:00Z", "set place.utc"]),
@@ -271,8 +282,13 @@ def test_netcdf_is_read_by_its_units_names_and_dimensions(tmp_path):
     in_metres = data.assign(u10=data["u10"].assign_attrs(units="m s**-1"))
     assert read("metres.nc", in_metres)[2] == pytest.approx(expected)
     knots = data.assign(v10=data["v10"].assign_attrs(units="knots"))
+    east, north = read("knots.nc", knots)[2][0, 0][::-1]
+    assert (east, north) == pytest.approx(
+        (expected[0, 0, 1], 0.514444 * expected[0, 0, 0]), rel=1e-5
+    )
+    kelvin = data.assign(v10=data["v10"].assign_attrs(units="K"))
     for name, changed, words in (
-        ("knots.nc", knots, r"v10 is in 'knots'; it has to be in m/s: convert it"),
+        ("kelvin.nc", kelvin, r"v10: 'K' is no unit of this quantity, which is in m/s"),
         (
             "ensemble.nc",
             data.expand_dims(number=2),
@@ -293,6 +309,70 @@ def test_netcdf_is_read_by_its_units_names_and_dimensions(tmp_path):
         match="its times have no unit and origin, as 'hours since 2026-06-01'; give valid_time such",
     ):
         read_netcdf(tmp_path / "numbers.nc", 57.2, 11.2)
+
+
+@pytest.fixture
+def hours(tmp_path):
+    """Three hours of wind on a small grid, towards the east at 1, 2 and 3 m/s."""
+    xarray = pytest.importorskip("xarray", reason="xarray is an extra")
+    pytest.importorskip("h5netcdf", reason="h5netcdf is an extra")
+    east = np.ones((3, 2, 2)) * np.array([1.0, 2.0, 3.0])[:, None, None]
+    dims = ("valid_time", "latitude", "longitude")
+    times = np.array(["2026-06-01T10", "2026-06-01T11", "2026-06-01T12"], dtype="datetime64[ns]")
+    return xarray.Dataset(
+        {"u10": (dims, east), "v10": (dims, np.zeros_like(east))},
+        coords={"valid_time": times, "latitude": [57.0, 58.0], "longitude": [11.0, 12.0]},
+    )
+
+
+def stored(data, tmp_path, name="wind.nc", **how):
+    data.to_netcdf(tmp_path / name, engine="h5netcdf", **how)
+    return str(tmp_path / name)
+
+
+def test_versions_of_era5_are_one_wind(hours, tmp_path):
+    import xarray
+
+    final, first = hours.copy(deep=True), hours.copy(deep=True)
+    final["u10"][2] = final["v10"][2] = np.nan
+    first["u10"][:2] = first["v10"][:2] = np.nan
+    both = xarray.concat([final, first], xarray.IndexVariable("expver", [1, 5]))
+    field = wind(stored(both, tmp_path))
+    assert [field.now(3600.0 * hour, 10.0)[1] for hour in range(3)] == pytest.approx(
+        [1.0, 2.0, 3.0]
+    )
+
+
+def test_hours_without_wind_count_only_where_a_flight_needs_them(hours, tmp_path):
+    hours["u10"][2] = np.nan
+    path = stored(hours, tmp_path)
+    field = wind(path, duration=3000.0)
+    assert field.now(1800.0, 10.0)[1] == pytest.approx(1.5)
+    with pytest.raises(
+        InputError, match="has no wind at 2026-06-01T12:00:00Z, which the flight needs"
+    ):
+        wind(path, duration=5000.0)
+
+
+def test_a_wind_of_cf_standard_names_is_read(hours, tmp_path):
+    renamed = hours.rename(u10="ua", v10="va", valid_time="time").assign_coords(height=10.0)
+    for name, standard in (("ua", "eastward_wind"), ("va", "northward_wind")):
+        renamed[name].attrs["standard_name"] = standard
+    assert wind(stored(renamed, tmp_path)).now(3600.0, 10.0)[1] == pytest.approx(2.0)
+
+
+def test_a_forecast_is_read_over_the_times_that_it_is_for(hours, tmp_path):
+    begin = np.datetime64("2026-06-01T10", "ns")
+    steps = hours["valid_time"].values - begin
+    forecast = hours.rename(valid_time="step").assign_coords(step=steps, time=begin)
+    assert wind(stored(forecast, tmp_path)).now(7200.0, 10.0)[1] == pytest.approx(3.0)
+
+
+def test_a_calendar_that_no_clock_has_is_named(hours, tmp_path):
+    numbered = hours.assign_coords(valid_time=[0.0, 1.0, 2.0])
+    numbered["valid_time"].attrs = {"units": "hours since 2026-06-01 10:00", "calendar": "noleap"}
+    with pytest.raises(InputError, match="its times are of the calendar 'noleap'"):
+        wind(stored(numbered, tmp_path))
 
 
 @pytest.mark.parametrize("longitudes", [np.array([11.0, 12.0]), np.arange(0.0, 350.0, 0.25)])

@@ -12,7 +12,7 @@ from aircraft.weather import TURBULENCE, low_altitude_turbulence
 from aircraft.wind import CALM, WindField
 from gnc.estimation.navigation import EstimatedNavigation, SatelliteFix, SensorReadings
 from scenarios.planning.air.errors import drift_rate
-from scenarios.planning.air.estimated_wind import navigation_parameters, wind_change
+from scenarios.planning.air.wind import navigation_parameters, wind_change
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 
 TURN, OUTAGE = 7.0, 60.0

@@ -5,10 +5,9 @@ outruns it, where it glides to.
 import pytest
 
 from gnc.errors import InfeasibleError
-from scenarios.planning.air.estimated_wind import wind_change
-from scenarios.planning.air.flown_heights import check_not_outrun, climbed_along, flown_heights
-from scenarios.planning.plume.axis import axis_height
-from scenarios.scenario.load import load_study, with_values
+from scenarios.planning.air.wind import check_not_outrun, climbed_along, flown_heights, wind_change
+from scenarios.planning.plume import axis_height
+from scenarios.scenario.files import load_study, with_values
 from scenarios.world.world import mean_wind, vessel_of
 
 LAYER = "height_m,speed_mps,from_deg\n1,8,0\n127,8,0\n130,8,180\n2000,8,180\n"

@@ -13,7 +13,7 @@ from gnc.estimation.vessel import Tube, VesselLimits, VesselReport, tube
 from gnc.guard.guard import GuardParameters, GuardStatus, HeadingRateFilter
 from gnc.paper import design_oscillation
 from gnc.unicycle import lagged_move
-from scenarios.planning.margin.orbit_room import orbit_distance
+from scenarios.planning.margin.keepout_margin import orbit_distance
 
 SPEED, HEADING_RATE_MAX, TIME_STEP, LAG, DELAY = 19.42, 0.505, 0.05, 0.2, 0.2
 GUARD = GuardParameters(

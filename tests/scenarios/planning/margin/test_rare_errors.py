@@ -9,7 +9,7 @@ import pytest
 from scipy.signal import lfilter
 
 from scenarios.planning.margin.keepout_margin import vessel_limits
-from scenarios.scenario.load import load_study, with_values
+from scenarios.scenario.files import load_study, with_values
 from scenarios.vehicles.sensors import NAVIGATION_TIME
 
 TOUCHES = 0.5

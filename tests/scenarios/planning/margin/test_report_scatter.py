@@ -11,10 +11,15 @@ import pytest
 
 from gnc.estimation.vessel import ReachableSet, VesselFilter, VesselReport, tube
 from scenarios.planning.limits import PLAN_PERIOD
-from scenarios.planning.margin.keepout_margin import filter_parameters, vessel_limits, widest_tube
-from scenarios.planning.margin.report_scatter import GUARDED_PER_HOUR, scatter_allowance
-from scenarios.scenario.load import load_study, with_values
-from scenarios.world.ais_reports import received_reports
+from scenarios.planning.margin.keepout_margin import (
+    GUARDED_PER_HOUR,
+    filter_parameters,
+    scatter_allowance,
+    vessel_limits,
+    widest_tube,
+)
+from scenarios.scenario.files import load_study, with_values
+from scenarios.world.ais.track import received_reports
 from scenarios.world.vessel import SteadyVessel
 
 TURN = 6.7

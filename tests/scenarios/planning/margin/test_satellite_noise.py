@@ -12,9 +12,12 @@ from gnc.reference.reference import CirclingReference
 from gnc.tracker import Tracker
 from scenarios.api.flying import fly
 from scenarios.planning.guidance import satellite_noise, speed_hold, tracking_parameters
-from scenarios.planning.margin.report_scatter import GUARDED_PER_HOUR
-from scenarios.planning.margin.satellite_noise import noise_allowance, position_scatter
-from scenarios.scenario.load import load_study, with_values
+from scenarios.planning.margin.keepout_margin import (
+    GUARDED_PER_HOUR,
+    noise_allowance,
+    position_scatter,
+)
+from scenarios.scenario.files import load_study, with_values
 from scenarios.vehicles.sensors import NAVIGATION_TIME
 from scenarios.vehicles.vehicle_setup import KINEMATIC_BANDWIDTH, kinematic_setup
 

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 
 import pandas as pd
 
-from scenarios.studies.falsification import study as falsification
-from scenarios.studies.falsification.results import (
+from scenarios.studies import falsify as falsification
+from scenarios.studies.falsify import (
     UNFLOWN,
     SearchedFlight,
     search_lines,

@@ -7,9 +7,9 @@ from types import SimpleNamespace
 import pytest
 
 from scenarios.errors import InputError
-from scenarios.scenario.load import load_study
-from scenarios.studies.falsification import study as falsification
-from scenarios.studies.registry import run_study
+from scenarios.scenario.files import load_study
+from scenarios.studies import falsify as falsification
+from scenarios.studies.base import run_study
 
 SEARCH = """
 study = "falsify"

@@ -5,9 +5,9 @@ flights do not have.
 import pandas as pd
 import pytest
 
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.scenario.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.engine.processes import InProcessExecutor
+from scenarios.scenario.files import load_study
+from scenarios.studies.base import run_study
 from tests.scenarios.short_search import short_flights
 
 SEARCH = f"""

@@ -6,16 +6,16 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.processes import InProcessExecutor
 from scenarios.engine.task import Task
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
 from scenarios.planning.spreads import PredictedSpreads
-from scenarios.scenario.load import load_study, with_values
+from scenarios.scenario.files import load_study, with_values
+from scenarios.studies.base import run_study
 from scenarios.studies.patrol.ships import sampled_patrol
 from scenarios.studies.patrol.tables import patrol_figures, ship_row, wind_row
 from scenarios.studies.patrol.work import PatrolWork
-from scenarios.studies.registry import run_study
 from scenarios.studies.replay import Replay
 from scenarios.world.world import mean_wind, vessel_of
 from tests.in_process import assert_refused, run_command
@@ -184,7 +184,7 @@ def test_a_patrol_that_fails_is_a_row_with_its_reason():
         setup=None,
         spreads=PredictedSpreads(),
     )
-    (row,) = work.fly(Task(number=0)).tables["summary.csv"]
+    (row,) = work.run(Task(number=0)).tables["summary.csv"]
     assert (row["outcome"], row["criteria_met"]) == ("failed", False)
     assert row["message"].startswith("patrol.separation_m is 20000 m")
 
@@ -291,7 +291,7 @@ def test_a_study_without_any_verdict_of_an_oracle_either_is_not_met(tmp_path):
 @pytest.mark.parametrize(
     ("override", "words"),
     [
-        ("patrol.ships=0", ("patrol.ships is 0; it must be at least 1",)),
+        ("patrol.ships=0", ("patrol.ships is 0; input should be greater than or equal to 1",)),
         ("patrol.endurance_s=60", ("patrol.endurance_s is 60 s", "patrol.service_s = 165 s")),
         ("patrol.separation_m=9000", ("patrol.separation_m is 9000 m", "patrol.area_m")),
         (

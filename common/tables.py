@@ -1,0 +1,818 @@
+"""The one reader of tables that people give: AIS reports, winds and logs of sniffers.
+
+A table is text: a head that names the columns, perhaps below lines of its own, and rows.
+Separator, decimal mark, encoding, comment lines and a row of units are found, or are given where
+they cannot be (``TableFormat``). ``Table.described`` says in one line what was found.
+
+Lines are counted as in an editor, from 1.
+"""
+
+import bz2
+import codecs
+import csv
+import gzip
+import io
+import lzma
+import re
+import zipfile
+import zlib
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from datetime import UTC, date, datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from common.text import did_you_mean
+
+Array = npt.NDArray[np.float64]
+
+
+class TableError(ValueError):
+    """A table cannot be read, or not without being told how. The message is one line."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class TableFormat:
+    """How a table is written, as far as it is given; what is None is found.
+
+    Attributes
+    ----------
+    separator : of columns: one letter, or "whitespace"
+    decimal : mark of decimals, "." or ","
+    encoding : a name that Python knows
+    time_format : of dates and times, as of ``datetime.strptime``
+    time_unit : of times in numbers: "s", "ms" or "us"
+    """
+
+    separator: str | None = None
+    decimal: str | None = None
+    encoding: str | None = None
+    time_format: str | None = None
+    time_unit: str | None = None
+
+
+def table_format(given: Mapping[str, Any]) -> TableFormat:
+    """Return the format that a section ``[table]`` gives.
+
+    Raises
+    ------
+    TableError : it has an unknown key or a value of no use
+    """
+    known = [each.name for each in fields(TableFormat)]
+    for key, value in given.items():
+        if key not in known:
+            raise TableError(f"table.{key} is not known{did_you_mean(key, known)}")
+        if not isinstance(value, str) or not value:
+            raise TableError(f"table.{key} is {value!r}; it must be a text")
+    chosen = TableFormat(**given)
+    if chosen.separator not in (None, "whitespace") and len(chosen.separator or "") != 1:
+        raise TableError(
+            f"table.separator is {chosen.separator!r}; it must be one letter, or 'whitespace'"
+        )
+    if chosen.decimal not in (None, ".", ","):
+        raise TableError(f"table.decimal is {chosen.decimal!r}; it must be '.' or ','")
+    if chosen.time_unit not in (None, *_TIME_UNITS):
+        raise TableError(
+            f"table.time_unit is {chosen.time_unit!r}; it must be one of {', '.join(_TIME_UNITS)}"
+        )
+    if chosen.encoding is not None:
+        try:
+            codecs.lookup(chosen.encoding)
+        except LookupError:
+            raise TableError(f"table.encoding is {chosen.encoding!r}; Python knows none") from None
+    return chosen
+
+
+@dataclass(frozen=True, kw_only=True)
+class Moments:
+    """The times of a table's rows.
+
+    Attributes
+    ----------
+    seconds : since 1970 in UTC, or since the table's own zero, shape (n,) [s]; NaN where a row has
+        none, and where it names a leap second
+    dated : whether they are since 1970
+    offset : whether the table says what they are off UTC; those without are taken as UTC
+    leap : number of rows with a leap second
+    plain : whether they are numbers of seconds in the table
+    """
+
+    seconds: Array
+    dated: bool
+    offset: bool
+    leap: int = 0
+    plain: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Table:
+    """The cells of a table as text.
+
+    Attributes
+    ----------
+    names : of the columns as they stand in the head, without blanks around them
+    rows : cells without blanks around them, as many as there are names; short rows end empty
+    lines : of the file that the rows stand in, shape (n,)
+    head_line : that the head stands in
+    units : of columns, by their names, from a row of units or from the head
+    format : by which it was read: nothing in it is None but what no column needed
+    """
+
+    names: list[str]
+    rows: list[list[str]]
+    lines: list[int]
+    head_line: int
+    units: Mapping[str, str]
+    format: TableFormat
+    _columns: dict[str, int] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        numbers: dict[str, int] = {}
+        for number, name in enumerate(self.names):
+            numbers.setdefault(name, number)
+        object.__setattr__(self, "_columns", numbers)
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._columns
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def described(self) -> str:
+        """Return how the table was read, in one line."""
+        separator = _SEPARATOR_NAMES.get(self.format.separator or ",", repr(self.format.separator))
+        decimal = "comma" if self.format.decimal == "," else "point"
+        head = f", head in line {self.head_line}" if self.head_line > 1 else ""
+        return f"separated by {separator}, decimal {decimal}, {self.format.encoding}{head}"
+
+    def column(self, name: str) -> list[str]:
+        """Return the cells of a column.
+
+        Raises
+        ------
+        TableError : two columns have the name
+        """
+        if self.names.count(name) > 1:
+            raise TableError(f"column '{name}' is there twice; rename or remove one")
+        number = self._columns[name]
+        return [row[number] for row in self.rows]
+
+    def numbers(self, name: str, *, words: bool = False) -> Array:
+        """Return a column as numbers, NaN where a cell is empty, shape (n,).
+
+        Parameters
+        ----------
+        name : of the column
+        words : whether words are NaN as well, in a table whose rows may say nothing
+
+        Raises
+        ------
+        TableError : a cell is no number, or is infinite
+        """
+        cells = self.column(name)
+        values = np.array([_number(cell, self.format.decimal) for cell in cells], dtype=np.float64)
+        if words:
+            return np.where(np.isfinite(values), values, np.nan)
+        bad = [
+            i
+            for i in np.flatnonzero(~np.isfinite(values)).tolist()
+            if cells[i].lower() not in _EMPTY
+        ]
+        if bad:
+            cell, line = cells[bad[0]], self.lines[bad[0]]
+            if np.isinf(values[bad[0]]):
+                raise TableError(
+                    f"column '{name}' is infinite in row {line}; where it stands for a reading out"
+                    " of range, leave the record out from there, or leave the cell empty"
+                )
+            raise TableError(
+                f"column '{name}' has {cell!r} in row {line}; it must hold numbers, or be empty"
+                f"{_other_decimal(cell, self.format.decimal)}"
+            )
+        return values
+
+    def times(self, name: str, *, day: date | None = None, usual: str = "") -> Moments:
+        """Return a column as times.
+
+        Numbers are seconds, or what ``time_unit`` or the column's own unit says; from 1979 on they
+        are since 1970, as far as the unit is known or they are milliseconds or microseconds by
+        their size. A time of day is of the ``day``, and goes on over midnight.
+        ``usual`` is the format of tables of this kind, where none is given.
+
+        Raises
+        ------
+        TableError : a cell cannot be read
+        """
+        return _times(self, name, day, self.format.time_format or usual)
+
+
+_SEPARATOR_NAMES = {
+    ",": "commas", ";": "semicolons", "\t": "tabs", "|": "bars", "whitespace": "blanks",
+}  # fmt: skip
+"""Separators that are looked for, the likeliest first where two fit as well."""
+
+_EMPTY = ("", "nan", "na", "n/a", "null", "none", "-", "--")
+"""Cells without a value, in small letters."""
+
+_COMMENT = ("#", "%", "//")
+"""How a line begins that is no row."""
+
+_LOOKED_AT = 40
+"""Lines by which a table is judged."""
+
+_CONTROL = re.compile(r"[\x00-\x08\x0e-\x1f]")
+"""Letters that no text has."""
+
+
+def read_table(
+    path: Path,
+    given: TableFormat | None = None,
+    *,
+    keep: Callable[[str], bool] | None = None,
+    head: Sequence[str] = (),
+) -> Table:
+    """Return the table of a file, which may be compressed.
+
+    Parameters
+    ----------
+    path : of the file
+    given : how it is written, as far as that is known
+    keep : which lines below the head are read; all if not given. Of files of a day with millions of
+        lines those of others are passed over as they are
+    head : names of columns of which the head has some, to tell it from lines above it
+
+    Raises
+    ------
+    TableError : the file is no table as text. The message does not name the file
+    OSError : it cannot be opened
+    """
+    given = given or TableFormat()
+    encoding, text = _opened(path, given.encoding)
+    with text:
+        try:
+            return _read(text, given, encoding, keep, head)
+        except UnicodeDecodeError:
+            raise TableError(
+                f"not text in {encoding}; save it in UTF-8, or give table.encoding"
+            ) from None
+        except (EOFError, lzma.LZMAError, gzip.BadGzipFile, zlib.error) as error:
+            raise TableError(
+                f"cannot be unpacked: {error}; give a whole file, or the table itself"
+            ) from None
+
+
+def _read(
+    text: io.TextIOBase,
+    given: TableFormat,
+    encoding: str,
+    keep: Callable[[str], bool] | None,
+    head: Sequence[str],
+) -> Table:
+    lines = enumerate(text, start=1)
+    first = [(number, line) for number, line in _some(lines, _LOOKED_AT) if line.strip()]
+    if not first:
+        raise TableError("empty; it needs a head line and a row per reading")
+    if any(_CONTROL.search(line) for _, line in first):
+        raise TableError("not a table as text; save it as CSV in UTF-8")
+    separator, place = _layout([line for _, line in first], given.separator, head)
+    head_line, heading = first[place]
+    names = [name.strip() for name in _cells(_uncommented(heading), separator)]
+    while names and not names[-1]:
+        names.pop()
+    if not names:
+        raise TableError(f"line {head_line} names no columns; the first line has to name them")
+    below = [(number, line) for number, line in first[place + 1 :]]
+    units = {name: unit for name in names if (unit := unit_in(name))}
+    if below and (found := _unit_row(names, below, separator)) is not None:
+        units |= found
+        below = below[1:]
+    rows, numbers = [], []
+    for number, line in _chained(below, lines):
+        if not line.strip() or line.lstrip().startswith(_COMMENT):
+            continue
+        if keep is not None and not keep(line):
+            continue
+        cells = [cell.strip() for cell in _cells(line, separator, number)]
+        while len(cells) > len(names) and not cells[-1]:
+            cells.pop()
+        if len(cells) > len(names):
+            raise TableError(_long_row(number, cells, names))
+        rows.append(cells + [""] * (len(names) - len(cells)))
+        numbers.append(number)
+    decimal = given.decimal or _decimal(rows, separator)
+    return Table(
+        names=names,
+        rows=rows,
+        lines=numbers,
+        head_line=head_line,
+        units=units,
+        format=TableFormat(
+            separator=separator,
+            decimal=decimal,
+            encoding=encoding,
+            time_format=given.time_format,
+            time_unit=given.time_unit,
+        ),
+    )
+
+
+def _some(lines: Iterator[tuple[int, str]], most: int) -> Iterator[tuple[int, str]]:
+    for _ in range(most):
+        following = next(lines, None)
+        if following is None:
+            return
+        yield following
+
+
+def _chained(
+    first: list[tuple[int, str]], rest: Iterator[tuple[int, str]]
+) -> Iterator[tuple[int, str]]:
+    yield from first
+    yield from rest
+
+
+# What the file is made of
+
+
+def _unzipped(path: Path) -> Any:
+    archive = zipfile.ZipFile(path)
+    names = archive.namelist()
+    if len(names) != 1:
+        raise TableError(f"{len(names)} files in it; give the table itself")
+    return archive.open(names[0])
+
+
+_PACKED: Mapping[bytes, Callable[[Path], Any]] = {
+    b"\x1f\x8b": gzip.open, b"BZh": bz2.open, b"\xfd7zX": lzma.open, b"PK\x03\x04": _unzipped,
+}  # fmt: skip
+"""How files are unpacked, by how they begin."""
+
+
+def _opened(path: Path, given: str | None) -> tuple[str, io.TextIOWrapper]:
+    """Return a file's encoding and its text, unpacked where it is packed."""
+    with path.open("rb") as file:
+        begins = file.read(4)
+    # Whoever gets the text closes it, and with it the file.
+    unpack: Callable[[Path], Any] = next(
+        (how for magic, how in _PACKED.items() if begins.startswith(magic)),
+        lambda plain: plain.open("rb"),
+    )
+    try:
+        packed = unpack(path)
+    except zipfile.BadZipFile as error:
+        raise TableError(f"cannot be unpacked: {error}; give a whole file") from None
+    raw = (
+        io.BufferedReader(packed, 1 << 16) if not isinstance(packed, io.BufferedReader) else packed
+    )
+    try:
+        encoding = given or _encoding(raw.peek(1 << 16))
+    except (EOFError, OSError, lzma.LZMAError, zlib.error) as error:
+        raise TableError(
+            f"cannot be unpacked: {error}; give a whole file, or the table itself"
+        ) from None
+    return encoding, io.TextIOWrapper(raw, encoding=encoding, newline=None)
+
+
+def _encoding(begin: bytes) -> str:
+    """Return the encoding of a text by its first bytes: Latin-1 is what is not UTF-8."""
+    if begin.startswith(codecs.BOM_UTF8):
+        return "utf-8-sig"
+    if begin.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return "utf-16"
+    if begin and len(begin) > 3:
+        # Of text in Latin letters every second byte is 0.
+        for start, name in ((1, "utf-16-le"), (0, "utf-16-be")):
+            if begin[start::2].count(0) > 0.4 * len(begin):
+                return name
+    try:
+        codecs.getincrementaldecoder("utf-8")().decode(begin)
+    except UnicodeDecodeError:
+        return "cp1252"
+    return "utf-8"
+
+
+def _cells(line: str, separator: str, number: int = 0) -> list[str]:
+    if separator == "whitespace":
+        return line.split()
+    try:
+        return next(csv.reader([line], delimiter=separator, skipinitialspace=True, strict=True), [])
+    except csv.Error:
+        where = f"the quotation mark in line {number}" if number else "a quotation mark"
+        raise TableError(f"{where} is not closed; remove it") from None
+
+
+def _loose_cells(line: str, separator: str) -> list[str]:
+    """Return the cells of a line without regard to quotation marks that are not closed."""
+    if separator == "whitespace":
+        return line.split()
+    return next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
+
+
+def _uncommented(line: str) -> str:
+    """Return a head without the mark of a comment, as of the Danish Maritime Authority."""
+    return re.sub(r"^\s*(#|%|//)\s*", "", line)
+
+
+def _layout(lines: list[str], given: str | None, head: Sequence[str]) -> tuple[str, int]:
+    """Return the separator, and the place of the head among the first lines.
+
+    Those are taken by which most lines have as many cells as the head; where several do, the one
+    with more columns. A head with a name that is looked for comes before any other.
+    """
+    wanted = {name.lower() for name in head}
+    best = (-1.0, 0, 0, ",")
+    rows = [not line.lstrip().startswith(_COMMENT) for line in lines]
+    for separator in [given] if given else list(_SEPARATOR_NAMES):
+        cells = [_loose_cells(_uncommented(line), separator) for line in lines]
+        for place, names in enumerate(cells):
+            count = _filled(names)
+            if count < 2:
+                continue
+            fitting = sum(
+                is_row and _fits_head(row, count)
+                for is_row, row in zip(rows[place + 1 :], cells[place + 1 :], strict=True)
+            )
+            named = bool(wanted & {name.strip().lower() for name in names})
+            # A comment is a head only if nothing else would be one: of rows it is the first.
+            score = named + (fitting + rows[place] + 0.5) / (sum(rows) + 1.0)
+            best = max(best, (score, -place, count, separator), key=lambda of: of[:3])
+    return best[3], -best[1]
+
+
+def _filled(cells: Sequence[str]) -> int:
+    """Return the number of cells up to the last one that is not empty."""
+    return next((i for i in range(len(cells), 0, -1) if cells[i - 1].strip()), 0)
+
+
+def _fits_head(row: Sequence[str], count: int) -> bool:
+    """Return whether a row has as many cells as the head, but for separators at its end."""
+    return len(row) >= count >= _filled(row)
+
+
+def _long_row(number: int, cells: Sequence[str], names: Sequence[str]) -> str:
+    shown = ",".join(names)
+    shown = shown[:60] + "..." * (len(shown) > 60)
+    return (
+        f"line {number} has {len(cells)} values, more values than the head line has names"
+        f" ('{shown}', {len(names)}): the first line has to name every column; remove lines above"
+        " it, and write decimals with a point or separate columns by semicolons"
+    )
+
+
+# Numbers
+
+_NUMBER = re.compile(r"[-+]?(\d[\d.,  ]*|[.,]\d+)(e[-+]?\d+)?", re.IGNORECASE)
+_WITH_COMMA = re.compile(r"[-+]?\d*,\d+(e[-+]?\d+)?", re.IGNORECASE)
+_THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+")
+_DOTTED_THOUSANDS = re.compile(r"[-+]?\d{1,3}(\.\d{3})+,\d+")
+
+
+def _decimal(rows: Sequence[Sequence[str]], separator: str) -> str:
+    """Return the mark of decimals: a comma where numbers have one, and none has a point alone.
+
+    Raises
+    ------
+    TableError : every comma may as well stand for thousands
+    """
+    commas = points = ambiguous = 0
+    for row in rows[: 25 * _LOOKED_AT]:
+        for cell in row:
+            if "," in cell:
+                if _DOTTED_THOUSANDS.fullmatch(cell) or (
+                    _WITH_COMMA.fullmatch(cell) and not _THOUSANDS.fullmatch(cell)
+                ):
+                    commas += 1
+                elif _THOUSANDS.fullmatch(cell):
+                    ambiguous += 1
+            elif "." in cell and _NUMBER.fullmatch(cell):
+                points += 1
+    if commas and not points:
+        return ","
+    if ambiguous and not points and not commas and separator != ",":
+        example = next(cell for row in rows for cell in row if _THOUSANDS.fullmatch(cell))
+        raise TableError(
+            f"'{example}' may be a decimal or thousands; give table.decimal, ',' or '.'"
+        )
+    return "."
+
+
+def _number(cell: str, decimal: str | None) -> float:
+    """Return a number; not a number where it is none."""
+    text = cell
+    if decimal == ",":
+        if _DOTTED_THOUSANDS.fullmatch(text):
+            text = text.replace(".", "")
+        text = text.replace(",", ".", 1) if _WITH_COMMA.fullmatch(text) else text
+    try:
+        return float(text)
+    except ValueError:
+        return np.nan
+
+
+def _other_decimal(cell: str, decimal: str | None) -> str:
+    """Return the remedy for a number with the other decimal mark; empty for other words."""
+    if decimal == "." and _WITH_COMMA.fullmatch(cell):
+        return f"; write decimals with one mark, as in {cell.replace(',', '.')}"
+    return ""
+
+
+# Times
+
+_TIME_UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6}
+"""[s]"""
+
+_UNIX_FROM = 3e8
+"""Seconds from which on they are since 1970: July 1979, or nine and a half years of a log [s]."""
+
+_BY_SIZE = ((1e14, "us"), (1e11, "ms"))
+"""From which on numbers are microseconds or milliseconds since 1970: of seconds the year 5138."""
+
+_COMPACT = 1e13, 1e14
+"""Range of dates and times of 14 digits without marks; of milliseconds from the year 2286 on."""
+
+_CLOCK_END = 240_000.0
+"""End of a day by a clock without marks, HHMMSS."""
+
+_TIME_OF_DAY = re.compile(r"(\d{1,2}):(\d{2}):(\d{2}([.,]\d+)?)")
+
+_LEAP = re.compile(r":59:60([.,]\d+)?")
+
+_OFFSET = re.compile(r"(Z|[+-]\d{2}:?\d{2})$")
+
+_WITHOUT_DATE_FORMATS = ("%d.%m.%Y %H:%M:%S", "%d/%m/%Y %H:%M:%S", "%m/%d/%Y %H:%M:%S")
+"""Formats that are named where a date is in one of them: none is taken unless it is given."""
+
+
+def _times(table: Table, name: str, day: date | None, pattern: str) -> Moments:
+    import pandas as pd
+
+    cells = table.column(name)
+    if not cells:
+        return Moments(seconds=np.empty(0), dated=False, offset=False)
+    empty = np.array([cell.lower() in _EMPTY for cell in cells])
+    if pattern:
+        moments = pd.to_datetime(pd.Series(cells), format=pattern, utc=True, errors="coerce")
+        example = datetime(2026, 6, 1, 10, tzinfo=UTC).strftime(pattern)
+        _refuse_first(table, name, cells, moments.isna().to_numpy() & ~empty, example)
+        return Moments(seconds=_since_1970(moments), dated=True, offset="%z" in pattern)
+    numbers = np.array([_number(cell, table.format.decimal) for cell in cells])
+    if np.isfinite(numbers).mean() > 0.5:
+        _refuse_first(table, name, cells, ~np.isfinite(numbers) & ~empty, "seconds")
+        return _numeric_times(table, name, numbers)
+    clock = [_TIME_OF_DAY.fullmatch(cell) for cell in cells]
+    if sum(match is not None for match in clock) > 0.5 * len(cells):
+        return _times_of_day(table, name, cells, day)
+    leap = np.array([_LEAP.search(cell) is not None for cell in cells])
+    texts = [
+        "" if second else cell.replace(",", ".") for cell, second in zip(cells, leap, strict=True)
+    ]
+    moments = pd.to_datetime(pd.Series(texts), format="ISO8601", utc=True, errors="coerce")
+    bad = moments.isna().to_numpy() & ~empty & ~leap
+    _refuse_first(table, name, cells, bad, "2024-05-01T12:00:00.0, or seconds")
+    first = next((text for text in texts if text), "")
+    return Moments(
+        seconds=_since_1970(moments),
+        dated=True,
+        offset=bool(_OFFSET.search(first)) and "T" in first.replace(" ", "T")[8:],
+        leap=int(leap.sum()),
+    )
+
+
+def _since_1970(moments: Any) -> Array:
+    """Return the seconds since 1970 of moments that pandas has read, NaN for those it has not."""
+    whole = moments.to_numpy(dtype="datetime64[ns]")
+    seconds: Array = whole.astype(np.int64) / 1e9
+    return np.where(np.isnat(whole), np.nan, seconds)
+
+
+def _refuse_first(
+    table: Table, name: str, cells: Sequence[str], bad: npt.NDArray[np.bool_], wanted: str
+) -> None:
+    """Raise a TableError for the first cell that cannot be read."""
+    if not bad.any():
+        return
+    row = int(np.argmax(bad))
+    cell = cells[row]
+    fitting = [pattern for pattern in _WITHOUT_DATE_FORMATS if _fits(cells, pattern)]
+    remedy = f"give {wanted}"
+    if fitting and not table.format.time_format:
+        remedy = "give its order: " + ", or ".join(f'table.time_format = "{of}"' for of in fitting)
+    raise TableError(
+        f"time {cell!r} in column '{name}' cannot be read (row {table.lines[row]}); {remedy}"
+        f"{_other_decimal(cell, '.')}"
+    )
+
+
+def _fits(cells: Sequence[str], pattern: str) -> bool:
+    try:
+        for cell in cells:
+            datetime.strptime(cell, pattern)
+    except ValueError:
+        return False
+    return True
+
+
+def _numeric_times(table: Table, name: str, numbers: Array) -> Moments:
+    known = numbers[np.isfinite(numbers)]
+    least = float(np.min(known))
+    unit = table.format.time_unit or _time_unit_in(table, name)
+    if unit is None and _COMPACT[0] <= float(known[0]) < _COMPACT[1]:
+        raise TableError(
+            f"time {known[0]:.0f} in column '{name}' is a date and time without marks; give"
+            ' table.time_format = "%Y%m%d%H%M%S", or seconds'
+        )
+    if unit is None:
+        unit = next((of for size, of in _BY_SIZE if least >= size), "s")
+        _refuse_clock(table, name, numbers)
+    seconds = _TIME_UNITS[unit] * numbers
+    dated = _TIME_UNITS[unit] * least >= _UNIX_FROM
+    return Moments(seconds=seconds, dated=dated, offset=dated, plain=unit == "s")
+
+
+def _time_unit_in(table: Table, name: str) -> str | None:
+    """Return the unit of a column of times, as its name or the row of units has it."""
+    unit = table.units.get(name, "").replace("µ", "u")
+    return unit if unit in _TIME_UNITS and unit != "s" else None
+
+
+def _refuse_clock(table: Table, name: str, time: Array) -> None:
+    """Raise a TableError for numbers that are hours, minutes and seconds without marks."""
+    in_a_day = (time >= 0.0) & (time < _CLOCK_END)
+    if not (in_a_day & (time % 100.0 < 60.0) & (time // 100.0 % 100.0 < 60.0)).all():
+        return
+    minutes = np.flatnonzero(np.diff(time // 100.0) > 0.0)
+    # Seconds may skip 60 to 99 once by chance.
+    if len(minutes) >= 2:
+        row = int(minutes[0])
+        raise TableError(
+            f"times in column '{name}' go from {time[row]:.10g} to {time[row + 1]:.10g}"
+            f" (row {table.lines[row + 1]}), and similarly at each of {len(minutes)} minutes: they"
+            " are hours, minutes and seconds without marks; give seconds, or 12:00:00"
+        )
+
+
+def _times_of_day(table: Table, name: str, cells: Sequence[str], day: date | None) -> Moments:
+    """Return times of a day; a clock that goes back by more than half a day has passed midnight."""
+    seconds = np.full(len(cells), np.nan)
+    leap = 0
+    for row, cell in enumerate(cells):
+        match = _TIME_OF_DAY.fullmatch(cell)
+        if match is None:
+            if cell.lower() in _EMPTY:
+                continue
+            _refuse_first(table, name, cells, np.arange(len(cells)) == row, "a time of day")
+        assert match is not None  # refused above
+        hour, minute, second = int(match[1]), int(match[2]), float(match[3].replace(",", "."))
+        if second >= 60.0:
+            leap += 1
+            continue
+        seconds[row] = 3600.0 * hour + 60.0 * minute + second
+    known = np.flatnonzero(np.isfinite(seconds))
+    if len(known):
+        back = np.diff(seconds[known]) < -43_200.0
+        seconds[known] += 86_400.0 * np.concatenate([[0], np.cumsum(back)])
+    if day is None:
+        return Moments(seconds=seconds, dated=False, offset=False, leap=leap)
+    begin = datetime(day.year, day.month, day.day, tzinfo=UTC).timestamp()
+    return Moments(seconds=begin + seconds, dated=True, offset=False, leap=leap)
+
+
+# Units
+
+_UNIT_IN_BRACKETS = re.compile(r"[\[(]\s*([^\[\]()]+?)\s*[\])]\s*$")
+_UNIT_AT_THE_END = re.compile(r"_(ppb|ppm|percent|ugm3|mgm3|ms|us|mps|kn|kt|deg)$", re.IGNORECASE)
+
+MASS_TEMPERATURE_C, MASS_PRESSURE_HPA = 20.0, 1013.25
+"""State of the air that masses per volume are of unless another is given: that of Directive
+2008/50/EC, annex VI [deg C, hPa]."""
+
+_GAS_CONSTANT = 8.314462618
+"""[J/(mol K)]"""
+
+_MOLAR_MASS = {"so2": 64.064, "co2": 44.009, "no": 30.006, "no2": 46.005, "ch4": 16.043}
+"""[g/mol]"""
+
+_SPELLINGS = {"%": "percent", "‰": "permille", "ugm3": "ug/m3", "mgm3": "mg/m3", "mps": "m/s"}
+
+
+def unit_in(name: str) -> str:
+    """Return the unit in a column's name, as in "SO2 [ppb]", "SO2 (ppb)" or "so2_ppb"; empty if it
+    has none.
+    """
+    found = _UNIT_IN_BRACKETS.search(name) or _UNIT_AT_THE_END.search(name)
+    return found[1] if found else ""
+
+
+def unit_factor(
+    unit: str,
+    to: str,
+    *,
+    gas: str = "",
+    temperature_c: float = MASS_TEMPERATURE_C,
+    pressure_hpa: float = MASS_PRESSURE_HPA,
+) -> float:
+    """Return by what a value in a unit is multiplied to be in another one.
+
+    Parameters
+    ----------
+    unit, to : as "ppb", "m s**-1", "m s-1", "meters/second", "ug/m3"; "ppb", "ppm" and "%" are mole
+        fractions
+    gas : of a mass per volume of air, as in "so2"
+    temperature_c, pressure_hpa : of the air that such a mass is in
+
+    Raises
+    ------
+    TableError : it is no unit, or one of another quantity
+    """
+    if unit == to:
+        return 1.0
+    import pint
+
+    registry = _registry()
+    try:
+        given, wanted = (
+            registry.Quantity(1.0, registry.parse_units(_spelt(of))) for of in (unit, to)
+        )
+        if given.check("[mass]/[length]**3") and wanted.dimensionless and gas in _MOLAR_MASS:
+            kelvin, pascal = temperature_c + 273.15, 100.0 * pressure_hpa
+            moles = given.to("g/m**3").magnitude / _MOLAR_MASS[gas]
+            share = moles * _GAS_CONSTANT * kelvin / pascal
+            given = registry.Quantity(share, "dimensionless")
+        # Powers of ten without what their floating point leaves.
+        return float(f"{given.to(wanted.units).magnitude:.12g}")
+    except pint.DimensionalityError:
+        raise TableError(f"'{unit}' is no unit of this quantity, which is in {to}") from None
+    except (
+        pint.UndefinedUnitError,
+        pint.DefinitionSyntaxError,
+        TypeError,
+        ValueError,
+        AttributeError,
+    ):
+        raise TableError(f"'{unit}' is no unit that is known; give one as in '{to}'") from None
+
+
+def _spelt(unit: str) -> str:
+    """Return a unit as pint reads it, with a mark before powers, as of "m s-1" and "ug/m3"."""
+    text = (
+        _SPELLINGS.get(unit.strip().lower(), unit.strip()).replace("³", "**3").replace("⁻¹", "**-1")
+    )
+    return re.sub(r"(?<![\d*])([A-Za-zµ]+)\^?(-?\d+)(?![\d.])", r"\1**\2", text)
+
+
+_registries: list[Any] = []
+
+
+def _registry() -> Any:
+    """Return the registry of units, made once: to load it takes half a second."""
+    if not _registries:
+        import pint
+
+        registry: Any = pint.UnitRegistry()
+        registry.define("ppb = 1e-9")
+        registry.define("permille = 1e-3")
+        _registries.append(registry)
+    return _registries[0]
+
+
+def _unit_row(
+    names: Sequence[str], below: Sequence[tuple[int, str]], separator: str
+) -> dict[str, str] | None:
+    """Return the units of a row of units, or None where the first row below the head is none.
+
+    Such a row has no number, and the one after it does.
+    """
+    cells = [cell.strip() for cell in _loose_cells(below[0][1], separator)]
+    filled = [cell for cell in cells if cell]
+    if not filled or any(_NUMBER.match(cell) for cell in filled) or len(below) < 2:
+        return None
+    after = [cell.strip() for cell in _loose_cells(below[1][1], separator)]
+    if sum(bool(_NUMBER.fullmatch(cell)) for cell in after if cell) < 2 and not any(
+        bool(_NUMBER.fullmatch(cell)) for cell in after[1:]
+    ):
+        return None
+    return {
+        name: (unit_in(cell) or cell)
+        for name, cell in zip(names, cells, strict=False)
+        if cell and cell not in ("-", "--")
+    }
+
+
+# Places
+
+
+def longitude_within(degrees: Array) -> Array:
+    """Return longitudes from -180 up to 180; given are those, or 0 to 360 [deg].
+
+    What is beyond both stays as it is.
+    """
+    values = np.asarray(degrees, dtype=np.float64)
+    return np.where((values >= 180.0) & (values <= 360.0), values - 360.0, values)
+
+
+def first_columns(names: Iterable[str], most: int = 12) -> str:
+    """Return the names of columns for a message, the first ones of many."""
+    return ", ".join(f"'{name}'" for name in list(names)[:most])

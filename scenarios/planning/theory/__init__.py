@@ -1,1 +1,0 @@
-"""What theory says over the speed ratio."""

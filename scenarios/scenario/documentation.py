@@ -1,0 +1,385 @@
+"""Every key of the scenario files with its meaning, unit, range and default, taken from the
+schemas: the one source of what is said about keys."""
+
+import functools
+import inspect
+import re
+import typing
+from collections.abc import Iterator
+from dataclasses import Field, dataclass, fields, replace
+from datetime import datetime
+from types import NoneType
+from typing import Any, Literal
+
+from pydantic import BaseModel, RootModel
+from pydantic.fields import FieldInfo
+from pydantic_core import to_jsonable_python
+
+from common.registry import Registry
+from common.text import nearest
+from gnc.laws import STEERING_LAWS
+from scenarios.scenario.consistency import ONE_POINT
+from scenarios.scenario.effect import needs_of
+from scenarios.scenario.errors import line, models_in, split_unit
+from scenarios.scenario.extension_points import PAYLOADS, PLUME_MODELS
+from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.convergence import ConvergenceScenario
+from scenarios.scenario.sections.experiment import DrawConfig, TrialList
+from scenarios.scenario.sections.guidance import GuidanceConfig
+
+FLIGHT_STUDIES = ("flights", "paper", "monte_carlo", "falsify", "arena", "patrol", "premises")
+"""Studies whose scenario files are those of flights."""
+
+DIMENSIONLESS = "-"
+"""Unit of a number without one."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DocumentedKey:
+    """What is known of a key.
+
+    Attributes
+    ----------
+    key : with dots; the entries of a list have the index 0
+    meaning : a sentence or two
+    unit : of a number, ``DIMENSIONLESS`` where it has none; empty of what is no number
+    range : what it may be, in words
+    default : in plain values; None where nothing is the default, or where it has to be given
+    required : whether it has to be given
+    studies : that take it
+    conditions : what it needs to have an effect, each by the part that uses it; empty if it always
+        has one
+    """
+
+    key: str
+    meaning: str
+    unit: str
+    range: str
+    default: Any
+    required: bool
+    studies: tuple[str, ...]
+    conditions: tuple[str, ...] = ()
+
+
+_KINDS: tuple[tuple[type[BaseModel], tuple[str, ...]], ...] = (
+    (Scenario, FLIGHT_STUDIES),
+    (TrialList, ("trials",)),
+    (ConvergenceScenario, ("convergence",)),
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DocumentedSection:
+    """What is known of a section.
+
+    Attributes
+    ----------
+    name : with dots; empty for the keys outside of any section
+    meaning : in a sentence or two
+    listed : whether it is a list of tables
+    keys : of its own, without those of sections below
+    """
+
+    name: str
+    meaning: str
+    listed: bool
+    keys: tuple[DocumentedKey, ...]
+
+
+_REFUSING = {
+    "sweep": (*ONE_POINT, "paper"),
+    "cases": tuple(ONE_POINT),
+    "comparison": tuple(ONE_POINT),
+}
+"""Studies that refuse a section of several points; ``paper`` has cases, beside which there is no
+sweep.
+"""
+
+
+@functools.cache
+def documented_sections(kind: type[BaseModel] = Scenario) -> tuple[DocumentedSection, ...]:
+    """Return the sections of a kind of scenario file, in their order; first the keys outside of any
+    section.
+    """
+    studies = dict(_KINDS)[kind]
+    return tuple(_sections(kind, "", kind.__doc__ or "", studies, listed=False))
+
+
+def documented_keys() -> list[DocumentedKey]:
+    """Return every key of every kind of scenario file, in the order of the files, and then those
+    that parts bring.
+    """
+    of_schemas = [
+        key for kind, _ in _KINDS for section in documented_sections(kind) for key in section.keys
+    ]
+    # What a part brings needs the part, and perhaps more.
+    of_parts = [
+        replace(key, conditions=(*key.conditions, *_conditions(key.key, FLIGHT_STUDIES)))
+        for key in documented_part_keys()
+    ]
+    return [*of_schemas, *of_parts]
+
+
+def similar_key(name: str) -> str | None:
+    """Return the key or section that an unknown name stands for: one with a similar spelling, or
+    with a similar last word.
+    """
+    documented = documented_keys()
+    keys = [each.key for each in documented]
+    of_flights = [each.key for each in documented if each.studies != ("convergence",)]
+    for known in ([*(section.name for section in documented_sections()), *of_flights], keys):
+        if close := nearest(name, known):
+            return close
+    by_last_word = {key.rpartition(".")[2]: key for key in reversed(keys)}
+    close = nearest(name.rpartition(".")[2], by_last_word)
+    return by_last_word[close] if close else None
+
+
+def _sections(
+    kind: type[BaseModel], name: str, meaning: str, studies: tuple[str, ...], *, listed: bool
+) -> Iterator[DocumentedSection]:
+    own, below = [], []
+    for field_name, field in kind.model_fields.items():
+        key = f"{name}.{field_name}" if name else field_name
+        model, is_listed = next(models_in(field.annotation), (None, False))
+        if model is None:
+            own.append(_documented(key, field, studies))
+        elif issubclass(model, RootModel):
+            own.append(_free_table(key, model, studies))
+        else:
+            below.append(
+                _sections(
+                    model,
+                    f"{key}.0" if is_listed else key,
+                    model.__doc__ or "",
+                    studies,
+                    listed=is_listed,
+                )
+            )
+    yield DocumentedSection(name=name, meaning=line(meaning), listed=listed, keys=tuple(own))
+    for sections in below:
+        yield from sections
+
+
+def _documented(key: str, field: FieldInfo, studies: tuple[str, ...]) -> DocumentedKey:
+    meaning, unit = split_unit(line(field.description or ""))
+    required = field.is_required()
+    return DocumentedKey(
+        key=key,
+        meaning=meaning,
+        unit=unit if _is_number(field.annotation) else "",
+        range=_range(field.annotation, tuple(field.metadata)),
+        default=None
+        if required
+        else to_jsonable_python(field.get_default(call_default_factory=True)),
+        required=required,
+        studies=_studies(key, studies),
+        conditions=_conditions(key, studies),
+    )
+
+
+def _free_table(key: str, model: type[BaseModel], studies: tuple[str, ...]) -> DocumentedKey:
+    return DocumentedKey(
+        key=key,
+        meaning=line(model.__doc__ or ""),
+        unit="",
+        range="keys with dots, each with a list of values",
+        default={},
+        required=False,
+        studies=_studies(key, studies),
+    )
+
+
+def _studies(key: str, studies: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the studies in which a key can have an effect."""
+    if studies != FLIGHT_STUDIES:
+        return studies
+    if refusing := _REFUSING.get(key.partition(".")[0]):
+        return tuple(study for study in studies if study not in refusing)
+    plain = {study: _plain_scenarios(study) for study in studies}
+    # A need that none of these has is of something else, which every study may have.
+    needs = [
+        need
+        for need in needs_of(key)
+        if any(need.acts(scenario) for scenarios in plain.values() for scenario in scenarios)
+    ]
+    return tuple(
+        study
+        for study in studies
+        if any(all(need.acts(scenario) for need in needs) for scenario in plain[study])
+    )
+
+
+@functools.cache
+def _plain_scenarios(study: str) -> tuple[Scenario, ...]:
+    """Return scenarios of a study without anything else, by both methods: a key may be of one of
+    them alone.
+    """
+    plain = Scenario(title=study, draws=(DrawConfig(key="wind.speed_mps", uniform=(0.0, 1.0)),))
+    return tuple(
+        plain.model_copy(update={"study": study, "method": method})
+        for method in ("plain", "subset")
+    )
+
+
+def _conditions(key: str, studies: tuple[str, ...]) -> tuple[str, ...]:
+    if studies != FLIGHT_STUDIES:
+        return ()
+    # What a message says of the scenario at hand is not said of every one.
+    return tuple(dict.fromkeys(re.sub("; here [^:]*", "", need.user) for need in needs_of(key)))
+
+
+def _is_number(annotation: Any) -> bool:
+    return annotation in (int, float) or any(
+        _is_number(part) for part in typing.get_args(annotation)
+    )
+
+
+def _range(annotation: Any, metadata: tuple[Any, ...] = ()) -> str:
+    """Return what a value of a type may be, in words."""
+    origin, parts = typing.get_origin(annotation), typing.get_args(annotation)
+    if origin is typing.Annotated:
+        return _range(parts[0], (*metadata, *_constraints(parts[1:])))
+    if origin is Literal:
+        return " or ".join(_word(value) for value in parts)
+    if origin is tuple:
+        each = list(dict.fromkeys(_range(part) for part in parts if part is not Ellipsis))
+        several = "a list" if parts[-1] is Ellipsis else f"{len(parts)} values"
+        return f"{several}, {'each ' if len(each) == 1 else ''}{'; '.join(each)}"
+    if parts and origin is not dict:
+        named = (
+            "a table" if typing.get_origin(part) is dict else _range(part, metadata)
+            for part in parts
+            if part is not NoneType
+        )
+        return " or ".join(dict.fromkeys(named))
+    names = {
+        dict: "keys with dots and their values",
+        bool: "true or false",
+        str: "text",
+        datetime: "a time, as 2026-06-01T12:00:00Z",
+    }
+    return names.get(origin or annotation) or _limits(annotation, metadata)
+
+
+def _constraints(metadata: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Return the constraints of an annotated type, which may be wrapped in a field."""
+    return tuple(
+        inner
+        for outer in metadata
+        for inner in (outer.metadata if isinstance(outer, FieldInfo) else (outer,))
+    )
+
+
+def _limits(annotation: Any, metadata: tuple[Any, ...]) -> str:
+    """Return the limits of a number in words."""
+    limits = {
+        name: getattr(of, name)
+        for of in metadata
+        for name in ("ge", "gt", "le", "lt")
+        if getattr(of, name, None) is not None
+    }
+    kind = {int: "a whole number", float: "a number"}.get(annotation, "any value")
+    words = {"ge": "from", "gt": "above", "le": "to", "lt": "below"}
+    return " ".join(
+        (
+            kind,
+            *(
+                f"{words[name]} {limits[name]:{',' if annotation is int else ',g'}}"
+                for name in words
+                if name in limits
+            ),
+        )
+    )
+
+
+def _word(value: object) -> str:
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+_REGISTRIES: dict[str, Registry[Any]] = {
+    "guidance.law": STEERING_LAWS,
+    "plume.model": PLUME_MODELS,
+    "payload.instruments": PAYLOADS,
+}
+"""Keys that name parts which bring keys, and where the parts are found."""
+
+PART_SECTIONS = tuple(key.partition(".")[0] for key in _REGISTRIES)
+"""Sections that take keys which parts bring."""
+
+
+@functools.cache
+def documented_part_keys() -> tuple[DocumentedKey, ...]:
+    """Return the keys that the project's own parts bring, as far as they are not those of the
+    schema.
+    """
+    found: dict[tuple[str, str], tuple[DocumentedKey, list[str]]] = {}
+    for key_of_part, registry in _REGISTRIES.items():
+        section = key_of_part.partition(".")[0]
+        for name in registry.builtin_names():
+            part = registry.get(name)
+            made = part if section == "guidance" else getattr(part, "SETTINGS", None)
+            for key in _part_keys(section, made) if made else ():
+                _, users = found.setdefault((key.key, repr(key.default)), (key, []))
+                users.append(f"{key_of_part} '{name}'")
+    return tuple(replace(key, conditions=(" or ".join(users),)) for key, users in found.values())
+
+
+def _part_keys(section: str, made: type[Any]) -> list[DocumentedKey]:
+    """Return the keys that are the fields of a dataclass."""
+    described = _described(made)
+    return [
+        _part_key(f"{section}.{of.name}", of, described.get(of.name, ""))
+        for of in fields(made)
+        if of.init and not (section == "guidance" and of.name in GuidanceConfig.model_fields)
+    ]
+
+
+def _part_key(key: str, of: "Field[Any]", described: str) -> DocumentedKey:
+    meaning, unit = split_unit(described)
+    number = type(of.default) in (int, float)
+    ranges: dict[type[Any], str] = {bool: "true or false", str: "text"}
+    choices = of.metadata["choices"]() if "choices" in of.metadata else ()
+    limits = (
+        "a number from {:g} to {:g}".format(*of.metadata["limits"])
+        if "limits" in of.metadata
+        else "a number"
+    )
+    return DocumentedKey(
+        key=key,
+        meaning=_sentence(meaning),
+        unit=unit if number else "",
+        range=" or ".join(choices) or ranges.get(type(of.default), limits),
+        default=of.default,
+        required=False,
+        studies=FLIGHT_STUDIES,
+    )
+
+
+def described_fields(made: type[Any]) -> dict[str, tuple[str, str]]:
+    """Return meaning and unit of each field of a dataclass, by its docstring; the unit of a number
+    without one is empty.
+    """
+    told = {name: split_unit(described) for name, described in _described(made).items()}
+    return {
+        name: (_sentence(meaning), "" if unit == DIMENSIONLESS else unit)
+        for name, (meaning, unit) in told.items()
+    }
+
+
+def _sentence(text: str) -> str:
+    """Return what a docstring says of a field as a sentence, as the schema says it of its keys."""
+    return f"{text[0].upper()}{text[1:]}." if text else ""
+
+
+def _described(made: type[Any]) -> dict[str, str]:
+    """Return what the docstrings of a dataclass and its bases say of its fields, in a line each."""
+    found: dict[str, str] = {}
+    for base in reversed(made.__mro__):
+        text = inspect.cleandoc(base.__dict__.get("__doc__") or "")
+        _, _, attributes = text.partition("Attributes\n----------\n")
+        attributes = attributes.partition("\n\n")[0]
+        for entry in re.split(r"\n(?=\S)", attributes):
+            names, colon, described = entry.partition(" : ")
+            found |= dict.fromkeys(names.split(", "), line(described)) if colon else {}
+    return found

@@ -1,0 +1,284 @@
+"""Tables as people have them: what is found, what has to be given, and what is refused."""
+
+from datetime import date
+
+import numpy as np
+import pytest
+
+from common.tables import (
+    TableError,
+    TableFormat,
+    longitude_within,
+    read_table,
+    table_format,
+    unit_factor,
+    unit_in,
+)
+
+PLAIN = [("0.5", "108.2", "543"), ("1.5", "110.9", "541.5"), ("2.5", "", "545")]
+
+
+def written(tmp_path, text, encoding="utf-8", name="table.csv"):
+    path = tmp_path / name
+    path.write_bytes(text.encode(encoding))
+    return path
+
+
+def rows(separator, decimal=".", head=("t", "so2", "co2"), values=PLAIN):
+    """Return a table of three columns and rows."""
+    lines = [head, *values]
+    return "".join(
+        separator.join(cell.replace(".", decimal) for cell in line) + "\n" for line in lines
+    )
+
+
+def same(table):
+    """Check that a table has the numbers of PLAIN."""
+    assert table.names == ["t", "so2", "co2"]
+    assert table.numbers("t") == pytest.approx([0.5, 1.5, 2.5])
+    assert table.numbers("so2") == pytest.approx([108.2, 110.9, np.nan], nan_ok=True)
+    assert table.numbers("co2") == pytest.approx([543.0, 541.5, 545.0])
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "cp1252"])
+@pytest.mark.parametrize(
+    ("separator", "decimal"), [(",", "."), (";", "."), (";", ","), ("\t", ","), ("|", ".")]
+)
+def test_separator_decimal_and_encoding_are_found(tmp_path, separator, decimal, encoding):
+    table = read_table(written(tmp_path, rows(separator, decimal), encoding))
+    same(table)
+    assert table.format.decimal == decimal
+    assert table.format.separator == separator
+
+
+def test_letters_of_latin_1_and_blanks_around_names_and_cells_are_read(tmp_path):
+    text = " Länge ; Höhe [m] \n 1,5 ; 2,5 \n 2,5 ; 3,5 \n"
+    table = read_table(written(tmp_path, text, "latin-1"))
+    assert table.names == ["Länge", "Höhe [m]"]
+    assert table.numbers("Höhe [m]") == pytest.approx([2.5, 3.5])
+    assert table.units == {"Höhe [m]": "m"}
+
+
+def test_blanks_separate_columns_where_nothing_else_does(tmp_path):
+    table = read_table(written(tmp_path, "t  so2\n0.5   1.5\n 1.5  2.5\n"))
+    assert table.numbers("so2") == pytest.approx([1.5, 2.5])
+
+
+def test_lines_above_the_head_comments_and_blank_lines_are_no_rows(tmp_path):
+    text = "UAV 3; flight 7\noperator: N. N.\n\n" + rows(";").replace("\n", "\n# note; a\n\n", 1)
+    table = read_table(written(tmp_path, text))
+    same(table)
+    assert table.head_line == 4
+    # A head, a comment and an empty line are above the first row.
+    assert table.lines == [7, 8, 9]
+    assert "head in line 4" in table.described()
+
+
+def test_a_head_may_be_a_comment(tmp_path):
+    table = read_table(written(tmp_path, "# " + rows(",")))
+    same(table)
+
+
+def test_a_row_of_units_says_the_units(tmp_path):
+    head, rest = rows(";", ",").split("\n", 1)
+    table = read_table(written(tmp_path, f"{head}\ns;[ppb];ppm\n{rest}"))
+    same(table)
+    assert table.units == {"t": "s", "so2": "ppb", "co2": "ppm"}
+
+
+def test_quoted_cells_keep_their_commas(tmp_path):
+    table = read_table(written(tmp_path, 't,so2\n"0,5","1,25"\n"1,5","2,25"\n'))
+    assert table.numbers("so2") == pytest.approx([1.25, 2.25])
+
+
+def test_points_of_thousands_beside_decimal_commas_are_none(tmp_path):
+    table = read_table(written(tmp_path, "t;p\n0,5;1.013,25\n1,5;998,5\n"))
+    assert table.numbers("p") == pytest.approx([1013.25, 998.5])
+
+
+def test_a_comma_that_may_be_of_thousands_is_asked_for(tmp_path):
+    path = written(tmp_path, "t;p\n1;1,013\n2;1,014\n")
+    with pytest.raises(
+        TableError, match=r"'1,013' may be a decimal or thousands; give table.decimal"
+    ):
+        read_table(path)
+    table = read_table(path, TableFormat(decimal=","))
+    assert table.numbers("p") == pytest.approx([1.013, 1.014])
+
+
+def test_only_the_lines_asked_for_are_read(tmp_path):
+    path = written(tmp_path, "t,mmsi\n" + "".join(f"{i},{219 + i % 3}\n" for i in range(300)))
+    table = read_table(path, keep=lambda line: "220" in line)
+    assert len(table) == 100
+    assert table.lines[:2] == [3, 6]
+
+
+# Times
+
+
+def seconds(tmp_path, cells, **given):
+    day = given.pop("day", None)
+    text = "t;x\n" + "".join(f"{cell};1\n" for cell in cells)
+    return read_table(written(tmp_path, text), TableFormat(**given)).times("t", day=day)
+
+
+NOON = 1_780_315_200.0
+"""2026-06-01T12:00:00Z [s], by another program: date -d 2026-06-01T12:00:00Z +%s."""
+
+
+@pytest.mark.parametrize(
+    ("cells", "given"),
+    [
+        (["2026-06-01T12:00:00Z", "2026-06-01T12:00:01.5Z"], {}),
+        (["2026-06-01T14:00:00+02:00", "2026-06-01T14:00:01.5+02:00"], {}),
+        (["2026-06-01 12:00:00", "2026-06-01 12:00:01,5"], {}),
+        (["1780315200", "1780315201.5"], {}),
+        (["1780315200000", "1780315201500"], {}),
+        (["1780315200000000", "1780315201500000"], {}),
+        (
+            ["01.06.2026 12:00:00.0", "01.06.2026 12:00:01.5"],
+            {"time_format": "%d.%m.%Y %H:%M:%S.%f"},
+        ),
+        (["12:00:00", "12:00:01.5"], {"day": date(2026, 6, 1)}),
+    ],
+)
+def test_times_are_read_in_utc(tmp_path, cells, given):
+    found = seconds(tmp_path, cells, **given)
+    assert found.dated
+    assert found.seconds == pytest.approx([NOON, NOON + 1.5], abs=1e-6)
+
+
+def test_small_numbers_are_seconds_of_the_table_itself_or_of_a_unit_that_is_given(tmp_path):
+    assert seconds(tmp_path, ["0", "1.5"]).seconds == pytest.approx([0.0, 1.5])
+    found = seconds(tmp_path, ["0", "1500"], time_unit="ms")
+    assert (found.dated, found.seconds.tolist()) == (False, [0.0, 1.5])
+
+
+def test_a_clock_goes_on_over_midnight(tmp_path):
+    found = seconds(tmp_path, ["23:59:59", "00:00:01"])
+    assert (found.dated, found.seconds.tolist()) == (False, [86399.0, 86401.0])
+
+
+def test_a_leap_second_is_no_time(tmp_path):
+    found = seconds(
+        tmp_path, ["2016-12-31T23:59:59Z", "2016-12-31T23:59:60Z", "2017-01-01T00:00:00Z"]
+    )
+    assert found.leap == 1
+    assert np.isnan(found.seconds).tolist() == [False, True, False]
+    assert found.seconds[2] - found.seconds[0] == 1.0
+
+
+@pytest.mark.parametrize(
+    ("cells", "words"),
+    [
+        (["14.03.2026 10:15:00"] * 2, 'table.time_format = "%d.%m.%Y %H:%M:%S"'),
+        (["03/04/2026 10:15:00"] * 2, '"%d/%m/%Y %H:%M:%S", or table.time_format = "%m/%d/%Y'),
+        (["soon", "later"], "time 'soon' in column 't' cannot be read (row 2)"),
+        (["20260601120000", "20260601120001"], "without marks"),
+        (["115958", "115959", "120000", "120100"], "hours, minutes and seconds without marks"),
+    ],
+)
+def test_times_that_may_be_several_are_asked_for(tmp_path, cells, words):
+    with pytest.raises(TableError) as error:
+        seconds(tmp_path, cells)
+    assert words in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+# Units
+
+
+@pytest.mark.parametrize(
+    ("unit", "to", "factor"),
+    [
+        ("m s**-1", "m/s", 1.0),
+        ("m s-1", "m/s", 1.0),
+        ("meters/second", "m/s", 1.0),
+        ("kn", "m/s", 1852.0 / 3600.0),
+        ("knots", "m/s", 1852.0 / 3600.0),
+        ("km/h", "m/s", 1.0 / 3.6),
+        ("%", "ppm", 1e4),
+        ("ppm", "ppb", 1e3),
+        ("ppb", "ppb", 1.0),
+    ],
+)
+def test_units_are_converted(unit, to, factor):
+    assert unit_factor(unit, to) == pytest.approx(factor, rel=1e-9)
+
+
+@pytest.mark.parametrize("unit", ["ug/m3", "µg/m³", "ug m-3"])
+def test_a_mass_per_volume_of_sulphur_dioxide_is_a_mole_fraction_at_its_temperature(unit):
+    # 2.66 ug/m3 per ppb at 20 deg C and 1013 hPa: Directive 2008/50/EC works with it.
+    assert 1.0 / unit_factor(unit, "ppb", gas="so2") == pytest.approx(2.663, rel=1e-3)
+    # The molar volume of an ideal gas at 0 deg C, 22.414 l: 64.064/22.414.
+    cold = unit_factor(unit, "ppb", gas="so2", temperature_c=0.0)
+    assert 1.0 / cold == pytest.approx(64.064 / 22.414, rel=1e-4)
+
+
+@pytest.mark.parametrize(("unit", "words"), [("foo", "no unit that is known"), ("m", "no unit of")])
+def test_what_is_no_unit_of_the_quantity_is_refused(unit, words):
+    with pytest.raises(TableError, match=words):
+        unit_factor(unit, "ppb", gas="so2")
+
+
+@pytest.mark.parametrize(
+    ("name", "unit"),
+    [
+        ("SO2 [ppb]", "ppb"),
+        ("SO2 (µg/m³)", "µg/m³"),
+        ("so2_ppb", "ppb"),
+        ("SO2", ""),
+        ("time_s", ""),
+    ],
+)
+def test_names_may_say_their_unit(name, unit):
+    assert unit_in(name) == unit
+
+
+def test_longitudes_of_both_kinds_are_one():
+    given = np.array([-180.0, -91.0, 0.0, 179.9, 180.0, 269.0, 360.0])
+    assert longitude_within(given).tolist() == [-180.0, -91.0, 0.0, 179.9, -180.0, -91.0, 0.0]
+
+
+# What is refused
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "empty"),
+        ("t,x\n1,2,3\n", "line 2 has 3 values"),
+        ('t,x\n"1,2\n', "the quotation mark in line 2 is not closed"),
+        ("t,x\n\x00\x01,2\n", "not a table as text"),
+    ],
+)
+def test_what_is_no_table_is_refused_in_a_line(tmp_path, text, words):
+    with pytest.raises(TableError) as error:
+        read_table(written(tmp_path, text))
+    assert words in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("cell", "words"), [("two", "'two' in row 3"), ("inf", "infinite in row 3")]
+)
+def test_a_cell_that_is_no_number_is_named_with_its_row(tmp_path, cell, words):
+    table = read_table(written(tmp_path, f"t,x\n1,2\n2,{cell}\n"))
+    with pytest.raises(TableError, match=words):
+        table.numbers("x")
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"seperator": ";"}, "separator"),
+        ({"decimal": "x"}, "'.' or ','"),
+        ({"separator": ";;"}, "one letter"),
+        ({"time_unit": "h"}, "s, ms, us"),
+        ({"encoding": "klingon"}, "Python knows none"),
+        ({"time_format": 3}, "must be a text"),
+    ],
+)
+def test_a_format_of_no_use_is_refused(given, words):
+    with pytest.raises(TableError, match=words):
+        table_format(given)

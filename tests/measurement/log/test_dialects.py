@@ -1,0 +1,157 @@
+"""Logs as loggers and spreadsheets write them: each is the log of one flight, and is read as it."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from measurement.errors import MeasurementError
+from measurement.gases import GASES
+from measurement.log.config import read_config
+from measurement.log.read import read_flight
+
+NAMES = '[columns]\ntime = "Zeit"\nso2 = "SO2 [ppb]"\nco2 = "CO2 [%]"\nno = "NO [ppb]"\nno2 = "NO2 [ppb]"\n'
+START = pd.Timestamp("2026-03-14T09:15:00Z")
+
+
+@pytest.fixture
+def expected(logged):
+    """The flight as the plain log has it."""
+    return read_flight(logged, read_config(logged.parent / "instrument.toml"))
+
+
+@pytest.fixture
+def table(logged):
+    """The log's table under names of another language, with CO2 in per cent."""
+    plain = pd.read_csv(logged)
+    return pd.DataFrame(
+        {
+            "Zeit": START + pd.to_timedelta(plain["time_s"], unit="s"),
+            "SO2 [ppb]": plain["so2_ppb"],
+            "CO2 [%]": plain["co2_ppm"] / 1e4,
+            "NO [ppb]": plain["no_ppb"],
+            "NO2 [ppb]": plain["no2_ppb"],
+        }
+    )
+
+
+def read(table, tmp_path, config="", encoding="utf-8", **how):
+    """Write a table, and read it with a configuration."""
+    log, toml = tmp_path / "other.csv", tmp_path / "other.toml"
+    log.write_bytes(table.to_csv(index=False, **how).encode(encoding))
+    toml.write_text(f'instrument = "electrochemical"\n{NAMES}{config}', encoding="utf-8")
+    return read_flight(log, read_config(toml))
+
+
+def is_the_flight(found, expected):
+    np.testing.assert_allclose(found.readings.time - found.readings.time[0],
+                               expected.readings.time - expected.readings.time[0], atol=1e-6)  # fmt: skip
+    np.testing.assert_allclose(found.readings.values, expected.readings.values, rtol=1e-9)
+
+
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "latin-1"])
+def test_a_european_log_is_read(table, expected, tmp_path, encoding):
+    table["Zeit"] = table["Zeit"].dt.tz_convert("Europe/Berlin").map(pd.Timestamp.isoformat)
+    table["Länge"] = 11.2
+    found = read(table, tmp_path, encoding=encoding, sep=";", decimal=",")
+    is_the_flight(found, expected)
+    # 10:15 in Berlin in winter.
+    assert found.about.first_utc == START.to_pydatetime()
+    assert "semicolons, decimal comma" in found.about.table
+
+
+def test_local_dates_are_asked_for_and_then_read(table, expected, tmp_path):
+    table["Zeit"] = table["Zeit"].dt.strftime("%d.%m.%Y %H:%M:%S.%f")
+    given = '[table]\ntime_format = "%d.%m.%Y %H:%M:%S.%f"\n'
+    found = read(table, tmp_path, given)
+    is_the_flight(found, expected)
+    assert found.about.first_utc == START.to_pydatetime()
+
+
+def test_local_dates_without_their_order_are_refused(table, tmp_path):
+    table["Zeit"] = table["Zeit"].dt.strftime("%d.%m.%Y %H:%M:%S")
+    with pytest.raises(MeasurementError, match=r'time_format = "%d\.%m\.%Y %H:%M:%S"'):
+        read(table, tmp_path)
+
+
+def test_masses_of_sulphur_dioxide_are_read_as_such(table, expected, tmp_path):
+    # 2.663 ug/m3 per ppb at 20 deg C and 1013.25 hPa: M p/(R T).
+    table["SO2 [ppb]"] *= 64.064 * 101325.0 / (8.314462618 * 293.15) / 1000.0
+    found = read(table, tmp_path, '[units]\nso2 = "ug/m3"\n')
+    np.testing.assert_allclose(
+        found.readings.values[:, 0], expected.readings.values[:, 0], rtol=1e-6
+    )
+    cold = read(table, tmp_path, '[units]\nso2 = "ug/m3"\ntemperature_c = 0\n')
+    assert cold.readings.values[50, 0] / found.readings.values[50, 0] == pytest.approx(
+        273.15 / 293.15
+    )
+
+
+def test_a_gas_without_a_unit_is_asked_for(table, tmp_path):
+    log, toml = tmp_path / "other.csv", tmp_path / "other.toml"
+    table.rename(columns={"SO2 [ppb]": "SO2"}).to_csv(log, index=False)
+    toml.write_text(NAMES.replace("SO2 [ppb]", "SO2"), encoding="utf-8")
+    config = read_config(toml)
+    with pytest.raises(MeasurementError, match=r"'SO2' does not say its unit.*so2 = \"ppb\""):
+        read_flight(log, config)
+
+
+@pytest.mark.parametrize("factor", [1, 1000, 1_000_000])
+def test_seconds_since_1970_are_compared_with_the_date_of_the_flight(
+    table, expected, tmp_path, factor
+):
+    seconds = START.timestamp() + expected.readings.time
+    table["Zeit"] = [f"{factor * value:.0f}" for value in seconds]
+    found = read(table, tmp_path, "[flight]\ndate = 2026-03-14\n")
+    is_the_flight(found, expected)
+    assert found.about.first_utc == START.to_pydatetime()
+    with pytest.raises(MeasurementError, match="but the log begins at 2026-03-14"):
+        read(table, tmp_path, "[flight]\ndate = 2026-03-15\n")
+
+
+def test_times_of_day_are_of_the_date_of_the_flight_and_go_on_over_midnight(
+    table, expected, tmp_path
+):
+    late = pd.Timestamp("2026-03-14T23:58:00Z")
+    times = late + pd.to_timedelta(expected.readings.time, unit="s")
+    table["Zeit"] = times.strftime("%H:%M:%S")
+    found = read(table, tmp_path, "[flight]\ndate = 2026-03-14\n")
+    is_the_flight(found, expected)
+    assert found.about.first_utc == late.to_pydatetime()
+    assert found.about.last_utc.date().isoformat() == "2026-03-15"
+
+
+def test_a_row_of_units_and_lines_above_the_head_are_read(table, expected, tmp_path, logged):
+    names = ["Zeit", "SO2", "CO2", "NO", "NO2"]
+    table.columns = names
+    text = table.to_csv(index=False, sep="\t")
+    head, rest = text.split("\n", 1)
+    log, toml = tmp_path / "units.csv", tmp_path / "units.toml"
+    log.write_text(f"UAV 3\n# flight 7\n{head}\n\tppb\t%\tppb\tppb\n{rest}", encoding="utf-8")
+    toml.write_text(
+        'instrument = "electrochemical"\n[columns]\ntime = "Zeit"\nso2 = "SO2"\nco2 = "CO2"\n'
+        'no = "NO"\nno2 = "NO2"\n',
+        encoding="utf-8",
+    )
+    found = read_flight(log, read_config(toml))
+    is_the_flight(found, expected)
+    assert found.about.scale == {"co2": 1e4}
+    assert len(GASES) == found.readings.values.shape[1]
+
+
+def test_a_leap_second_is_left_out_and_said(table, tmp_path, expected):
+    begin = pd.Timestamp("2016-12-31T23:59:00Z")
+    times = (begin + pd.to_timedelta(expected.readings.time, unit="s")).strftime(
+        "%Y-%m-%dT%H:%M:%SZ"
+    )
+    cells = times.to_list()
+    cells[60:61] = ["2016-12-31T23:59:60Z"]
+    table["Zeit"] = cells
+    found = read(table, tmp_path)
+    assert len(found.readings.time) == len(expected.readings.time) - 1
+    assert "leap seconds left out: 1" in found.about.table
+
+
+def test_longitudes_from_0_to_360_are_places_as_those_from_minus_180(table, tmp_path):
+    table["lat"], table["lon"] = 27.5, 269.0
+    found = read(table, tmp_path, 'latitude = "lat"\nlongitude = "lon"\n')
+    assert found.about.first_position == (27.5, -91.0)

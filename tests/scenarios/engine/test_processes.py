@@ -1,0 +1,273 @@
+"""Processes that are killed, hang, run out of memory: every task ends as a result, and no other is
+touched.
+"""
+
+import functools
+import itertools
+import multiprocessing
+import os
+import signal
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from engine_cases import TABLE, Squares, begun, workers
+
+from scenarios.engine.processes import MAX_ATTEMPTS, LocalExecutor
+from scenarios.engine.task import Limits, Task
+from scenarios.errors import InputError
+
+LONG = 60.0
+"""What nobody waits for [s]."""
+
+
+def tasks(count):
+    return [Task(number=i) for i in range(count)]
+
+
+def fly(work, numbers, *, jobs=2, limits=None):
+    """Return the results of tasks, in their order, whoever was first."""
+    with LocalExecutor(work, jobs=jobs, limits=limits or Limits()) as executor:
+        results = list(executor.fly(Task(number=i) for i in numbers))
+    return sorted(results, key=lambda result: result.task.number)
+
+
+def killed():
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def once(path, how):
+    """Do something at the first try alone."""
+    if not path.exists():
+        path.touch()
+        how()
+
+
+def assert_lost(result, *words):
+    assert result.lost
+    (row,) = result.tables[TABLE]
+    for word in (f"{MAX_ATTEMPTS} processes that flew it were lost", *words):
+        assert word in row["reason"]
+
+
+def assert_done(results, numbers):
+    """Assert that tasks were done, each once, and as if nothing had happened to others."""
+    found = {result.task.number: result for result in results}
+    for number in numbers:
+        assert not found[number].lost
+        assert found[number].tables[TABLE][0]["square"] == number**2
+    assert len(found) == len(results)
+
+
+@pytest.fixture(scope="module")
+def alone(tmp_path_factory):
+    """What one process makes of tasks."""
+    return fly(Squares(marks=tmp_path_factory.mktemp("alone")), range(6), jobs=1)
+
+
+@pytest.mark.parametrize("jobs", [2, 7])
+def test_every_task_is_done_once_with_the_same_result_whatever_the_number_of_processes(
+    alone, jobs, tmp_path
+):
+    # A few milliseconds each, so that none is through with all before another has begun.
+    work = Squares(
+        marks=tmp_path, does=dict.fromkeys(range(6), functools.partial(time.sleep, 0.005))
+    )
+    assert fly(work, range(6), jobs=jobs) == alone
+    assert [begun(tmp_path, number) for number in range(6)] == [1] * 6
+    # Not in this process, and no more of them than were asked for.
+    assert os.getpid() not in workers(tmp_path)
+    assert 1 <= len(workers(tmp_path)) <= min(jobs, 6)
+    assert not multiprocessing.active_children()
+
+
+def test_nothing_to_do_is_nothing_done(tmp_path):
+    assert fly(Squares(marks=tmp_path), []) == []
+
+
+def test_a_crew_does_one_batch_after_the_other(tmp_path):
+    with LocalExecutor(Squares(marks=tmp_path), jobs=2, limits=Limits()) as executor:
+        first = [result.task.number for result in executor.fly(tasks(4))]
+        second = [result.task.number for result in executor.fly([Task(number=7, recorded=True)])]
+    assert (sorted(first), second) == ([0, 1, 2, 3], [7])
+
+
+@pytest.mark.parametrize("jobs", [1, 3])
+def test_tasks_are_taken_as_processes_get_free(jobs, tmp_path):
+    taken = 0
+
+    def endless():
+        nonlocal taken
+        for number in itertools.count():
+            taken += 1
+            yield Task(number=number)
+
+    with LocalExecutor(Squares(marks=tmp_path), jobs=jobs, limits=Limits()) as executor:
+        flying = executor.fly(endless())
+        # Each has the one at hand and the next; one more is what was just given for the result.
+        for received, _ in enumerate(itertools.islice(flying, 30), start=1):
+            assert taken - received <= 2 * jobs + 1
+        flying.close()
+
+
+def test_a_process_that_is_killed_costs_a_try_and_its_neighbour_nothing(tmp_path):
+    work = Squares(marks=tmp_path, does={3: functools.partial(once, tmp_path / "killed", killed)})
+    results = fly(work, range(6), jobs=1)
+    assert_done(results, range(6))
+    # The one that was queued behind it had not been begun.
+    assert [begun(tmp_path, number) for number in range(6)] == [1, 1, 1, 2, 1, 1]
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_a_task_whose_processes_are_killed_is_lost_and_says_why(jobs, tmp_path):
+    results = fly(Squares(marks=tmp_path, does={3: killed}), range(8), jobs=jobs)
+    assert_lost(results[3], "the last one was ended by SIGKILL")
+    assert_done(results, {*range(8)} - {3})
+    assert [begun(tmp_path, number) for number in range(8)] == [1, 1, 1, MAX_ATTEMPTS, 1, 1, 1, 1]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems have no real-time signals")
+def test_a_signal_without_a_name_is_named_by_its_number(tmp_path):
+    number = signal.SIGRTMIN + 1
+    results = fly(Squares(marks=tmp_path, does={0: lambda: os.kill(os.getpid(), number)}), range(2))
+    assert_lost(results[0], f"the last one was ended by signal {number}")
+    assert_done(results, {1})
+
+
+def test_the_last_task_can_be_lost_too_and_so_can_all(tmp_path):
+    results = fly(Squares(marks=tmp_path, does=dict.fromkeys(range(2), killed)), range(2))
+    assert [result.lost for result in results] == [True] * 2
+    assert [begun(tmp_path, number) for number in range(2)] == [MAX_ATTEMPTS] * 2
+
+
+def test_an_error_that_work_lets_through_is_a_lost_process(tmp_path, capfd):
+    def fails():
+        raise RuntimeError("work is to make a row of this")
+
+    results = fly(Squares(marks=tmp_path, does={1: fails}), range(3), jobs=1)
+    assert_lost(results[1], "ended with status 1")
+    assert_done(results, [0, 2])
+    assert "work is to make a row of this" in capfd.readouterr().err
+
+
+def test_a_task_that_hangs_is_ended_and_lost(tmp_path):
+    work = Squares(marks=tmp_path, does={2: functools.partial(time.sleep, LONG)})
+    began = time.monotonic()
+    # Long enough for another task on a machine that has much else to do: it takes a millisecond.
+    results = fly(work, range(6), limits=Limits(time=0.6))
+    assert_lost(results[2], "did not end within 0.6 s")
+    assert_done(results, {*range(6)} - {2})
+    assert begun(tmp_path, 2) == MAX_ATTEMPTS
+    assert time.monotonic() - began < LONG / 2
+
+
+def memory():
+    """Return what this process has of what is limited [bytes]."""
+    status = Path("/proc/self/status").read_text(encoding="utf-8")
+    return 1024 * int(
+        next(line.split()[1] for line in status.splitlines() if line.startswith("VmData"))
+    )
+
+
+@pytest.mark.skipif(
+    sys.platform != "linux", reason="other systems do not hold a process to its limit of data"
+)
+def test_a_task_that_runs_out_of_memory_is_lost_and_says_why(tmp_path):
+    limit = memory() + 2**28
+    # Four times what is left: refused at once, so that nothing of it is ever there.
+    results = fly(
+        Squares(marks=tmp_path, does={2: functools.partial(bytearray, 2**30)}),
+        range(6),
+        limits=Limits(memory=limit),
+    )
+    assert_lost(results[2], f"ran out of memory; its limit is {limit / 2**20:.0f} MiB")
+    assert_done(results, {*range(6)} - {2})
+    assert begun(tmp_path, 2) == MAX_ATTEMPTS
+    # Where there is no limit there is no lack.
+    assert not fly(Squares(marks=tmp_path, does={2: functools.partial(bytearray, 2**28)}), [2])[
+        0
+    ].lost
+
+
+def test_an_interrupt_ends_processes_at_once(tmp_path):
+    work = Squares(
+        marks=tmp_path, does=dict.fromkeys(range(1, 9), functools.partial(time.sleep, LONG))
+    )
+
+    def interrupted():
+        with LocalExecutor(work, jobs=2, limits=Limits()) as executor:
+            for _ in executor.fly(tasks(9)):
+                raise KeyboardInterrupt
+
+    began = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
+    assert time.monotonic() - began < LONG / 2
+    assert not multiprocessing.active_children()
+
+
+def test_processes_leave_ctrl_c_to_their_parent(tmp_path):
+    # A terminal sends it to every process of a command.
+    work = Squares(marks=tmp_path, does={1: lambda: os.kill(os.getpid(), signal.SIGINT)})
+    assert_done(fly(work, range(3), jobs=1), range(3))
+    assert begun(tmp_path, 1) == 1
+
+
+@dataclass(frozen=True, kw_only=True)
+class Slow(Squares):
+    """Squares that take a moment, and from the fifth on another time [s]."""
+
+    later: float
+
+    def run(self, task):
+        time.sleep(0.05)
+        result = super().run(task)
+        time.sleep(self.later if task.number > 3 else 0.0)
+        return result
+
+
+def command(marks, pause, later, told):
+    """Have tasks done for ever, tell when the fourth is done, and take no more results for some
+    time [s].
+    """
+    with LocalExecutor(Slow(marks=marks, later=later), jobs=2, limits=Limits()) as executor:
+        for result in executor.fly(Task(number=i) for i in itertools.count()):
+            if result.task.number == 3:
+                told.send("flying")
+                time.sleep(pause)
+
+
+@pytest.mark.parametrize(
+    ("pause", "later"),
+    # Nobody would wait for the end of the long flight.
+    [(0.0, 0.0), (LONG, 0.0), (0.0, 10.0 * LONG)],
+    ids=["at work", "idle", "in a long flight"],
+)
+def test_processes_whose_parent_is_killed_end_by_themselves(pause, later, tmp_path):
+    context = multiprocessing.get_context("fork")
+    ours, theirs = context.Pipe(duplex=False)
+    parent = context.Process(target=command, args=(tmp_path, pause, later, theirs))
+    parent.start()
+    theirs.close()
+    assert ours.recv() == "flying"
+    time.sleep(0.2)  # Those that are to be idle have done what they were given.
+    parent.kill()
+    parent.join()
+    # They have their parent's end of the pipe: it is closed once the last of them has ended.
+    if not ours.poll(20.0):
+        for pid in workers(tmp_path):
+            os.kill(pid, signal.SIGKILL)
+        pytest.fail("processes outlived their parent")
+    with pytest.raises(EOFError):
+        ours.recv()
+    assert len(workers(tmp_path)) == 2
+
+
+def test_a_limit_of_memory_that_nothing_can_keep_is_refused_in_a_line(tmp_path):
+    with pytest.raises(
+        InputError,
+        match=r"--memory-limit is 0\.00 GiB; a process uses \d\.\d\d GiB before its first flight",
+    ):
+        LocalExecutor(Squares(marks=tmp_path), jobs=1, limits=Limits(memory=2**20)).__enter__()

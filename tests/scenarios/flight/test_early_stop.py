@@ -1,0 +1,126 @@
+"""When a flight ends early: a verdict by all looks together, or a plume that cannot be measured."""
+
+import math
+from types import SimpleNamespace
+
+import pytest
+
+from gnc.estimation.plume.passes import SensorState
+from gnc.mission.axis import PlumeEstimate, SearchedAxis
+from gnc.mission.mission import NO_CENTRE, Mode, OrbitStatus
+from scenarios.flight import ending
+from scenarios.flight.ending import LEFT_BY, LOOK_INTERVAL, EarlyStop, StopReason
+
+
+class Axis(SearchedAxis):
+    """A search that has its beliefs from a test."""
+
+    def __init__(self, *, sensor=SensorState.WORKING, measurable=1.0, mode=Mode.SEARCHING):
+        self.mode = mode
+        self.sensor, self.estimate, self._measurable = (
+            sensor,
+            PlumeEstimate(height=131.0, height_deviation=8.0),
+            measurable,
+        )
+
+    __slots__ = ("_measurable",)
+
+    def measurable(self):
+        return self._measurable
+
+
+class Mission:
+    def __init__(self, axis):
+        self.axis, self.departing = axis, False
+        self.orbit = OrbitStatus(NO_CENTRE, 0.0, in_place=True)
+
+    def depart(self):
+        self.departing = True
+
+
+def judged(monkeypatch, contents, *, axis=None, settled=0.0, quality="B"):
+    """Return the early stop whose looks find these contents one after the other, each with half the noise
+    of the one before, and its mission.
+    """
+    looks = iter(enumerate(contents))
+
+    def estimate(*_, **__):
+        number, content = next(looks)
+        noise = 0.04 * 0.5**number
+        return SimpleNamespace(
+            fsc_percent=content,
+            noise_percent=noise,
+            total_percent=math.hypot(noise, 0.005),
+            quality=quality,
+        )
+
+    monkeypatch.setattr(ending, "estimate", estimate)
+    reader = SimpleNamespace(limit_percent=0.1, spec=None, readings=lambda since: since)
+    mission = Mission(axis or Axis())
+    return EarlyStop(reader, mission, SimpleNamespace(at=settled)), mission
+
+
+def looks(stop, number, distance=230.0):
+    """Let as many looks go by, sampled ten times a second; return the times at which it was over."""
+    return [
+        t
+        for t in (0.1 * i for i in range(round(10 * number * LOOK_INTERVAL) + 1))
+        if stop.has_left(t, distance)
+    ]
+
+
+def test_a_flight_leaves_at_the_first_look_beyond_the_guard_band_of_repeated_looks(monkeypatch):
+    # 1.8 standard uncertainties above, then as many below: more than one look needs, 1.645, and
+    # less than one of several.
+    contents = [0.1 + 1.8 * 0.0403, 0.1 - 1.8 * 0.0206, 0.05]
+    stop, mission = judged(monkeypatch, contents)
+    assert looks(stop, 2) == []
+    assert (stop.reason, mission.departing) == (None, False)
+    again, mission = judged(monkeypatch, contents)
+    looks(again, 3)
+    assert (again.reason, mission.departing) == (StopReason.BELOW, True)
+    assert again.left_at == pytest.approx(3 * LOOK_INTERVAL, abs=0.11)
+    assert again.verdict.looks == 3
+
+
+def test_a_record_that_has_no_verdict_ends_no_flight(monkeypatch):
+    stop, mission = judged(monkeypatch, [2.0, 2.0, 2.0], quality="C")
+    looks(stop, 3)
+    assert (stop.reason, mission.departing, stop.verdict.looks) == (None, False, 0)
+
+
+def test_it_is_over_when_the_vehicle_has_gone_farther_than_where_it_left(monkeypatch):
+    stop, mission = judged(monkeypatch, [0.5])
+    looks(stop, 1)
+    assert mission.departing
+    assert not stop.has_left(40.0, 230.0 + LEFT_BY - 1.0)
+    assert stop.has_left(41.0, 230.0 + LEFT_BY + 1.0)
+
+
+def test_before_the_flight_has_settled_no_reading_counts(monkeypatch):
+    stop, _ = judged(monkeypatch, [], settled=math.nan)
+    assert looks(stop, 5) == []
+    assert stop.reason is None
+
+
+def test_off_its_orbit_and_where_it_is_detected_no_plume_is_out_of_reach(monkeypatch):
+    stop, mission = judged(monkeypatch, [0.1] * 9, axis=Axis(measurable=0.01))
+    mission.orbit = OrbitStatus(NO_CENTRE, 0.0, in_place=False)
+    looks(stop, 3)
+    found, _ = judged(monkeypatch, [0.1] * 9, axis=Axis(measurable=0.01, mode=Mode.FOUND))
+    looks(found, 3)
+    assert (stop.reason, found.reason) == (None, None)
+
+
+@pytest.mark.parametrize(
+    ("beliefs", "reason"),
+    [
+        ({"sensor": SensorState.STUCK}, StopReason.SENSOR),
+        ({"measurable": 0.01}, StopReason.OUT_OF_REACH),
+    ],
+)
+def test_what_cannot_be_measured_is_left_with_what_is_believed(monkeypatch, beliefs, reason):
+    stop, mission = judged(monkeypatch, [], axis=Axis(**beliefs))
+    looks(stop, 2)
+    assert (stop.reason, mission.departing) == (reason, True)
+    assert "131 m high, with a deviation of 8 m" in stop.message
