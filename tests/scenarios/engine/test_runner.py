@@ -33,7 +33,7 @@ def test_a_run_has_its_table_its_files_and_says_how_it_ended(marks, out):
         8,
         8,
     )
-    assert (result.what, result.directory) == ("squares", out)
+    assert (result.verdict.what, result.directory) == ("squares", out)
     assert rows_of(out, TABLE) == [{"number": i, "square": float(i**2)} for i in range(8)]
     assert sorted(path.name for path in (out / "files").iterdir()) == [f"{i}.txt" for i in range(8)]
     assert (manifest_of(out)["state"], manifest_of(out)["squares_done"]) == ("complete", 8)
