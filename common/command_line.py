@@ -14,8 +14,10 @@ from common.text import one_line
 PROGRAM = "plume-flight"
 """Name of the console command."""
 
-BAD_INPUT, INTERRUPTED, UNREAD = 2, 130, 141
-"""Exit statuses: bad input; Ctrl-C and a gone reader, 128 and the signal's number as in a shell."""
+BAD_INPUT, UNREAD = 2, 141
+"""Exit statuses: bad input; a gone reader, 128 and the signal's number as in a shell. Those of runs
+are in ``common.verdict``.
+"""
 
 _USAGE_ERROR: type[Exception] = typer.BadParameter.__bases__[0]
 """Base class of typer's errors for bad options, which typer does not export."""

@@ -29,6 +29,9 @@ INTERVENTIONS = "interventions.csv"
 DRAWS = "draws.csv"
 """The values of the random variables of each flight."""
 
+OVERRIDES = "overrides.csv"
+"""The keys that each flight has otherwise than the configuration of its trial in the manifest."""
+
 ESTIMATE = "estimate.json"
 """The fuel sulphur content that a measured flight shows."""
 
@@ -40,6 +43,9 @@ COLUMNS = "columns.json"
 
 DERIVED = "derived"
 """Entry of ``columns.json`` with figures that follow from the summary and are in no table."""
+
+VERDICT = "verdict.json"
+"""What the run has shown (``common.verdict``): the only judge of it."""
 
 DESIGN_RECORD = "innerloop.json"
 """The design record of the autopilot."""

@@ -1,6 +1,7 @@
 """Text for people and tables: names that are nearly right, lines, times, cells of CSV tables."""
 
 import difflib
+import json
 import math
 from collections.abc import Iterable
 from datetime import UTC, datetime
@@ -124,6 +125,26 @@ def from_cell(value: object) -> object:
     """Return the value that ``cell`` wrote."""
     marked = isinstance(value, str) and value.startswith(MARK) and _looks_like_formula(value)
     return str(value)[1:] if marked else value
+
+
+def as_json_cell(value: object) -> object:
+    """Return a value of JSON for a cell from which ``from_json_cell`` reads it back: numbers and
+    plain words as they are, all else as JSON.
+    """
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return value
+    if not isinstance(value, str):
+        return json.dumps(value)
+    return value if from_json_cell(value) is value and value else json.dumps(value)
+
+
+def from_json_cell(text: str) -> object:
+    """Return the value that ``as_json_cell`` and ``cell`` made a text of."""
+    word = from_cell(text)
+    try:
+        return json.loads(str(word))
+    except ValueError:
+        return word
 
 
 def _looks_like_formula(value: object) -> bool:

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from common.command_line import INTERRUPTED, refuse, run_command
+from common.command_line import refuse, run_command
 from common.run_layout import DESIGN_RECORD, FORMAT, MANIFEST, MODEL
+from common.verdict import INTERRUPTED
 
 if TYPE_CHECKING:
     from innerloop.store import Record

@@ -19,7 +19,9 @@ import pandas as pd
 
 from common.columns import Column, Table
 from common.plugins import call_plugin
-from common.run_layout import CROSSINGS, DRAWS, INTERVENTIONS
+from common.run_layout import CROSSINGS, DRAWS, INTERVENTIONS, OVERRIDES
+from common.text import as_json_cell
+from common.verdict import KeepOut
 from scenarios.engine.task import Result, Row, Task
 from scenarios.experiment.requests import Experiment, FlightRequest, table_of
 from scenarios.flight.closed_loop import Viewer, fly, release
@@ -37,7 +39,7 @@ from scenarios.instruments.instrument import (
     Instrument,
     declarations,
 )
-from scenarios.measures.criteria import failed_criteria, kept_out
+from scenarios.measures.criteria import failed_criteria
 from scenarios.measures.crossings import crossing_rows
 from scenarios.measures.figures import flight_figures, plan_row
 from scenarios.measures.finding import finding_figures
@@ -105,6 +107,11 @@ class Findings:
         inputs = {key: _cell(value) for key, value in request.inputs.items()}
         self.tables[DRAWS] = [{**self.named, "nu": self.row.get("nu"), **labels, **inputs}]
 
+    def add_overrides(self, overrides: Mapping[str, object]) -> None:
+        """Add the keys that the flight has otherwise than the scenario of its trial."""
+        cells = {key: as_json_cell(value) for key, value in overrides.items()}
+        self.tables[OVERRIDES] = [self.named | cells]
+
     def add_plan(self, plan: FlightPlan) -> None:
         """Add what the plan says."""
         self.row |= plan_row(plan)
@@ -125,7 +132,7 @@ class Findings:
         if begins := [each.at_s for each in flown.request.scenario.vessel.manoeuvres]:
             self.row["manoeuvres_unflown"] = sum(at >= figures["duration_s"] for at in begins)
         if "keepout_violations" in self.row:
-            self.row["kept_out"] = kept_out(self.row)
+            self.row["kept_out"] = KeepOut.of(self.row).is_known_outside
         nu = {"nu": self.row.get("nu")}
         self.tables[CROSSINGS] = [
             self.named | nu | crossing for crossing in crossing_rows(crossings)
@@ -210,6 +217,8 @@ class FlightRunner:
     def _fly_and_judge(self, task: Task, findings: Findings) -> None:
         request = self.request(task)
         findings.add_request(request, dict(task.labels))
+        experiment, _ = self.located(task.number)
+        findings.add_overrides(experiment.overrides(request.scenario))
         if self.refusal and request.scenario.fidelity == "six_dof":
             findings.row |= unflown(Outcome.TRIM_FAILED, self.refusal)
             return

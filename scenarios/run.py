@@ -14,17 +14,16 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from common.command_line import INTERRUPTED, refuse, run_command
+from common.command_line import refuse, run_command
 from common.errors import PluginError
 from common.interrupt import terminated_like_interrupted
 from common.registry import announced, load_announced
 from common.run_layout import REPORT_HTML, REPORT_PDF, flight_of
+from common.verdict import INTERRUPTED, MET, UNEXPLAINED
 
 if TYPE_CHECKING:
-    from scenarios.engine.runner import ExecutorFactory, Launch, RunResult
+    from scenarios.engine.runner import ExecutorFactory, Launch
     from scenarios.flight.closed_loop import Viewer
-
-MET, NOT_MET, UNEXPLAINED = 0, 1, 3
 
 _WATCHED_TIME_LIMIT = 1e6
 """Longest computing time of a flight that is shown in real time [s]."""
@@ -255,32 +254,26 @@ def _run(
                 command=given,
                 launched=_print_launch,
             )
-    for line in result.summary.lines:
+    for line in result.lines:
         print(line)
     print(f"results: {result.directory}")
-    if result.interrupted:
-        done = result.summary.done
-        kept = f"{done} of {result.planned} {result.what} are done and kept"
-        left = f"{_are_left(result.planned - done)} to fly"
-        if comparisons := result.summary.comparisons_left:
-            left += f"; of the comparisons {_are_left(comparisons)} to fly"
+    verdict = result.verdict
+    if verdict.interrupted:
+        counts = verdict.counts
+        kept = f"{counts.done} of {counts.planned} {verdict.what} are done and kept"
+        left = f"{_are_left(counts.left)} to fly"
+        if beside := verdict.comparisons_left:
+            left += f"; of the comparisons {_are_left(beside)} to fly"
         print(
             f"interrupted; {kept}, {left}. Continue with: {_again(directory, out=out, resume=resume)}",
             file=sys.stderr,
         )
-        return INTERRUPTED
+        return verdict.exit_status
     status = _report(directory, changed=result.changed, wanted=not no_report)
-    return exit_status(result, status)
-
-
-def exit_status(result: "RunResult", report_status: int) -> int:
-    """Return the exit status of a run that was not interrupted.
-
-    What contradicts the theorem of the guard stands before a report that could not be built.
-    """
-    if result.summary.unexplained:
-        return UNEXPLAINED
-    return report_status or (MET if result.all_met else NOT_MET)
+    # What contradicts the theorem of the guard stands before a report that could not be built.
+    return (
+        verdict.exit_status if verdict.exit_status == UNEXPLAINED else status or verdict.exit_status
+    )
 
 
 def _print_launch(launch: "Launch") -> None:

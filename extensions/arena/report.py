@@ -33,7 +33,7 @@ from reports.flights.content import flights_content
 from reports.flights.first_page import flights_in_words
 from reports.flights.names import told_name
 from reports.flights.trials.tables import nearest_cells
-from reports.run.columns import column, count, flights_flown, lost, total, violated
+from reports.run.columns import column, flights_flown, lost, total
 from reports.run.flight_config import flight_config
 from reports.run.run_data import RunData
 from reports.run.surroundings import surroundings
@@ -191,9 +191,8 @@ def _refused(arena: Arena) -> list[Block]:
 
 
 def _verdict(arena: Arena) -> Verdict:
-    rows, flown = arena.run.summary, flights_flown(arena.run.summary)
-    planned = int(arena.run.manifest["flights_planned"])
-    violations, gone = count(violated(flown)), count(lost(rows))
+    verdict, counts = arena.run.verdict, arena.run.verdict.counts
+    violations, gone = counts.violated, counts.lost
     best = [
         (task, first)
         for task in (True, False)
@@ -205,7 +204,7 @@ def _verdict(arena: Arena) -> Verdict:
             entrant.title for entrant in arena.entrants if total(entrant.rows, "keepout_violations")
         ]
         failures.append(
-            f"keep-out violations in {violations} of {len(flown)} flights: of {', '.join(laws)}"
+            f"keep-out violations in {violations} of {counts.flown} flights: of {', '.join(laws)}"
         )
     if gone:
         laws = [entrant.title for entrant in arena.entrants if lost(entrant.rows).any()]
@@ -229,12 +228,17 @@ def _verdict(arena: Arena) -> Verdict:
         ),
         Card(
             "Keep-out violations",
-            f"{total(flown, 'keepout_violations'):,}",
+            f"{counts.keepout_violations:,}",
             "0",
-            len(flown) > 0 and not violations,
+            counts.flown > 0 and not violations,
         ),
-        Card("Aircraft lost", f"{gone:,}", "0", len(flown) > 0 and not gone),
-        Card("Flights flown", f"{len(flown):,} of {planned:,}", "all", len(flown) == planned),
+        Card("Aircraft lost", f"{gone:,}", "0", counts.flown > 0 and not gone),
+        Card(
+            "Flights flown",
+            f"{counts.flown:,} of {counts.planned:,}",
+            "all",
+            counts.flown == counts.planned,
+        ),
         Card("Laws in a task", f"{len(arena.entrants)}"),
         Card(
             "Conditions, and flights of each law in each",
@@ -242,9 +246,9 @@ def _verdict(arena: Arena) -> Verdict:
         ),
     ]
     return Verdict(
-        holds=len(flown) > 0 and not violations and not gone,
-        complete=len(flown) == planned,
-        headline=_headline(arena, best) if len(flown) else "Nothing was flown",
+        holds=counts.flown > 0 and not violations and not gone,
+        complete=verdict.is_done and counts.flown == counts.planned and not counts.unknown,
+        headline=_headline(arena, best) if counts.flown else "Nothing was flown",
         detail="Means over all conditions, over the end of each flight."
         f" {_ONCE if arena.flights == 1 else _alike(arena, best)}",
         failures=failures,

@@ -13,6 +13,7 @@ import pandas as pd
 
 from common.columns import Column, Table, described
 from common.run_layout import SUMMARY
+from common.verdict import RunVerdict
 from extensions.convergence import COUNTEREXAMPLES, trajectory_path
 from extensions.convergence.ensemble import (
     DISTANCE_CONVERGED,
@@ -500,9 +501,17 @@ class ConvergenceStudy:
             f"  {law}, {kind}: {int(of_kind.sum())} of {len(of_kind)} converged"
             for (law, kind), of_kind in flown
         ]
+        as_required = len(frame) == self.planned and bool(
+            converged[frame["law"].isin(judged)].all()
+        )
         return StudySummary(
-            done=len(frame),
-            met=len(frame) == self.planned and bool(converged[frame["law"].isin(judged)].all()),
+            verdict=RunVerdict.of_items(
+                self.what,
+                planned=self.planned,
+                done=len(frame),
+                met=int(converged.sum()),
+                required_met=as_required,
+            ),
             lines=[
                 f"{self.planned} trajectories planned, {len(frame)} done: {int(converged.sum())}"
                 " converged",

@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 
 from common.physics import wind_towards
+from common.verdict import MET
 from extensions.patrol import PHASES, SHIPS
 from extensions.patrol.counts import PatrolCounts
 from measurement.gases import MASS_PERCENT
@@ -145,7 +146,7 @@ def patrol_content(run: RunData) -> Findings:
         f" {counts.hours:.1f} h in all: {served}.",
         verdict=Verdict(
             holds=counts.holds,
-            complete=counts.met,
+            complete=counts.met and run.verdict.exit_status == MET,
             headline=_headline(counts),
             detail=f"{served} in {counts.hours:.1f} h, {counts.per_hour:.1f} an hour;"
             f" {counts.violations} keep-out violation{'s' * (counts.violations != 1)}.",

@@ -15,6 +15,7 @@ import numpy as np
 import pandas as pd
 
 from common.run_layout import HISTORY_SUFFIX, SUMMARY
+from common.verdict import RunVerdict
 from extensions.patrol import PHASES, SHIPS
 from extensions.patrol.counts import PatrolCounts
 from extensions.patrol.keys import PatrolKeys
@@ -149,9 +150,14 @@ class PatrolStudy(FlightStudy):
             "verdicts_wrong": counts.wrong,
             "oracle_verdicts": counts.oracle,
         }
-        return StudySummary(
-            done=counts.done, met=counts.met, lines=lines, manifest=manifest | self._sizes()
+        verdict = RunVerdict.of_items(
+            self.what,
+            planned=self.planned,
+            done=counts.done,
+            met=counts.through,
+            required_met=counts.met,
         )
+        return StudySummary(verdict=verdict, lines=lines, manifest=manifest | self._sizes())
 
 
 def _given(scenario: Scenario, key: str) -> bool:

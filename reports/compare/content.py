@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from common.verdict import MET
 from reports.compare.charts import pair_charts
 from reports.compare.configuration import configuration_table, software_table, trials_apart
 from reports.compare.figures import JUDGED, PAIRS_MIN, Difference, differences
@@ -235,15 +236,19 @@ def _difference_sentences(compared: Compared) -> str:
 
 def _verdict(runs: Sequence[Run], compared: Sequence[Compared]) -> Verdict:
     unsafe = [of for of in compared if _new(of.pairs)]
+    failed = [run for run in runs if run.data.verdict.exit_status != MET]
     worse = sum(count(of.pairs.no_longer | of.pairs.other_verdict) for of in compared)
     return Verdict(
         holds=not unsafe,
-        complete=worse == 0 and all(run.state == "complete" for run in runs),
+        complete=worse == 0 and not failed,
         headline=headline(compared),
         detail=" ".join(
             f"{of.pairs.other.title}: {' '.join(pairing_sentences(of.pairs))}" for of in compared
         ),
-        failures=[line for of in compared for line in _lines(of)],
+        failures=[
+            *(f"{run.letter}: {_fell_short(run)}" for run in failed),
+            *(line for of in compared for line in _lines(of)),
+        ],
         figures=[card for of in compared for card in _cards(of, alone=len(compared) == 1)],
         judges=False,
     )
@@ -313,10 +318,23 @@ def _lines(compared: Compared) -> list[str]:
             lines.append(
                 f"{other}: {count(mask):,} of {len(pairs):,} paired flights {words} in {where} alone"
             )
-    lines += [
-        f"{run.letter}: the run is {run.state}" for run in (pairs.other,) if run.state != "complete"
-    ]
     return lines
+
+
+def _fell_short(run: Run) -> str:
+    """Return what a run that did not end with exit status 0 fell short of."""
+    verdict, counts = run.data.verdict, run.data.verdict.counts
+    found = {
+        "violated the keep-out area": counts.violated,
+        "diverged": counts.diverged,
+        "lost the aircraft": counts.lost - counts.diverged,
+        "could not be flown": counts.not_flown,
+        "not flown yet": counts.left,
+    }
+    words = "".join(f", {number:,} {what}" for what, number in found.items() if number)
+    state = "the run was interrupted, " if verdict.interrupted else ""
+    did = f"{counts.passed:,} of {counts.planned:,} flights did what is required{words}"
+    return f"{state}{did}"
 
 
 def _cards(compared: Compared, *, alone: bool) -> list[Card]:

@@ -62,9 +62,8 @@ class Run:
 
     @property
     def state(self) -> str:
-        """How it ended, in words; one that was killed has never said that it ended."""
-        state = str(self.manifest.get("state", "unfinished"))
-        return "killed" if state == "running" else state
+        """How it ended, in words."""
+        return "complete" if self.data.verdict.is_done else "interrupted"
 
 
 def read_runs(paths: Sequence[Path]) -> list[Run]:
@@ -96,5 +95,7 @@ def _read(letter: str, path: Path) -> Run:
         raise ReportError(
             f"'{path}' was flown by another version: its {SUMMARY} has no '{missing[0]}'; run the scenario again in another --out"
         )
+    # A run that did not end has no verdict, and is refused.
+    _ = data.verdict
     with damage_named(path):
         return Run(letter=letter, data=data, trials=read_trials(data))

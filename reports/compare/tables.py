@@ -19,13 +19,8 @@ from reports.run.columns import (
     Array,
     Mask,
     column,
-    completed,
     count,
     judged,
-    kept_out,
-    lost,
-    met,
-    was_flown,
     worst,
 )
 
@@ -35,13 +30,17 @@ LISTED_MAX = 40
 _DIGITS_MAX = 5
 """Digits after the point at most of figures that are nearly 0."""
 
-_COUNTS: dict[str, Callable[[pd.DataFrame], Mask]] = {
-    "Flights that were flown": was_flown,
-    "Flights that met every criterion": met,
-    "Flights that are known to have kept out": kept_out,
-    "Missions completed": completed,
-    "Aircraft lost": lost,
-    "Flights in which the guard intervened": lambda rows: column(rows, "guard_interventions") > 0.0,
+_COUNTS: dict[str, Callable[[Run], int]] = {
+    "Flights that were flown": lambda run: run.data.verdict.counts.flown,
+    "Flights that met every criterion": lambda run: run.data.verdict.counts.met,
+    "Flights that are known to have kept out": lambda run: run.data.verdict.counts.kept_out,
+    "Flights that violated the keep-out area": lambda run: run.data.verdict.counts.violated,
+    "Flights of which that is unknown": lambda run: run.data.verdict.counts.unknown,
+    "Missions completed": lambda run: run.data.verdict.counts.completed,
+    "Aircraft lost": lambda run: run.data.verdict.counts.lost,
+    "Flights in which the guard intervened": lambda run: count(
+        column(run.data.summary, "guard_interventions") > 0.0
+    ),
 }
 """What is counted of each run."""
 
@@ -74,7 +73,7 @@ def side_by_side(runs: Sequence[Run]) -> Table:
         ]
     ]
     for words, chosen in _COUNTS.items():
-        counts = [count(chosen(table)) for table in tables]
+        counts = [chosen(run) for run in runs]
         changes = [
             signed(found - counts[0], 0) if same else "–"
             for found, same in zip(counts[1:], alike, strict=True)

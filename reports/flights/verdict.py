@@ -8,10 +8,20 @@ import pandas as pd
 
 from common.intervals import percent
 from common.premises import UNEXPLAINED
+from common.verdict import FAILED, MET, Closest, Counts, Premises, RunVerdict
 from reports.document.blocks import Card, Verdict
 from reports.document.tables import approach, span
 from reports.flights.bounds import counted_as_violations, sampled, violation_bound
-from reports.flights.criteria import MEASURED, Criterion, counted, criteria_of, switched_off
+from reports.flights.criteria import (
+    MEASURED,
+    SCALED,
+    TRACKING,
+    counted,
+    criterion_title,
+    limit_words,
+    switched_off,
+    worst_words,
+)
 from reports.flights.first_page import simulated
 from reports.flights.names import told_name
 from reports.flights.trials.crossing_gaps import gap_lines
@@ -25,23 +35,14 @@ from reports.measurement.flights import (
 from reports.monte_carlo.subset import plain_bound_in_words, subset_headline
 from reports.run.columns import (
     beside_vessel,
-    clearance,
     column,
-    completed,
     count,
     flights_flown,
-    kept_out,
     largest,
-    lost,
-    met,
-    passed,
-    premises_exceeded,
     radii_differ,
     total,
-    unexplained,
-    violated,
+    was_flown,
 )
-from reports.run.flight_config import keepout_shape
 from reports.run.run_data import RunData
 from reports.run.trials import SHAPES, Trial, measured_from
 
@@ -56,15 +57,10 @@ _COMMAND, _DEMAND = (
 )
 """Names of figures."""
 
-_TRACKING = "tracking_error_rms_m"
-
 _QUANTILE, _QUANTILE_OF = 0.99, 100
 """Fraction of flights whose tracking error is no larger than the one that is shown, and flights of
 which there is one at least.
 """
-
-_LIMITED = " of the trials that limit it"
-"""How the worst figure is named that is not that of all flights."""
 
 _POINTS = {
     "own": "Each point of the sweep has starts, noise and sampled instruments of its own.",
@@ -75,94 +71,142 @@ _POINTS = {
 
 
 def flight_verdict(run: RunData, trials: list[Trial]) -> Verdict:
-    """Judge a run by its summary.
+    """Return what the run's verdict says, in words.
 
     It fails if no flight was flown, if one violated the keep-out area, if one lost its aircraft
     that was required to complete, or if the fuel of an only flight is called above its limit.
-    It is complete if every planned flight met every criterion, and the fuel of an only flight is
-    called below its limit.
+    It is complete if the run ended with exit status 0, every planned flight met every criterion,
+    and the fuel of an only flight is called below its limit.
     """
-    rows, flown = run.summary, flights_flown(run.summary)
-    planned = int(run.manifest["flights_planned"])
-    kept = (
-        len(flown) > 0
-        and total(flown, "keepout_violations") == 0
-        and not np.any(lost(rows) & ~passed(rows))
-    )
-    headlines = [
-        words for words in (sulphur_headline(run), _headline(run, trials, flown, planned)) if words
-    ]
-    if wrong := count(unexplained(flown)):
+    verdict, counts = run.verdict, run.verdict.counts
+    flown = flights_flown(run.summary)
+    kept = counts.flown > 0 and not counts.violated and not verdict.lost_against_requirement
+    headlines = [words for words in (sulphur_headline(run), _headline(run, flown)) if words]
+    if wrong := counts.unexplained:
         flights = f"{wrong:,} flight{'s' * (wrong > 1)}"
         headlines = [f"The keep-out guard is wrong: in {flights} {UNEXPLAINED}", *headlines[::-1]]
+    elif verdict.lost_against_requirement or counts.violated:
+        # What must never happen stands before what was measured.
+        headlines = headlines[::-1]
+    met = verdict.exit_status == MET and counts.met == counts.planned
     return Verdict(
         holds=kept and not sulphur_above(run),
-        complete=count(met(rows)) == planned and sulphur_below(run),
-        # What must never happen stands before what was measured.
-        headline=". ".join(headlines if kept or wrong else headlines[::-1]),
-        detail=_detail(run, trials, flown, planned),
+        complete=met and sulphur_below(run),
+        headline=". ".join([*_state(verdict), *headlines]),
+        detail=_detail(run, trials, flown),
         failures=[
             *(line for trial in trials for line in failure_lines(trial)),
             *(line for trial in trials for line in tracking_lines(trial, only=len(trials) == 1)),
             *(line for trial in trials for line in gap_lines(trial, only=len(trials) == 1)),
-            *noteworthy(flown),
+            *noteworthy(verdict, flown),
         ],
-        figures=[
-            *sulphur_cards(run),
-            *_bound_figure(run, trials),
-            *_figures(trials, flown, planned),
-        ],
+        figures=[*sulphur_cards(run), *_bound_figure(run), *_figures(trials, flown)],
     )
 
 
-def _headline(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int) -> str:
-    if not len(flown):
-        ends = run.summary["outcome"][~completed(run.summary)].astype(str).str.replace("_", " ")
-        return f"Nothing was flown{f': of {planned:,}, {counted(ends)}' if len(ends) else ''}"
-    rows, kept = run.summary, _keeping_out(run, trials, flown)
-    if _subset(run) is None and np.any(violated(flown)):
+def _state(verdict: RunVerdict) -> list[str]:
+    """Return that a run was interrupted or is incomplete, which stands before anything else."""
+    if verdict.is_done:
+        return []
+    counts = verdict.counts
+    word = "Interrupted" if verdict.interrupted else "Incomplete"
+    if not counts.left:
+        return [f"{word} before all comparisons were flown"]
+    return [f"{word} after {counts.done:,} of {_plural(counts.planned, 'flight')}"]
+
+
+def _headline(run: RunData, flown: pd.DataFrame) -> str:
+    """Return in a sentence how the flights kept out, and in what others fell short.
+
+    "No keep-out violation" is said only where each planned flight is known to have kept out, and
+    came back; else it begins with those that did not.
+    """
+    counts = run.verdict.counts
+    if not counts.flown:
+        ends = run.summary["outcome"].astype(str).str.replace("_", " ")
+        return (
+            f"Nothing was flown{f': of {counts.planned:,}, {counted(ends)}' if len(ends) else ''}"
+        )
+    kept = _keeping_out(run, flown)
+    if _subset(run) is None and counts.violated:
         return kept
-    counts = {
-        "lost the aircraft": count(lost(rows)),
-        "did not complete the mission": count(~completed(flown) & ~lost(flown)),
-        "could not be flown": count(~lost(rows)) - count(~lost(flown)),
-        "failed another criterion": count(completed(rows) & ~met(rows) & ~violated(rows)),
-        "not flown yet": planned - len(rows),
+    troubles, short = _shortfalls(run)
+    if counts.planned == 1:
+        it = next(iter((*troubles, *short)), "met its criteria")
+        return f"The flight {it}; {kept}" if troubles else f"{kept}; it {it}"
+    numbers = [[f"{number:,} {what}" for what, number in of.items()] for of in (troubles, short)]
+    if troubles:
+        flights = _plural(counts.planned, "flight")
+        return f"{', '.join(numbers[0])}, of {flights}; {'; '.join([kept, *numbers[1]])}"
+    if short:
+        return f"{kept}; of {counts.planned:,}, {', '.join(numbers[1])}"
+    return f"{kept}; every flight met its criteria" if run.verdict.is_done else kept
+
+
+def _shortfalls(run: RunData) -> tuple[dict[str, int], dict[str, int]]:
+    """Return how many flights came to nothing or did not come back, and how many of the others did
+    not complete or failed another criterion, by what they did; only what some did.
+    """
+    counts = run.verdict.counts
+    gone = {
+        "diverged": counts.diverged,
+        "lost the aircraft": counts.lost - counts.diverged,
+        "failed": counts.failed - _unflown(run.summary, FAILED),
     }
-    others = [f"{number_of:,} {what}" for what, number_of in counts.items() if number_of]
-    if np.any(lost(rows) & ~passed(rows)):
-        of = f"{planned:,} flight{'s' * (planned != 1)}"
-        return f"{others[0].capitalize()}, of {of}{''.join(f', {other}' for other in others[1:])}. {kept}"
-    if planned == 1:
-        return f"{kept}; it {next((what for what, number_of in counts.items() if number_of), 'met its criteria')}"
-    if others:
-        return f"{kept}; of {planned:,}, {', '.join(others)}"
-    return f"{kept}; every flight met its criteria" if met(rows).all() else kept
+    came_back = counts.flown - sum(gone.values())
+    others = {
+        "did not complete the mission": came_back - counts.completed,
+        "failed another criterion": counts.completed - counts.met,
+    }
+    troubles = gone | {"could not be flown": counts.not_flown}
+    worse, short = (
+        {what: number for what, number in of.items() if number} for of in (troubles, others)
+    )
+    return worse, short
 
 
-def _keeping_out(run: RunData, trials: list[Trial], flown: pd.DataFrame) -> str:
+def _unflown(rows: pd.DataFrame, outcome: str) -> int:
+    """Return how many flights of an outcome were never flown."""
+    return count((rows["outcome"] == outcome).to_numpy(dtype=np.bool_) & ~was_flown(rows))
+
+
+def _keeping_out(run: RunData, flown: pd.DataFrame) -> str:
     """Return how the flights kept out of the keep-out area, and what bound follows; a flight about
     a circle has none.
     """
-    beside = beside_vessel(flown)
-    flights, alone = _flights(beside), len(flown) - len(beside)
-    if not len(beside):
-        return f"{_flights(flown)} ({simulated(flown)}) without a vessel to keep out of"
-    led, bound, inside = _subset(run), violation_bound(run, trials), count(violated(flown))
+    counts, time = run.verdict.counts, simulated(flown)
+    if not counts.beside:
+        return f"{_plural(counts.flown, 'flight')} ({time}) without a vessel to keep out of"
+    led, bound, inside = _subset(run), violation_bound(run), counts.violated
+    flights = _plural(counts.beside, "flight")
     if led is not None and bound:
-        return f"{subset_headline(led)}; {inside:,} of its {flights} ({simulated(beside)}) violated the keep-out area"
-    if violations := total(flown, "keepout_violations"):
-        return f"Keep-out violations in {inside:,} of {flights}, {violations:,} in all"
+        return f"{subset_headline(led)}; {inside:,} of its {flights} ({time}) violated the keep-out area"
+    if inside:
+        return (
+            f"Keep-out violations in {inside:,} of {flights}, {counts.keepout_violations:,} in all"
+        )
+    if counts.beside == 1 and not counts.kept_out:
+        known = (
+            "it ended outside of the keep-out area"
+            if counts.outside
+            else "nobody knows whether it kept out"
+        )
+        return f"{known} ({time})"
+    if not run.verdict.all_kept_out:
+        outside = f", {counts.outside:,} ended outside of the area" if counts.outside else ""
+        unknown = f", unknown of {counts.unknown:,}" if counts.unknown else ""
+        return f"{counts.kept_out:,} of {flights} kept out ({time}){outside}{unknown}"
     shown = (
         f": at most {percent(bound[0])} of such flights violate the area, at {percent(bound[1])} confidence"
         if bound
         else ""
     )
-    return f"No keep-out violation in {flights} ({simulated(beside)}){shown}{f', and {alone:,} without a vessel' if alone else ''}"
+    alone = f", and {counts.no_area:,} without a vessel" if counts.no_area else ""
+    return f"No keep-out violation in {flights} ({time}){shown}{alone}"
 
 
-def _flights(rows: pd.DataFrame) -> str:
-    return f"{len(rows):,} flight{'s' * (len(rows) != 1)}"
+def _plural(number: int, noun: str) -> str:
+    return f"{number:,} {noun}{'s' * (number != 1)}"
 
 
 def _subset(run: RunData) -> "dict[str, Any] | None":
@@ -174,20 +218,20 @@ def _subset(run: RunData) -> "dict[str, Any] | None":
     )
 
 
-def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int) -> str:
-    rows, beside = run.summary, beside_vessel(flown)
+def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame) -> str:
+    counts, beside = run.verdict.counts, beside_vessel(flown)
     several = f"Flights of {len(trials)} trials: " if len(trials) > 1 else ""
     sentences = [
-        f"{several or 'Flights: '}{planned:,} planned, {len(flown):,} flown,"
-        f" {count(completed(rows)):,} completed, {count(met(rows)):,} met every criterion.",
-        *([_closest(trials, beside)] if len(beside) else []),
+        f"{several or 'Flights: '}{counts.planned:,} planned, {counts.flown:,} flown,"
+        f" {counts.completed:,} completed, {counts.met:,} met every criterion.",
+        *([_closest(found, trials, beside)] if (found := run.verdict.whole.closest) else []),
     ]
     sentences += [
         words
         for kind, words in _POINTS.items()
         if kind in run.manifest.get("random_numbers_of_points", {}).values()
     ]
-    led, bound = _subset(run), violation_bound(run, trials)
+    led, bound = _subset(run), violation_bound(run)
     if bound and led is not None:
         sentences.append(
             f"The simulation's bound, {percent(bound[1])} confidence, is on flights whose inputs are distributed as the scenario"
@@ -197,7 +241,7 @@ def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int
     elif bound:
         sentences.append(
             f"With {percent(bound[1])} confidence a flight sampled as these were violates the keep-out area with a probability of"
-            f" at most {percent(bound[0])}, on average and in this simulation.{counted_as_violations(rows)}"
+            f" at most {percent(bound[0])}, on average and in this simulation.{counted_as_violations(run.verdict.whole.bound)}"
         )
     elif len(beside) and (run.statistics is not None or sampled(trials)):
         few = "A single flight sets" if len(beside) == 1 else "So few flights set"
@@ -208,29 +252,26 @@ def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int
         sentences.append(
             "No bound on a probability follows from these flights: they are no random sample."
         )
-    if "required" in rows and (rows["required"] == "keep_out").any():
-        alone = rows[rows["required"] == "keep_out"]
-        are = "flight is" if len(alone) == 1 else "flights are"
+    if alone := counts.required.get("keep_out", 0):
+        are = "flight is" if alone == 1 else "flights are"
         sentences.append(
-            f"{len(alone):,} {are} required to keep out, not to complete: {count(kept_out(alone)):,} kept out,"
-            f" {count(completed(alone)):,} completed. For the exit status, it is enough that these kept out."
+            f"{alone:,} {are} required only to stay outside of the keep-out area, and not to complete;"
+            f" {counts.passed:,} of {counts.planned:,} flights did what is required of them."
         )
-    if run.manifest.get("state") != "complete":
-        sentences.append(
-            f"The run is {run.manifest.get('state', 'unfinished')}; continue it with --resume."
-        )
+    if not run.verdict.is_done:
+        sentences.append("The run did not end; continue it with --resume.")
     return " ".join(sentences)
 
 
-def _closest(trials: list[Trial], beside: pd.DataFrame) -> str:
+def _closest(found: Closest, trials: list[Trial], beside: pd.DataFrame) -> str:
     """Return how close the closest flight came, and to what: the shape of the keep-out area decides
     what a distance is.
     """
-    closest = _nearest(beside)
+    closest = beside[beside["flight_id"] == found.flight].iloc[0]
     (trial,) = [trial for trial in trials if trial.key == closest["trial"]]
-    name, shape = told_name(trial, closest), keepout_shape(trial.flight_config(closest))
+    name, shape = told_name(trial, closest), found.shape
     where = f" ({name})" if trial.swept else f", in {name}"
-    distance, radius = float(closest["min_distance_m"]), float(closest["keepout_radius_m"])
+    distance, radius = found.distance_m, found.radius_m
     nearest = f"{approach(distance, radius)} m {measured_from(shape)}"
     words = f"Closest approach of any flight, from its first second: {nearest}{where}"
     if radii_differ(beside):
@@ -239,98 +280,74 @@ def _closest(trials: list[Trial], beside: pd.DataFrame) -> str:
             f" it, from the first second: {approach(distance - radius, 0.0)} m{where}: {nearest}, where r_min is {radius:g} m"
         )
     horizontal = closest.get("horizontal_distance_min_m", math.nan)
-    if shape == "sphere" and horizontal < float(closest["min_distance_m"]) - 1.0:
+    if shape == "sphere" and horizontal < distance - 1.0:
         words += f"; {float(horizontal):.1f} m horizontally from the funnel"
     return f"{words}."
 
 
-def _nearest(beside: pd.DataFrame) -> "pd.Series[Any]":
-    """Return the row of the flight that stayed the least off its keep-out area."""
-    return beside.iloc[int(np.argmin(clearance(beside)))]
-
-
-def _bound_figure(run: RunData, trials: list[Trial]) -> list[Card]:
-    bound = violation_bound(run, trials)
+def _bound_figure(run: RunData) -> list[Card]:
+    bound = violation_bound(run)
     if bound is None:
         return []
     name = f"Probability of a keep-out violation in a flight, at most, with {percent(bound[1])} confidence"
     return [Card(name, percent(bound[0]))]
 
 
-def _unexplained_cards(flown: pd.DataFrame) -> list[Card]:
-    """Return how many flights violated the area although every premise of its guard held, if any."""
-    wrong = count(unexplained(flown))
-    name = "Violations with every premise of the guard held"
-    return [Card(name, f"{wrong:,}", "0", met=False)] if wrong else []
-
-
-def _premise_cards(flown: pd.DataFrame) -> list[Card]:
-    """Return in how many flights a premise of the keep-out guard did not hold."""
-    flights = premises_exceeded(flown)
-    if not flights:
+def _violation_cards(counts: Counts) -> list[Card]:
+    """Return how many keep-out violations there were, and of how many flights that is unknown."""
+    if not counts.beside:
         return []
-    some = sum(bool(terms) for terms in flights)
-    return [Card("Flights with a premise of the guard exceeded", f"{some:,} of {len(flights):,}")]
+    value = f"{counts.keepout_violations:,}"
+    if counts.unknown:
+        value += f" known, unknown in {_plural(counts.unknown, 'flight')}"
+    held = not counts.violated and not counts.unknown
+    cards = [Card("Keep-out violations", value, "0", held)]
+    if counts.unexplained:
+        name = "Violations with every premise of the guard held"
+        cards.append(Card(name, f"{counts.unexplained:,}", "0", met=False))
+    return cards
 
 
-def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[Card]:
-    if not len(flown):
+def _figures(trials: list[Trial], flown: pd.DataFrame) -> list[Card]:
+    run = trials[0].run
+    verdict, counts, closest = run.verdict, run.verdict.counts, run.verdict.whole.closest
+    if not counts.flown:
         return [
             Card("Keep-out violations", "none flown", "not judged"),
-            Card("Flights flown", f"0 of {planned:,}", "all", met=False),
+            Card("Flights flown", f"0 of {counts.planned:,}", "all", met=False),
         ]
-    beside = beside_vessel(flown)
     limits = column(flown, "heading_rate_limit_rad_s")
     command = largest(column(flown, "heading_rate_command_max_rad_s") / limits)
     guarded, unable = (
         count(column(flown, "guard_interventions") > 0.0),
         count(column(flown, "guard_lost_s") > 0.0),
     )
-    crossings, violations = total(flown, "crossing_count"), total(flown, "keepout_violations")
-    done, kept, gone = count(completed(flown)), count(kept_out(flown)), count(lost(flown))
-    # Of some flights it may be required to keep out, and no more.
-    allowed = (_ALLOWED,) if np.any(passed(flown) & ~met(flown)) else ()
-    worst = [
-        _worst([criterion for trial in trials for criterion in criteria_of(trial)], key)
-        for key in MEASURED
-    ]
-    error = trials[0].run.column(_TRACKING).title
-    told = any(of and _tells_of_all(of.name, error, len(flown)) for of in worst)
+    crossings = total(flown, "crossing_count")
+    # Of some flights it may be required to stay outside, and no more.
+    allowed = (_ALLOWED,) if counts.required.get("keep_out") and counts.passed > counts.met else ()
+    worst = [_worst(trials, key) for key in MEASURED]
+    tracking = verdict.whole.criterion(TRACKING)
     figures = [
-        *(
-            [Card("Keep-out violations", f"{violations:,}", "0", violations == 0)]
-            if len(beside)
-            else []
-        ),
-        *_unexplained_cards(flown),
-        *([_closest_figure(trials, beside)] if len(beside) else []),
+        *_violation_cards(counts),
+        *([_closest_figure(closest, trials, beside_vessel(flown))] if closest else []),
         Card(
-            "Missions completed", f"{done:,} of {planned:,}", *(allowed or ("all", done == planned))
+            "Missions completed",
+            f"{counts.completed:,} of {counts.planned:,}",
+            *(allowed or ("all", counts.completed == counts.planned)),
         ),
         *(figure for figure in worst if figure),
         Card(
             f"Flights flown, {simulated(flown)}",
-            f"{len(flown):,} of {planned:,}",
+            f"{counts.flown:,} of {counts.planned:,}",
             "all",
-            len(flown) == planned,
+            counts.flown == counts.planned,
         ),
-        *(
-            [
-                Card(
-                    "Flights that kept out",
-                    f"{kept:,} of {len(beside):,}",
-                    "all",
-                    kept == len(beside),
-                )
-            ]
-            if len(beside)
-            else []
-        ),
-        Card("Aircraft lost", f"{gone:,}", *(allowed or ("0", gone == 0))),
-        *_premise_cards(flown),
+        *_kept_cards(counts, allowed),
+        Card("Aircraft lost", f"{counts.lost:,}", *(allowed or ("0", counts.lost == 0))),
+        *_premise_cards(verdict.premises),
         *([Card("Plume crossings after settling", f"{crossings:,}")] if crossings else []),
         *(Card(name, worst) for name, worst in switched_off(trials)),
-        *_tracking(flown, error, told=told),
+        *_tracking(flown, run.column(TRACKING).title, told=tracking.judged > 0),
         Card(_COMMAND, "none")
         if command is None
         else Card(_COMMAND, f"{command:.3f}", "≤ 1", command <= 1.0 + ROUNDING),
@@ -355,14 +372,38 @@ def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[Car
     return figures
 
 
-def _closest_figure(trials: list[Trial], beside: pd.DataFrame) -> Card:
-    nearest, shapes = _nearest(beside), {trial.shape for trial in trials}
+def _kept_cards(counts: Counts, allowed: tuple[str, ...]) -> list[Card]:
+    """Return how many flights kept out, of those that have an area to keep out of."""
+    if not counts.beside:
+        return []
+    value = f"{counts.kept_out:,} of {counts.beside:,}"
+    if counts.outside:
+        value += f", {counts.outside:,} ended outside"
+    elsewise = counts.violated or counts.unknown
+    required = allowed if counts.outside and not elsewise else ()
+    return [
+        Card(
+            "Flights that kept out", value, *(required or ("all", counts.kept_out == counts.beside))
+        )
+    ]
+
+
+def _premise_cards(premises: Premises) -> list[Card]:
+    """Return in how many flights a premise of the keep-out guard did not hold."""
+    if not premises.measured:
+        return []
+    value = f"{premises.exceeded:,} of {premises.measured:,}"
+    return [Card("Flights with a premise of the guard exceeded", value)]
+
+
+def _closest_figure(closest: Closest, trials: list[Trial], beside: pd.DataFrame) -> Card:
+    shapes = {trial.shape for trial in trials}
     name = (
         f"Closest approach, {trials[0].measured_from}"
         if len(shapes) == 1 and shapes <= set(SHAPES)
         else "Closest approach"
     )
-    distance, radius = float(nearest["min_distance_m"]), float(nearest["keepout_radius_m"])
+    distance, radius = closest.distance_m, closest.radius_m
     if radii_differ(beside):
         return Card(
             "Closest approach, beyond the flight's own r_min",
@@ -373,11 +414,6 @@ def _closest_figure(trials: list[Trial], beside: pd.DataFrame) -> Card:
     return Card(name, f"{approach(distance, radius)} m", f"≥ {radius:g} m", distance >= radius)
 
 
-def _tells_of_all(name: str, error: str, flights: int) -> bool:
-    """Return whether the figure of a criterion is the tracking error of all flights."""
-    return name.startswith(error) and (flights == 1 or _LIMITED not in name)
-
-
 def _tracking(flown: pd.DataFrame, error: str, *, told: bool) -> list[Card]:
     """Return the tracking error of nearly all flights that settled, whether or not a criterion asks
     for it.
@@ -385,7 +421,7 @@ def _tracking(flown: pd.DataFrame, error: str, *, told: bool) -> list[Card]:
     Of few flights there is no such quantile, and the largest alone is shown, unless that has been
     told.
     """
-    errors = column(flown, _TRACKING)
+    errors = column(flown, TRACKING)
     known = errors[np.isfinite(errors)]
     if not len(known):
         return []
@@ -397,29 +433,22 @@ def _tracking(flown: pd.DataFrame, error: str, *, told: bool) -> list[Card]:
     return [Card(name, f"{high:.3g} m, largest {known.max():.3g} m")]
 
 
-def _worst(criteria: list[Criterion], key: str) -> Card | None:
-    """Return the worst figure of a criterion among all trials: the largest fraction of its trial's
-    limit.
+def _worst(trials: list[Trial], key: str) -> Card | None:
+    """Return the worst figure of a criterion: among the flights that it judges the one that is the
+    largest for its limit, and the worst of all flights, where that is another.
     """
-    known = [
-        criterion
-        for criterion in criteria
-        if criterion.key == key and not math.isnan(criterion.fraction)
-    ]
-    if not known:
+    run = trials[0].run
+    criterion = run.verdict.whole.criterion(key)
+    if not criterion.judged:
         return None
-    worst = max(known, key=lambda criterion: criterion.fraction)
-    failed = sum(criterion.flown_failed for criterion in criteria if criterion.key == key)
-    missing = [
-        criterion.missing for criterion in criteria if criterion.key == key and criterion.missing
-    ]
-    # Flights that were flown and have no figure fail the criterion; of those that were not another
-    # tile tells.
-    without = f" ({'; '.join(missing)})" if missing and worst.fraction <= 1.0 else ""
-    # The tracking error of every trial is a figure of its own, which may be larger where nothing
-    # limits it.
-    everywhere = sum(criterion.key == key for criterion in criteria) == sum(
-        criterion.key == "mission" for criterion in criteria
-    )
-    of = "" if everywhere else _LIMITED
-    return Card(f"{worst.what}, worst{of}{without}", worst.worst, worst.limit, not failed)
+    name = f"{criterion_title(run, criterion)}, worst"
+    worst, worst_of_all = criterion.worst, criterion.worst_of_all
+    value = worst_words(run, criterion, worst)
+    if worst_of_all and worst_of_all != worst:
+        name += f" of the {criterion.judged:,} flights that it is required of, and of all"
+        value += f", {worst_words(run, criterion, worst_of_all)} ({worst_of_all.flight})"
+    limit = worst.limit if worst else criterion.limits[0]
+    words = limit_words(run, key, criterion.column, limit)
+    if any(trial.is_scaled(f"criteria.{key}") for trial in trials):
+        words += SCALED
+    return Card(name, value, words, criterion.met)

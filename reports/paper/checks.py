@@ -8,6 +8,7 @@ from typing import Any
 
 import pandas as pd
 
+from common.verdict import MET
 from reports.document.blocks import Card, Verdict
 from reports.document.tables import length, number
 from reports.paper.flown import VEHICLES, vehicle_name
@@ -125,34 +126,38 @@ def paper_checks(run: RunData) -> list[Check]:
 
 def paper_verdict(run: RunData) -> Verdict:
     """Judge a run by its checks, and by the criteria of its flights."""
-    checks, summary = paper_checks(run), run.summary
-    planned = int(run.manifest["flights_planned"])
-    state = str(run.manifest.get("state", "unfinished"))
-    failed = summary[~summary["criteria_met"]]
+    checks, verdict, counts = paper_checks(run), run.verdict, run.verdict.counts
+    planned, short = counts.planned, counts.done - counts.met
+    failed = run.summary[~run.summary["criteria_met"]]
     wrong = [check for check in checks if check.met is False]
     missing = [check for check in checks if check.met is None]
-    violations = int(summary["keepout_violations"].fillna(0).sum())
-    finished = state == "complete" and len(summary) == planned and not missing
-    if violations:
-        headline = f"{violations} keep-out violations in Simulation 3"
+    finished = verdict.is_done and not missing
+    if counts.violated:
+        headline = f"{counts.keepout_violations} keep-out violations in Simulation 3"
     elif wrong:
         headline = f"Not reproduced: {len(wrong)} of {len(checks)} statements do not hold"
-    elif state == "complete" and len(missing) == len(checks):
-        headline = f"{planned - len(failed)} of {planned} flights met their criteria; none is one of the paper's simulations"
+    elif counts.lost:
+        headline = f"{counts.lost} of {planned} flights lost their aircraft or diverged"
+    elif verdict.is_done and len(missing) == len(checks):
+        headline = f"{counts.met} of {planned} flights met their criteria; none is one of the paper's simulations"
     elif not finished:
         headline = f"Unfinished: {len(checks) - len(missing)} of {len(checks)} statements could be tested, and hold"
-    elif len(failed):
-        headline = f"The paper's statements hold, but {len(failed)} of {planned} flights failed a criterion"
+    elif short:
+        headline = (
+            f"The paper's statements hold, but {short} of {planned} flights failed a criterion"
+        )
     elif len(vehicles(run)) > 1:
         headline = "Reproduced: the paper's numbers, and what it says of Simulations 1 to 3, on both vehicles"
     else:
         headline = f"Reproduced on the {vehicle_name(run, vehicles(run)[0])}"
-    detail = f"{len(summary)} of {planned} flights are in this report; {int(summary['criteria_met'].sum())} met every criterion."
-    if state != "complete":
-        detail += f" The run is {state}; continue it with --resume."
+    detail = (
+        f"{counts.done} of {planned} flights are in this report; {counts.met} met every criterion."
+    )
+    if not verdict.is_done:
+        detail += " The run did not end; continue it with --resume."
     return Verdict(
-        holds=not violations and not wrong,
-        complete=finished and not len(failed),
+        holds=not (counts.violated or counts.lost or wrong),
+        complete=finished and verdict.exit_status == MET,
         headline=headline,
         detail=detail,
         failures=[

@@ -7,7 +7,7 @@ import numpy.typing as npt
 import pandas as pd
 
 from common.columns import Column
-from common.premises import EXCEEDED, UNEXPLAINED_VIOLATION, exceeded_terms
+from common.verdict import COMPLETED, GONE, KeepOut
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -15,9 +15,8 @@ Mask = npt.NDArray[np.bool_]
 NOTICEABLE = 1e-3
 """Smallest error of a position [m] or speed [m/s] that is shown."""
 
-_COMPLETED, _LOST = "completed", ("aircraft_lost", "diverged")
-"""Outcomes of flights that completed their mission, and of those whose aircraft does not come back.
-"""
+_KEEP_OUT = ("outcome", "keepout_violations", "required", "keepout_radius_m")
+"""Columns that say how a flight kept out."""
 
 
 def column(rows: pd.DataFrame, name: str) -> Array:
@@ -86,59 +85,36 @@ def radii_differ(rows: pd.DataFrame) -> bool:
     return rows["keepout_radius_m"].nunique() > 1
 
 
+def _keep_out(rows: pd.DataFrame) -> npt.NDArray[np.object_]:
+    """Return of each flight how it kept out of the keep-out area."""
+    names = [name for name in _KEEP_OUT if name in rows]
+    found = [KeepOut.of(row) for row in rows[names].to_dict("records")]
+    return np.array(found, dtype=object)
+
+
 def violated(rows: pd.DataFrame) -> Mask:
     """Return which flights violated the keep-out area."""
-    inside: Mask = column(rows, "keepout_violations") > 0.0
-    return inside
+    return np.asarray(_keep_out(rows) == KeepOut.VIOLATED, dtype=np.bool_)
 
 
-def unexplained(rows: pd.DataFrame) -> Mask:
-    """Return which flights violated the keep-out area although every premise of the guard held."""
-    return (rows["outcome"] == UNEXPLAINED_VIOLATION).to_numpy(dtype=np.bool_)
-
-
-def premises_exceeded(rows: pd.DataFrame) -> list[list[str]]:
-    """Return of each flight whose premises were measured the terms that did not hold."""
-    if EXCEEDED not in rows:
-        return []
-    return [exceeded_terms({EXCEEDED: said}) for said in rows[EXCEEDED].dropna()]
+def kept_out(rows: pd.DataFrame) -> Mask:
+    """Return which flights are known to have kept out of the keep-out area, and came back."""
+    return np.asarray(_keep_out(rows) == KeepOut.KEPT_OUT, dtype=np.bool_)
 
 
 def lost(rows: pd.DataFrame) -> Mask:
     """Return which flights lost their aircraft, also where a fault was flown on purpose."""
-    return rows["outcome"].isin(_LOST).to_numpy(dtype=np.bool_)
+    return rows["outcome"].isin(GONE).to_numpy(dtype=np.bool_)
 
 
 def completed(rows: pd.DataFrame) -> Mask:
     """Return which flights completed their mission."""
-    return (rows["outcome"] == _COMPLETED).to_numpy(dtype=np.bool_)
+    return (rows["outcome"] == COMPLETED).to_numpy(dtype=np.bool_)
 
 
 def met(rows: pd.DataFrame) -> Mask:
     """Return which flights met every criterion: they kept out and completed their mission."""
     return rows["criteria_met"].to_numpy(dtype=np.bool_)
-
-
-def kept_out(rows: pd.DataFrame) -> Mask:
-    """Return which flights are known to have kept out of the keep-out area to their end."""
-    return (
-        rows["kept_out"].to_numpy(dtype=np.bool_)
-        if "kept_out" in rows
-        else np.zeros(len(rows), dtype=np.bool_)
-    )
-
-
-def passed(rows: pd.DataFrame) -> Mask:
-    """Return which flights did what exit status 0 requires of them."""
-    alone = (
-        (rows["required"] == "keep_out").to_numpy(dtype=np.bool_)
-        if "required" in rows
-        else np.zeros(len(rows), dtype=np.bool_)
-    )
-    # What failed after its flight, as an instrument may, has kept out, but does not count as done.
-    return np.where(
-        alone, kept_out(rows) & (rows["outcome"] != "failed").to_numpy(dtype=np.bool_), met(rows)
-    )
 
 
 def recorded_at(values: Array, recorded: Mask, rank: int) -> tuple[int, bool]:

@@ -22,14 +22,18 @@ from common.run_layout import (
     FILES,
     FORMAT,
     MANIFEST,
+    OVERRIDES,
     STATISTICS,
     SULPHUR,
     SUMMARY,
+    VERDICT,
     evaluation_path,
     is_file_name,
     smoke_path,
     time_history_path,
 )
+from common.text import from_json_cell
+from common.verdict import RunVerdict, read_verdict
 from reports.errors import ReportError
 from reports.run.columns import Mask
 from reports.run.files import refuse_running
@@ -54,6 +58,8 @@ class RunData:
     ----------
     path : the run directory
     manifest : its configuration and provenance
+    judgement : the verdict that its study has written; None of a design, a measured flight, and a
+        run that did not end
     summary : a row per flight of the study, or per trajectory and law; empty for a design, of which
         nothing is counted
     comparison : a row per flight of the comparisons, possibly none
@@ -61,6 +67,7 @@ class RunData:
     innerloop : the autopilot's design record, or none if the run ended before
     statistics : what a Monte Carlo study shows and how sure that is, or none of any other run
     draws : of each flight, what was swept or sampled
+    overrides : the keys that each flight has otherwise than its trial, by its name
     columns : what the columns of its tables are, by file and name
     unread : files that are there and cannot be read, as found so far
     """
@@ -73,8 +80,25 @@ class RunData:
     innerloop: dict[str, Any] | None
     statistics: dict[str, Any] | None
     draws: pd.DataFrame
+    judgement: RunVerdict | None = None
+    overrides: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
     columns: Mapping[str, Table] = field(default_factory=dict)
     unread: set[str] = field(default_factory=set)
+
+    @property
+    def verdict(self) -> RunVerdict:
+        """What the run has shown.
+
+        Raises
+        ------
+        ReportError : it has no verdict that can be read, as one that was killed
+        """
+        if self.judgement is None:
+            raise ReportError(
+                f"'{self.path}' has no {VERDICT} that can be read: its run did not end, or the file was"
+                " changed; continue the run with --resume, which writes it anew"
+            )
+        return self.judgement
 
     def column(self, name: str, table: str = SUMMARY) -> Column:
         """Return a column of a table; of the summary also a figure that follows from it."""
@@ -233,11 +257,12 @@ def read_run(path: Path) -> RunData:
             f"'{path}' holds nothing finished (no {SUMMARY}); continue the run with --resume"
         )
     unread: set[str] = set()
+    verdict = _verdict(path, unread)
     columns = _columns(path, unread)
     return RunData(
         path=path,
         manifest=manifest,
-        summary=_whole(read_table(path / SUMMARY, columns.get(SUMMARY)), path / SUMMARY, manifest),
+        summary=_whole(read_table(path / SUMMARY, columns.get(SUMMARY)), path / SUMMARY, verdict),
         comparison=read_table(path / COMPARISON, columns.get(COMPARISON)),
         crossings=read_table(
             path / CROSSINGS,
@@ -246,25 +271,33 @@ def read_run(path: Path) -> RunData:
         ),
         innerloop=_record(path / DESIGN_RECORD, unread),
         statistics=_record(path / STATISTICS, unread),
+        judgement=verdict,
         draws=read_table(path / DRAWS, columns.get(DRAWS)),
+        overrides=read_overrides(path / OVERRIDES, unread),
         columns=columns,
         unread=unread,
     )
 
 
-def _whole(summary: pd.DataFrame, path: Path, manifest: dict[str, Any]) -> pd.DataFrame:
-    """Return the summary, unless it has fewer rows than the run had outcomes when it ended."""
-    outcomes = manifest.get("outcomes")
-    ended = (
-        sum(count for count in outcomes.values() if isinstance(count, int))
-        if isinstance(outcomes, dict)
-        else 0
-    )
-    if len(summary) < ended:
+def _whole(summary: pd.DataFrame, path: Path, verdict: RunVerdict | None) -> pd.DataFrame:
+    """Return the summary, unless it has fewer rows than its verdict counts."""
+    if verdict and len(summary) < verdict.counts.done:
         raise ReportError(
-            f"'{path}' has {len(summary):,} rows; by {MANIFEST} the run ended with {ended:,}: {REMEDY}"
+            f"'{path}' has {len(summary):,} rows; by {VERDICT} the run ended with"
+            f" {verdict.counts.done:,}: {REMEDY}"
         )
     return summary
+
+
+def _verdict(path: Path, unread: set[str]) -> RunVerdict | None:
+    """Return the verdict that a run has written, or None."""
+    if not is_file(path / VERDICT):
+        return None
+    try:
+        return read_verdict(path / VERDICT)
+    except (OSError, ValueError, TypeError, LookupError, AttributeError, RecursionError):
+        unread.add(VERDICT)
+        return None
 
 
 def _columns(path: Path, unread: set[str]) -> dict[str, dict[str, Column]]:
@@ -274,6 +307,27 @@ def _columns(path: Path, unread: set[str]) -> dict[str, dict[str, Column]]:
     except (ValueError, TypeError, AttributeError):
         unread.add(COLUMNS)
         return {}
+
+
+def read_overrides(path: Path, unread: set[str]) -> dict[str, dict[str, object]]:
+    """Return the keys that flights have otherwise than their trials, by the names of flights."""
+    if not is_file(path):
+        return {}
+    try:
+        frame = pd.read_csv(path, dtype=str, keep_default_na=False)
+    except (ValueError, OSError):
+        unread.add(path.name)
+        return {}
+    keys = [str(key) for key in frame if key not in ("flight_id", "trial", "variant")]
+    columns = [frame[key].tolist() for key in keys]
+    return {
+        str(flight_id): {
+            key: from_json_cell(column[i])
+            for key, column in zip(keys, columns, strict=True)
+            if column[i]
+        }
+        for i, flight_id in enumerate(frame.get("flight_id", ()))
+    }
 
 
 def _record(path: Path, unread: set[str]) -> dict[str, Any] | None:

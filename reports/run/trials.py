@@ -10,6 +10,7 @@ import pandas as pd
 
 from common.run_layout import DRAWS
 from common.text import at_or_below
+from common.verdict import Counts, TrialVerdict
 from reports.errors import ReportError
 from reports.run.columns import Array, column, flights_flown
 from reports.run.flight_config import Config, flight_config, keepout_shape
@@ -70,6 +71,12 @@ class Trial:
     def planned(self) -> int:
         """Number of flights once the run is complete."""
         return int(self.run.manifest.get("trial_flights", {}).get(self.key, self.config["flights"]))
+
+    @property
+    def verdict(self) -> TrialVerdict:
+        """What its flights have shown."""
+        nothing = TrialVerdict(counts=Counts(planned=self.planned))
+        return self.run.verdict.trials.get(self.key, nothing)
 
     @property
     def criteria(self) -> dict[str, Any]:

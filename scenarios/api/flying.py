@@ -237,8 +237,8 @@ def _shown(*, progress: bool) -> "AbstractContextManager[Progress]":
 
 
 def _finished(result: "RunResult", keeping: Keeping) -> Run:
-    if result.interrupted:
+    if result.verdict.interrupted:
         raise KeyboardInterrupt
-    run = Run(result.directory, met=result.all_met, lines=tuple(result.summary.lines))
+    run = Run(result.directory, lines=tuple(result.lines))
     keeping(run)
     return run

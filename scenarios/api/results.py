@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from common.columns import DIMENSIONLESS, Table
 from common.run_layout import COMPARISON, CROSSINGS, DRAWS, FLIGHTS, REPORT_HTML, SUMMARY
+from common.verdict import MET, KeepOut, RunVerdict
 from scenarios.api.html import picture, table
 from scenarios.api.statistics import Statistics, statistics_of
 from scenarios.errors import InputError
@@ -41,19 +42,17 @@ class Run:
     Parameters
     ----------
     directory : of the run
-    met : whether every flight did what the scenario requires of it, as exit status 0 of the command
-        line
     lines : the result in lines of text
 
     Attributes
     ----------
-    directory, met, lines : the same
+    directory, lines : the same
     """
 
-    def __init__(self, directory: Path, *, met: bool, lines: tuple[str, ...]) -> None:
+    def __init__(self, directory: Path, *, lines: tuple[str, ...]) -> None:
         from reports.run.run_data import read_run
 
-        self.directory, self.met, self.lines = directory, met, lines
+        self.directory, self.lines = directory, lines
         with _one_line():
             self._data: RunData = read_run(directory)
 
@@ -61,6 +60,20 @@ class Run:
     def manifest(self) -> dict[str, Any]:
         """Return the manifest: configuration, software, outcomes."""
         return self._data.manifest
+
+    @property
+    def verdict(self) -> RunVerdict:
+        """Return what the run has shown: its counts, each criterion with its worst flights, and
+        whether everything is as required.
+        """
+        return self._data.verdict
+
+    @property
+    def met(self) -> bool:
+        """Return whether every flight did what the scenario requires of it, as exit status 0 of the
+        command line.
+        """
+        return self.verdict.exit_status == MET
 
     @functools.cached_property
     def summary(self) -> "pd.DataFrame":
@@ -217,8 +230,8 @@ class Flight:
 
     @property
     def kept_out(self) -> bool:
-        """Return whether it is known to have kept out of the keep-out area to its end."""
-        return bool(self.row.get("kept_out", False))
+        """Return whether it is known to have kept out of the keep-out area, and came back."""
+        return KeepOut.of(self.row.to_dict()) is KeepOut.KEPT_OUT
 
     @property
     def reasons(self) -> tuple[str, ...]:

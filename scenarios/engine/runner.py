@@ -15,8 +15,9 @@ from typing import Any, Protocol
 
 from common.columns import Table, to_json
 from common.files import remove_reports, write_whole
-from common.run_layout import COLUMNS, FILES
+from common.run_layout import COLUMNS, FILES, VERDICT
 from common.text import install_words
+from common.verdict import MET, RunVerdict
 from scenarios.engine.journal import CONTINUE, Journal, is_full, unusable
 from scenarios.engine.processes import Executor, LocalExecutor, peak_memory
 from scenarios.engine.run_directory import RunDirectory
@@ -48,21 +49,14 @@ class StudySummary:
 
     Attributes
     ----------
-    done : number of items that are done
-    met : whether all planned items are done and met their criteria
-    lines : the result in lines of text, for the console
+    verdict : what it has shown; it becomes ``verdict.json``
+    lines : the same in lines of text, for the console
     manifest : entries for the manifest of the run
-    comparisons_left : number of items of comparisons that are not done, which count neither as done nor
-        as planned
-    unexplained : number of items that contradict what is proved
     """
 
-    done: int
-    met: bool
+    verdict: RunVerdict
     lines: list[str]
     manifest: dict[str, Any]
-    comparisons_left: int = 0
-    unexplained: int = 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -137,23 +131,20 @@ class RunResult:
     Attributes
     ----------
     directory : the run directory
-    what, planned : name and planned number of the items that the study counts
-    summary : the result of the study
-    interrupted : whether the run was interrupted before every task was done
+    verdict : what it has shown
+    lines : the same in lines of text
     changed : whether anything was written; a resumed run may have had nothing to do
     """
 
     directory: Path
-    what: str
-    planned: int
-    summary: StudySummary
-    interrupted: bool
+    verdict: RunVerdict
+    lines: list[str]
     changed: bool = True
 
     @property
     def all_met(self) -> bool:
-        """Whether every planned item is done and met its criteria."""
-        return self.summary.met and not self.interrupted
+        """Whether everything that was planned is done, and is as required."""
+        return self.verdict.exit_status == MET
 
 
 def fly_study(
@@ -262,12 +253,14 @@ class _Execution:
             # Results so far can be read whatever went wrong after them.
             if not journal.is_empty():
                 study.export(run, journal)
+                self._write(study.summary(journal).verdict, interrupted=True)
             raise
         changed = not self._is_as_before()
         # Always: tables may have been changed by others, and those that have not are left as they
         # are.
         study.export(run, journal)
         summary = study.summary(journal)
+        verdict = self._write(summary.verdict, interrupted=interrupted)
         if changed:
             closing = {
                 "state": _INTERRUPTED if interrupted else _COMPLETE,
@@ -285,22 +278,21 @@ class _Execution:
                 FILES: sorted({*run.files(), *run.missing_files}),
             }
             run.write_json(run.manifest, {**self._before, **report})
-        return RunResult(
-            directory=run.path,
-            what=study.what,
-            planned=study.planned,
-            summary=summary,
-            interrupted=interrupted,
-            changed=changed,
-        )
+        return RunResult(directory=run.path, verdict=verdict, lines=summary.lines, changed=changed)
+
+    def _write(self, verdict: RunVerdict, *, interrupted: bool) -> RunVerdict:
+        """Write the verdict of what is done, and return it."""
+        verdict = verdict.once_interrupted(interrupted=interrupted)
+        self._run.write_json(self._run.path / VERDICT, verdict.to_json())
+        return verdict
 
     def _launch(self) -> Launch:
         study = self._study
-        before = study.summary(self._journal) if self._before else None
+        before = study.summary(self._journal).verdict if self._before else None
         return Launch(
             what=study.what,
             planned=study.planned,
-            done=before.done if before else 0,
+            done=before.counts.done if before else 0,
             comparisons_left=before.comparisons_left if before else study.comparisons,
             resumed=before is not None,
         )
@@ -312,6 +304,7 @@ class _Execution:
         if not self._begun:
             self._begun = True
             remove_reports(self._run.path)
+            (self._run.path / VERDICT).unlink(missing_ok=True)
             # What a session takes that is killed nobody knows; what those before it took is kept.
             took = {"wall_time_s": self._wall_time} if self._wall_time else {}
             running = {"state": "running", **took, FILES: self._before.get(FILES, [])}

@@ -6,9 +6,10 @@ import bisect
 import functools
 import itertools
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -34,6 +35,9 @@ _PLANNED_FOR = ("guidance.", "turbulence.level", "reference.shape", "following.m
 """Beginnings of keys for each choice of which the tracking in turbulence is worked out before any
 flight.
 """
+
+_VARIATION = ("sweep", "cases", "draws", "comparison")
+"""Sections that make several flights of a scenario, and are of none of them."""
 
 _MEASURED_FOR = ("guidance.bank_deg", "guidance.heading_rate_max_rad_s", "following.climb_gradient")
 """Keys for the largest values of which the aircraft is measured before any flight."""
@@ -100,6 +104,18 @@ class Experiment:
     def _ends(self) -> list[int]:
         """The number of the flight after each point's last."""
         return list(itertools.accumulate(point.flights for point in self.points))
+
+    @cached_property
+    def _configuration(self) -> Mapping[str, Any]:
+        return _without_variation(self.scenario)
+
+    def overrides(self, flown: Scenario) -> Values:
+        """Return the keys that a flight has otherwise than the scenario, and their values as the
+        manifest would have them: a list as a whole, and so a table that lacks a key.
+
+        Whatever set them is in them: its case, the sweep, a comparison, samples, the study.
+        """
+        return differing_keys(self._configuration, _without_variation(flown))
 
     @property
     def flights(self) -> int:
@@ -256,6 +272,26 @@ class Experiment:
         else:
             entropy = entropy_of(self.scenario.seed, self.name, index, point.stream)
         return int(np.random.SeedSequence(entropy).generate_state(1)[0])
+
+
+def _without_variation(scenario: Scenario) -> dict[str, Any]:
+    """Return the configuration of a flight: a scenario without what makes several of it."""
+    return scenario.model_dump(mode="json", exclude={*_VARIATION, "report"})
+
+
+def differing_keys(before: Mapping[str, Any], now: Mapping[str, Any], above: str = "") -> Values:
+    """Return by dotted keys what nested tables have otherwise than others, which may lack keys."""
+    found: Values = {}
+    for key, value in now.items():
+        was: Any = before.get(key)
+        if value == was and key in before:
+            continue
+        tables = isinstance(value, Mapping) and isinstance(was, Mapping)
+        if tables and was.keys() <= value.keys():
+            found |= differing_keys(was, value, f"{above}{key}.")
+        else:
+            found[f"{above}{key}"] = value
+    return found
 
 
 def _with_samples(point: Point, values: Values) -> Scenario:

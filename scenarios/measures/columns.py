@@ -44,7 +44,7 @@ SUMMARY_COLUMNS = described(
             kind="truth",
         ),
         "kept_out": Column(
-            "whether it kept out of the keep-out area and was observed to its end", kind="truth"
+            "whether it was outside of the keep-out area to its end, come back or not", kind="truth"
         ),
         "required": Column("what exit status 0 requires of it: criteria or keep_out", kind="text"),
         "aircraft": Column("the aircraft", kind="text"),

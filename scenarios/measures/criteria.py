@@ -1,7 +1,10 @@
-"""What a flight fails of its criteria."""
+"""What each flight is judged by: its figures beside the limits of its criteria."""
 
 import math
+from collections.abc import Iterator
+from typing import Any, NamedTuple
 
+from common.verdict import KeepOut
 from scenarios.engine.task import Row
 from scenarios.flight.outcome import Outcome
 from scenarios.scenario.sections.flight import CriteriaConfig
@@ -10,8 +13,45 @@ from scenarios.world.faults import NOT_OF_AIRCRAFT
 _ROUNDING = 1.0 + 1e-12
 """By what a command may exceed its limit: rounding alone [-]."""
 
-Check = tuple[bool, str]
-"""Whether a criterion is met, and what to say where it is not."""
+_SEVERITY = [
+    outcome.value
+    for outcome in (
+        Outcome.COMPLETED,
+        Outcome.INFEASIBLE,
+        Outcome.TRIM_FAILED,
+        Outcome.INCOMPLETE,
+        Outcome.NOT_SETTLED,
+        Outcome.FAILED,
+        Outcome.AIRCRAFT_LOST,
+        Outcome.DIVERGED,
+        Outcome.UNEXPLAINED_VIOLATION,
+    )
+]
+"""Outcomes from the best to the worst."""
+
+
+class Judged(NamedTuple):
+    """One criterion in one flight.
+
+    Attributes
+    ----------
+    key, column : as of ``common.verdict.Criterion``
+    value : of the figure, not a number where the flight has none; or a word
+    limit : of the flight; None where its scenario sets none
+    worse : the larger, the worse the value is, whatever the limit; not a number without a value
+    of_limit : the larger, the worse the value is for its limit
+    message : what to say of a flight that fails the criterion; empty where it is met
+    judges : whether the criterion has a say in the flight
+    """
+
+    key: str
+    column: str
+    value: Any
+    limit: Any
+    worse: float
+    of_limit: float
+    message: str
+    judges: bool = True
 
 
 def failed_criteria(row: Row, criteria: CriteriaConfig) -> list[str]:
@@ -20,147 +60,53 @@ def failed_criteria(row: Row, criteria: CriteriaConfig) -> list[str]:
     Beside the criteria every flight has to keep out and to complete: an aircraft that is lost meets
     nothing, also where its fault is flown on purpose.
     """
-    checks = [_keeps_out(row)] if "keepout_violations" in row else []
-    if row["outcome"] != Outcome.COMPLETED.value:
-        checks.append((False, row["message"] or "did not complete"))
-        if row["outcome"] == Outcome.AIRCRAFT_LOST.value:
-            checks.append((_part_failed(row), "nothing of the aircraft had failed"))
-    else:
-        checks += [*_tracking_checks(row, criteria), *_command_checks(row, criteria)]
-        if "keepout_violations" in row:
-            checks += [*_crossing_checks(row, criteria), *_mission_checks(row, criteria)]
-    return [message for met, message in checks if not met]
+    return [of.message for of in judged_criteria(row, criteria) if of.judges and of.message]
 
 
-def kept_out(row: Row) -> bool:
-    """Return whether a flight is known to have kept out of the keep-out area to its end."""
-    return bool(row.get("keepout_violations", 1) == 0) and row["outcome"] != Outcome.DIVERGED.value
+def judged_criteria(row: Row, criteria: CriteriaConfig) -> Iterator[Judged]:
+    """Yield every criterion with the figure of a flight, those too that have no say in it: of a
+    flight that did not complete only keeping out and completing are judged.
+    """
+    measured = "keepout_violations" in row
+    if measured:
+        yield _keeps_out(row)
+    yield _completes(row)
+    if "duration_s" not in row:
+        return
+    completed = row["outcome"] == Outcome.COMPLETED.value
+    others = [*_tracking(row, criteria), *_commands(row, criteria)]
+    if measured:
+        others += [*_crossings(row, criteria), *_mission(row, criteria)]
+    for of in others:
+        yield of if completed else of._replace(judges=False)
 
 
-def _keeps_out(row: Row) -> Check:
-    count = row["keepout_violations"]
-    return (
-        count == 0,
-        f"{count} keep-out violation{'s' * (count != 1)}, the deepest by {row['keepout_depth_m']:.2f} m",
-    )
-
-
-def _tracking_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
-    checks = []
-    if criteria.settles:
-        checks.append((math.isfinite(row["settling_time_s"]), "did not settle"))
-        since = row["duration_s"] - row["settling_time_s"]
-        for name, key, limit, unit in (
-            ("rms tracking error", "tracking_error_rms_m", criteria.tracking_error_rms_m, "m"),
-            (
-                "rms airspeed error",
-                "airspeed_error_rms_mps",
-                criteria.airspeed_error_rms_mps,
-                "m/s",
-            ),
-            ("largest altitude error", "altitude_error_max_m", criteria.altitude_error_max_m, "m"),
-        ):
-            # One that settled with its last sample has none of these figures, and shows nothing.
-            if limit and math.isfinite(row["settling_time_s"]):
-                met, message = _at_most(name, row.get(key, math.nan), limit, unit)
-                # A flight is settled while errors still die out: in a short one they count for
-                # more.
-                checks.append((met, f"{message}, in the {since:.0f} s since it settled"))
-    if criteria.tracking_error_end_m:
-        checks.append(
-            _at_most(
-                "tracking error at the end",
-                row["tracking_error_end_m"],
-                criteria.tracking_error_end_m,
-                "m",
-            )
-        )
-    return checks
-
-
-def _command_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
-    largest, demand = row["heading_rate_limit_rad_s"], row["heading_rate_demand_max_rad_s"]
-    checks = []
-    if criteria.law_beyond_heading_rate_max:
-        checks.append(
-            (
-                demand > largest,
-                f"the law asked for {demand:.4f} rad/s, within omega_max = {largest:.4f}",
-            )
-        )
-    else:
-        command = row["heading_rate_command_max_rad_s"]
-        checks.append(
-            (
-                command <= largest * _ROUNDING,
-                f"commanded {command:.4f} rad/s, above omega_max = {largest:.4f}",
-            )
-        )
-    if criteria.law_within_heading_rate_max:
-        checks.append(
-            (
-                demand <= largest * _ROUNDING,
-                f"the law asked for {demand:.4f} rad/s, above omega_max = {largest:.4f}",
-            )
-        )
-    return checks
-
-
-def _crossing_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
-    checks = []
-    if "crossing_clearance_min_m" in row:
-        clearance, radius = row["crossing_clearance_min_m"], row["keepout_radius_m"]
-        checks.append(
-            (clearance >= 0.0, f"crossed at {radius + clearance:.2f} m, inside {radius:g} m")
-        )
-    if criteria.crossing_interval_error:
-        interval, predicted = (
-            row.get("crossing_interval_mean_s", math.nan),
-            row["crossing_interval_predicted_s"],
-        )
-        error = interval / predicted - 1.0
+def _keeps_out(row: Row) -> Judged:
+    count, clearance = row["keepout_violations"], _clearance(row)
+    message = ""
+    if count:
         message = (
-            f"mean crossing interval {interval:.3f} s, {100.0 * abs(error):.1f} % {'longer' if error > 0.0 else 'shorter'} than the"
-            f" predicted {predicted:.3f} s, more than the {100.0 * criteria.crossing_interval_error:g} % that are allowed"
+            f"{count} keep-out violation{'s' * (count != 1)}, the deepest by"
+            f" {row.get('keepout_depth_m', math.nan):.2f} m"
         )
-        if math.isnan(error):
-            message = "too few crossings for a mean interval, which is one over whole periods of the orbit"
-        checks.append((abs(error) <= criteria.crossing_interval_error, message))
-    for name, key, unit, limits in (
-        ("interval", "crossing_interval_mean_s", "s", criteria.crossing_interval_s),
-        ("distance", "crossing_distance_mean_m", "m", criteria.crossing_distance_m),
-    ):
-        if limits is not None:
-            value = row.get(key, math.nan)
-            message = f"mean crossing {name} {value:.3f} {unit} outside {limits[0]:g} to {limits[1]:g} {unit}"
-            checks.append((limits[0] <= value <= limits[1], message))
-    return checks
+    known = KeepOut.of(row) is not KeepOut.UNKNOWN
+    return Judged("keep_out", "clearance_m", clearance, 0.0, -clearance, -clearance, message, known)
 
 
-def _mission_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
-    checks = []
-    # A track from a file may have no manoeuvre in the time of the flight.
-    if criteria.resumes_within_periods and not math.isnan(row.get("manoeuvre_end_s", 0.0)):
-        periods = row.get("resume_periods", math.nan)
-        message = f"crossings resumed {periods:.2f} periods after the last manoeuvre"
-        checks.append((periods <= criteria.resumes_within_periods, message))
-    if criteria.time_to_find_s:
-        checks.append(
-            _at_most(
-                "time to find the plume",
-                row.get("time_to_find_s", math.nan),
-                criteria.time_to_find_s,
-                "s",
-            )
-        )
-    if criteria.within_altitudes:
-        outside = row.get("altitude_outside_s", math.nan)
-        checks.append(
-            (outside == 0.0, f"{outside:.1f} s outside of flight.altitude_min_m and altitude_max_m")
-        )
-    if criteria.modes_at_end:
-        checks.append((row["mode_at_end"] in criteria.modes_at_end, f"ended {row['mode_at_end']}"))
-    return checks
+def _clearance(row: Row) -> float:
+    """Return how far from the keep-out area a flight stayed at its closest [m]."""
+    nearest, radius = (row.get(name, math.nan) for name in ("min_distance_m", "keepout_radius_m"))
+    return float(nearest - radius)
+
+
+def _completes(row: Row) -> Judged:
+    outcome, message = row["outcome"], ""
+    if outcome != Outcome.COMPLETED.value:
+        message = row["message"] or "did not complete"
+        if outcome == Outcome.AIRCRAFT_LOST.value and not _part_failed(row):
+            message = f"{message}; nothing of the aircraft had failed"
+    worse = float(_SEVERITY.index(outcome))
+    return Judged("mission", "outcome", outcome, Outcome.COMPLETED.value, worse, worse, message)
 
 
 def _part_failed(row: Row) -> bool:
@@ -168,5 +114,153 @@ def _part_failed(row: Row) -> bool:
     return row["fault"] not in NOT_OF_AIRCRAFT and bool(row["duration_s"] >= row["fault_time_s"])
 
 
-def _at_most(name: str, value: float, limit: float, unit: str) -> Check:
-    return value <= limit, f"{name} {value:.2f} {unit}, above the limit of {limit:g} {unit}"
+def _tracking(row: Row, criteria: CriteriaConfig) -> Iterator[Judged]:
+    settling = row.get("settling_time_s", math.nan)
+    settled = math.isfinite(settling)
+    yield Judged(
+        "settles",
+        "settling_time_s",
+        settling,
+        True if criteria.settles else None,
+        settling,
+        settling,
+        "" if settled else "did not settle",
+        judges=criteria.settles,
+    )
+    # A flight is settled while errors still die out: in a short one they count for more.
+    since = f", in the {row['duration_s'] - settling:.0f} s since it settled"
+    for key, name, limit, unit in (
+        ("tracking_error_rms_m", "rms tracking error", criteria.tracking_error_rms_m, "m"),
+        ("airspeed_error_rms_mps", "rms airspeed error", criteria.airspeed_error_rms_mps, "m/s"),
+        ("altitude_error_max_m", "largest altitude error", criteria.altitude_error_max_m, "m"),
+    ):
+        # One that settled with its last sample has none of these figures, and shows nothing.
+        judges = criteria.settles and settled
+        yield _at_most(
+            key, key, row, limit if criteria.settles else False, name, unit, since, judges
+        )
+    key = "tracking_error_end_m"
+    yield _at_most(key, key, row, criteria.tracking_error_end_m, "tracking error at the end", "m")
+
+
+def _commands(row: Row, criteria: CriteriaConfig) -> Iterator[Judged]:
+    largest, demand, command = (
+        row.get(f"heading_rate_{name}_rad_s", math.nan)
+        for name in ("limit", "demand_max", "command_max")
+    )
+    demanded, commanded = (rate / largest if largest else math.nan for rate in (demand, command))
+    beyond, within = criteria.law_beyond_heading_rate_max, criteria.law_within_heading_rate_max
+    if beyond:
+        message = f"the law asked for {demand:.4f} rad/s, within omega_max = {largest:.4f}"
+        yield Judged(
+            "law_beyond_heading_rate_max",
+            "",
+            demanded,
+            1.0,
+            -demanded,
+            -demanded,
+            message * (not demand > largest),
+        )
+    else:
+        message = f"commanded {command:.4f} rad/s, above omega_max = {largest:.4f}"
+        message *= not command <= largest * _ROUNDING
+        yield Judged("heading_rate", "", commanded, 1.0, commanded, commanded, message)
+    if within:
+        message = f"the law asked for {demand:.4f} rad/s, above omega_max = {largest:.4f}"
+        message *= not demand <= largest * _ROUNDING
+        key = "law_within_heading_rate_max"
+        yield Judged(key, "", demanded, 1.0, demanded, demanded, message)
+
+
+def _crossings(row: Row, criteria: CriteriaConfig) -> Iterator[Judged]:
+    if "crossing_clearance_min_m" in row:
+        clearance, radius = row["crossing_clearance_min_m"], row["keepout_radius_m"]
+        message = f"crossed at {radius + clearance:.2f} m, inside {radius:g} m"
+        message *= not clearance >= 0.0
+        yield Judged(
+            "crossing_clearance",
+            "crossing_clearance_m",
+            clearance,
+            0.0,
+            -clearance,
+            -clearance,
+            message,
+        )
+    yield _interval_error(row, criteria.crossing_interval_error)
+    for key, name, unit, limits in (
+        ("crossing_interval_mean_s", "interval", "s", criteria.crossing_interval_s),
+        ("crossing_distance_mean_m", "distance", "m", criteria.crossing_distance_m),
+    ):
+        if limits is not None:
+            value, (low, high) = row.get(key, math.nan), limits
+            outside = max(low - value, value - high)
+            message = f"mean crossing {name} {value:.3f} {unit} outside {low:g} to {high:g} {unit}"
+            message *= not low <= value <= high
+            yield Judged(
+                key.replace("_mean", ""), key, value, [low, high], outside, outside, message
+            )
+
+
+def _interval_error(row: Row, limit: float) -> Judged:
+    interval = row.get("crossing_interval_mean_s", math.nan)
+    predicted = row["crossing_interval_predicted_s"]
+    error = interval / predicted - 1.0
+    message = ""
+    if limit and math.isnan(error):
+        message = (
+            "too few crossings for a mean interval, which is one over whole periods of the orbit"
+        )
+    elif limit and abs(error) > limit:
+        message = (
+            f"mean crossing interval {interval:.3f} s, {100.0 * abs(error):.1f} %"
+            f" {'longer' if error > 0.0 else 'shorter'} than the predicted {predicted:.3f} s,"
+            f" more than the {100.0 * limit:g} % that are allowed"
+        )
+    key, size = "crossing_interval_error", abs(error)
+    of_limit = size / limit if limit else size
+    return Judged(key, key, size, limit or None, size, of_limit, message, judges=bool(limit))
+
+
+def _mission(row: Row, criteria: CriteriaConfig) -> Iterator[Judged]:
+    # A track from a file may have no manoeuvre in the time of the flight.
+    key, limit = "resumes_within_periods", criteria.resumes_within_periods
+    if not math.isnan(row.get("manoeuvre_end_s", 0.0)):
+        periods = row.get("resume_periods", math.nan)
+        message = f"crossings resumed {periods:.2f} periods after the last manoeuvre"
+        judged = _at_most(key, "resume_periods", row, limit, "", "")
+        yield judged._replace(message=message if judged.message else "")
+    key, limit = "time_to_find_s", criteria.time_to_find_s
+    yield _at_most(key, key, row, limit, "time to find the plume", "s")
+    if criteria.within_altitudes:
+        outside = row.get("altitude_outside_s", math.nan)
+        message = f"{outside:.1f} s outside of flight.altitude_min_m and altitude_max_m"
+        message *= outside != 0.0
+        yield Judged(
+            "within_altitudes", "altitude_outside_s", outside, 0.0, outside, outside, message
+        )
+    if criteria.modes_at_end:
+        mode, allowed = row["mode_at_end"], list(criteria.modes_at_end)
+        other = float(mode not in allowed)
+        message = f"ended {mode}" if other else ""
+        yield Judged("modes_at_end", "mode_at_end", mode, allowed, other, other, message)
+
+
+def _at_most(
+    key: str,
+    column: str,
+    row: Row,
+    limit: float,
+    name: str,
+    unit: str,
+    since: str = "",
+    judges: bool = True,
+) -> Judged:
+    """Return a criterion that a figure has an upper limit; none where that is 0 or false."""
+    value = row.get(column, math.nan)
+    message = ""
+    if limit and not value <= limit:
+        message = f"{name} {value:.2f} {unit}, above the limit of {limit:g} {unit}{since}"
+    of_limit = value / limit if limit else value
+    return Judged(
+        key, column, value, limit or None, value, of_limit, message, judges and bool(limit)
+    )

@@ -29,11 +29,14 @@ from common.run_layout import (
     DRAWS,
     FLIGHTS,
     INTERVENTIONS,
+    OVERRIDES,
     SULPHUR,
     SULPHUR_TABLE,
     SUMMARY,
     time_history_path,
 )
+from common.text import from_json_cell
+from common.verdict import Bound, Counts, RunVerdict
 from scenarios.engine.journal import Journal
 from scenarios.engine.processes import Executor
 from scenarios.engine.run_directory import RunDirectory
@@ -70,6 +73,7 @@ from scenarios.measures.columns import (
     INTERVENTION_COLUMNS,
     SUMMARY_COLUMNS,
 )
+from scenarios.measures.verdict import Judge, Tally, bound_of
 from scenarios.planning.limits import omega_max
 from scenarios.planning.scaling import scaled
 from scenarios.planning.spreads import predicted_spreads
@@ -78,6 +82,7 @@ from scenarios.scenario.files import AnyStudy, load_study
 from scenarios.scenario.overrides import parse_override
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.experiment import STUDY, TrialList
+from scenarios.scenario.sections.flight import CriteriaConfig
 from scenarios.statistics.sulphur import COLUMNS as SULPHUR_COLUMNS
 from scenarios.statistics.sulphur import sulphur_statistics
 from scenarios.studies.checks import check_flights, check_without_design, plugins_explained
@@ -91,7 +96,16 @@ from scenarios.studies.manifest import (
     vessel_files,
     write_logo,
 )
-from scenarios.studies.summary import POINTS_OF_SWEEP, FlightCounts, comparison_lines
+from scenarios.studies.summary import (
+    POINTS_OF_SWEEP,
+    FlightNotes,
+    bound_line,
+    comparison_lines,
+    exit_line,
+    premise_lines,
+    trial_line,
+    unexplained_lines,
+)
 from scenarios.vehicles.vehicle_setup import aircraft_setup, design_of, kinematic_setup, spec_of
 
 STUDIES: Registry[Callable[..., Study]] = Registry(
@@ -371,75 +385,125 @@ class FlightStudy:
 
     def export(self, run: RunDirectory, journal: Journal) -> None:
         """Write its tables, and what their columns are."""
-        write_tables(run, journal, self.tables)
-        write_columns(run, self.columns())
+        overrides = self._overrides(journal)
+        write_tables(run, journal, {**self.tables, **overrides})
+        write_columns(run, {**self.columns(), **overrides})
+
+    def _overrides(self, journal: Journal) -> dict[str, Table]:
+        """Return the columns of the table of what flights have otherwise than their trial, of a
+        study whose rows are flights.
+        """
+        if DRAWS not in self.tables:
+            return {}
+        keys = dict.fromkeys(key for row in journal.rows(OVERRIDES) for key in row)
+        return {
+            OVERRIDES: FLIGHT_COLUMNS
+            | described({key: ANY_KEY for key in keys if key not in FLIGHT_COLUMNS})
+        }
 
     def columns(self) -> Mapping[str, Table]:
         """Return what the columns of its tables are, by file."""
         others = {DERIVED: DERIVED_COLUMNS, FLIGHTS: history_columns(self.experiments.values())}
         return {**self.tables, **others}
 
-    def bound_line(self, counts: FlightCounts, samples: int, _journal: Journal) -> str:
-        """Return the line on keep-out violations and the bound on their probability, of flights
-        that are a random sample.
+    def bound(self, counts: Counts, samples: int, _journal: Journal) -> Bound:
+        """Return the bound on the probability of a keep-out violation, of flights that are a random
+        sample; parameters are those of ``bound_of``.
         """
-        return counts.bound_line(samples)
+        return bound_of(counts, samples)
 
-    def summary(self, journal: Journal) -> StudySummary:
-        """Return the result so far."""
-        whole = FlightCounts(planned=self.planned)
-        trial_counts = {
-            trial: FlightCounts(planned=flights) for trial, flights in self.flights.items()
-        }
-        for row in journal.rows(SUMMARY):
-            whole.add(row)
-            trial_counts[row["trial"]].add(row)
-        lines = [
-            *whole.unexplained_lines(),
-            *(line for reports in self.vessel_files.values() for line in reports.lines()),
-            f"flights: {whole.line()}",
-        ]
-        if len(trial_counts) > 1:
-            lines += [f"  {trial}: {counts.line()}" for trial, counts in trial_counts.items()]
-        points = {*map(random_numbers_of_points, self.trials.values())}
-        lines += [POINTS_OF_SWEEP[kind] for kind in sorted(points) if kind]
-        lines += [*whole.premise_lines(), *self._comparison_lines(journal), *whole.sulphur_lines()]
-        if whole.flown > whole.without_area and all(map(is_random_sample, self.trials.values())):
-            samples = sum(
-                of.beside // flights_per_sample(self.trials[trial])
-                for trial, of in trial_counts.items()
-            )
-            lines.append(self.bound_line(whole, samples, journal))
-        left = self.comparisons
-        if left:
-            left -= sum(1 for _ in journal.rows(COMPARISON))
-        lines += [whole.exit_line(left=left), *whole.not_met_lines("    "), *whole.warnings()]
-        return StudySummary(
-            done=whole.done,
-            met=whole.passed == whole.planned,
-            lines=lines,
-            manifest={
-                **whole.manifest(),
-                **self._sizes(),
-                "guidance_lag_s": self._manifest.get("guidance_lag_s"),
-            },
-            comparisons_left=left,
-            unexplained=whole.unexplained,
+    def judged(self, journal: Journal) -> RunVerdict:
+        """Return what the flights so far have shown."""
+        judge, criteria = Judge(self.flights), self._criteria_of_flights(journal)
+        for number, row in journal.numbered(SUMMARY):
+            judge.add(row, criteria.get(number) or self.trials[row["trial"]].criteria)
+        return self._bounded(judge.verdict(comparisons=self._comparisons(journal)), journal)
+
+    def _criteria_of_flights(self, journal: Journal) -> dict[int, CriteriaConfig]:
+        """Return the criteria of flights by their numbers, where flights of a trial may differ in
+        them.
+        """
+        differ = any(
+            point.scenario.criteria != experiment.scenario.criteria
+            or any(draw.key.startswith("criteria.") for draw in point.scenario.draws)
+            for experiment in self.experiments.values()
+            for point in experiment.points
         )
+        return {
+            number: self.criteria_of(row["trial"], row)
+            for number, row in (journal.numbered(OVERRIDES) if differ else ())
+        }
 
-    def _comparison_lines(self, journal: Journal) -> list[str]:
-        """Return a line for each comparison: its flights, which do not count."""
+    def criteria_of(self, trial: str, overrides: Row) -> CriteriaConfig:
+        """Return the criteria of a flight of a trial, by its row of ``overrides.csv``."""
+        criteria = self.trials[trial].criteria
+        own = {
+            key.removeprefix("criteria."): from_json_cell(str(value))
+            for key, value in overrides.items()
+            if key.startswith("criteria.")
+        }
+        return CriteriaConfig(**(criteria.model_dump(mode="json") | own)) if own else criteria
+
+    def _comparisons(self, journal: Journal) -> dict[str, Counts]:
+        """Return the counts of the flights of each comparison."""
         planned = Counter[str]()
         for experiment in self.experiments.values():
             for point in experiment.points:
                 if point.variant != STUDY:
                     planned[point.variant] += point.flights
-        if planned:
-            return comparison_lines(planned, journal.rows(COMPARISON), [])
-        left_out = [
+        tallies = {variant: Tally(flights) for variant, flights in planned.items()}
+        for row in journal.rows(COMPARISON) if tallies else ():
+            tallies[row["variant"]].add(row)
+        return {variant: tally.counts() for variant, tally in tallies.items()}
+
+    def _bounded(self, verdict: RunVerdict, journal: Journal) -> RunVerdict:
+        """Return a verdict with the bounds that follow from flights that are a random sample."""
+        at_random = {trial: is_random_sample(of) for trial, of in self.trials.items()}
+        samples = {
+            trial: of.counts.beside // flights_per_sample(self.trials[trial])
+            for trial, of in verdict.trials.items()
+        }
+        trials = {
+            trial: replace(of, bound=self.bound(of.counts, samples[trial], journal))
+            if at_random[trial] and of.closest
+            else of
+            for trial, of in verdict.trials.items()
+        }
+        whole = verdict.whole
+        if all(at_random.values()) and whole.closest:
+            whole = replace(whole, bound=self.bound(whole.counts, sum(samples.values()), journal))
+        return replace(verdict, whole=whole, trials=trials)
+
+    def summary(self, journal: Journal) -> StudySummary:
+        """Return the result so far."""
+        verdict, notes = self.judged(journal), FlightNotes.of(journal.rows(SUMMARY))
+        whole = verdict.whole
+        lines = [
+            *unexplained_lines(verdict),
+            *(line for reports in self.vessel_files.values() for line in reports.lines()),
+            f"flights: {trial_line(whole)}",
+        ]
+        if len(verdict.trials) > 1:
+            lines += [f"  {trial}: {trial_line(of)}" for trial, of in verdict.trials.items()]
+        points = {*map(random_numbers_of_points, self.trials.values())}
+        lines += [POINTS_OF_SWEEP[kind] for kind in sorted(points) if kind]
+        left_out = () if verdict.comparisons else self._ratios_without_flights()
+        lines += [
+            *premise_lines(verdict),
+            *comparison_lines(verdict, left_out),
+            *notes.sulphur_lines(),
+        ]
+        if whole.bound:
+            lines.append(bound_line(whole.bound, whole.counts.hours))
+        lines += [exit_line(verdict), *notes.not_met_lines("    "), *notes.warnings()]
+        guidance_lag = {"guidance_lag_s": self._manifest.get("guidance_lag_s")}
+        return StudySummary(verdict=verdict, lines=lines, manifest=self._sizes() | guidance_lag)
+
+    def _ratios_without_flights(self) -> list[float]:
+        """Return the speed ratios of comparisons at none of which the study has a flight."""
+        return [
             nu for of in self.trials.values() if of.comparison.variants for nu in of.comparison.nu
         ]
-        return comparison_lines(planned, (), left_out)
 
 
 def _same_scale(one: Envelope, other: Envelope) -> bool:
@@ -578,7 +642,9 @@ class SingleFlight:
     what = "flights"
     planned, comparisons = 1, 0
 
-    def __init__(self, study: Study, task: Task, *, flight_id: str, trial: str, table: str) -> None:
+    def __init__(
+        self, study: FlightStudy, task: Task, *, flight_id: str, trial: str, table: str
+    ) -> None:
         self._study = study
         self._task = task
         self._flight_id = flight_id
@@ -629,15 +695,20 @@ class SingleFlight:
         if self._table != SUMMARY:
             (run.path / self._table).replace(run.path / SUMMARY)
 
+    def judged(self, journal: Journal) -> RunVerdict:
+        """Return what the flight has shown, beside a comparison's other flights or without."""
+        judge = Judge({self._trial: 1})
+        overrides = dict(journal.numbered(OVERRIDES))
+        for number, row in journal.numbered(self._table):
+            judge.add(row, self._study.criteria_of(row["trial"], overrides.get(number, {})))
+        return judge.verdict()
+
     def summary(self, journal: Journal) -> StudySummary:
         """Return how the flight ended."""
-        counts = FlightCounts.of(journal.rows(self._table), self.planned)
-        return StudySummary(
-            done=counts.done,
-            met=counts.passed == self.planned,
-            lines=[f"{self._flight_id}: {counts.line()}", *counts.not_met_lines("  ")],
-            manifest=counts.manifest(),
-        )
+        verdict, notes = self.judged(journal), FlightNotes.of(journal.rows(self._table))
+        line = f"{self._flight_id}: {trial_line(verdict.whole)}"
+        lines = [line, *notes.not_met_lines("  ")]
+        return StudySummary(verdict=verdict, lines=lines, manifest={})
 
 
 def study_of(scenario: AnyStudy, name: str, overrides: Sequence[str] = ()) -> Study:

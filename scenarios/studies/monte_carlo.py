@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from common.run_layout import DRAWS, SUMMARY
+from common.verdict import Bound, Counts
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary
@@ -23,7 +24,6 @@ from scenarios.statistics.estimates import (
     tight_enough,
 )
 from scenarios.studies.base import FlightStudy, frame, study
-from scenarios.studies.summary import FlightCounts
 
 
 class MonteCarloStudy(FlightStudy):
@@ -137,18 +137,21 @@ class MonteCarloStudy(FlightStudy):
         """
         return max(1, self._looks) if self._scenario.statistics.stops else None
 
-    def bound_line(self, counts: FlightCounts, _samples: int, journal: Journal) -> str:
-        """Return the line on keep-out violations with the bound of ``statistics.json``."""
+    def bound(self, _counts: Counts, _samples: int, journal: Journal) -> Bound:
+        """Return the bound of ``statistics.json`` on the probability of a keep-out violation."""
         confidence = self._scenario.statistics.confidence
         found = count_violations(frame(journal.rows(SUMMARY), COLUMNS))
         level, per_sample = (
             interval_confidence(confidence, self._look_number),
             flights_per_sample(self._scenario),
         )
-        upper = pessimistic_share(found, level, per_sample=per_sample)["upper"]
-        unknown, samples = found.events_at_most - found.events, found.flights // per_sample
-        return counts.violation_line(
-            found.events, unknown, found.flights, upper, confidence, samples=samples
+        return Bound(
+            upper=pessimistic_share(found, level, per_sample=per_sample)["upper"],
+            confidence=confidence,
+            flights=found.flights,
+            violated=found.events,
+            unknown=found.events_at_most - found.events,
+            samples=found.flights // per_sample,
         )
 
     def summary(self, journal: Journal) -> StudySummary:

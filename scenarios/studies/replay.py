@@ -9,7 +9,7 @@ from typing import Any, Self
 from common.run_layout import COMPARISON, JOURNAL, MANIFEST, SUMMARY, flight_of, is_file_name
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory, differences
-from scenarios.engine.runner import Study, StudySummary
+from scenarios.engine.runner import StudySummary
 from scenarios.engine.task import Row, Task, Work
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
@@ -18,7 +18,7 @@ from scenarios.flight_runner import FlightRunner
 from scenarios.scenario.files import checked, folder_of
 from scenarios.scenario.parts import names_folder
 from scenarios.scenario.scenario import Scenario
-from scenarios.studies.base import FlightStudy, SingleFlight, study_of
+from scenarios.studies.base import FlightStudy, SingleFlight
 from scenarios.studies.manifest import plugins, refuse_changed
 
 NOT_COMPARED = ("wall_time_s",)
@@ -84,7 +84,7 @@ class OriginalFlight:
         row = self.row | {"aircraft": now} if self.row.get("aircraft") == then else self.row
         return replace(self, manifest=self.manifest | {"trials": trials, "plugins": parts}, row=row)
 
-    def restored(self) -> tuple[Study, Task]:
+    def restored(self) -> tuple[FlightStudy, Task]:
         """Return the study of the one trial of the run that the flight belongs to, and its task in
         it.
 
@@ -104,8 +104,8 @@ class OriginalFlight:
         }
         flown = Experiment(trial, scenarios[trial]).points
         refuse_changed(self.manifest.get("plugins", {}), plugins(point.scenario for point in flown))
-        study = study_of(scenarios[trial], trial)
-        if len(scenarios) > 1 and isinstance(study, FlightStudy):
+        study = FlightStudy(scenarios[trial], trial, {trial: scenarios[trial]})
+        if len(scenarios) > 1:
             study.name_by_trial()
         flights = {name: Experiment(name, scenario).flights for name, scenario in scenarios.items()}
         before = itertools.takewhile(lambda name: name != trial, trials)
@@ -205,11 +205,10 @@ class Replay(SingleFlight):
 
     def summary(self, journal: Journal) -> StudySummary:
         """Return whether the row is identical to that of the original flight."""
-        row = next(journal.rows(self._original.table), None)
+        row, verdict = next(journal.rows(self._original.table), None), self.judged(journal)
         if row is None:
-            return StudySummary(
-                done=0, met=False, lines=["not flown"], manifest={"identical": False}
-            )
+            verdict = replace(verdict, required_met=False)
+            return StudySummary(verdict=verdict, lines=["not flown"], manifest={"identical": False})
         before, where = self._original.row, self._original.directory
         differing = [
             name
@@ -230,9 +229,9 @@ class Replay(SingleFlight):
             lines.append(
                 f"differs from the flight in {where} in {len(differing)} values: {changes}; {self._reason()}"
             )
-        return StudySummary(
-            done=1, met=not differing, lines=lines, manifest={"identical": not differing}
-        )
+        # The exit status is about the repetition, and not about the flight.
+        verdict = replace(verdict, required_met=not differing)
+        return StudySummary(verdict=verdict, lines=lines, manifest={"identical": not differing})
 
     def _reason(self) -> str:
         """Return a possible reason for a difference."""

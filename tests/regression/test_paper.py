@@ -37,7 +37,7 @@ def directory(tmp_path_factory):
         patch.setattr(paper, "SEARCH_STATES", 50_000)
         patch.setattr(paper, "RESERVES", FEW_RESERVES)
         result = run_study(load_study("paper"), "paper", path, executor_factory=InProcessExecutor)
-    assert result.planned == result.summary.done == len(rows_of(path)) == 8
+    assert result.verdict.counts.planned == result.verdict.counts.done == len(rows_of(path)) == 8
     return path
 
 

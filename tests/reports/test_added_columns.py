@@ -167,7 +167,7 @@ def test_a_figure_is_compared_between_runs(paths, tmp_path):
 
 
 def test_python_has_its_unit_and_meaning(paths):
-    run = Run(paths[0], met=True, lines=())
+    run = Run(paths[0], lines=())
     assert run.summary.attrs["units"]["glow_peak_ppb"] == "ppb"
     assert run.summary.attrs["meanings"]["glow_peak_ppb"] == "largest brightness"
     flight = next(iter(run.flights.values()))

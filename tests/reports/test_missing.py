@@ -98,7 +98,9 @@ def test_of_a_whole_run_nothing_is_missing(whole):
         "flights/short_00000.parquet",
         "flights/short_00001.parquet",
         "interventions.csv",
+        "overrides.csv",
         "summary.csv",
+        "verdict.json",
     ]
 
 
@@ -198,12 +200,12 @@ def test_an_export_into_a_link_is_refused(copy, tmp_path):
         (
             "summary.csv",
             lambda text: text[:1000],
-            "' has 0 rows; by manifest.json the run ended with 2: ",
+            "' has 0 rows; by verdict.json the run ended with 2: ",
         ),
         (
             "summary.csv",
             lambda text: text[: text[:-1].rindex("\n") + 1],
-            "' has 1 rows; by manifest.json the run ended with 2: ",
+            "' has 1 rows; by verdict.json the run ended with 2: ",
         ),
         ("summary.csv", lambda text: text[: text.rindex(",")], "' is cut off; "),
         ("draws.csv", lambda text: text[: text.rindex(",")], "' is cut off; "),

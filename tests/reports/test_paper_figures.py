@@ -32,7 +32,7 @@ def sim_3(tmp_path_factory):
 
 @pytest.mark.parametrize("shape", ["sphere", "cylinder"])
 def test_figure_9_shows_the_distance_that_the_keep_out_area_is_about(sim_3, shape):
-    sim_3 = replace(sim_3, summary=sim_3.summary.assign(keepout_shape=shape))
+    sim_3 = replace(sim_3, overrides={"sim3_kinematic": {"keepout.shape": shape}})
     figure_9 = sim_3_charts(sim_3)[1]
     _, flown, crossed = figure_9.panels[0].lines
     history = sim_3.history("sim3_kinematic")

@@ -3,13 +3,13 @@
 import json
 import re
 import shutil
-from dataclasses import replace
 
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 import pytest
 from design_runs import record
+from judged_runs import changed, judged
 from report_parts import (
     assert_axes_read_quantity_and_unit,
     blocks_of,
@@ -141,12 +141,14 @@ def test_no_curve_is_empty_or_not_a_number_where_there_is_data(report):
 @pytest.mark.usefixtures("without_single_flights")
 def test_a_violation_is_in_the_headline(report, copy):
     assert report.verdict.holds
-    summary = pd.read_csv(copy / "summary.csv")
-    summary.loc[0, "keepout_violations"] = 1
-    summary.to_csv(copy / "summary.csv", index=False)
-    judged = content(read_run(copy)).verdict
-    assert not judged.holds
-    assert judged.headline == "Keep-out violations in 1 of 2 flights, 1 in all"
+    run = read_run(copy)
+    inside = run.summary["flight_id"] == run.summary["flight_id"][0]
+    violations = run.summary["keepout_violations"].mask(inside, 1.0)
+    depth = run.summary["keepout_depth_m"].mask(inside, 0.5)
+    summary = run.summary.assign(keepout_violations=violations, keepout_depth_m=depth)
+    verdict = content(changed(run, summary=summary)).verdict
+    assert not verdict.holds
+    assert verdict.headline == "Keep-out violations in 1 of 3 flights, 1 in all"
 
 
 def test_a_flight_of_a_comparison_is_drawn(run_path):
@@ -171,7 +173,9 @@ def test_an_infeasible_flight_is_in_the_report_with_its_reason(report):
     (table,) = blocks_of(report, Table, "trial1")
     assert "must be below 1" in table.rows[2][1]
     assert not report.verdict.complete
-    assert report.verdict.headline.endswith("; of 3, 1 could not be flown")
+    assert report.verdict.headline.startswith(
+        "1 could not be flown, of 3 flights; 2 of 3 flights kept"
+    )
     assert "must be below 1" in report.verdict.failures[0]
     assert flights_of(report)[2].title.endswith("not flown, infeasible: speed ratio ν is 1")
     assert flights_of(report)[2].charts == []
@@ -198,11 +202,8 @@ def html_of(report, directory):
 
 
 def test_an_interrupted_run_can_be_reported_on(copy):
-    manifest = manifest_of(copy)
-    for key in ("outcomes", "flights_met_criteria", "wall_time_s"):
-        del manifest[key]
-    manifest["state"] = "running"
-    write_manifest(copy, manifest)
+    interrupted = judged(read_run(copy), interrupted=True).verdict
+    (copy / "verdict.json").write_text(json.dumps(interrupted.to_json()), encoding="utf-8")
     (copy / "innerloop.json").unlink()
     (copy / "comparison.csv").unlink()
     shutil.rmtree(copy / "flights")
@@ -330,7 +331,7 @@ def test_a_damaged_run_is_refused_in_one_line(copy, damage, words):
 @pytest.mark.parametrize("flights", [1, 3])
 def test_theory_is_a_curve_over_the_speed_ratio_however_few_flights_there_are(run_path, flights):
     run = read_run(run_path)
-    report = content(replace(run, summary=run.summary.iloc[:flights]))
+    report = content(changed(run, summary=run.summary.iloc[:flights]))
     charts = {chart.name: chart for chart in blocks_of(report, Chart, "trial1")}
     interval = charts["trial1-nu1-interval"].panels[0]
     fastest, limit, theory, flown = interval.lines

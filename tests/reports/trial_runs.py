@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 
+from judged_runs import judged
 from report_parts import blocks_of
 
 from reports.document.blocks import FlightPicker, Table
@@ -68,7 +69,7 @@ def with_values(run, number, **values):
     summary = run.summary.copy()
     for key, value in values.items():
         summary.loc[number, key] = value
-    return replace(run, summary=summary)
+    return judged(replace(run, summary=summary))
 
 
 def charts_of(report):
@@ -95,4 +96,4 @@ def rows_of(report, title):
 def with_criterion(run, trial, key, value):
     manifest = json.loads(json.dumps(run.manifest))
     manifest["trials"][trial]["criteria"][key] = value
-    return replace(run, manifest=manifest)
+    return judged(replace(run, manifest=manifest))

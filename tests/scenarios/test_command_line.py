@@ -9,12 +9,14 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pandas as pd
 import pytest
 
-from scenarios.engine.runner import RunResult, StudySummary
+from common.verdict import RunVerdict, read_verdict
+from scenarios.engine.runner import RunResult
 from scenarios.run import main
 from tests import in_process
 from tests.run_tables import manifest_of
@@ -286,8 +288,8 @@ def test_flights_that_miss_a_criterion_or_cannot_be_flown_are_exit_status_1(tmp_
     assert "must be below 1" in result.stdout
     summary = pd.read_csv(out / "summary.csv")
     assert list(summary["outcome"]) == ["completed", "infeasible"]
-    manifest = manifest_of(out)
-    assert manifest["outcomes"]["infeasible"] == 1
+    counts = read_verdict(out / "verdict.json").counts
+    assert (counts.outcomes["infeasible"], counts.unknown, counts.passed) == (1, 1, 0)
 
 
 @pytest.mark.parametrize(
@@ -348,6 +350,15 @@ def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(
     assert (broken / "crossings.csv").read_bytes() == (whole / "crossings.csv").read_bytes()
 
 
+def interrupted_run(directory, *, planned, done, comparisons_left=0):
+    verdict = replace(
+        RunVerdict.of_items("flights", planned=planned, done=done, met=done),
+        comparisons_left=comparisons_left,
+        interrupted=True,
+    )
+    return RunResult(directory=directory, verdict=verdict, lines=[])
+
+
 def test_an_interrupted_replay_is_resumed_by_the_command_that_is_printed(
     tmp_path, run_here, monkeypatch
 ):
@@ -358,10 +369,7 @@ def test_an_interrupted_replay_is_resumed_by_the_command_that_is_printed(
 
     def interrupted(study, directory, *, resume, **_):
         calls.append((study, directory, resume))
-        summary = StudySummary(done=0, met=False, lines=[], manifest={})
-        return RunResult(
-            directory=directory, what="flights", planned=1, summary=summary, interrupted=True
-        )
+        return interrupted_run(directory, planned=1, done=0)
 
     monkeypatch.setattr("scenarios.engine.runner.fly_study", interrupted)
     monkeypatch.setattr(
@@ -394,10 +402,7 @@ def test_an_interrupted_replay_is_resumed_by_the_command_that_is_printed(
 
 def test_an_interrupted_run_is_resumed_by_what_was_typed_with_its_directory(run_here, monkeypatch):
     def interrupted(_study, _stem, directory, **_):
-        summary = StudySummary(done=2, met=False, lines=[], manifest={}, comparisons_left=3)
-        return RunResult(
-            directory=directory, what="flights", planned=9, summary=summary, interrupted=True
-        )
+        return interrupted_run(directory, planned=9, done=2, comparisons_left=3)
 
     monkeypatch.setattr("scenarios.studies.base.run_study", interrupted)
     typed = [

@@ -48,6 +48,7 @@ def tables() -> dict[str, Table]:
         "crossings.csv": CROSSING_COLUMNS,
         "interventions.csv": INTERVENTION_COLUMNS,
         "draws.csv": INPUT_COLUMNS | SEARCH_COLUMNS,
+        "overrides.csv": FLIGHT_COLUMNS,
         sulphur: FLIGHT_COLUMNS | of_sulphur,
         "flights/ID.parquet": HISTORY_COLUMNS,
         "flights/ID.parquet, of flights with a sniffer": SnifferOnBoard.COLUMNS,

@@ -2,7 +2,6 @@
 for page 1.
 """
 
-from collections import Counter
 from collections.abc import Iterator
 from typing import Any
 
@@ -10,8 +9,9 @@ import numpy as np
 import pandas as pd
 
 from common.premises import TERMS, ratio_column
+from common.verdict import Premises, RunVerdict
 from reports.document.tables import ending, in_symbols, number, span
-from reports.flights.criteria import counted, criteria_of
+from reports.flights.criteria import counted, criterion_title, limits_words
 from reports.flights.names import fault_name, told_name
 from reports.run.columns import (
     Mask,
@@ -19,8 +19,6 @@ from reports.run.columns import (
     count,
     largest,
     met,
-    premises_exceeded,
-    violated,
     was_flown,
 )
 from reports.run.trials import Trial
@@ -62,7 +60,7 @@ def failure_lines(trial: Trial) -> list[str]:
     lines += (
         [*_named(trial, unflown)] if len(unflown) <= _NAMED_MAX else [_not_flown(trial, unflown)]
     )
-    missing = trial.planned - len(rows)
+    missing = trial.verdict.counts.left
     return [
         *lines,
         *([f"{trial.title}: {missing} of {trial.planned} not flown yet"] if missing else []),
@@ -80,22 +78,22 @@ def _named(trial: Trial, flights: pd.DataFrame) -> Iterator[str]:
 
 def _by_criterion(trial: Trial, failed: int) -> str:
     """Return how many of the flights that were flown failed which criterion."""
-    flown = trial.flown
-    inside, depth = count(violated(flown)), largest(column(flown, "keepout_depth_m"))
+    counts, flown = trial.verdict.counts, trial.flown
+    depth = largest(column(flown, "keepout_depth_m"))
     parts = (
-        [f"{inside} violated the keep-out area, by up to {number(depth, '{:.1f} m')}"]
-        if inside
+        [f"{counts.violated} violated the keep-out area, by up to {number(depth, '{:.1f} m')}"]
+        if counts.violated
         else []
     )
+    if without := counts.flown - counts.completed:
+        parts.append(f"{without} did not complete the mission")
     parts += [
-        f"{c.flown_failed} did not complete the mission"
-        if c.key == "mission"
-        else f"{c.flown_failed}: {c.what}, {c.limit}"
-        for c in criteria_of(trial)
-        if c.flown_failed
+        f"{c.failed}: {criterion_title(trial.run, c)}, {limits_words(trial, c)}"
+        for c in trial.verdict.criteria
+        if c.failed and c.key not in ("keep_out", "mission")
     ]
     why = f" ({'; '.join(parts)})" if parts else ""
-    return f"{trial.title}: {failed} of {len(flown)} flights{' flown' * (len(flown) < len(trial.rows))} failed a criterion{why}"
+    return f"{trial.title}: {failed} of {counts.flown} flights{' flown' * (counts.not_flown > 0)} failed a criterion{why}"
 
 
 def _not_flown(trial: Trial, flights: pd.DataFrame) -> str:
@@ -110,9 +108,9 @@ def _reason(row: "pd.Series[Any]") -> str:
     return "; ".join(words for words in (ended, in_symbols(str(row["message"]))) if words)
 
 
-def noteworthy(flown: pd.DataFrame) -> list[str]:
+def noteworthy(verdict: RunVerdict, flown: pd.DataFrame) -> list[str]:
     """Return what a reader has to know of the flights, whether or not a criterion asks for it."""
-    lines = _premise_lines(flown)
+    lines = _premise_lines(verdict.premises, flown)
     unable = column(flown, "guard_lost_s")
     if without := count(unable > 0.0):
         lines.append(
@@ -133,20 +131,17 @@ def noteworthy(flown: pd.DataFrame) -> list[str]:
     return lines
 
 
-def _premise_lines(flown: pd.DataFrame) -> list[str]:
+def _premise_lines(premises: Premises, flown: pd.DataFrame) -> list[str]:
     """Return in how many flights a premise of the keep-out guard did not hold, and which."""
-    flights = premises_exceeded(flown)
-    counts = Counter(term for terms in flights for term in terms)
-    if not counts:
+    if not premises.exceeded:
         return []
-    some = sum(bool(terms) for terms in flights)
     largest_of = "; ".join(
         f"{TERMS[term]} in {number_of:,}, up to {np.nanmax(column(flown, ratio_column(term))):.2f}"
-        for term, number_of in counts.most_common()
+        for term, number_of in premises.terms.items()
     )
     return [
-        f"{_in_flights(some, len(flights))} an error was larger than the keep-out guard reckons"
-        f" with, as a ratio to that: {largest_of}."
+        f"{_in_flights(premises.exceeded, premises.measured)} an error was larger than the keep-out"
+        f" guard reckons with, as a ratio to that: {largest_of}."
     ]
 
 

@@ -10,10 +10,11 @@ import pandas as pd
 from common.columns import Column
 from common.intervals import CONFIDENCE, percent
 from common.run_layout import SUMMARY
+from common.verdict import Criterion
 from reports.document.blocks import Block, Table, Text
 from reports.document.tables import approach, ending, number, outcome, span
 from reports.flights.bounds import trial_bound
-from reports.flights.criteria import counted, criteria_of
+from reports.flights.criteria import counted, criterion_title, limits_words, worst_words
 from reports.flights.names import fault_name, told_name
 from reports.run.columns import (
     clearance,
@@ -157,17 +158,17 @@ def trial_table(trials: list[Trial]) -> Table:
     """
     rows = []
     for trial in trials:
-        flown = trial.flown
+        flown, counts = trial.flown, trial.verdict.counts
         rows.append([
             trial.title,
-            f"{trial.planned}",
-            f"{len(flown)}",
-            f"{count(completed(trial.rows))}",
-            f"{count(met(trial.rows))}",
-            f"{count(lost(trial.rows))}",
-            f"{count(kept_out(flown))}",
+            f"{counts.planned}",
+            f"{counts.flown}",
+            f"{counts.completed}",
+            f"{counts.met}",
+            f"{counts.lost}",
+            f"{counts.kept_out}",
             _NOTHING if (bound := trial_bound(trial)) is None else percent(bound),
-            f"{total(flown, 'keepout_violations')}",
+            f"{counts.keepout_violations}",
             *nearest_cells(flown),
             f"{count(column(flown, 'guard_interventions') > 0.0)}",
             counted(flown["mode_at_end"]) if "mode_at_end" in flown else _NOTHING,
@@ -187,38 +188,39 @@ def trial_table(trials: list[Trial]) -> Table:
 
 
 def criteria_table(trials: list[Trial]) -> Table:
-    """Return a row per criterion of each trial: its limit, as configured, and the worst that was
-    measured.
+    """Return a row per criterion of each trial: its limit, the worst among the flights that it
+    judges and among all of them, how many it judges, and how many failed it.
     """
-    rows = []
-    for trial in trials:
-        listed = criteria_of(trial)
-        # Flights that were not flown are told beside the figure, as on page 1, and fail the mission
-        # alone.
-        failed = [c.failed if c.key == "mission" else c.flown_failed for c in listed]
-        rows += [
-            [trial.title, c.what, c.limit, "; ".join(filter(None, (c.worst, c.missing))), f"{n}"]
-            for c, n in zip(listed, failed, strict=True)
+    rows = [
+        [
+            trial.title,
+            criterion_title(trial.run, of),
+            limits_words(trial, of),
+            worst_words(trial.run, of, of.worst),
+            _whose(trial, of),
+            f"{of.judged} of {trial.verdict.counts.done}",
+            f"{of.failed}",
         ]
-    head, widths = (
-        ["Trial", "Criterion", "Limit", "Worst measured", "Not met"],
-        [1.7, 2.5, 1.2, 1.7, 0.7],
-    )
-    if len(trials) == 1:
-        return Table(
-            caption="Criteria beside the keep-out area, and the worst measured values.",
-            head=head[1:],
-            rows=[row[1:] for row in rows],
-            widths=widths[1:],
-            left_columns=3,
-        )
+        for trial in trials
+        for of in trial.verdict.criteria
+        if of.judged
+    ]
+    head = ["Trial", "Criterion", "Limit", "Worst judged", "Worst of all", "Judged", "Not met"]
+    widths = [1.6, 2.2, 1.0, 1.0, 1.8, 0.8, 0.6]
+    first = len(trials) == 1
     return Table(
-        caption="Criteria beside the keep-out area, and the worst measured values.",
-        head=head,
-        rows=rows,
-        widths=widths,
-        left_columns=4,
+        caption="The criteria, with the worst measured values of the flights that they judge, and of all flights.",
+        head=head[first:],
+        rows=[row[first:] for row in rows],
+        widths=widths[first:],
+        left_columns=5 - first,
     )
+
+
+def _whose(trial: Trial, of: Criterion) -> str:
+    """Return the worst of a figure among all flights, with the flight that has it."""
+    words = worst_words(trial.run, of, of.worst_of_all)
+    return f"{words} ({of.worst_of_all.flight})" if of.worst_of_all else words
 
 
 def fault_table(trial: Trial) -> Table:

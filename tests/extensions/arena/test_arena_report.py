@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pandas as pd
 import pytest
+from judged_runs import changed
 
 from extensions.arena.entrants import Entrant
 from extensions.arena.paired_bootstrap import Estimate
@@ -210,7 +211,10 @@ def of_a_few_flights(run, path, missing):
         json.loads((run.path / "arena.json").read_text(encoding="utf-8")),
     )
     gone = rows["flight_id"].str.contains(missing)
-    rows.loc[gone, ["duration_s", "min_distance_m", "criteria_met", "kept_out"]] = [
+    rows["keepout_violations"] = rows["keepout_violations"].astype(float)
+    figures = ["duration_s", "min_distance_m", "keepout_violations"]
+    rows.loc[gone, [*figures, "criteria_met", "kept_out"]] = [
+        math.nan,
         math.nan,
         math.nan,
         False,
@@ -229,7 +233,7 @@ def of_a_few_flights(run, path, missing):
     entrants = [Entrant(**{key: entry[key] for key in named}) for entry in record["entrants"]]
     record["estimates"] = estimates(entrants, figures, load_study("arena", QUICK).arena, 1)
     (path / "arena.json").write_text(json.dumps(record), encoding="utf-8")
-    return arena_content(replace(run, path=path, summary=rows))
+    return arena_content(changed(run, path=path, summary=rows))
 
 
 def test_a_law_that_lacks_flights_is_named_and_not_called_best(run, tmp_path):

@@ -96,11 +96,11 @@ def test_an_interrupted_study_resumes_to_the_same_rows(directory, tmp_path):
 
     path = tmp_path / "run"
     first = run(study(), path, progress=interrupt)
-    assert first.interrupted
-    assert 0 < first.summary.done < 24
+    assert first.verdict.interrupted
+    assert 0 < first.verdict.counts.done < 24
     assert manifest_of(path)["state"] == "interrupted"
     again = run(study(), path, resume=True)
-    assert again.summary.done == again.planned == 24
+    assert again.verdict.counts.done == again.verdict.counts.planned == 24
     pd.testing.assert_frame_equal(
         pd.read_csv(path / "summary.csv"), pd.read_csv(directory / "summary.csv"), check_exact=True
     )
@@ -122,7 +122,7 @@ def test_a_study_goes_on_with_the_blocks_that_are_left(tmp_path):
     run(few, tmp_path / "whole", progress=tell, factory=ExecutorFactory(jobs=2))
     # Two laws, three kinds of reference: six blocks of two trajectories.
     assert [done for doing, done, _ in told if doing == "flying"] == [0, 2, 4, 6, 8, 10, 12]
-    assert run(few, tmp_path / "broken", progress=interrupt).summary.done == 6
+    assert run(few, tmp_path / "broken", progress=interrupt).verdict.counts.done == 6
     told.clear()
     assert run(few, tmp_path / "broken", resume=True, progress=tell).all_met
     assert [report for report in told if report[0] == "flying"] == [
@@ -164,8 +164,8 @@ def test_an_interrupt_while_time_histories_are_kept_leaves_a_run_that_can_be_res
     with monkeypatch.context() as patch:
         patch.setattr("extensions.convergence.study.trajectory_of", interrupt)
         first = run(few, tmp_path / "run")
-    assert first.interrupted
-    assert first.summary.done == first.planned
+    assert first.verdict.interrupted
+    assert first.verdict.counts.done == first.verdict.counts.planned
     assert manifest_of(tmp_path / "run")["state"] == "interrupted"
     assert run(few, tmp_path / "run", resume=True).all_met
 

@@ -56,7 +56,7 @@ def test_both_ships_are_served_with_the_right_verdict_and_the_run_is_met(run):
     assert row["kept_out"]
     assert row["keepout_violations"] == 0
     assert result.all_met
-    assert result.summary.lines[-1] == (
+    assert result.lines[-1] == (
         "exit status 0: 1 of 1 patrols kept out and brought their aircraft through; correct verdicts meet"
         " patrol.oracle_share_min, wrong ones meet patrol.wrong_share_max"
     )
@@ -270,7 +270,7 @@ def test_a_study_that_never_took_off_is_not_met(tmp_path):
     (row,) = rows_of(tmp_path / "run")
     assert (row["served"], row["criteria_met"]) == (0, True)
     assert not result.all_met
-    told = "\n".join(result.summary.lines)
+    told = "\n".join(result.lines)
     assert "(–, required 80 %)" in told
     assert told.endswith(
         "exit status 1: 1 of 1 patrols kept out and brought their aircraft through; no ship was served"
@@ -285,7 +285,7 @@ def test_a_study_without_any_verdict_of_an_oracle_either_is_not_met(tmp_path):
     (row,) = rows_of(tmp_path / "run")
     assert (row["served"], row["oracle_verdicts"], row["criteria_met"]) == (1, 0, True)
     assert not result.all_met
-    assert "no verdict, and none of an oracle: give ships more time" in result.summary.lines[-1]
+    assert "no verdict, and none of an oracle: give ships more time" in result.lines[-1]
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
+from judged_runs import judged
 from report_parts import assert_axes_read_quantity_and_unit, blocks_of
 
 from reports.compare.content import compare, comparison_content, headline
@@ -141,18 +142,18 @@ def test_a_figure_that_differs_in_its_last_bit_is_a_difference(first, same):
 
 def test_a_flight_that_one_run_has_not_flown_yet_has_no_partner(first, same):
     runs = read_runs([first, same])
-    manifest = runs[1].manifest | {"state": "interrupted"}
-    runs[1] = replace(
-        runs[1],
-        data=replace(runs[1].data, summary=runs[1].data.summary.iloc[:2], manifest=manifest),
-    )
+    begun = replace(runs[1].data, summary=runs[1].data.summary.iloc[:2])
+    runs[1] = replace(runs[1], data=judged(begun, interrupted=True))
     report = comparison_content(runs, compare(runs))
     assert (
         report.verdict.headline
         == "No figure differs in 2 pairs of flights; other flights have no partner"
     )
     assert not report.verdict.complete
-    assert "B: the run is interrupted" in report.verdict.failures
+    assert (
+        "B: the run was interrupted, 2 of 3 flights did what is required, 1 not flown yet"
+        in report.verdict.failures
+    )
     assert "Without a partner are 1 of A." in texts_of(report)
     (figures,) = blocks_of(report, Table, "figures")
     # Counts of 3 and of 2 flights have no difference that says anything.
@@ -198,6 +199,7 @@ def test_a_flight_that_met_in_neither_run_and_cannot_be_flown_any_more_is_worse(
     rows[known] = rows[known].astype(float)
     rows.loc[0, known] = np.nan
     rows.loc[0, ["outcome", "message", "kept_out"]] = ["infeasible", "too fast", False]
+    runs = [replace(run, data=judged(run.data)) for run in runs]
     report = comparison_content(runs, compare(runs))
     assert report.verdict.tone == "warn"
     changed = "No flight changed between met and not met in 3 pairs of flights"
@@ -206,8 +208,11 @@ def test_a_flight_that_met_in_neither_run_and_cannot_be_flown_any_more_is_worse(
         == f"{changed}; 1 that met in neither run no longer keeps out or completes the mission"
     )
     assert report.verdict.failures == [
-        "B: 1 of 3 paired flights known to keep out in A alone", "B: 1 of 3 paired flights completed their mission in A alone"
-    ]  # fmt: skip
+        "A: 2 of 3 flights did what is required",
+        "B: 2 of 3 flights did what is required, 1 could not be flown",
+        "B: 1 of 3 paired flights known to keep out in A alone",
+        "B: 1 of 3 paired flights completed their mission in A alone",
+    ]
     listed = next(
         table for table in blocks_of(report, Table, "flightsb") if table.head[0] == "Flight"
     )

@@ -196,13 +196,13 @@ def test_versions_files_and_hashes_that_differ_stand_out(two):
     two[1].manifest["fingerprint"]["source"] = "abc"
     # A path of the machine that flew is told by neither.
     two[1].manifest["plugins"] = {"/home/jo/laws/mylaw.py:MyLaw": "0123"}
-    two[1].manifest["state"] = "running"
+    interrupted = two[1].data.verdict.once_interrupted(interrupted=True)
+    two[1] = replace(two[1], data=replace(two[1].data, judgement=interrupted))
     rows, bold = software(two)
     assert rows["Version of jsbsim"][1] == "0.9"
     assert "jsbsim" not in rows["Other packages"][0]
     assert rows["File mylaw.py:MyLaw"] == ["not used", "0123"]
-    # A program that is killed leaves this state; one that runs is refused before.
-    assert rows["State"][1] == "killed, 3 of 3 flights"
+    assert rows["State"][1] == "interrupted, 3 of 3 flights"
     assert bold == {"Version of jsbsim", "Hash of the source", "File mylaw.py:MyLaw", "State"}
 
 

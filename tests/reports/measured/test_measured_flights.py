@@ -237,10 +237,12 @@ def test_noise_of_a_minute_follows_from_the_time_that_was_evaluated(own, minutes
         "fsc_noise_percent": 0.02, "areas_fsc_noise_percent": 0.03, "fsc_expected_percent": 0.1, "fsc_percent": 0.1,
         "areas_fsc_percent": 0.1, "nu": 0.5, "crossing_interval_mean_s": 6.0, "crossing_distance_mean_m": 260.0,
     })  # fmt: skip
-    swept = {"flight.measured_s": [60.0, 135.0]} if own == "swept" else {}
+    values = zip(rows["flight_id"], (60.0, 135.0), strict=True)
+    swept = {name: {"flight.measured_s": value} for name, value in values}
     run = SimpleNamespace(
         manifest={"trials": {"t": {"flight": {"measured_s": None if own == "swept" else own}}}},
-        draws=pd.DataFrame({"flight_id": ["a", "b"], "guidance.bank_deg": 30.0, **swept}),
+        draws=pd.DataFrame({"flight_id": ["a", "b"], "guidance.bank_deg": 30.0}),
+        overrides=swept if own == "swept" else {},
     )
     table = flight_tables.best_table(run, rows)
     found = sorted(float(row[table.head.index("1σ in a minute [% m/m]")]) for row in table.rows)

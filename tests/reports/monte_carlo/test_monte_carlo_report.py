@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from judged_runs import judged
 from report_parts import assert_axes_read_quantity_and_unit
 
 from reports.document.blocks import Table, Text
@@ -42,10 +43,13 @@ def run_of(rows, inputs, **changes):
         "trials": {"study": config},
         "trial_parameters": {"study": json.loads(json.dumps(parameters(study)))},
         "flights_planned": len(rows),
+        "trial_flights": {"study": len(rows)},
+        "sampled_at_random": {"study": True},
+        "flights_per_sample": {"study": 1},
         "modes": [],
         "state": "complete",
     }
-    return RunData(
+    run = RunData(
         path=Path("nowhere"),
         manifest=manifest,
         summary=rows.assign(
@@ -58,6 +62,7 @@ def run_of(rows, inputs, **changes):
         columns=RUN_COLUMNS,
         draws=inputs,
     )
+    return judged(run)
 
 
 @pytest.fixture(scope="module", autouse=True)

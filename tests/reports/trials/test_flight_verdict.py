@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
+from judged_runs import changed, judged
 from report_parts import blocks_of
 from trial_runs import rows_of, with_criterion, with_values
 
@@ -104,25 +105,32 @@ LOST = {
 def test_a_flight_that_lost_its_aircraft_fails_a_run_of_which_it_is_required_to_complete(run):
     report = content(with_values(run, 1, **LOST))
     assert report.verdict.headline.startswith(
-        "1 lost the aircraft, of 4 flights. No keep-out violation in 4 flights ("
+        "1 lost the aircraft, of 4 flights; 3 of 4 flights kept out ("
     )
     assert (report.verdict.holds, report.verdict.complete) == (False, False)
     assert report.verdict.failures == ["steady_00001: aircraft lost; it came down on the sea"]
     # Planned, flown, completed, met, lost, kept out.
-    assert rows_of(report, "Steady")[0][:6] == ["2", "2", "1", "1", "1", "2"]
+    assert rows_of(report, "Steady")[0][:6] == ["2", "2", "1", "1", "1", "1"]
 
 
 def test_where_a_fault_is_flown_on_purpose_a_lost_aircraft_is_shown_and_keeping_out_judged(run):
     report = content(with_values(run, 1, required="keep_out", **LOST))
     # Amber: nothing that must never happen did, but not every flight is met.
     assert (report.verdict.holds, report.verdict.complete) == (True, False)
-    assert report.verdict.headline.endswith("; of 4, 1 lost the aircraft")
+    assert report.verdict.headline.startswith("1 lost the aircraft, of 4 flights; 3 of 4 flights ")
     assert (
-        "1 flight is required to keep out, not to complete: 1 kept out, 0 completed. For the exit status, it is enough that these"
-        " kept out." in report.verdict.detail
+        "1 flight is required only to stay outside of the keep-out area, and not to complete; 4 of 4 flights did what is required"
+        in report.verdict.detail
     )
+    kept = (
+        "Flights that kept out",
+        "3 of 4, 1 ended outside",
+        "not required of every flight",
+        None,
+    )
+    assert kept in report.verdict.figures
     assert ("Aircraft lost", "1", "not required of every flight", None) in report.verdict.figures
-    assert rows_of(report, "Steady")[0][:6] == ["2", "2", "1", "1", "1", "2"]
+    assert rows_of(report, "Steady")[0][:6] == ["2", "2", "1", "1", "1", "1"]
 
 
 def test_a_mission_that_was_not_completed_is_not_met_and_said(run):
@@ -143,7 +151,7 @@ def test_of_a_flight_alone_the_headline_says_what_it_failed_and_no_figure_is_tol
         duration_s=64.0,
     )
     limited = with_criterion(failed, "steady", "tracking_error_rms_m", 2.5)
-    alone = replace(
+    alone = changed(
         limited,
         summary=limited.summary.iloc[:1],
         manifest=limited.manifest | {"flights_planned": 1},
@@ -153,9 +161,9 @@ def test_of_a_flight_alone_the_headline_says_what_it_failed_and_no_figure_is_tol
         verdict.headline
         == "No keep-out violation in 1 flight (64 s simulated); it did not complete the mission"
     )
-    # The other trial, of which nothing is left, does not limit it.
+    # It did not complete, and is not judged by its tracking error.
     names = [card.name for card in verdict.figures if card.name.startswith("Tracking error")]
-    assert names == ["Tracking error, rms after settling, worst of the trials that limit it"]
+    assert names == ["Tracking error, rms after settling"]
 
 
 def test_faults_that_began_are_named_on_page_1(run):
@@ -194,10 +202,12 @@ def test_of_a_single_flight_the_words_are_of_one(run):
         "flights_planned": 1,
         "trials": {"steady": run.manifest["trials"]["steady"]},
     }
-    alone = replace(run, manifest=manifest, summary=run.summary.iloc[:1].copy())
+    alone = changed(run, manifest=manifest, summary=run.summary.iloc[:1].copy())
     assert content(alone).verdict.headline.endswith("; it met its criteria")
     lost = content(with_values(alone, 0, fault="engine", fault_time_s=20.0, **LOST)).verdict
-    assert lost.headline.startswith("1 lost the aircraft, of 1 flight. ")
+    assert lost.headline.startswith(
+        "The flight lost the aircraft; it ended outside of the keep-out area"
+    )
     assert (
         lost.failures[-1] == "In the flight a fault began, as the scenario has it: engine, at 20 s."
     )
@@ -206,6 +216,7 @@ def test_of_a_single_flight_the_words_are_of_one(run):
 NOT_FLOWN = {
     "outcome": "infeasible", "message": "too fast a vessel", "criteria_met": False, "kept_out": False,
     "duration_s": float("nan"), "min_distance_m": float("nan"), "tracking_error_rms_m": float("nan"),
+    "keepout_violations": float("nan"),
 }  # fmt: skip
 
 
@@ -215,23 +226,21 @@ def test_a_flight_that_could_not_be_flown_is_told_and_makes_no_other_flights_fig
     )
     report = content(judged)
     figures = {card.name: card for card in report.verdict.figures}
-    worst = figures[
-        "Tracking error, rms after settling, worst of the trials that limit it (1 flight has no figure: not flown)"
-    ]
+    (worst,) = (
+        card
+        for name, card in figures.items()
+        if name.startswith("Tracking error, rms after settling")
+    )
     assert worst.met
-    assert re.fullmatch(r"[\d.]+ m", worst.value)
+    assert ("Keep-out violations", "0 known, unknown in 1 flight", "0", False) in figures.values()
     # Of all that were planned, not of those that were flown.
     assert (figures["Missions completed"].value, figures["Missions completed"].met) == (
         "3 of 4",
         False,
     )
-    (row,) = (
-        row
-        for row in rows_of(report, "Steady")
-        if row[2].endswith(" m; 1 flight has no figure: not flown")
-    )
-    # As on page 1: it fails the mission, and not what could not be measured.
-    assert row[3] == "0"
+    (row,) = (row for row in rows_of(report, "Steady") if row[1] == "≤ 50 m")
+    # As on page 1: it fails the mission, and is not judged by what could not be measured.
+    assert row[-2:] == ["1 of 2", "0"]
 
 
 def test_flights_that_were_not_flown_are_counted_apart_from_those_that_failed_a_criterion(run):
@@ -245,7 +254,7 @@ def test_flights_that_were_not_flown_are_counted_apart_from_those_that_failed_a_
         "flights_planned": 10,
         "trial_flights": {"steady": 10, "turns": 0},
     }
-    report = content(replace(run, summary=pd.concat(many, ignore_index=True), manifest=manifest))
+    report = content(changed(run, summary=pd.concat(many, ignore_index=True), manifest=manifest))
     assert report.verdict.failures == [
         "Steady: 4 of 5 flights flown failed a criterion (4: Mean crossing interval off π/ω₀, ≤ 3.21 %)",
         "Steady: 5 of 10 not flown; the first, steady_00000: infeasible: too fast a vessel",
@@ -253,7 +262,7 @@ def test_flights_that_were_not_flown_are_counted_apart_from_those_that_failed_a_
 
 
 def test_of_a_run_in_which_nothing_was_flown_no_figure_is_met_and_no_picture_shown(run):
-    nothing = replace(run, summary=run.summary.assign(**NOT_FLOWN))
+    nothing = changed(run, summary=run.summary.assign(**NOT_FLOWN))
     report = content(nothing)
     assert report.verdict.headline == "Nothing was flown: of 4, 4 infeasible"
     assert [tuple(card) for card in report.verdict.figures] == [
@@ -262,14 +271,6 @@ def test_of_a_run_in_which_nothing_was_flown_no_figure_is_met_and_no_picture_sho
     ]
     assert report.picture is None
     assert not report.verdict.holds
-
-
-def test_a_flight_that_was_flown_and_has_no_figure_fails_the_criterion_on_it(run):
-    values = {"outcome": "not_settled", "criteria_met": False, "tracking_error_rms_m": float("nan")}
-    judged = with_criterion(with_values(run, 1, **values), "steady", "tracking_error_rms_m", 50.0)
-    name = "Tracking error, rms after settling, worst of the trials that limit it (1 flight has no figure: not settled)"
-    (worst,) = (card for card in content(judged).verdict.figures if card.name == name)
-    assert not worst.met
 
 
 def test_flights_of_one_reason_share_a_line(run):
@@ -288,8 +289,10 @@ def test_flights_that_are_not_flown_yet_are_not_failed_ones(run):
         "state": "interrupted",
     }
     manifest["trial_flights"] = {"steady": 198, "turns": 2}
-    report = content(replace(run, manifest=manifest))
-    assert report.verdict.headline.endswith("; of 200, 196 not flown yet")
+    report = content(judged(replace(run, manifest=manifest), interrupted=True))
+    assert report.verdict.headline.startswith(
+        "Interrupted after 4 of 200 flights. 4 of 4 flights kept out ("
+    )
     assert report.verdict.failures == ["Steady: 196 of 198 not flown yet"]
     assert "200 planned, 4 flown, 4 completed, 4 met every criterion" in report.verdict.detail
     assert (report.verdict.holds, report.verdict.complete) == (True, False)
@@ -301,7 +304,7 @@ def test_the_verdict_claims_what_was_flown_and_the_bound_that_follows(run):
     again = run.summary.assign(
         flight_id=[f"{flight_id}_again" for flight_id in run.summary["flight_id"]]
     )
-    eight = replace(
+    eight = changed(
         run,
         summary=pd.concat([run.summary, again], ignore_index=True),
         manifest=run.manifest | {"flights_planned": 8},
@@ -321,7 +324,7 @@ def test_the_verdict_claims_what_was_flown_and_the_bound_that_follows(run):
     assert not any(re.search(r"\bsafe", text, re.IGNORECASE) for text in texts)
     # Those of a search are no random sample: no bound follows from them.
     manifest = run.manifest | {"sampled_at_random": {"steady": False, "turns": True}}
-    chosen = content(replace(run, manifest=manifest)).verdict
+    chosen = content(changed(run, manifest=manifest)).verdict
     assert "confidence" not in chosen.headline
     assert "No bound on a probability follows from these flights" in chosen.detail
 
@@ -332,18 +335,19 @@ def test_a_flight_that_could_not_be_flown_counts_as_a_violation_in_the_bound(run
         run.summary.assign(flight_id=[f"{name}_{i}" for name in run.summary["flight_id"]])
         for i in range(3)
     ]
-    sixteen = replace(
+    sixteen = changed(
         run,
         summary=pd.concat([rows, *others], ignore_index=True),
         manifest=run.manifest | {"flights_planned": 16},
     )
     verdict = content(sixteen).verdict
-    headline = verdict.headline.replace("\N{NO-BREAK SPACE}", " ")
+    assert verdict.headline.startswith("1 could not be flown, of 16 flights; 15 of 16 flights kept")
+    assert "No keep-out violation" not in verdict.headline
     # Clopper and Pearson, one of sixteen: (1 - p)^16 + 16 p (1 - p)^15 = 0.05; none of fifteen
     # would be 18.1 %.
-    assert "at most 26.4 % of such flights violate the area, at 95 % confidence" in headline
-    assert headline.endswith("of 16, 1 could not be flown")
-    assert "The bound counts 1 flight not flown as a keep-out violation." in verdict.detail
+    detail = verdict.detail.replace("\N{NO-BREAK SPACE}", " ")
+    assert "violates the keep-out area with a probability of at most 26.4 %" in detail
+    assert "The bound counts 1 flight of unknown end as a keep-out violation." in detail
 
 
 def test_a_handful_of_flights_states_no_bound_as_it_would_say_nothing(run):
@@ -356,7 +360,7 @@ def test_a_handful_of_flights_states_no_bound_as_it_would_say_nothing(run):
     )
     assert not any(card.name.startswith("Probability") for card in report.verdict.figures)
     assert rows_of(report, "Steady")[0][6] == "–"
-    alone = content(replace(run, summary=run.summary.iloc[:1])).verdict
+    alone = content(changed(run, summary=run.summary.iloc[:1])).verdict
     assert (
         "A single flight sets no bound on the probability of a keep-out violation" in alone.detail
     )
@@ -397,7 +401,7 @@ def test_the_quantile_of_tracking_errors_is_told_of_a_hundred_flights_at_least_a
 
 def test_the_shape_of_the_keep_out_area_is_said_where_a_distance_is_printed(run):
     assert " m from the keep-out sphere's centre, in " in content(run).verdict.detail
-    report = content(replace(run, summary=run.summary.assign(keepout_shape="cylinder")))
+    report = content(changed(run, summary=run.summary.assign(keepout_shape="cylinder")))
     assert " m horizontal, from the keep-out cylinder's axis, in " in report.verdict.detail
     # Beside the funnel, far above it: a sphere is narrower there.
     rising = content(

@@ -2,11 +2,17 @@
 its own.
 """
 
+import json
+import tomllib
+
 import numpy as np
 import pandas as pd
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from report_parts import blocks_of
 
+from common.text import as_json_cell, cell, from_json_cell
 from reports.compare.figures import differences
 from reports.compare.pairs import Pairs
 from reports.compare.runs import Run
@@ -18,11 +24,12 @@ from reports.flights.single_flight import flight_charts
 from reports.flights.trials.tables import fault_table
 from reports.registry import content
 from reports.replay.flight_scene import flight_scene
-from reports.run.flight_config import flight_config, flight_configs
+from reports.run.flight_config import flight_config, flight_configs, with_value
 from reports.run.plume_shape import plume_shape
-from reports.run.run_data import RunData, read_run
+from reports.run.run_data import RunData, read_overrides, read_run
 from reports.run.trials import read_trials
 from scenarios.engine.processes import InProcessExecutor
+from scenarios.experiment.requests import Experiment, differing_keys
 from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 
@@ -175,77 +182,72 @@ def test_a_comparisons_flight_has_what_the_comparison_sets(apart):
     ]
 
 
-def made(trial, draws, **row):
-    """Return a run of one flight with a configuration of its trial and its row of ``draws.csv``,
-    and the flight's row.
-    """
-    rows = pd.DataFrame(
-        [{"flight_id": "a", "trial": "t", "variant": "study", "fidelity": "six_dof"} | row]
-    )
+VARIATION = {"sweep", "cases", "draws", "comparison", "report"}
+"""Sections that make several flights of a scenario, and the report's: they are of no flight."""
+
+
+def experiments():
+    """Return experiments whose flights differ by case, vehicle, sweep, comparison and samples."""
+    apart = load_study(tomllib.loads(APART))
+    return [
+        Experiment("apart", apart),
+        Experiment("paper", load_study("paper")),
+        Experiment("monte_carlo", load_study("monte_carlo")),
+        Experiment("sea_manoeuvres", load_study("sea_manoeuvres")),
+    ]
+
+
+@pytest.mark.parametrize("experiment", experiments(), ids=lambda of: of.name)
+def test_the_overrides_of_a_flight_make_its_whole_configuration_of_that_of_its_trial(
+    experiment, tmp_path
+):
+    numbers = sorted({*range(min(12, experiment.flights)), experiment.flights - 1})
+    requests = [experiment.request(number) for number in numbers]
+    rows = [
+        {"flight_id": request.flight_id, "trial": experiment.name}
+        | {
+            key: as_json_cell(value)
+            for key, value in experiment.overrides(request.scenario).items()
+        }
+        for request in requests
+    ]
+    pd.DataFrame(rows, dtype=object).map(cell).to_csv(tmp_path / "overrides.csv", index=False)
     empty = pd.DataFrame({"flight_id": []})
     run = RunData(
-        path=None, manifest={"trials": {"t": trial}}, summary=rows, comparison=empty, crossings=empty, innerloop=None,
-        statistics=None, draws=pd.DataFrame([{"flight_id": rows["flight_id"].iloc[0], **draws}]),
+        path=tmp_path,
+        manifest={"trials": {experiment.name: experiment.scenario.model_dump(mode="json")}},
+        summary=empty, comparison=empty, crossings=empty, innerloop=None, statistics=None, draws=empty,
+        overrides=read_overrides(tmp_path / "overrides.csv", set()),
     )  # fmt: skip
-    return run, rows.iloc[0]
+    assert any(run.overrides.values())
+    for request, row in zip(requests, rows, strict=True):
+        flown = request.scenario.model_dump(mode="json", exclude=VARIATION)
+        config = {key: of for key, of in flight_config(run, row).items() if key not in VARIATION}
+        assert json.loads(json.dumps(config)) == json.loads(json.dumps(flown))
 
 
-BASE = {
-    "title": "T",
-    "plume": {"source_height_m": 35.0},
-    "emission": {"load": 0.5},
-    "keepout": {"shape": "sphere"},
-}
-
-
-def test_lists_and_what_is_not_set_are_read_as_they_were_given_and_empty_cells_are_of_other_trials():
-    inputs = {
-        "start.distance_m": "[400, 500]",
-        "emission.load": "null",
-        "plume.source_height_m": np.nan,
-        "nu": 0.5,
-    }
-    config = flight_config(*made(BASE, inputs))
-    assert config["start"]["distance_m"] == [400, 500]
-    assert config["emission"]["load"] is None
-    assert config["plume"] == BASE["plume"]
-    assert "nu" not in config
-
-
-def test_what_is_sampled_holds_in_flights_of_a_comparison_and_what_is_swept_or_set_gives_way_to_it():
-    variants = [
-        {"name": "high", "set": {"plume.source_height_m": 80.0, "keepout": {"radius_m": 300.0}}}
-    ]
-    drawn = [{"key": key, "uniform": [0.2, 0.9]} for key in ("emission.load", "keepout.radius_m")]
-    trial = BASE | {"comparison": {"variants": variants}, "draws": drawn}
-    inputs = {"plume.source_height_m": 20.0, "emission.load": 0.7, "keepout.radius_m": 250.0}
-    config = flight_config(*made(trial, inputs, variant="high"))
-    assert (
-        config["plume"]["source_height_m"],
-        config["emission"]["load"],
-        config["keepout"]["radius_m"],
-    ) == (80.0, 0.7, 300.0)
-    assert flight_config(*made(trial, inputs))["plume"]["source_height_m"] == 20.0
-    assert flight_config(*made(trial, inputs))["keepout"]["radius_m"] == 250.0
-
-
-@pytest.mark.parametrize(
-    ("flight_id", "fidelity", "height"),
-    [
-        ("low_six_dof", "six_dof", 20.0),
-        ("t_low_kinematic_00003", "kinematic", 10.0),
-        ("other_six_dof", "six_dof", 35.0),
-    ],
+@given(
+    before := st.recursive(
+        st.dictionaries(st.sampled_from("abc"), st.integers(0, 2)),
+        lambda tables: st.dictionaries(st.sampled_from("abc"), tables | st.integers(0, 2)),
+    ),
+    before,
 )
-def test_a_flight_of_a_case_has_what_the_case_sets(flight_id, fidelity, height):
-    cases = [
-        {
-            "name": "low",
-            "set": {"plume.source_height_m": 20.0},
-            "set_kinematic": {"plume.source_height_m": 10.0},
-        }
-    ]
-    config = flight_config(
-        *made(BASE | {"cases": cases}, {}, flight_id=flight_id, fidelity=fidelity)
-    )
-    assert config["plume"]["source_height_m"] == height
+def test_what_tables_have_otherwise_makes_the_ones_of_the_others(one, other):
+    # A scenario has the same sections in every flight.
+    made = {"s": one}
+    for key, value in differing_keys({"s": one}, {"s": other}).items():
+        made = with_value(made, key.split("."), value)
+    assert made == {"s": other}
+
+
+@given(
+    st.none()
+    | st.booleans()
+    | st.integers()
+    | st.floats(allow_nan=False)
+    | st.text()
+    | st.lists(st.text())
+)
+def test_a_value_in_a_cell_is_read_back_as_it_was(value):
+    assert from_json_cell(str(cell(as_json_cell(value)))) == value

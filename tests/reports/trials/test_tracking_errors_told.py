@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
+from judged_runs import changed
 from report_parts import blocks_of
 from trial_runs import with_criterion, with_values
 
@@ -78,7 +79,7 @@ def test_of_a_flight_alone_the_table_of_flights_says_why_its_tracking_error_is_l
         "flights_planned": 1,
     }
     manifest["trial_flights"] = {"steady": 1}
-    report = content(replace(run, summary=only, manifest=manifest))
+    report = content(changed(run, summary=only, manifest=manifest))
     words = "and no criterion limits it: nothing that the summary records explains it."
     assert report.verdict.failures[0].startswith(
         "The tracking error, rms after settling, is 39 m, above the 5 m"
@@ -87,7 +88,7 @@ def test_of_a_flight_alone_the_table_of_flights_says_why_its_tracking_error_is_l
 
 
 def test_of_one_flight_there_is_no_quantile_of_the_tracking_error(run):
-    alone = content(replace(run, summary=run.summary.iloc[:1])).verdict
+    alone = content(changed(run, summary=run.summary.iloc[:1])).verdict
     (tracking,) = (card for card in alone.figures if card.name.startswith("Tracking error"))
     assert tracking.name == "Tracking error, rms after settling"
     assert re.fullmatch(r"[\d.e-]+ m", tracking.value)

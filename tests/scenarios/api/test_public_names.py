@@ -19,7 +19,7 @@ SIGNATURES = {
     "read_ais": "(path, mmsi=None)",
     "Scenario": "(*, name, source, changes=(), parts=())",
     "Scenario.set": "(self, **keys)",
-    "Run": "(directory, *, met, lines)",
+    "Run": "(directory, *, lines)",
     "Run.report": "(self, path=None, *, all_flights=False)",
     "Flight": "(run, flight_id)",
     "Flight.plot": "(self)",
@@ -29,7 +29,7 @@ SIGNATURES = {
 
 ATTRIBUTES = {
     "Scenario": {"changes", "config", "name", "parts", "set", "source", "title"},
-    "Run": {"columns", "comparison", "crossings", "draws", "flights", "manifest", "report", "statistics", "summary"},
+    "Run": {"columns", "comparison", "crossings", "draws", "flights", "manifest", "met", "report", "statistics", "summary", "verdict"},
     "Flight": {"crossings", "export", "history", "kept_out", "met", "plot", "reasons", "row"},
     "Statistics": {
         "confidence", "content", "flights", "measured", "outcomes", "quantile", "quantiles", "violation", "violation_at_most",

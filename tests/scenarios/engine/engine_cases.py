@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from common.verdict import RunVerdict
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.engine.run_directory import fingerprint
 from scenarios.engine.runner import ExecutorFactory, StudySummary, fly_study, write_tables
@@ -103,9 +104,8 @@ class SquareStudy:
 
     def summary(self, journal):
         done = journal.items()
-        return StudySummary(
-            done=done, met=done == self.planned, lines=[], manifest={"squares_done": done}
-        )
+        verdict = RunVerdict.of_items(self.what, planned=self.planned, done=done, met=done)
+        return StudySummary(verdict=verdict, lines=[], manifest={"squares_done": done})
 
 
 def fly(study, out, *, resume=False, jobs=0, progress=lambda *_: None):

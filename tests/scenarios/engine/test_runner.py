@@ -22,13 +22,18 @@ def test_a_run_has_its_table_its_files_and_says_how_it_ended(marks, out):
     result = fly(
         SquareStudy(Squares(marks=marks)), out, progress=lambda *report: told.append(report)
     )
-    assert (result.all_met, result.interrupted, result.planned, result.summary.done) == (
+    assert (
+        result.all_met,
+        result.verdict.interrupted,
+        result.verdict.counts.planned,
+        result.verdict.counts.done,
+    ) == (
         True,
         False,
         8,
         8,
     )
-    assert (result.what, result.directory) == ("squares", out)
+    assert (result.verdict.what, result.directory) == ("squares", out)
     assert rows_of(out, TABLE) == [{"number": i, "square": float(i**2)} for i in range(8)]
     assert sorted(path.name for path in (out / "files").iterdir()) == [f"{i}.txt" for i in range(8)]
     assert (manifest_of(out)["state"], manifest_of(out)["squares_done"]) == ("complete", 8)
@@ -45,9 +50,9 @@ def test_the_table_is_the_same_from_this_process_and_from_others(marks, out, who
 def test_an_interrupted_run_goes_on_where_it_was_and_comes_to_the_same(marks, out, whole, jobs):
     study = SquareStudy(Squares(marks=marks))
     first = fly(study, out, jobs=jobs, progress=interrupt_at(3))
-    assert first.interrupted
+    assert first.verdict.interrupted
     assert not first.all_met
-    assert first.summary.done == 3
+    assert first.verdict.counts.done == 3
     assert manifest_of(out)["state"] == "interrupted"
     kept = [row["number"] for row in rows_of(out, TABLE)]
     assert len(kept) == 3
@@ -98,7 +103,7 @@ def test_a_run_that_was_killed_before_its_tables_were_written_goes_on_too(marks,
 
 def test_all_of_a_batch_is_in_the_journal_when_it_has_been_flown(marks, out):
     study = SquareStudy(Squares(marks=marks), batches=(range(3), range(3, 8), range(8, 9)))
-    assert fly(study, out, jobs=2).summary.done == 9
+    assert fly(study, out, jobs=2).verdict.counts.done == 9
     assert study.seen == [{*range(3)}, {*range(8)}, {*range(9)}]
     # Also where a part of it had been flown before.
     assert fly(study, out, resume=True, jobs=2).all_met
@@ -125,7 +130,7 @@ def test_a_task_whose_process_was_lost_is_a_row_and_is_tried_again_when_the_run_
 
     result = fly(SquareStudy(Squares(marks=marks, does={4: dies})), out, jobs=1)
     assert not result.all_met
-    assert not result.interrupted
+    assert not result.verdict.interrupted
     lost = rows_of(out, TABLE)[4]
     assert lost["number"] == 4
     assert "SIGKILL" in lost["reason"]

@@ -57,7 +57,7 @@ def test_console_manifest_and_report_say_whose_random_numbers_points_have(
         overrides=keys,
         executor_factory=InProcessExecutor,
     )
-    assert any(told.startswith(f"points of the sweep: {line}") for told in result.summary.lines)
+    assert any(told.startswith(f"points of the sweep: {line}") for told in result.lines)
     assert manifest_of(tmp_path / "run")["random_numbers_of_points"] == {"sweep_nu": kind}
     assert sentence in content(read_run(tmp_path / "run")).verdict.detail
     seeds = {row["seed"] for row in rows_of(tmp_path / "run")}

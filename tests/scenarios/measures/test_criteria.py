@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from scenarios.measures.criteria import failed_criteria, kept_out
+from scenarios.measures.criteria import failed_criteria
 from scenarios.scenario.sections.flight import CriteriaConfig
 
 GOOD = {
@@ -151,24 +151,9 @@ def test_a_flight_that_lost_its_aircraft_is_never_met(criteria):
     }
     assert failed(lost, **criteria) == ["it is lost"]
     # Given up before anything had failed, or where nothing of the aircraft fails: a false alarm.
-    assert failed(lost | {"fault_time_s": 1000.0}, **criteria) == [
-        "it is lost",
-        "nothing of the aircraft had failed",
-    ]
-    assert failed(lost | {"fault": "vessel_data"}, **criteria) == [
-        "it is lost",
-        "nothing of the aircraft had failed",
-    ]
-
-
-def test_a_flight_kept_out_if_it_is_known_to_its_end():
-    assert kept_out(GOOD)
-    # The aircraft is lost, and came down outside.
-    assert kept_out(GOOD | {"outcome": "aircraft_lost"})
-    assert not kept_out(GOOD | {"keepout_violations": 1})
-    # Where one goes that is out of control, and one that was never measured, is not known.
-    assert not kept_out(GOOD | {"outcome": "diverged"})
-    assert not kept_out({"outcome": "failed"})
+    alarm = ["it is lost; nothing of the aircraft had failed"]
+    assert failed(lost | {"fault_time_s": 1000.0}, **criteria) == alarm
+    assert failed(lost | {"fault": "vessel_data"}, **criteria) == alarm
 
 
 @pytest.mark.parametrize(

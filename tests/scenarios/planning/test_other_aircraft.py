@@ -11,6 +11,7 @@ import typer
 from aircraft.fleet.aerosonde import AEROSONDE
 from aircraft.fleet.find import find_spec
 from aircraft.spec import AircraftError
+from common.verdict import read_verdict
 from innerloop.store import DesignError, cache_directory
 from reports.output import write_report
 from reports.run.run_data import read_run
@@ -89,12 +90,9 @@ def test_a_design_that_is_refused_is_rows_with_its_reason_and_exit_status_1(
     assert set(summary["outcome"]) == {"trim_failed"}
     assert set(summary["message"]) == {str(error)}
     assert not summary["criteria_met"].any()
-    manifest = manifest_of(out)
-    assert (
-        manifest["state"],
-        manifest["outcomes"]["trim_failed"],
-        manifest["flights_met_criteria"],
-    ) == ("complete", 2, 0)
+    counts = read_verdict(out / "verdict.json").counts
+    assert manifest_of(out)["state"] == "complete"
+    assert (counts.outcomes["trim_failed"], counts.met) == (2, 0)
     # The reports are built all the same, and say why nothing was flown.
     html = (out / "report.html").read_text(encoding="utf-8")
     assert "Nothing was flown" in html
@@ -113,7 +111,7 @@ def test_flights_that_were_refused_are_done_and_are_not_tried_again(refuse, tmp_
         resume=True,
         progress=lambda *report: told.append(report),
     )
-    assert again.summary.done == 1
+    assert again.verdict.counts.done == 1
     assert [row["outcome"] for row in rows_of(tmp_path / "run")] == ["trim_failed"]
     # One that is done from the beginning is not flown.
     assert [report for report in told if report[0] == "flying"] == [("flying", 1, 1)]

@@ -200,7 +200,7 @@ def test_operational_scenarios_are_compared_with_variants_of_the_same_seeds(tmp_
         executor_factory=InProcessExecutor,
         resume=True,
     )
-    lines = [line for line in again.summary.lines if "comparison" in line]
+    lines = [line for line in again.lines if "comparison" in line]
     for line, pair in zip(lines, (variants[:2], variants[2:]), strict=True):
         done = sum(row["outcome"] == "completed" for row in pair)
         assert line.startswith(

@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 
 from aircraft.spec import AircraftError
+from common.verdict import read_verdict
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.errors import InputError
 from scenarios.scenario.files import load_study
@@ -84,7 +85,7 @@ def test_flights_are_named_by_their_trials_and_differ_from_trial_to_trial(whole)
 def test_a_share_of_the_flights_is_the_first_ones_of_each_trial(listed, whole, tmp_path):
     result = run(listed, tmp_path / "share", "share=0.3")
     # 0.3 of four, rounded up.
-    assert result.planned == result.summary.done == 4
+    assert result.verdict.counts.planned == result.verdict.counts.done == 4
     assert [row["trial"] for row in rows_of(tmp_path / "share")] == ["one", "one", "two", "two"]
     every, part = tables(whole)[0], tables(tmp_path / "share")[0]
     first = every[every["flight_id"].isin(part["flight_id"])].reset_index(drop=True)
@@ -99,11 +100,8 @@ def test_a_key_of_the_trials_is_set_in_every_one(listed, tmp_path):
     assert {trial["keepout"]["radius_m"] for trial in manifest["trials"].values()} == {150.0}
     assert manifest["flights_planned"] == 2
     # 4 s are too short to settle, which is not required of these trials.
-    assert [manifest[f"flights_{count}"] for count in ("kept_out", "passed", "met_criteria")] == [
-        2,
-        2,
-        0,
-    ]
+    counts = read_verdict(tmp_path / "run" / "verdict.json").counts
+    assert (counts.kept_out, counts.passed, counts.met) == (2, 2, 0)
 
 
 def test_a_run_that_is_to_keep_no_history_keeps_those_that_tell_most(listed, whole, tmp_path):
@@ -233,15 +231,19 @@ def test_a_share_of_a_trial_has_no_flight_that_only_rounding_adds():
 def test_what_happened_is_reported_in_lines(listed, tmp_path):
     lines = run(
         listed, tmp_path / "run", "share=0.1", "vessel.speed_mps=19.4", "speed_ratio=[0, 9]"
-    ).summary.lines
+    ).lines
     assert lines[:3] == [
-        "flights: 2 planned, 0 flown, 0 completed, 0 met every criterion",
+        "flights: 2 planned, 0 flown, 0 completed, 0 met every criterion, 2 could not be flown;"
+        " 0 of 2 kept out, 2 unknown; 0 keep-out violations",
         *(
-            f"  {trial}: 1 planned, 0 flown, 0 completed, 0 met every criterion"
+            f"  {trial}: 1 planned, 0 flown, 0 completed, 0 met every criterion, 1 could not be"
+            " flown; 0 of 1 kept out, 1 unknown; 0 keep-out violations"
             for trial in ("one", "two")
         ),
     ]
-    assert lines[3] == "exit status 1: 0 of 2 flights kept out, which is required of each"
+    assert lines[3] == (
+        "exit status 1: 0 of 2 flights did what is required: to stay outside of the keep-out area"
+    )
     assert lines[4].startswith("    one_00000: infeasible: the vessel moves at up to")
 
 
@@ -283,7 +285,7 @@ def test_a_manoeuvre_after_the_end_of_the_flight_is_warned_of(tmp_path):
         f'title = "late"\nfidelity = "kinematic"\nflight = {{ crossings = 0, duration_max_s = 8.0 }}\nvessel.manoeuvres = {late}\n',
         encoding="utf-8",
     )
-    lines = run(path, tmp_path / "run").summary.lines
+    lines = run(path, tmp_path / "run").lines
     assert lines[-1].startswith(
         "warning: in 1 flight a manoeuvre of the vessel begins after the end of the flight"
     )
@@ -332,9 +334,12 @@ def test_time_histories_that_were_deleted_or_cut_are_made_again_to_the_last_bit(
             flown.append(done)
             raise KeyboardInterrupt
 
-    assert run(listed, tmp_path / "run", resume=True, progress=stop).interrupted
+    assert run(listed, tmp_path / "run", resume=True, progress=stop).verdict.interrupted
     assert run(listed, tmp_path / "run", resume=True).all_met
     after = state_of(tmp_path / "run")
     assert set(after) == set(before)
     assert [name for name in deleted if after[name][0] != before[name][0]] == []
-    assert {name for name in before if after[name] != before[name]} == {*deleted, "manifest.json"}
+    # The verdict is written anew, and is the same.
+    assert after["verdict.json"][0] == before["verdict.json"][0]
+    written = {name for name in before if after[name] != before[name]}
+    assert written == {*deleted, "manifest.json", "verdict.json"}

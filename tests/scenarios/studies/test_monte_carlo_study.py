@@ -58,7 +58,7 @@ def tables(out):
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
     out = tmp_path_factory.mktemp("monte_carlo") / "run"
-    assert run(out, "flights=40", factory=ExecutorFactory(jobs=2)).summary.done == 40
+    assert run(out, "flights=40", factory=ExecutorFactory(jobs=2)).verdict.counts.done == 40
     return out
 
 
@@ -121,7 +121,7 @@ def test_the_console_says_the_bound_of_the_statistics_in_which_a_lost_flight_cou
     upper = bound_of(tmp_path / "run")
     # 1 of 40 at 95 %: the larger root of 40 p (1 - p)^39 + (1 - p)^40 = 0.05.
     assert 40.0 * upper * (1.0 - upper) ** 39 + (1.0 - upper) ** 40 == pytest.approx(0.05, rel=1e-9)
-    (line,) = [line for line in result.summary.lines if line.startswith("keep-out violations: ")]
+    (line,) = [line for line in result.lines if line.startswith("keep-out violations: ")]
     assert (
         "none known in 40 flights (0.0325 h simulated), unknown in 1, which counts as violated; at most 11.3 % of"
         in line
@@ -140,10 +140,10 @@ def test_a_study_stops_by_itself_where_the_interval_it_was_asked_for_is_tight_en
     # 0 of n at the confidence of look k: 1 - (0.05/(k (k + 1)))^(1/n) is 0.37, 0.26, 0.15 at 8, 16,
     # 32.
     result = run(tmp_path / "run", "flights=100", "statistics.violation_upper=0.2")
-    assert result.summary.done == 32
+    assert result.verdict.counts.done == 32
     assert result.all_met
     assert (
-        result.summary.lines[-1]
+        result.lines[-1]
         == "stopped after 32 of 100 flights: the intervals are as narrow as demanded"
     )
     manifest = manifest_of(tmp_path / "run")
@@ -160,7 +160,7 @@ def test_a_study_stops_by_itself_where_the_interval_it_was_asked_for_is_tight_en
     )
     assert any(
         "; at most 15.7 % of flights sampled as these were, at 95 % confidence" in line
-        for line in result.summary.lines
+        for line in result.lines
     )
     # Once it has stopped there is nothing to go on with.
     flown = []
@@ -171,7 +171,7 @@ def test_a_study_stops_by_itself_where_the_interval_it_was_asked_for_is_tight_en
         resume=True,
         progress=lambda *p: flown.append(p),
     )
-    assert again.summary.done == 32
+    assert again.verdict.counts.done == 32
     assert [p for p in flown if p[0] == "flying"] == [("flying", 32, 100)]
 
 
@@ -179,11 +179,11 @@ def test_a_run_that_is_resumed_stops_at_no_look_before_what_it_has_flown(frequen
     # One of 8 that is lost is at most 0.53 at the first look, none 0.37; one of 16 is at most 0.36
     # at the second.
     asked = ("flights=100", "statistics.violation_upper=0.45")
-    assert run(tmp_path / "run", *asked, factory=losing(3)).summary.done == 16
+    assert run(tmp_path / "run", *asked, factory=losing(3)).verdict.counts.done == 16
     again = run(tmp_path / "run", *asked, resume=True)
     assert again.all_met
-    assert again.planned == again.summary.done == 16
-    assert again.summary.lines[-1].startswith("stopped after 16 of 100 flights")
+    assert again.verdict.counts.planned == again.verdict.counts.done == 16
+    assert again.lines[-1].startswith("stopped after 16 of 100 flights")
     assert (
         json.loads((tmp_path / "run" / "statistics.json").read_text(encoding="utf-8"))[
             "look_number"
@@ -195,8 +195,8 @@ def test_a_run_that_is_resumed_stops_at_no_look_before_what_it_has_flown(frequen
 
 def test_a_study_that_never_knows_enough_flies_all_that_was_planned(frequent_looks, tmp_path):
     result = run(tmp_path / "run", "flights=20", "statistics.violation_upper=0.001")
-    assert result.summary.done == 20
-    assert "stopped" not in result.summary.lines[-1]
+    assert result.verdict.counts.done == 20
+    assert "stopped" not in result.lines[-1]
 
 
 def test_copies_of_flights_are_refused_as_no_probability_follows_from_them(tmp_path):
@@ -206,8 +206,8 @@ def test_copies_of_flights_are_refused_as_no_probability_follows_from_them(tmp_p
         match=r"flights is 8, and nothing random differs between them.*set study to 'flights'",
     ):
         run(tmp_path / "run", "flights=8", "flight_seed=5", chosen)
-    assert run(tmp_path / "one", "flights=1", "flight_seed=5", chosen).summary.done == 1
-    assert run(tmp_path / "seeds", "flights=2", chosen).summary.done == 2
+    assert run(tmp_path / "one", "flights=1", "flight_seed=5", chosen).verdict.counts.done == 1
+    assert run(tmp_path / "seeds", "flights=2", chosen).verdict.counts.done == 2
 
 
 @pytest.mark.parametrize(

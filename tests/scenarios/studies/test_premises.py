@@ -10,7 +10,6 @@ from common.run_layout import COLUMNS, FLIGHTS
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.flight.guard_belief import GuardBelief
 from scenarios.measures import figures
-from scenarios.run import exit_status
 from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 
@@ -31,8 +30,8 @@ def test_the_study_has_a_row_for_each_case_and_term(tmp_path):
     assert list(dict.fromkeys(table["case"])) == ["calm_kinematic", "wind_kinematic"]
     assert set(table["term"]) <= set(TERMS)
     assert (table["ratio_max"] >= table["ratio_median"]).all()
-    assert any("median / largest" in line for line in result.summary.lines)
-    assert result.summary.unexplained == 0
+    assert any("median / largest" in line for line in result.lines)
+    assert result.verdict.counts.unexplained == 0
     told = json.loads((tmp_path / "run" / COLUMNS).read_text())
     assert list(told["premises.csv"]) == list(table)
     assert set(GuardBelief.COLUMNS) <= set(told[FLIGHTS])
@@ -47,10 +46,10 @@ def test_a_violation_with_every_premise_held_has_an_exit_status_of_its_own(tmp_p
     )
     monkeypatch.setattr(figures, "premise_figures", lambda *_: {"premises_exceeded": "none"})
     result = flown(tmp_path / "run")
-    assert result.summary.unexplained == 2
-    assert "THE KEEP-OUT GUARD IS WRONG" in result.summary.lines[0]
+    assert result.verdict.counts.unexplained == 2
+    assert "THE KEEP-OUT GUARD IS WRONG" in result.lines[0]
     assert not result.all_met
-    assert exit_status(result, 0) == 3
+    assert result.verdict.exit_status == 3
     row = pd.read_csv(tmp_path / "run" / "summary.csv").iloc[0]
     assert row["outcome"] == "unexplained_violation"
     assert not row["kept_out"]

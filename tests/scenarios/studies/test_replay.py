@@ -81,7 +81,7 @@ def test_a_flight_is_flown_again_identically_with_every_step_of_the_guidance(
 ):
     result = replay(runs / run / "flights" / flight_id, tmp_path / "again")
     assert result.all_met
-    assert result.summary.lines[-1].startswith("identical to the flight in")
+    assert result.lines[-1].startswith("identical to the flight in")
     rows = pd.read_csv(runs / run / table).drop(columns="wall_time_s")
     again = pd.read_csv(tmp_path / "again" / "summary.csv").drop(columns="wall_time_s")
     one = rows[rows["flight_id"] == flight_id].reset_index(drop=True)
@@ -115,9 +115,9 @@ def test_a_flight_that_goes_another_way_is_reported_with_what_has_changed(runs, 
     write_manifest(copy, manifest)
     result = replay(copy / "flights" / "one_00000", tmp_path / "again")
     assert not result.all_met
-    assert "differs from the flight in" in result.summary.lines[-1]
-    assert "start_distance_m" in result.summary.lines[-1]
-    assert result.summary.lines[-1].endswith("the original was flown with a different numpy")
+    assert "differs from the flight in" in result.lines[-1]
+    assert "start_distance_m" in result.lines[-1]
+    assert result.lines[-1].endswith("the original was flown with a different numpy")
 
 
 def test_a_flight_that_was_flown_again_is_not_flown_again_from_there(runs, tmp_path):

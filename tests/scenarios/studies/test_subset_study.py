@@ -115,9 +115,9 @@ def test_every_flight_has_a_row_and_every_level_its_figures(whole):
     levels = [level for simulation in found["simulations"] for level in simulation["levels"]]
     assert (
         len(summary)
-        == result.summary.done
+        == result.verdict.counts.done
         == sum(level["flights"] for level in levels)
-        == result.planned
+        == result.verdict.counts.planned
     )
     assert list(summary["flight_id"]) == [f"short_{i:05d}" for i in range(len(summary))]
     assert found["violation"]["first_levels"]["flights"] == 150
@@ -140,12 +140,12 @@ def test_every_flight_has_a_row_and_every_level_its_figures(whole):
     assert found["inputs"][0]["distance"] > found["noise_floor"]
     ranges = next(entry for entry in found["inputs"] if entry["key"] == "start.range_m")
     assert ranges["median_near"] < 280.0 < ranges["median"]
-    assert "probability of a keep-out violation in a flight" in result.summary.lines[-1]
+    assert "probability of a keep-out violation in a flight" in result.lines[-1]
 
 
 def test_no_bound_is_claimed_from_flights_of_which_each_follows_from_others(whole):
     result, out = whole
-    assert not any("of flights sampled as these were" in line for line in result.summary.lines)
+    assert not any("of flights sampled as these were" in line for line in result.lines)
     assert manifest_of(out)["sampled_at_random"] == {"short": False}
 
 
@@ -165,7 +165,7 @@ def test_points_outside_of_the_speed_ratios_are_counted_on_the_console(whole):
     # Of vessels at 4 to 10 m/s, between 0.21 and 0.51 of 19.42 m/s, a third.
     assert 40 <= outside <= 120
     line = f"{outside} of {150 + outside} points of the first levels were beyond speed_ratio and sampled again"
-    assert line in result.summary.lines
+    assert line in result.lines
 
 
 TURNING = [
@@ -205,7 +205,7 @@ def test_flights_are_those_of_the_plain_study_also_beyond_what_is_declared_of_th
     assert any(
         line.startswith(f"of 150 flights of the first levels {unknown} are of unknown end")
         and f"at most {upper:.2g}" in line
-        for line in result.summary.lines
+        for line in result.lines
     )
 
 
@@ -217,7 +217,7 @@ def test_the_same_seed_gives_the_same_rows_whatever_the_number_of_processes_and_
             raise KeyboardInterrupt
 
     out = tmp_path / "run"
-    assert run(rare, out, progress=interrupt).interrupted
+    assert run(rare, out, progress=interrupt).verdict.interrupted
     assert not (out / "statistics.json").exists()
     run(rare, out, resume=True)
     for name in ("summary.csv", "draws.csv"):
@@ -243,7 +243,7 @@ def test_a_flight_of_a_late_level_is_replayed_to_the_last_bit_its_blended_noise_
         resume=False,
         progress=lambda *_: None,
     )
-    assert result.summary.met, result.summary.lines
+    assert result.summary.met, result.lines
 
 
 def test_a_point_carries_its_noise(rare):

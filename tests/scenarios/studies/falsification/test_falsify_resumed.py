@@ -36,15 +36,15 @@ def test_a_search_is_resumed_after_a_lost_flight_on_which_others_depend(search, 
             raise KeyboardInterrupt
 
     # The eighth flight of the first turn: what the third turn proposes depends on it.
-    assert run(search, out, TURNS, factory=losing(7), progress=interrupt).interrupted
+    assert run(search, out, TURNS, factory=losing(7), progress=interrupt).verdict.interrupted
     result = run(search, out, TURNS, resume=True)
     searched = tables(out)[0].set_index("flight_id")
     assert "short_00007" not in searched.index[searched["min_distance_m"].notna()]
-    assert result.summary.done == result.planned
+    assert result.verdict.counts.done == result.verdict.counts.planned
     assert not result.all_met
     # It stays its method's, and is not the nearest of any.
     assert searched.loc["short_00007", "search_method"] == "corners"
-    assert not any("1000000" in line or line.startswith("  :") for line in result.summary.lines)
+    assert not any("1000000" in line or line.startswith("  :") for line in result.lines)
     # A search that was not interrupted goes the same way.
     run(search, tmp_path / "whole", TURNS, factory=losing(7))
     same_tables(tmp_path / "whole", out)

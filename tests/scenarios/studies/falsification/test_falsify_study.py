@@ -119,7 +119,7 @@ def test_the_worst_flights_are_kept_as_scenarios_that_fly_again_to_the_last_bit(
     # And what is flown again can be changed.
     changed = load_study(str(kept[0]), ["keepout.radius_m=150"])
     other = run_study(changed, "changed", tmp_path / "changed", executor_factory=InProcessExecutor)
-    assert other.summary.done == 1
+    assert other.verdict.counts.done == 1
 
 
 def test_flights_of_a_search_are_replayed_identically(found, tmp_path):
@@ -132,7 +132,7 @@ def test_flights_of_a_search_are_replayed_identically(found, tmp_path):
             resume=False,
             progress=lambda *_: None,
         )
-        assert result.summary.manifest == {"identical": True}, result.summary.lines
+        assert result.all_met, result.lines
 
 
 def test_the_search_goes_the_same_way_whatever_the_number_of_processes_and_where_it_was_interrupted(
@@ -147,7 +147,7 @@ def test_the_search_goes_the_same_way_whatever_the_number_of_processes_and_where
             if done == after:
                 raise KeyboardInterrupt
 
-        assert run(search, out, resume=out.exists(), progress=interrupt).interrupted
+        assert run(search, out, resume=out.exists(), progress=interrupt).verdict.interrupted
         assert len(pd.read_csv(out / "summary.csv")) == after
     assert run(search, out, resume=True).all_met
     same_tables(found, out)
@@ -225,6 +225,6 @@ def test_how_well_sulphur_is_measured_is_not_stated_from_flights_that_were_searc
         "plume.model=fluctuating",
         "search.generations=0",
     )
-    assert run(search, tmp_path / "run", *sniffing).summary.done
+    assert run(search, tmp_path / "run", *sniffing).verdict.counts.done
     assert "fsc_percent" in pd.read_csv(tmp_path / "run" / "summary.csv")
     assert not (tmp_path / "run" / "sulphur.json").exists()
