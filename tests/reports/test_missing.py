@@ -113,7 +113,6 @@ def test_of_a_whole_run_nothing_is_missing(whole):
         ("statistics.json", "probability of a keep-out violation, distributions, sensitivity"),
         ("innerloop.json", "the autopilot: trims, margins, responses"),
         ("bounds.json", "bounds of the commands"),
-        ("trajectories/cascade_00001.parquet", "figures of this trajectory over time"),
     ],
 )
 def test_a_file_that_is_gone_is_named_with_what_is_not_shown_for_it(copy, name, shows):

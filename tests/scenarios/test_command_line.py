@@ -16,6 +16,7 @@ import pandas as pd
 import pytest
 
 from common.verdict import RunVerdict, read_verdict
+from extensions.telemetry.flightgear import FlightGear
 from scenarios.engine.runner import RunResult
 from scenarios.run import main
 from tests import in_process
@@ -396,7 +397,8 @@ def test_an_interrupted_replay_is_resumed_by_the_command_that_is_printed(
     )
     assert len(calls) == 2
     (study, directory, _), (again, there, resume) = calls
-    assert study == again == (str(flight), ("localhost", 5550), {"aircraft_dir": Path("my fleet")})
+    viewer = FlightGear("localhost:5550")
+    assert study == again == (str(flight), viewer, {"aircraft_dir": Path("my fleet")})
     assert (there, resume) == (directory, True)
 
 

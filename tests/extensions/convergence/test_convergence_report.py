@@ -9,7 +9,7 @@ from convergence_runs import LAWS, REFERENCES, TRAJECTORIES, write_convergence_r
 from report_parts import blocks_of, built, draw_all_but, named_charts
 
 from extensions.convergence.report import FAILED_ROWS, FAILURES_NAMED, percentage, settled_time
-from reports.build import build_reports
+from reports.build import build_reports, export_run
 from reports.document.blocks import Table, Text
 from reports.errors import ReportError
 from reports.registry import content
@@ -239,3 +239,10 @@ def test_a_share_had_settled_when_so_many_had():
     assert settled_time(pd.Series(np.arange(1.0, 301.0)), 0.99) == "297"
     assert settled_time(pd.Series([30.0, 10.0, np.nan, 20.0]), 0.5) == "20"
     assert settled_time(pd.Series([30.0, 10.0, np.nan, 20.0]), 0.99) == "–"
+
+
+@pytest.mark.parametrize("exporter", ["tracks_csv", "kmz", "geojson"])
+def test_trajectories_are_no_flights_to_export(tmp_path, exporter):
+    write_convergence_run(tmp_path / "run", 4)
+    with pytest.raises(ReportError, match="has no time histories of flights"):
+        export_run(tmp_path / "run", exporter)

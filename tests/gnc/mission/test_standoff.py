@@ -6,8 +6,6 @@ from gnc_cases import SPEED, TIME_STEP
 from hypothesis import given
 from hypothesis import strategies as st
 
-from extensions.arena.laws.lgvf import LgvfLaw
-from extensions.arena.laws.npfg import NpfgLaw
 from gnc.estimation.health import Fault
 from gnc.estimation.navigation import TrueNavigation
 from gnc.estimation.vessel import SteadyTarget
@@ -78,28 +76,22 @@ def test_a_vehicle_on_the_circle_with_the_references_course_and_heading_rate_sta
     assert math.remainder(point.course - course, math.tau) == pytest.approx(0.0, abs=2e-6)
 
 
-@pytest.mark.parametrize(
-    "law", [NpfgLaw(), LgvfLaw(), CascadeLaw()], ids=lambda law: type(law).__name__
-)
-def test_laws_circle_a_moving_vessel_at_the_radius(law):
-    flight = Flown(law, 200.0)
-    # Closed in, and within the centimetres of a law that is called twenty times a second; LGVF
-    # converges within V/R.
+def test_the_papers_law_circles_a_moving_vessel_at_the_radius():
+    flight = Flown(CascadeLaw(), 200.0)
+    # Closed in, and within the centimetres of a law that is called twenty times a second.
     assert flight.mission.orbit.in_place
-    assert max(abs(distance - RADIUS) for distance in flight.distances[-1000:]) < (
-        2.0 if isinstance(law, LgvfLaw) else 0.2
-    )
+    assert max(abs(distance - RADIUS) for distance in flight.distances[-1000:]) < 0.2
 
 
 def test_the_circle_is_joined_outside_of_its_place():
-    circling = Flown(NpfgLaw(), 1.0).mission
+    circling = Flown(CascadeLaw(), 1.0).mission
     # Twice what counts as tracked, until the vehicle is near it.
     assert circling.tracker.radius == RADIUS + 24.0
     assert circling.orbit == ((0.0, 0.0, math.hypot(6.0, 3.0) / SPEED), 24.0, False)
 
 
 def test_a_vessel_that_outruns_the_vehicle_is_followed():
-    flight = Flown(NpfgLaw(), 60.0, vessel=(1.1 * SPEED, 0.0))
+    flight = Flown(CascadeLaw(), 60.0, vessel=(1.1 * SPEED, 0.0))
     assert flight.mode is Mode.OUTRUN
     # Behind the vessel, somewhat to the side after its turn: it gains a tenth of the speed.
     gained = flight.distances[-1] - flight.distances[-201]

@@ -113,10 +113,15 @@ def test_a_summary_of_another_version_is_refused(copies):
     assert_refused(compared(*copies), "another version", "'seed'")
 
 
-@pytest.mark.parametrize("study", ["design", "measurement", "convergence", "patrol"])
+@pytest.mark.parametrize("study", ["design", "measurement"])
 def test_studies_whose_rows_are_no_flights_are_refused(copies, study):
     change_manifest(copies[1], study=study)
     assert_refused(compared(*copies), f"of the study '{study}'")
+
+
+def test_a_study_may_say_why_its_runs_are_not_compared(copies):
+    change_manifest(copies[1], not_compared="which has no flights to compare")
+    assert_refused(compared(*copies), "which has no flights to compare")
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,6 @@ import sys
 import numpy as np
 import pandas as pd
 import pytest
-from convergence_runs import write_convergence_run
 
 from common.errors import PluginError
 from reports.build import export_run
@@ -55,13 +54,6 @@ def run_path(tmp_path):
     flown |= {"vessel_north_m": 0.0 * time, "vessel_east_m": 10.0 * time}
     pd.DataFrame(flown).to_parquet(path / "flights" / "nu_0.50.parquet")
     return path
-
-
-@pytest.mark.parametrize("exporter", ["tracks_csv", "kmz", "geojson"])
-def test_trajectories_of_a_study_of_convergence_are_no_flights_to_export(tmp_path, exporter):
-    write_convergence_run(tmp_path / "run", 4)
-    with pytest.raises(ReportError, match="has no time histories of flights"):
-        export_run(tmp_path / "run", exporter)
 
 
 def test_tracks_are_exported_with_the_vessel_that_was_flown_about(run_path):

@@ -53,7 +53,12 @@ def run_of(rows, inputs, **changes):
         path=Path("nowhere"),
         manifest=manifest,
         summary=rows.assign(
-            criteria_met=True, nu=0.5, wind_speed_mps=5.0, fault="none", message=""
+            criteria_met=True,
+            nu=0.5,
+            wind_speed_mps=5.0,
+            fault="none",
+            message="",
+            duration_s=np.where(rows["outcome"] == "failed", np.nan, 600.0),
         ),
         comparison=pd.DataFrame(),
         crossings=pd.DataFrame(),

@@ -267,7 +267,10 @@ def test_a_track_file_is_relative_to_the_scenario_file_and_its_hash_is_in_the_ma
     ("override", "words"),
     [
         ("vessel.speed_mps=8", "vessel whose track is not from a file"),
-        ("sweep.nu=[0.3]", "vessel.track, a file that the vessel's speed comes from"),
+        (
+            "sweep.nu=[0.3]",
+            "sweep has the vessel's speed beside vessel.track, a file that it comes from",
+        ),
         ("place.latitude_deg=57", "give both, or neither"),
         ("place.utc=2026-06-01T10:00:00", "without a zone"),
     ],

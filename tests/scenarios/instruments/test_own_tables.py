@@ -147,11 +147,11 @@ def test_keys_of_a_table_are_set_and_swept_like_others():
         # Heights of the scenario's own plume: 10 to 200 m.
         (
             "emission.ship.stack_height=5",
-            "stack_height of emission.ship is 5 m; a plume begins at 10 m at least",
+            "stack_height of emission.ship is 5 m; exhaust of plume.model",
         ),
         (
             "emission.ship.stack_height=300",
-            "stack_height of emission.ship is 300 m beside emission.ship",
+            "leaves a funnel at 10 to 200 m: set plume.source_height_m",
         ),
         ("payload.sensor=5", "payload.sensor is 5; give the name of a preset, or a table"),
         (

@@ -143,7 +143,7 @@ def test_a_value_that_cannot_be_swept_is_refused(tmp_path):
 @pytest.mark.parametrize(
     ("override", "words"),
     [
-        ("sweep.seed=[1, 2, 3]", r"sweep has 'seed'.*sweep flight_seed instead, or set flights"),
+        ("sweep.seed=[1, 2, 3]", r"sweep has 'seed', which sets nothing of a flight.*flight_seed"),
         ('sweep.title=["a", "b"]', r"sweep has 'title', which sets nothing of a flight"),
         ("sweep.flights=[5, 10]", r"sweep has 'flights', which sets nothing of a flight"),
         (
