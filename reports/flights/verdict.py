@@ -95,6 +95,7 @@ def flight_verdict(run: RunData, trials: list[Trial]) -> Verdict:
         headline=". ".join([*_state(verdict), *headlines]),
         detail=_detail(run, trials, flown),
         failures=[
+            *_warnings(run),
             *(line for trial in trials for line in failure_lines(trial)),
             *(line for trial in trials for line in tracking_lines(trial, only=len(trials) == 1)),
             *(line for trial in trials for line in gap_lines(trial, only=len(trials) == 1)),
@@ -102,6 +103,12 @@ def flight_verdict(run: RunData, trials: list[Trial]) -> Verdict:
         ],
         figures=[*sulphur_cards(run), *_bound_figure(run), *_figures(trials, flown)],
     )
+
+
+def _warnings(run: RunData) -> list[str]:
+    """Return what files of the run lack that a reader of its results has to know."""
+    files = run.manifest.get("vessel_files", {}).values()
+    return [str(file["warning"]) for file in files if file.get("warning")]
 
 
 def _state(verdict: RunVerdict) -> list[str]:

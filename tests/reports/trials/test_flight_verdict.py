@@ -457,3 +457,10 @@ def test_a_violation_that_no_premise_explains_comes_before_anything_else(run):
     assert ("Violations with every premise of the guard held", "1", "0", False) in [
         (figure.name, figure.value, figure.limit, figure.met) for figure in report.verdict.figures
     ]
+
+
+def test_reports_of_a_ship_that_were_dropped_are_said_first(run):
+    dropped = "ais.csv: 30% of the reports of MMSI 219999001 were dropped"
+    files = {"ais.csv 219999001": {"rows": 10, "used": 7, "warning": dropped}}
+    told = content(replace(run, manifest=run.manifest | {"vessel_files": files})).verdict
+    assert told.failures[0] == dropped
