@@ -19,8 +19,9 @@ response   n(t) / (c D + g t), in air without turbulence: n is how much less a t
            away within t than predicted from its start, D the response of a full reversal, c the
            share of it that is counted, g the speed of declared gusts
 turning    n(t) / (c D + g t + ``B.displacement.after(t)``), in turbulence
-drift      |(p^ - p)(t) - (p^ - p)(0)| / ((drift + allowance) t + k ``B.drift_sigma(t)``), t after
-           satellite navigation was lost
+drift      |(p^ - p)(t) - (p^ - p)(0)| / ((drift + allowance) t + k ``B.drift_sigma(t)``), t since
+           the first sample of dead reckoning: the last fix may have moved the estimate after the
+           sample before it
 
 A turn is predicted as the guard does: lag and delay behind the commands that were given, course
 still to come of earlier ones, V_r commanded, at the speed that was flown; full commands for a
@@ -296,12 +297,13 @@ def _speed_range(flight: _Flight) -> tuple[Array, Array]:
 
 
 def _drift_ratios(flight: _Flight) -> Ratios:
-    fix, lost = flight.last_fix, ~flight.satellites
+    lost = ~flight.satellites
+    first = np.minimum(flight.last_fix + 1, len(lost) - 1)
     drifted = np.hypot(
-        flight.off_north - flight.off_north[fix], flight.off_east - flight.off_east[fix]
+        flight.off_north - flight.off_north[first], flight.off_east - flight.off_east[first]
     )
     budget = flight.budget
-    steady = (budget.drift.rate + flight.allowance) * flight.lost_for
+    steady = (budget.drift.rate + flight.allowance) * (flight.time - flight.time[first])
     reckoned = np.full(len(drifted), math.nan)
     by_gusts = flight.column("gust_in_wind_mps")
     for i in np.flatnonzero(lost):

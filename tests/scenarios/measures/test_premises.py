@@ -162,6 +162,16 @@ def test_dead_reckoning_is_compared_with_its_drift_since_the_loss(plan):
     assert 20.0 < row[time_column("drift")] <= 60.0
 
 
+def test_a_last_fix_between_two_samples_is_no_drift(plan):
+    budget = with_budget(plan, drift=Growth(rate=0.8))
+    time = np.arange(0.0, 60.05, STEP)
+    lost = np.maximum(0.0, time - 19.97)
+    # The last fix moved the estimate by 0.5 m after the last sample before the loss.
+    seen = np.where(lost > 0.0, 0.5 + 0.4 * lost, 0.0)
+    values = {"satellites_lost_s": lost, "own_seen_east_m": seen}
+    assert ratio(budget, values, "drift") == pytest.approx(0.5)
+
+
 def turn(plan, *, towards_vessel=0.0, at=None, begins=10.0):
     """Return a half turn at omega_max behind the lag of a vehicle, which jumps towards the vessel by
     some metres in its course: where it flies across the direction of the vessel, unless ``at`` says
