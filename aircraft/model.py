@@ -236,6 +236,25 @@ def _remove_play(config: ET.Element) -> bool:
     return bool(found)
 
 
+def has_play(root: Path) -> bool:
+    """Return whether any servo of the aircraft in a JSBSim root has hysteresis or a dead band."""
+    for path in sorted(root.rglob("*.xml")):
+        # Files that are no XML may stand beside a model: JSBSim does not read them.
+        with contextlib.suppress(AircraftError):
+            for actuator in read_xml(path).getroot().iter("actuator"):
+                if any(part.tag in _PLAY and _is_wide(part) for part in actuator):
+                    return True
+    return False
+
+
+def _is_wide(play: ET.Element) -> bool:
+    """Return whether a width is not 0; that of a property may become any."""
+    try:
+        return float(play.text or "0") != 0.0
+    except ValueError:
+        return True
+
+
 _CONTACT_PROPERTIES = re.compile(r"(gear|contact)/(unit|num-units)|steer-pos-deg")
 """Properties that JSBSim has only with contacts."""
 

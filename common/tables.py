@@ -13,6 +13,7 @@ import csv
 import gzip
 import io
 import lzma
+import math
 import re
 import zipfile
 import zlib
@@ -20,11 +21,12 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from datetime import UTC, date, datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from common.geodesy import cartesian
 from common.text import did_you_mean
 
 Array = npt.NDArray[np.float64]
@@ -811,6 +813,96 @@ def longitude_within(degrees: Array) -> Array:
     """
     values = np.asarray(degrees, dtype=np.float64)
     return np.where((values >= 180.0) & (values <= 360.0), values - 360.0, values)
+
+
+class Jump(NamedTuple):
+    """A way between two rows that is too long for the time between them.
+
+    Attributes
+    ----------
+    before, after : indices of the rows
+    distance, seconds : between them [m, s]
+    speed_max : fastest that was allowed [m/s]
+    number : of such jumps in the table
+    mistake : what makes the later place fit to the earlier one, as "latitude and longitude
+        exchanged"; empty if nothing of the kind does
+    """
+
+    before: int
+    after: int
+    distance: float
+    seconds: float
+    speed_max: float
+    number: int
+    mistake: str
+
+    def described(self, lines: Sequence[Any] | npt.NDArray[Any]) -> str:
+        """Return in words what is wrong; ``lines`` of the file are those that rows stand in."""
+        more = f" (1 of {self.number} such jumps)" if self.number > 1 else ""
+        fits = f"; the two fit together with {self.mistake}" if self.mistake else ""
+        return (
+            f"the place in row {lines[self.after]:.0f} is {self.distance / 1000.0:,.1f} km from"
+            f" that in row {lines[self.before]:.0f}, {self.seconds:g} s earlier, which is faster"
+            f" than {self.speed_max:g} m/s{more}{fits}"
+        )
+
+
+def find_jumps(
+    time: Array,
+    place: Array,
+    *,
+    speed_max: float,
+    error: float,
+    degrees: tuple[Array, Array] | None = None,
+) -> list[Jump]:
+    """Return the jumps of a track: ways between rows that are longer than the fastest go.
+
+    Parameters
+    ----------
+    time : of the rows, rising, shape (n,) [s]
+    place : in any metres, on a plane or Earth-fixed, NaN where there is none, shape (n, 2 or 3) [m]
+    speed_max : that ships or aircraft have [m/s]
+    error : largest error of a place [m]
+    degrees : latitude and longitude, shape (n,) each, by which a mistake is recognised [deg]
+    """
+    rows = np.flatnonzero(np.isfinite(place).all(axis=1))
+    # A receiver may be slower than the table: only the first row of a new place counts.
+    moved = (np.diff(place[rows], axis=0) != 0.0).any(axis=1)
+    rows = rows[np.concatenate([[True], moved])] if len(rows) else rows
+    distance = np.linalg.norm(np.diff(place[rows], axis=0), axis=1)
+    seconds = np.diff(time[rows])
+    reach = speed_max * seconds + error
+    too_far = np.flatnonzero(distance > reach).tolist()
+    return [
+        Jump(
+            before=int(rows[i]),
+            after=int(rows[i + 1]),
+            distance=float(distance[i]),
+            seconds=float(seconds[i]),
+            speed_max=speed_max,
+            number=len(too_far),
+            mistake=_mistake(degrees, rows[i], rows[i + 1], reach[i]) if degrees else "",
+        )
+        for i in too_far
+    ]
+
+
+def _mistake(degrees: tuple[Array, Array], before: int, after: int, reach: float) -> str:
+    """Return what brings a place within reach [m] of the one before it, empty if nothing does."""
+    latitude, longitude = (float(values[after]) for values in degrees)
+    if not math.isfinite(latitude + longitude):
+        return ""
+    from_there = cartesian(*(np.radians(values[before]) for values in degrees))
+    for mistake, (north, east) in {
+        "latitude and longitude exchanged": (longitude, latitude),
+        "the other sign of longitude": (latitude, -longitude),
+        "the other sign of latitude": (-latitude, longitude),
+        "the other signs of both": (-latitude, -longitude),
+    }.items():
+        there = cartesian(np.radians(np.float64(north)), np.radians(np.float64(east)))
+        if abs(north) <= 90.0 and np.linalg.norm(there - from_there) <= reach:
+            return mistake
+    return ""
 
 
 def first_columns(names: Iterable[str], most: int = 12) -> str:

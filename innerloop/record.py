@@ -8,11 +8,17 @@ from typing import Any
 import numpy as np
 
 from aircraft.fdm import TIME_STEP, Fdm
-from aircraft.model import Perturbation
+from aircraft.model import Perturbation, has_play
 from aircraft.spec import Envelope
 from aircraft.trim import Trim, TrimOutcome, search_trim
 from common.physics import heading_rate_for_bank
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from innerloop.flight.limit_cycle import (
+    ALTITUDE_MIN,
+    BANK_MIN,
+    LimitCycle,
+    measure_limit_cycle,
+)
 from innerloop.flight.responses import (
     Response,
     flown_step,
@@ -53,7 +59,8 @@ _CHANNEL_NAMES = {
 def design_record(design: Design, root: Path) -> Record:
     """Return trims, poles, margins, loop shapes and responses of a design, as plain data.
 
-    The responses are predicted, and flown in JSBSim from the ``root`` of ``write_root``.
+    The responses are predicted, and flown in JSBSim from the ``root`` of ``write_root``. An
+    aircraft whose servos have play has its limit cycle in the record as well.
     """
     schedule = design.schedule
     spec, envelope = schedule.spec, schedule.envelope
@@ -62,7 +69,7 @@ def design_record(design: Design, root: Path) -> Record:
     slow_lag = measure_lag(aircraft, level, envelope.bank)
     nominal = [check for check in design.checks if check.case == NOMINAL]
     perturbed = [check for check in design.checks if check.case != NOMINAL]
-    return {
+    record = {
         "aircraft": spec.name,
         "title": spec.title,
         "source": spec.source,
@@ -98,6 +105,11 @@ def design_record(design: Design, root: Path) -> Record:
         "heading_rate_lag_s": slow_lag,
         "turn_reversal": reversal_record(spec, root, level, envelope.bank, slow_lag),
     }
+    if has_play(root):
+        # Another simulation and the last flight: those before it stay as they are to the last bit.
+        alone = perturbed_aircraft(spec, root, Perturbation())
+        record["limit_cycle"] = _limit_cycle_record(measure_limit_cycle(alone, level))
+    return record
 
 
 def step_sizes(schedule: Schedule) -> dict[str, float]:
@@ -125,6 +137,16 @@ def _envelope_record(envelope: Envelope) -> Record:
         "bank_deg": math.degrees(envelope.bank),
         "bank_max_deg": math.degrees(envelope.bank_max),
         "notes": list(envelope.notes),
+    }
+
+
+def _limit_cycle_record(found: LimitCycle) -> Record:
+    return {
+        "is_flown": found.is_flown,
+        "period_s": _finite(found.period),
+        "altitude_m": found.altitude,
+        "bank_rad": found.bank,
+        "counted_from": {"altitude_m": ALTITUDE_MIN, "bank_rad": BANK_MIN},
     }
 
 

@@ -19,6 +19,7 @@ from common.tables import (
     Moments,
     Table,
     TableError,
+    find_jumps,
     first_columns,
     longitude_within,
     read_table,
@@ -147,7 +148,7 @@ def _flight(table: Table, config: LogConfig) -> LoggedFlight:
         places["longitude"] = longitude_within(places["longitude"])
     places, remark = _without_missing_fixes(places, rows)
     plane = _on_a_plane(places)
-    _check_jumps(plane, time, rows)
+    _check_jumps(places, plane, time, rows)
     true = {name: table.numbers(name)[kept] for name in TRUE_COLUMNS if name in table}
     logged = None
     if moments.dated:
@@ -468,27 +469,28 @@ def _without_missing_fixes(places: dict[str, Array], lines: Rows) -> tuple[dict[
     )
 
 
-def _check_jumps(plane: Mapping[str, Array], time: Array, lines: Rows) -> None:
-    """Check that an aircraft can fly between places in the time [s], shape (n,) each."""
-    if "north_m" not in plane:
-        return
-    north, east = plane["north_m"], plane["east_m"]
-    rows = np.flatnonzero(np.isfinite(north + east))
-    if not len(rows):
-        return
-    # A receiver may be slower than the log: only the first row of a new place counts.
-    moved = (np.diff(north[rows]) != 0.0) | (np.diff(east[rows]) != 0.0)
-    rows = rows[np.concatenate([[True], moved])]
-    distance, seconds = np.hypot(np.diff(north[rows]), np.diff(east[rows])), np.diff(time[rows])
-    jumps = np.flatnonzero(distance > _SPEED_MOST * seconds + _ERROR_M)
-    if jumps.size:
-        i = int(jumps[0])
-        more = f" (1 of {jumps.size} such jumps)" if jumps.size > 1 else ""
-        raise MeasurementError(
-            f"the place in row {lines[rows[i + 1]]} is {distance[i] / 1000.0:,.1f} km from that in"
-            f" row {lines[rows[i]]}, {seconds[i]:g} s earlier, which is faster than {_SPEED_MOST:g}"
-            f" m/s{more}: correct the places that are wrong, or leave them empty"
-        )
+def _check_jumps(
+    places: Mapping[str, Array], plane: Mapping[str, Array], time: Array, lines: Rows
+) -> None:
+    """Check that an aircraft can fly between places in the time [s], shape (n,) each: on the plane,
+    and by latitude and longitude where the plane has others.
+    """
+    degrees = None
+    tracks = [plane] if "north_m" in plane else []
+    if {"latitude", "longitude"} <= set(places):
+        degrees = places["latitude"], places["longitude"]
+        if {"north", "east"} <= set(places):
+            tracks.append(_on_a_plane({key: places[key] for key in ("latitude", "longitude")}))
+    for track in tracks:
+        if "north_m" not in track:
+            continue
+        place = np.column_stack([track["north_m"], track["east_m"]])
+        jumps = find_jumps(time, place, speed_max=_SPEED_MOST, error=_ERROR_M, degrees=degrees)
+        if jumps:
+            raise MeasurementError(
+                f"{jumps[0].described(lines)}: correct the places that are wrong, or leave them"
+                " empty"
+            )
 
 
 def _known_positions(places: Mapping[str, Array]) -> Rows:

@@ -7,6 +7,7 @@ from reports.design.data import (
     at_middle,
     complete,
     excess_overshoot,
+    limit_cycle_sentence,
     reversal_sentences,
     speed,
 )
@@ -62,8 +63,9 @@ def print_summary(record: Record) -> None:
         f"A heading-rate step overshoots its reference model by {100.0 * excess_overshoot(design):.1f} %."
     )
     verdict = design_verdict(design)
-    for line in (verdict.headline, *verdict.failures):
-        console.print(line, markup=False, highlight=False)
+    for line in (verdict.headline, *verdict.failures, limit_cycle_sentence(design)):
+        if line:
+            console.print(line, markup=False, highlight=False)
 
 
 def _poles(poles: Record) -> Table:

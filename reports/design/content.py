@@ -110,8 +110,8 @@ def _equilibria(design: Record) -> Section:
 def _verification(design: Record) -> Section:
     text = (
         "The linear model's answer to a small input against that of the simulation itself, in which servos have no play here:"
-        " largest error as a fraction of the largest excursion. An aircraft whose servos have play flies with a limit cycle, which"
-        " no linear model has; step responses show it. Of jets the throttle's is the largest, above all because its lag is measured"
+        " largest error as a fraction of the largest excursion. An aircraft whose servos have play may fly with a limit cycle,"
+        " which no linear model has; it is measured in straight and level flight, and the verdict says it. Of jets the throttle's is the largest, above all because its lag is measured"
         " with a throttle step of 0.05, as a turbine spools at a steady rate, and here the throttle moves by 0.01."
     )
     blocks: list[Block] = [Text(text), verification_table(design)]

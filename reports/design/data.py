@@ -199,6 +199,30 @@ def reversal_sentences(design: Record) -> str:
     return said
 
 
+def limit_cycle_sentence(design: Record) -> str:
+    """Return what servos with play make of straight and level flight; empty where they have none,
+    or where an older record does not say.
+    """
+    found = design.get("limit_cycle")
+    if not found:
+        return ""
+    amplitudes = _amplitudes(found)
+    if found["is_flown"]:
+        return (
+            f"Its servos have play: straight and level in still air it flies with a limit cycle of {found['period_s']:.1f} s,"
+            f" altitude ±{amplitudes[0]} and bank ±{amplitudes[1]}, which no linear model and no margin shows."
+        )
+    least = _amplitudes(found["counted_from"])
+    return (
+        f"Its servos have play; straight and level in still air it flew with no sustained oscillation from {least[0]} of altitude"
+        f" or {least[1]} of bank on."
+    )
+
+
+def _amplitudes(of: Record) -> tuple[str, str]:
+    return f"{of['altitude_m']:.2f} m", f"{math.degrees(of['bank_rad']):.2f}°"
+
+
 def _worst_case(search: Record) -> str:
     """Return which aircraft deviated most, unless the search flew it as modelled only."""
     of = search.get("deviation_of_m", {})

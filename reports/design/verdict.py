@@ -10,6 +10,7 @@ from reports.design.data import (
     down,
     excess_overshoot,
     grid_trims,
+    limit_cycle_sentence,
     loop_name,
     loops_of,
     short_of,
@@ -133,7 +134,8 @@ def _detail(design: Record) -> str:
     at_limit = [t for t in grid_trims(design) if t.get("limits")]
     if at_limit:
         detail += f" {len(at_limit)} of {len(grid_trims(design))} equilibria are at a limit, which the section on equilibria names."
-    return f"{detail} Flown heading rate lags its command by {design['heading_rate_lag_s']:.2f} s."
+    detail += f" Flown heading rate lags its command by {design['heading_rate_lag_s']:.2f} s."
+    return f"{detail} {limit_cycle_sentence(design)}".rstrip()
 
 
 def _figures(design: Record) -> list[Card]:

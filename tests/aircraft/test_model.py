@@ -10,7 +10,7 @@ import pytest
 
 from aircraft.fdm import Fdm
 from aircraft.fleet.find import find_spec
-from aircraft.model import copy_model, read_xml, remove_ground_contacts
+from aircraft.model import copy_model, has_play, read_xml, remove_ground_contacts
 from aircraft.spec import MODELS, AircraftError, ModelFiles
 from aircraft.state import RigidBodyState
 
@@ -131,6 +131,15 @@ def test_servos_keep_their_play_only_if_asked_to(probe, tmp_path, play, parts):
     assert [e.tag for e in actuator if e.tag.endswith("_width")] == parts
     # What a linear model can have stays.
     assert actuator.find("lag").text == "10"
+
+
+@pytest.mark.parametrize("name", ["c172x", "x8"])
+def test_whether_servos_have_play_is_known_of_a_root(tmp_path, name):
+    spec = find_spec(name)
+    copy_model(spec.files, tmp_path / "with")
+    copy_model(spec.files, tmp_path / "without", play=False)
+    assert has_play(tmp_path / "with") is (name == "c172x")
+    assert not has_play(tmp_path / "without")
 
 
 def test_play_is_taken_out_of_the_systems_files_too(probe, tmp_path):

@@ -5,9 +5,11 @@ from datetime import date
 import numpy as np
 import pytest
 
+from common.geodesy import cartesian
 from common.tables import (
     TableError,
     TableFormat,
+    find_jumps,
     longitude_within,
     read_table,
     table_format,
@@ -282,3 +284,29 @@ def test_a_cell_that_is_no_number_is_named_with_its_row(tmp_path, cell, words):
 def test_a_format_of_no_use_is_refused(given, words):
     with pytest.raises(TableError, match=words):
         table_format(given)
+
+
+# Jumps of a track
+
+
+def test_a_track_across_the_date_line_at_a_ships_speed_has_no_jump():
+    # At the equator 0.001 deg of longitude are 111.3 m (WGS 84): 11 m/s.
+    longitude = longitude_within(179.995 + 0.001 * np.arange(10))
+    assert longitude[-1] < 0.0
+    latitude = np.zeros(10)
+    place = cartesian(np.radians(latitude), np.radians(longitude))
+    time = 10.0 * np.arange(10)
+    assert not find_jumps(time, place, speed_max=60.0, error=0.0, degrees=(latitude, longitude))
+
+
+def test_a_jump_is_counted_and_measured_against_speed_and_error():
+    time = np.array([0.0, 10.0, 20.0, 30.0])
+    place = np.array([[0.0, 0.0], [np.nan, 0.0], [1300.0, 0.0], [1995.0, 0.0]])
+    # 1,300 m in 20 s, and 695 m in 10 s: 65 and 69.5 m/s. Errors of 99 m explain all but a metre.
+    assert [(j.before, j.after) for j in find_jumps(time, place, speed_max=60.0, error=0.0)] == [
+        (0, 2),
+        (2, 3),
+    ]
+    (jump,) = find_jumps(time, place, speed_max=60.0, error=99.0)
+    assert (jump.before, jump.after, jump.distance, jump.seconds) == (0, 2, 1300.0, 20.0)
+    assert find_jumps(time, place, speed_max=60.0, error=100.0) == []

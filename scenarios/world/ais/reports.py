@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from common.geodesy import cartesian
 from common.physics import METRES_PER_SECOND_PER_KNOT
-from common.tables import Table, TableError, longitude_within, read_table
+from common.tables import Jump, Table, TableError, find_jumps, longitude_within, read_table
 from common.text import install_words, other_units
 from scenarios.errors import InputError
 from scenarios.scenario.sections.world import GAP_MAX
@@ -98,6 +98,9 @@ _REACH_SPEED, _REACH = 50.0, 500.0
 satellite navigation [m/s, m].
 """
 
+_IMPOSSIBLE_SPEED = 60.0
+"""Speed that no vessel has, and of which a report cannot tell (102.2 kt are 52.6 m/s) [m/s]."""
+
 NO_TIME, NO_PLACE, NO_SPEED, DUPLICATE, OUT_OF_ORDER, OUT_OF_REACH = (
     "without a time",
     "without a possible position",
@@ -166,6 +169,14 @@ class AisReports:
             return ""
         return f"{self.path.name}: {share:.0%} of the reports of MMSI {self.mmsi} were dropped"
 
+    def jumps(self, part: slice = slice(None)) -> list[Jump]:
+        """Return the ways between neighbouring reports that no vessel goes in the time."""
+        return _jumps(
+            self.time[part],
+            np.degrees(self.latitude[part]),
+            np.degrees(self.longitude[part]),
+        )
+
     def lines(self) -> list[str]:
         """Return what a console says of the file: how it was used, and a warning if there is one."""
         return [self.described(), *([f"warning: {self.warning}"] if self.warning else [])]
@@ -207,9 +218,10 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
     identity, rows, size = rows_of(path, mmsi)
     dropped: Counter[str] = Counter()
     first: dict[str, int] = {}
-    kept = rows
+    kept = placed = rows
     for sorted_out in (_by_what_they_say, _by_their_clock, _by_their_times, _by_their_places):
         reasons = sorted_out(kept)
+        placed = kept
         for row, reason in zip(kept, reasons, strict=True):
             if reason:
                 dropped[reason] += 1
@@ -221,6 +233,9 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
         why = ", ".join(
             f"{count} {reason} (first in line {first[reason]})" for reason, count in dropped.items()
         )
+        jumps = _jumps_of_rows(placed)
+        if jumps:
+            why += f"; {jumps[0].described([row.line for row in placed])}"
         raise InputError(
             f"{path}: {len(kept)} of {len(rows)} rows of MMSI {identity} used, two are needed;{f' dropped: {why};' if why else ''}"
             " correct the rows, or give another file"
@@ -242,6 +257,12 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
         size=size,
         lost_directions=_lost_directions(rows, kept),
     )
+    mistaken = [jump for jump in reports.jumps() if jump.mistake]
+    if mistaken:
+        raise InputError(
+            f"{path}: {mistaken[0].described(reports.line)}: correct the rows that are wrong, or"
+            " remove them"
+        )
     check_units(
         path, reports.time, reports.latitude, reports.longitude, reports.speed, reports.course
     )
@@ -333,6 +354,24 @@ def _by_their_places(rows: Sequence[AisRow]) -> list[str]:
         not near[-1] and near[-2],
     ]
     return [OUT_OF_REACH if row_alone else "" for row_alone in alone]
+
+
+def _jumps(time: Array, latitude: Array, longitude: Array) -> list[Jump]:
+    """Return the jumps of a track of places [deg]."""
+    return find_jumps(
+        time,
+        cartesian(np.radians(latitude), np.radians(longitude)),
+        speed_max=_IMPOSSIBLE_SPEED,
+        error=_REACH,
+        degrees=(latitude, longitude),
+    )
+
+
+def _jumps_of_rows(rows: Sequence[AisRow]) -> list[Jump]:
+    if not rows:
+        return []
+    _, time, latitude, longitude, _, _ = (np.array(column) for column in zip(*rows, strict=True))
+    return _jumps(time, latitude, longitude)
 
 
 _NAMED = 5

@@ -117,6 +117,7 @@ def ais_vessel(
     reports = _read(path, (stamp.st_mtime_ns, stamp.st_size), config.mmsi)
     begin = float(reports.time[0]) if utc is None else utc.timestamp()
     _check_covered(reports, begin, begin + duration, config.gap_max_s)
+    _check_jumps(reports, begin, begin + duration)
     return _vessel(reports, altitude, begin, duration, margin)
 
 
@@ -140,6 +141,19 @@ def _check_covered(reports: AisReports, begin: float, end: float, gap_max: float
             f" there is no report of MMSI {reports.mmsi} for {gaps[worst]:.0f} s; the track is"
             f" bridged over vessel.gap_max_s = {gap_max:g} s at most: set it, or fly another time"
             " (place.utc, flight.duration_max_s)"
+        )
+
+
+def _check_jumps(reports: AisReports, begin: float, end: float) -> None:
+    """Raise an InputError where reports that have a part in the track of a flight between two times
+    [s] lie so far apart that no vessel goes there.
+    """
+    part = _around(reports.time, begin, end)
+    jumps = reports.jumps(part)
+    if jumps:
+        raise InputError(
+            f"{reports.path}: {jumps[0].described(reports.line[part])}: correct or remove the rows"
+            " that are wrong, or fly another time (place.utc, flight.duration_max_s)"
         )
 
 

@@ -348,6 +348,38 @@ def test_a_place_that_no_aircraft_reaches_is_refused_with_its_row(logged, column
     assert "(1 of 2 such jumps)" in line
 
 
+@pytest.mark.parametrize(
+    ("mistake", "words"),
+    [
+        (lambda north, east: (east, north), "latitude and longitude exchanged"),
+        (lambda north, east: (north, -east), "the other sign of longitude"),
+        (lambda north, east: (-north, -east), "the other signs of both"),
+    ],
+)
+def test_a_track_that_jumps_by_a_mistake_is_refused_with_the_mistake(logged, mistake, words):
+    in_degrees(logged)
+    table = pd.read_csv(logged)
+    north, east = mistake(table["latitude_deg"], table["longitude_deg"])
+    part = table.index >= 150
+    changed(
+        logged,
+        latitude_deg=np.where(part, north, table["latitude_deg"]),
+        longitude_deg=np.where(part, east, table["longitude_deg"]),
+    )
+    line = refusal(logged)
+    # The head line is row 1.
+    assert "the place in row 152 is " in line
+    assert f"fit together with {words}: correct the places" in line
+
+
+def test_latitude_and_longitude_are_checked_beside_metres_too(logged):
+    changed(logged, latitude_deg=57.0, longitude_deg=11.0)
+    assert len(read_flight(logged, ELECTROCHEMICAL).place) == 301
+    changed(logged, 150, longitude_deg=-11.0)
+    # 22 deg of longitude at 57 N on the reader's sphere of 6,371 km: 1,332.3 km.
+    assert "is 1,332.3 km from that in row 2, 150 s earlier" in refusal(logged)
+
+
 def test_a_receiver_that_is_slower_than_the_log_does_not_jump(logged):
     # A new place every 20 s, in which a fast aircraft flies 6 km: between two rows it is 6 km a
     # second.

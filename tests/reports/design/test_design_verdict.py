@@ -48,6 +48,25 @@ def test_a_perturbed_aircraft_that_falls_short_is_named():
     ]
 
 
+def test_a_limit_cycle_by_play_in_servos_is_said_with_period_and_amplitudes():
+    assert "play" not in design_verdict(complete(record())).detail
+    cycle = {
+        "is_flown": True,
+        "period_s": 5.165,
+        "altitude_m": 0.306,
+        "bank_rad": 0.00494,
+        "counted_from": {"altitude_m": 0.05, "bank_rad": 0.00175},
+    }
+    verdict = design_verdict(complete(record() | {"limit_cycle": cycle}))
+    # 0.00494 rad are 0.283 deg.
+    assert "limit cycle of 5.2 s, altitude ±0.31 m and bank ±0.28°" in verdict.detail
+    # No margin is asked of it: the design is judged as before.
+    assert (verdict.holds, verdict.complete) == (True, True)
+    small = cycle | {"is_flown": False, "period_s": None, "altitude_m": 0.02}
+    detail = design_verdict(complete(record() | {"limit_cycle": small})).detail
+    assert "no sustained oscillation from 0.05 m" in detail
+
+
 def test_an_unstable_point_is_worse_than_any_margin():
     verdict = design_verdict(changed(poles={"closed_loop": [[0.02, 0.0], [-1.0, 0.0]]}))
     assert not verdict.holds

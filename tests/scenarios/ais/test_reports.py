@@ -284,6 +284,47 @@ def sailed(*, knots=1.0, degrees=1.0, turned=0.0, swapped=False, interval=10, ra
     return table(*lines)
 
 
+def mistaken(text, mistake, of):
+    """Return a table with a mistake in the places of some rows, counted from 0."""
+    head, *lines = text.splitlines()
+    for row in of:
+        time, mmsi, latitude, longitude, *rest = lines[row].split(",")
+        lines[row] = ",".join([time, mmsi, *mistake(latitude, longitude), *rest])
+    return table(*lines, head=head)
+
+
+@pytest.mark.parametrize(
+    ("mistake", "words"),
+    [
+        # On WGS 84 the chord from 57 N 11.3 E to 11.3 N 57 E is 6,145.5 km (pyproj's geocentric
+        # coordinates), from 57 N 11.3 W 1,362 km, from 57 S 11.3 E 10,667 km.
+        (lambda north, east: (east, north), "latitude and longitude exchanged"),
+        (lambda north, east: (north, "-" + east), "the other sign of longitude"),
+        (lambda north, east: ("-" + north, east), "the other sign of latitude"),
+    ],
+)
+@pytest.mark.parametrize("of", [range(15, 30), range(14, 16)])
+def test_a_track_that_jumps_by_a_mistake_is_refused_with_rows_and_mistake(read, mistake, words, of):
+    with pytest.raises(InputError) as refused:
+        read(mistaken(sailed(), mistake, of))
+    line = str(refused.value)
+    assert f"the place in row {of[0] + 2} is " in line
+    assert f"from that in row {of[0] + 1}, 10 s earlier, which is faster than 60 m/s" in line
+    assert f"fit together with {words}" in line
+    assert "\n" not in line
+
+
+def test_a_single_row_with_a_mistake_is_dropped_and_counted(read):
+    found = read(mistaken(sailed(), lambda north, east: (east, north), [15]))
+    assert found.dropped == {"out of reach of others": 1}
+    assert len(found.time) == 29
+
+
+def test_where_every_other_row_is_mistaken_the_jump_is_said_with_the_dropped_rows(read):
+    with pytest.raises(InputError, match="fit together with latitude and longitude exchanged"):
+        read(mistaken(sailed(), lambda north, east: (east, north), range(1, 30, 2)))
+
+
 @pytest.mark.parametrize(
     ("interval", "rate"), [(10, 0.0), (90, 0.0), (90, 0.1), (90, 0.5), (90, 2.0)]
 )

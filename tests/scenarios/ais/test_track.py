@@ -9,6 +9,7 @@ import pytest
 from scenarios.errors import InputError
 from scenarios.scenario.files import CATALOG
 from scenarios.scenario.sections.world import VesselConfig
+from scenarios.world.ais import read_ais
 from scenarios.world.ais.synthetic import SYNTHETIC
 from scenarios.world.ais.track import (
     JERK_DENSITY,
@@ -213,3 +214,24 @@ def test_a_long_gap_that_is_allowed_is_bridged_between_the_reports_at_both_of_it
     true = vessel("synthetic_marine_cadastre.csv", utc=begin["utc"], duration=900.0).motion(900.0)
     assert math.dist(end[:2], true[:2]) < 600.0
     assert math.hypot(*end[2:]) == pytest.approx(math.hypot(*true[2:]), abs=0.5)
+
+
+def test_a_jump_is_refused_in_the_time_of_a_flight_and_not_in_another(tmp_path):
+    name = "synthetic_marine_cadastre.csv"
+    head, *lines = (CATALOG / "ais" / name).read_text(encoding="utf-8").splitlines()
+    columns = head.split(",")
+    latitude = columns.index("latitude")
+    # Two rows near the end a degree further north, 111 km (WGS 84), as from another vessel.
+    for row in (-4, -3):
+        cells = lines[row].split(",")
+        cells[latitude] = f"{float(cells[latitude]) + 1.0:.6f}"
+        lines[row] = ",".join(cells)
+    path = tmp_path / "jumps.csv"
+    path.write_text("\n".join([head, *lines]) + "\n", encoding="utf-8")
+    config = VesselConfig(track=str(path), mmsi=SYNTHETIC[name], gap_max_s=600.0)
+    assert ais_vessel(config, altitude=60.0, utc=None, duration=600.0, margin=5.0).reports
+    reports = read_ais(path, SYNTHETIC[name])
+    late = datetime.fromtimestamp(float(reports.time[-1]) - 300.0, UTC)
+    row = len(lines) - 4 + 2
+    with pytest.raises(InputError, match=rf"row {row} is 111\.\d km from that in row {row - 1}"):
+        ais_vessel(config, altitude=60.0, utc=late, duration=299.0, margin=5.0)
