@@ -1,12 +1,13 @@
 """What the flights of a run show, at a glance: no more than was flown."""
 
 import math
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from common.intervals import percent
+from common.intervals import CONFIDENCE, clopper_pearson, percent
 from common.premises import UNEXPLAINED
 from common.verdict import FAILED, MET, Closest, Counts, Premises, RunVerdict
 from reports.document.blocks import Card, Verdict
@@ -31,6 +32,7 @@ from reports.measurement.flights import (
     sulphur_below,
     sulphur_cards,
     sulphur_headline,
+    sulphur_verdicts,
 )
 from reports.monte_carlo.subset import plain_bound_in_words, subset_headline
 from reports.run.columns import (
@@ -81,7 +83,10 @@ def flight_verdict(run: RunData, trials: list[Trial]) -> Verdict:
     verdict, counts = run.verdict, run.verdict.counts
     flown = flights_flown(run.summary)
     kept = counts.flown > 0 and not counts.violated and not verdict.lost_against_requirement
-    headlines = [words for words in (sulphur_headline(run), _headline(run, flown)) if words]
+    headlines = [words for words in (sulphur_headline(run), _answer(run, flown)) if words]
+    if sulphur_verdicts(run) and verdict.all_kept_out:
+        # A study of the method asks for its verdicts alone.
+        headlines = headlines[:1]
     if wrong := counts.unexplained:
         flights = f"{wrong:,} flight{'s' * (wrong > 1)}"
         headlines = [f"The keep-out guard is wrong: in {flights} {UNEXPLAINED}", *headlines[::-1]]
@@ -120,6 +125,72 @@ def _state(verdict: RunVerdict) -> list[str]:
     if not counts.left:
         return [f"{word} before all comparisons were flown"]
     return [f"{word} after {counts.done:,} of {_plural(counts.planned, 'flight')}"]
+
+
+def _answer(run: RunData, flown: pd.DataFrame) -> str:
+    """Return the sentence that answers the question of the run's study; of a study that has no such
+    question, how its flights kept out.
+    """
+    answer, closest = _ANSWERS.get(str(run.manifest.get("study"))), run.verdict.whole.closest
+    if answer is None or closest is None or _subset(run) is not None:
+        return _headline(run, flown)
+    return answer(run, closest)
+
+
+def _nearest_found(run: RunData, nearest: Closest) -> str:
+    """Return the nearest flight that a search found, where, and what was violated or lost."""
+    counts = run.verdict.counts
+    row = run.summary[run.summary["flight_id"] == nearest.flight].iloc[0]
+    fault = str(row["fault"]).replace("_", " ")
+    return (
+        f"Nearest of {_plural(counts.flown, 'flight')}: {_beyond(nearest)} m beyond r_min,"
+        f" {nearest.flight} (fault {fault}, wind {row['wind_speed_mps']:.1f} m/s);"
+        f" {counts.violated:,} violated, {counts.lost - counts.diverged:,} lost, {counts.diverged:,} diverged,"
+        f" {counts.unknown:,} unknown"
+    )
+
+
+def _probabilities(run: RunData, _: Closest) -> str:
+    """Return the probabilities of a violation, of a loss and of a flight that does not finish."""
+    counts = run.verdict.counts
+    violation = _probability(run, counts.violated, counts.unknown)
+    loss = _probability(run, counts.lost)
+    unfinished = _probability(run, counts.done - counts.completed)
+    return (
+        f"Probability of violation {violation}, of loss {loss}, of not finishing {unfinished},"
+        f" at {percent(_confidence(run))} confidence"
+    )
+
+
+def _probability(run: RunData, events: int, unknown: int = 0) -> str:
+    """Return the share of flights with an event and the interval of its probability, which has each
+    unknown flight as one at its upper end.
+
+    Flights that share what is random count as one.
+    """
+    done, level = run.verdict.counts.done, _confidence(run)
+    bound = run.verdict.whole.bound
+    samples = bound.samples if bound else done
+    low = clopper_pearson(math.floor(events * samples / done), samples, level).low
+    high = clopper_pearson(math.ceil((events + unknown) * samples / done), samples, level).high
+    return f"{percent(events / done)} ({100.0 * low:.3g} to {percent(high)})"
+
+
+def _confidence(run: RunData) -> float:
+    """Return the confidence of each interval, that of a study that was looked at repeatedly too."""
+    return float((run.statistics or {}).get("interval_confidence", CONFIDENCE))
+
+
+def _beyond(closest: Closest) -> str:
+    """Return how far beyond r_min the closest flight stayed, negative inside [m]."""
+    return approach(closest.distance_m - closest.radius_m, 0.0)
+
+
+_ANSWERS: Mapping[str, Callable[[RunData, Closest], str]] = {
+    "falsify": _nearest_found,
+    "monte_carlo": _probabilities,
+}
+"""What answers the question of a study, by its name in the manifest."""
 
 
 def _headline(run: RunData, flown: pd.DataFrame) -> str:

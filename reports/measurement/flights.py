@@ -9,8 +9,9 @@ import pandas as pd
 
 from common.intervals import percent
 from measurement.estimate.verdict import (
+    ABOVE,
+    OPEN,
     content_words,
-    counted_verdicts,
     repeated_words,
     suspect_words,
     verdict_words,
@@ -133,15 +134,33 @@ def sulphur_headline(run: RunData) -> str:
     if len(measured) == 1:
         row = measured.iloc[0]
         return f"Fuel sulphur {_content(row)}: {_verdict_words(row)}"
-    called_so = counted_verdicts(
-        zip(measured["sulphur_verdict"], measured["sulphur_quality"], strict=True)
-    )
-    bias, inside = _bias_and_coverage(measured)
-    of = "" if len(measured) == len(sniffed) else f" of {len(sniffed):,}"
     return (
-        f"Fuel sulphur from {len(measured):,}{of} flights: on average {number(bias, '{:+.4f}')} {MASS_PERCENT} off what a perfect"
-        f" instrument reads, which the 95 % interval holds in {percent(inside)} of flights; {called_so}"
+        "Verdicts on the sulphur limit from {flights:,} flights: {right:,} right, {wrong:,} wrong, {open:,} open"
+        ", {without:,} without a result".format(**sulphur_verdicts(run))
     )
+
+
+def sulphur_verdicts(run: RunData) -> dict[str, int]:
+    """Return the numbers of flights of a study whose verdict on the fuel is ``right``, ``wrong`` or
+    ``open``, of those ``without`` a result, and of all with a sniffer (``flights``); nothing of a
+    run in which fewer than two flights measured the fuel.
+
+    A fuel at the limit is not above it.
+    """
+    measured = _measured(run)
+    if len(measured) < 2:
+        return {}
+    called = measured["sulphur_verdict"]
+    is_above = measured["fsc_fuel_percent"] > measured["sulphur_limit_percent"]
+    decided, sniffed = called != OPEN, len(flights_flown(run.summary))
+    right = decided & ((called == ABOVE) == is_above)
+    return {
+        "flights": sniffed,
+        "right": int(right.sum()),
+        "wrong": int((decided & ~right).sum()),
+        "open": int((~decided).sum()),
+        "without": sniffed - len(measured),
+    }
 
 
 def _flights(count: int) -> str:

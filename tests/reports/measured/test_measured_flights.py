@@ -125,10 +125,21 @@ def test_page_1_tells_the_fuel_with_interval_and_verdict_before_the_keep_out_are
         rf"Fuel sulphur {CONTENT}: .* limit of 0\.10 %; probability above it: [\d.]+ %\. No keep-out",
         plain,
     )
-    assert re.match(
-        r"Fuel sulphur from 12 flights: on average [+−]0\.\d{4} % m/m off what a perfect instrument reads, which the 95 % interval"
-        r" holds in \d.* of flights; \d+ above",
-        several.verdict.headline.replace("\N{NO-BREAK SPACE}", " "),
+    found = re.fullmatch(
+        r"Verdicts on the sulphur limit from 12 flights: (\d+) right, (\d+) wrong, (\d+) open, (\d+) without a result",
+        several.verdict.headline,
+    )
+    assert found
+    assert sum(map(int, found.groups())) == 12
+
+
+def test_a_verdict_is_right_or_wrong_by_the_fuel_that_was_simulated():
+    fuels = [(0.5, "above"), (0.1, "below"), (0.1, "above"), (0.5, "below"), (0.5, "open")]
+    rows = [{**ROW, "fsc_fuel_percent": fuel, "sulphur_verdict": called} for fuel, called in fuels]
+    rows.append({**ROW, "fsc_percent": float("nan"), "sulphur_verdict": "open"})
+    run = SimpleNamespace(summary=pd.DataFrame(rows))
+    assert flights.sulphur_headline(run) == (
+        "Verdicts on the sulphur limit from 6 flights: 2 right, 2 wrong, 1 open, 1 without a result"
     )
 
 

@@ -3,6 +3,7 @@ writes them.
 """
 
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from report_parts import assert_axes_read_quantity_and_unit
 from reports.document.blocks import Table, Text
 from reports.document.chart import Chart
 from reports.document.tables import minus
+from reports.flights.verdict import flight_verdict
 from reports.monte_carlo.content import bound_in_words, monte_carlo_sections
 from reports.monte_carlo.driver_charts import NEAREST, SCATTER_MAX, scatter_charts, thinned
 from reports.monte_carlo.names import documented_units, input_label, input_name, input_unit
@@ -23,6 +25,7 @@ from reports.monte_carlo.tables import percent
 from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import RunData, read_run
+from reports.run.trials import read_trials
 from scenarios.scenario.documentation import documented_keys
 from scenarios.scenario.files import load_study
 from scenarios.statistics.estimates import study_statistics
@@ -111,6 +114,37 @@ def test_a_study_comes_first_in_the_report_and_a_run_without_statistics_has_no_s
     anchors = [section.anchor for section in content(run).sections]
     assert anchors[:5] == ["figures", "study", "spread", "drivers", "trials"]
     assert monte_carlo_sections(replace(run, statistics=None)) == []
+
+
+def headline_of(run):
+    verdict = flight_verdict(run, read_trials(run))
+    words = verdict.headline
+    # A unit belongs to its number.
+    assert len(words.split(" ")) <= 25
+    return words.replace("\N{NO-BREAK SPACE}", " "), verdict.tone
+
+
+def test_page_1_answers_with_the_probability_of_a_violation_a_loss_and_of_not_finishing(run):
+    words, tone = headline_of(run)
+    # Clopper and Pearson: of 250 one violated, 1 - 0.975^(1/250), and one is unknown, which may
+    # have been a second; none was lost, 1 - 0.025^(1/250).
+    assert re.fullmatch(
+        r"Probability of violation 0\.4 % \(0\.0101 to 2\.86 %\), of loss 0 % \(0 to 1\.46 %\),"
+        r" of not finishing [\d.]+ % \([\d.]+ to [\d.]+ %\), at 95 % confidence",
+        words,
+    )
+    assert tone == "bad"
+
+
+def test_page_1_of_a_search_names_the_nearest_flight_and_counts_what_must_not_happen(run):
+    manifest = run.manifest | {"study": "falsify"}
+    words, tone = headline_of(replace(run, manifest=manifest, statistics=None))
+    nearest = run.summary["flight_id"][3]
+    assert words == (
+        f"Nearest of 249 flights: \N{MINUS SIGN}0.5 m beyond r_min, {nearest} (fault none, wind 5.0 m/s);"
+        " 1 violated, 0 lost, 0 diverged, 1 unknown"
+    )
+    assert tone == "bad"
 
 
 def test_the_bound_is_said_in_words_with_its_confidence_and_what_is_not_known(run):
