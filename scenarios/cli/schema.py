@@ -60,8 +60,8 @@ def file_schema() -> Schema:
 
 
 class _OfToml(GenerateJsonSchema):
-    """As pydantic's, without null, which TOML does not have, and with what a key takes beside its
-    type.
+    """As pydantic's, without null, which TOML does not have, and with numbers where they are taken
+    for text.
     """
 
     def nullable_schema(self, schema: core_schema.NullableSchema) -> Schema:
