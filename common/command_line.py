@@ -36,7 +36,9 @@ def run_command(
     """
     sys.stdout = _Output.instead_of(sys.stdout)
     sys.stderr = _Output.instead_of(sys.stderr)
-    app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+    # A shell completes the words of an installed command, which is the one with several commands.
+    several = isinstance(command, Mapping)
+    app = typer.Typer(add_completion=several, pretty_exceptions_enable=False)
     if isinstance(command, Mapping):
         for word, one in command.items():
             app.command(word)(one)

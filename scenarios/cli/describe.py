@@ -7,6 +7,7 @@ from itertools import groupby
 
 from scenarios.errors import InputError
 from scenarios.scenario.documentation import (
+    EXTENDS,
     PART_SECTIONS,
     DocumentedKey,
     DocumentedSection,
@@ -23,10 +24,6 @@ _WIDTH = 100
 _INDENT = 10
 _TOP = "(top)"
 """What the section of the keys outside of any section is called."""
-_EXTENDS = """\
-extends
-  The scenario that this one is based on: a name of the catalog, the path of a file, or false for
-  none. It stands at the top of a scenario file alone, and cannot be set, swept or sampled."""
 
 
 def described(name: str | None = None) -> list[str]:
@@ -44,7 +41,7 @@ def described(name: str | None = None) -> list[str]:
     if name is None:
         return list(_all_sections())
     if name == "extends":
-        return _EXTENDS.splitlines()
+        return [name, *_wrapped("  ", EXTENDS)]
     if name in (_TOP, _TOP.strip("()")):
         return list(_section(documented_sections()[0]))
     plain = re.sub(r"\.\d+(?=\.|$)", "", name)

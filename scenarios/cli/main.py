@@ -1,10 +1,11 @@
-"""Console command: ``plume-flight run|design|estimate|report|export|compare|describe|new``. Each
-hands on to what does the work.
+"""Console command: ``plume-flight run|design|estimate|report|export|compare|describe|new|schema``.
+Each hands on to what does the work.
 """
 
 import importlib
 import importlib.metadata
 import importlib.util
+import json
 import os
 from collections.abc import Callable
 from pathlib import Path
@@ -138,6 +139,15 @@ def new(
     print(f"scenario: {file}")
 
 
+def schema() -> None:
+    """Print a JSON Schema of scenario files, with which an editor completes their keys, shows what
+    they mean, and marks a wrong one.
+    """
+    from scenarios.cli.schema import file_schema
+
+    print(json.dumps(file_schema(), indent=2, ensure_ascii=False))
+
+
 def commands() -> dict[str, Callable[..., None]]:
     """Return the commands by their words, last those that installed packages announce in the group
     ``plume_flight_study.command``; each is a function with options as typer has them.
@@ -156,7 +166,7 @@ def commands() -> dict[str, Callable[..., None]]:
     if importlib.util.find_spec("reports.compare"):
         found["compare"] = importlib.import_module("reports.compare.__main__").command
     added = {word: load_announced("command", word) for word in sorted(announced("command"))}
-    return {**found, "describe": describe, "new": new, **added}
+    return {**found, "describe": describe, "new": new, "schema": schema, **added}
 
 
 def main() -> None:

@@ -35,6 +35,8 @@ value where it has no default. Remove the # to set it, and \
 give it a value. A key that no part of the flights uses is refused, with the part that would use it.
 The seeds of flights follow from the name of this file, unless nu is swept: called otherwise it \
 has other starts.
+For an editor that completes and checks keys: plume-flight schema > scenario.schema.json; then \
+the first line of this file is #:schema ./scenario.schema.json
 """
 
 

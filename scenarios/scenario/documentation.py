@@ -36,6 +36,12 @@ FLIGHT_STUDIES = (
 DIMENSIONLESS = "-"
 """Unit of a number without one."""
 
+EXTENDS = (
+    "The scenario that this one is based on: a name of the catalog, the path of a file, or false"
+    " for none. It stands at the top of a scenario file alone, and cannot be set, swept or sampled."
+)
+"""Meaning of ``extends``, which the file has beside the keys of its schema."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DocumentedKey:

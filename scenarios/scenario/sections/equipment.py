@@ -4,7 +4,7 @@ is absent is ideal.
 
 from typing import Annotated, Any, ClassVar
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import ConfigDict, Field, field_validator, model_validator
 
 from scenarios.scenario.extension_points import PAYLOADS
 from scenarios.scenario.sections.needs import OPERATIONAL, Need, when
@@ -82,6 +82,7 @@ class FaultConfig(Section):
     at_s: Annotated[
         tuple[NonNegative, NonNegative],
         when("fault.kind", user="a fault"),
+        Field(json_schema_extra={"type": ["array", "number"], "minimum": 0.0}),
     ] = (100.0, 250.0)
     """Earliest and latest time of the fault, which is sampled in between; or one number, the time
     itself [s].
@@ -121,6 +122,10 @@ class FaultConfig(Section):
 
 class PayloadConfig(PartSection):
     """The instruments on board; each may add keys of its own."""
+
+    model_config = ConfigDict(
+        json_schema_extra={"type": ["object", "array"], "items": {"type": "string"}}
+    )
 
     NAMED_IN: ClassVar[str] = "payload.instruments"
 

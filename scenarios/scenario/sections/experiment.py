@@ -6,7 +6,7 @@ import math
 import sys
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field, RootModel, field_validator, model_validator
+from pydantic import ConfigDict, Field, RootModel, field_validator, model_validator
 
 from common.errors import PluginError
 from scenarios.scenario.sections.needs import Need, when
@@ -56,6 +56,10 @@ class SweepConfig(RootModel[dict[str, tuple[Any, ...]]]):
     """Keys, each with a list of values; every combination is flown. ``nu`` stands for
     ``vessel.speed_ratio``.
     """
+
+    model_config = ConfigDict(
+        json_schema_extra={"additionalProperties": {"type": ["array", "object"]}}
+    )
 
     root: dict[str, tuple[Any, ...]] = Field(default_factory=dict)
 

@@ -161,6 +161,12 @@ class FlightConfig(Section):
         return min(max(height, lowest), highest) if lowest < highest else 0.5 * (lowest + highest)
 
 
+Pair = Annotated[
+    tuple[Positive, Positive] | None,
+    Field(json_schema_extra={"type": ["array", "boolean"], "not": {"enum": [True]}}),
+]
+"""A least and a largest value, or ``false`` where the quantity is not judged."""
+
 _PAIRS = ("crossing_interval_s", "crossing_distance_m")
 """Criteria of a least and a largest value."""
 
@@ -191,9 +197,9 @@ class CriteriaConfig(Section):
     """Largest relative difference of the mean crossing interval from pi/omega_0 [-]."""
     tracking_error_end_m: Limit = False
     """Largest distance to the reference at the end [m]."""
-    crossing_interval_s: Annotated[tuple[Positive, Positive] | None, VESSEL] = None
+    crossing_interval_s: Annotated[Pair, VESSEL] = None
     """Least and largest mean crossing interval, or ``false`` [s]."""
-    crossing_distance_m: Annotated[tuple[Positive, Positive] | None, VESSEL] = None
+    crossing_distance_m: Annotated[Pair, VESSEL] = None
     """Least and largest mean crossing distance from the vessel, or ``false`` [m]."""
     law_beyond_heading_rate_max: bool = False
     """Whether the law must command more than omega_max, to show that it does; how commands are

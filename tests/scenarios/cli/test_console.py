@@ -54,12 +54,22 @@ def file(tmp_path):
 
 
 def test_the_commands_are_these():
-    words = ["run", "design", "estimate", "report", "export", "describe", "new"]
+    words = ["run", "design", "estimate", "report", "export", "describe", "new", "schema"]
     assert [word for word in commands() if word != "compare"] == words
     assert importlib.metadata.version("plume-flight-study") in console("--version").out
     for word in commands():
         assert word in console("--help").out
         assert f"plume-flight {word}" in console(word, "--help").out
+
+
+@pytest.mark.parametrize(
+    ("words", "completed"), [("des", {"design", "describe"}), ("describe --he", {"--help"})]
+)
+def test_a_shell_completes_commands_and_options(words, completed, monkeypatch):
+    monkeypatch.setenv("_PLUME_FLIGHT_COMPLETE", "complete_bash")
+    monkeypatch.setenv("COMP_WORDS", f"plume-flight {words}")
+    monkeypatch.setenv("COMP_CWORD", str(len(words.split())))
+    assert {*console().out.split()} == completed
 
 
 @pytest.mark.usefixtures("sketched")

@@ -1,0 +1,149 @@
+"""The JSON Schema of scenario files, with which an editor completes and checks them."""
+
+import json
+import re
+import tomllib
+from datetime import datetime
+from pathlib import Path
+
+import pytest
+from jsonschema import Draft4Validator
+
+from scenarios.cli.schema import file_schema
+from scenarios.cli.template import template
+from scenarios.errors import InputError
+from scenarios.scenario.documentation import documented_keys, documented_part_keys
+from scenarios.scenario.errors import line
+from scenarios.scenario.files import bases, catalog, load_study
+from tests.in_process import run_command
+
+ROOT = Path(__file__).parents[3]
+
+
+@pytest.fixture(scope="module")
+def validator():
+    return Draft4Validator(file_schema())
+
+
+def wrong(validator, text):
+    """Return the dotted keys at which a schema refuses a text."""
+    document = json.loads(json.dumps(tomllib.loads(text), default=as_text))
+    return [".".join(map(str, error.absolute_path)) for error in validator.iter_errors(document)]
+
+
+def as_text(value):
+    # Taplo hands a time to its validator as text.
+    assert isinstance(value, datetime)
+    return value.isoformat()
+
+
+def examples():
+    """Yield the TOML in documentation that is of a scenario: what the program reads."""
+    for page in sorted([*ROOT.glob("docs/**/*.md"), *ROOT.glob("extensions/**/*.md")]):
+        if "_build" in page.parts:
+            continue
+        for number, text in enumerate(re.findall(r"```toml\n(.*?)```", page.read_text(), re.S)):
+            yield pytest.param(text, id=f"{page.stem}-{number}")
+
+
+def is_read(document):
+    try:
+        load_study({"title": "An example", **document}, refusing=False)
+    except InputError:
+        return False
+    return True
+
+
+def test_it_is_a_schema_of_draft_4(validator):
+    assert validator.schema["$schema"] == "http://json-schema.org/draft-04/schema#"
+    Draft4Validator.check_schema(validator.schema)
+    # Keywords of later drafts, which an editor with draft 4 would pass over in silence.
+    later = ("$defs", "$ref", "const", "prefixItems", "discriminator", "format")
+    text = json.dumps(validator.schema)
+    assert [word for word in later if f'"{word}":' in text] == []
+    assert '"null"' not in text
+    assert ": null" not in text
+
+
+def test_it_is_what_the_command_prints(validator):
+    assert json.loads(run_command("scenarios.cli.main", "schema").out) == validator.schema
+
+
+@pytest.mark.parametrize("path", [*catalog().values(), *bases().values()], ids=lambda of: of.stem)
+def test_every_scenario_of_the_project_is_accepted(path, validator):
+    assert wrong(validator, path.read_text(encoding="utf-8")) == []
+
+
+@pytest.mark.parametrize("name", ["sweep_nu", "falsify", "convergence"])
+def test_a_new_file_is_accepted(name, validator):
+    assert wrong(validator, template(name, "mine.toml")) == []
+
+
+@pytest.mark.parametrize("text", [*examples()])
+def test_an_example_that_the_program_reads_is_accepted(text, validator):
+    if is_read(tomllib.loads(text)):
+        assert wrong(validator, text) == []
+
+
+def test_some_examples_are_read():
+    assert sum(is_read(tomllib.loads(example.values[0])) for example in examples()) >= 5
+
+
+def test_a_ship_and_a_sniffer_of_ones_own_are_accepted(validator):
+    file = ROOT / "docs" / "examples" / "own_ship.toml"
+    assert wrong(validator, file.read_text(encoding="utf-8")) == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        'payload = ["sniffer"]',
+        "fault = {kind = 'engine', at_s = 100.0}",
+        "[sweep.wind]\nspeed_mps = [0.0, 5.0]",
+        "[criteria]\ncrossing_interval_s = false\ntracking_error_rms_m = false",
+        "extends = false",
+        "aircraft = 747",
+        "[place]\nutc = 2026-06-01T12:00:00Z",
+        "[plume]\nmodel = 'mine.py:Mine'\nkey_of_mine = 3",
+        "[guidance]\nlaw = 'mine.py:Mine'\nkey_of_mine = 'word'",
+        "[payload]\ninstruments = ['mine.py:Mine']\nkey_of_mine = [1, 2]",
+        "[emission]\nship = {length_m = 100.0}",
+        "study = 'mine.py:Study'",
+    ],
+)
+def test_what_the_loader_brings_into_form_is_accepted(text, validator):
+    assert wrong(validator, text) == []
+
+
+@pytest.mark.parametrize(
+    ("text", "key"),
+    [
+        ("titel = 'A study'", ""),
+        ("[wind]\nspeed_mp = 5.0", "wind"),
+        ("[wind]\nspeed_mps = 'fast'", "wind.speed_mps"),
+        ("[wind]\nspeed_mps = -1.0", "wind.speed_mps"),
+        ("[wind]\nspeed_mps = true", "wind.speed_mps"),
+        ("[guidance]\nairspeed_mps = 'fast'", "guidance.airspeed_mps"),
+        ("[guidance]\nbank_deg = 'steep'", "guidance.bank_deg"),
+        ("[guidance]\nbank_deg = 0.0", "guidance.bank_deg"),
+        ("[keepout]\nshape = 'cube'", "keepout.shape"),
+        ("[[vessel.manoeuvres]]\nturn_deg = 90.0", "vessel.manoeuvres.0"),
+        ("[reports]\ninterval_s = [1.0, 2.0, 3.0]", "reports.interval_s"),
+        ("[criteria]\ncrossing_interval_s = true", "criteria.crossing_interval_s"),
+        ("[sweep]\nnu = 0.3", "sweep.nu"),
+        ("extends = true", "extends"),
+        ("fidelity = 'seven_dof'", "fidelity"),
+    ],
+)
+def test_a_wrong_key_or_value_is_refused_where_it_stands(text, key, validator):
+    assert {*wrong(validator, text)} == {key}
+    assert not is_read(tomllib.loads(text))
+
+
+def test_every_key_has_its_meaning(validator):
+    for key in [*documented_keys(), *documented_part_keys()]:
+        schema = validator.schema
+        for name in key.key.split("."):
+            schema = schema["items"] if name == "0" else schema["properties"][name]
+        assert schema["description"], key.key
+        assert line(schema["description"]) == schema["description"], key.key
