@@ -12,6 +12,7 @@ import codecs
 import csv
 import gzip
 import io
+import itertools
 import lzma
 import math
 import re
@@ -82,7 +83,8 @@ def table_format(given: Mapping[str, Any]) -> TableFormat:
         )
     if chosen.encoding is not None:
         try:
-            codecs.lookup(chosen.encoding)
+            # Refuses codecs that are none of text, too, as "hex".
+            io.TextIOWrapper(io.BytesIO(), encoding=chosen.encoding)
         except LookupError:
             raise TableError(f"table.encoding is {chosen.encoding!r}; Python knows none") from None
     return chosen
@@ -121,6 +123,7 @@ class Table:
     head_line : that the head stands in
     units : of columns, by their names, from a row of units or from the head
     format : by which it was read: nothing in it is None but what no column needed
+    decimal_given : whether the mark of decimals was given: the other one is then of thousands
     """
 
     names: list[str]
@@ -129,6 +132,7 @@ class Table:
     head_line: int
     units: Mapping[str, str]
     format: TableFormat
+    decimal_given: bool = False
     _columns: dict[str, int] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -175,14 +179,10 @@ class Table:
         TableError : a cell is no number, or is infinite
         """
         cells = self.column(name)
-        values = np.array([_number(cell, self.format.decimal) for cell in cells], dtype=np.float64)
+        values = self._as_numbers(cells)
         if words:
             return np.where(np.isfinite(values), values, np.nan)
-        bad = [
-            i
-            for i in np.flatnonzero(~np.isfinite(values)).tolist()
-            if cells[i].lower() not in _EMPTY
-        ]
+        bad = [i for i in np.flatnonzero(~np.isfinite(values)).tolist() if not _is_empty(cells[i])]
         if bad:
             cell, line = cells[bad[0]], self.lines[bad[0]]
             if np.isinf(values[bad[0]]):
@@ -195,6 +195,16 @@ class Table:
                 f"{_other_decimal(cell, self.format.decimal)}"
             )
         return values
+
+    def _as_numbers(self, cells: Sequence[str]) -> Array:
+        """Return cells as numbers, not a number where they are none, shape (n,)."""
+        decimal = self.format.decimal
+        other = "." if decimal == "," else ","
+        # A column that has the other mark anywhere but at thousands has it for decimals.
+        given = self.decimal_given and all(
+            _GROUPED.fullmatch(cell) for cell in cells if other in cell
+        )
+        return np.array([_number(cell, decimal, given=given) for cell in cells], dtype=np.float64)
 
     def times(self, name: str, *, day: date | None = None, usual: str = "") -> Moments:
         """Return a column as times.
@@ -216,8 +226,8 @@ _SEPARATOR_NAMES = {
 }  # fmt: skip
 """Separators that are looked for, the likeliest first where two fit as well."""
 
-_EMPTY = ("", "nan", "na", "n/a", "null", "none", "-", "--")
-"""Cells without a value, in small letters."""
+_EMPTY = ("", "nan", "na", "n/a", "n.a.", "#n/a", "#na", "null", "none")
+"""Cells without a value, in small letters and without dashes."""
 
 _COMMENT = ("#", "%", "//")
 """How a line begins that is no row."""
@@ -227,6 +237,11 @@ _LOOKED_AT = 40
 
 _CONTROL = re.compile(r"[\x00-\x08\x0e-\x1f]")
 """Letters that no text has."""
+
+
+def _is_empty(cell: str) -> bool:
+    """Return whether a cell says that there is no value."""
+    return cell.strip("-–—").lower() in _EMPTY
 
 
 def read_table(
@@ -297,6 +312,11 @@ def _read(
             continue
         if keep is not None and not keep(line):
             continue
+        if _CONTROL.search(line):
+            raise TableError(
+                f"line {number} has a letter that no text has: the file is damaged there;"
+                " delete the line"
+            )
         cells = [cell.strip() for cell in _cells(line, separator, number)]
         while len(cells) > len(names) and not cells[-1]:
             cells.pop()
@@ -318,6 +338,7 @@ def _read(
             time_format=given.time_format,
             time_unit=given.time_unit,
         ),
+        decimal_given=given.decimal is not None,
     )
 
 
@@ -399,6 +420,7 @@ def _encoding(begin: bytes) -> str:
 def _cells(line: str, separator: str, number: int = 0) -> list[str]:
     if separator == "whitespace":
         return line.split()
+    _refuse_endless(line, number)
     try:
         return next(csv.reader([line], delimiter=separator, skipinitialspace=True, strict=True), [])
     except csv.Error:
@@ -410,7 +432,18 @@ def _loose_cells(line: str, separator: str) -> list[str]:
     """Return the cells of a line without regard to quotation marks that are not closed."""
     if separator == "whitespace":
         return line.split()
+    _refuse_endless(line)
     return next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
+
+
+def _refuse_endless(line: str, number: int = 0) -> None:
+    """Raise a TableError for a line that is longer than the longest cell that csv reads."""
+    if len(line) > csv.field_size_limit():
+        where = f"line {number}" if number else "a line"
+        raise TableError(
+            f"{where} has {len(line)} letters, more than {csv.field_size_limit()}; give a file of"
+            " one row per line"
+        )
 
 
 def _uncommented(line: str) -> str:
@@ -466,10 +499,14 @@ def _long_row(number: int, cells: Sequence[str], names: Sequence[str]) -> str:
 
 # Numbers
 
-_NUMBER = re.compile(r"[-+]?(\d[\d.,  ]*|[.,]\d+)(e[-+]?\d+)?", re.IGNORECASE)
-_WITH_COMMA = re.compile(r"[-+]?\d*,\d+(e[-+]?\d+)?", re.IGNORECASE)
-_THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+")
-_DOTTED_THOUSANDS = re.compile(r"[-+]?\d{1,3}(\.\d{3})+,\d+")
+_NUMBER = re.compile(r"[-+−]?(\d[\d.,  ]*|[.,]\d+)(e[-+]?\d+)?", re.IGNORECASE)
+_WITH_COMMA = re.compile(r"[-+−]?\d*,\d+(e[-+]?\d+)?", re.IGNORECASE)
+_THOUSANDS = re.compile(r"[-+−]?[1-9]\d{0,2}(,\d{3})+")
+_DOTTED_THOUSANDS = re.compile(r"[-+−]?\d{1,3}(\.\d{3})+,\d+")
+_GROUPED = re.compile(
+    r"[-+−]?[1-9]\d{0,2}(?P<mark>[.,'’ \u00a0\u2009\u202f])\d{3}((?P=mark)\d{3})*(?P<rest>[.,]\d+)?"
+)
+"""A number with a mark between its thousands, the same one throughout."""
 
 
 def _decimal(rows: Sequence[Sequence[str]], separator: str) -> str:
@@ -482,7 +519,11 @@ def _decimal(rows: Sequence[Sequence[str]], separator: str) -> str:
     commas = points = ambiguous = 0
     for row in rows[: 25 * _LOOKED_AT]:
         for cell in row:
-            if "," in cell:
+            grouped = _GROUPED.fullmatch(cell)
+            if grouped is not None and grouped["mark"] not in ".,":
+                commas += (grouped["rest"] or "").startswith(",")
+                points += (grouped["rest"] or "").startswith(".")
+            elif "," in cell:
                 if _DOTTED_THOUSANDS.fullmatch(cell) or (
                     _WITH_COMMA.fullmatch(cell) and not _THOUSANDS.fullmatch(cell)
                 ):
@@ -501,17 +542,33 @@ def _decimal(rows: Sequence[Sequence[str]], separator: str) -> str:
     return "."
 
 
-def _number(cell: str, decimal: str | None) -> float:
-    """Return a number; not a number where it is none."""
-    text = cell
-    if decimal == ",":
-        if _DOTTED_THOUSANDS.fullmatch(text):
-            text = text.replace(".", "")
-        text = text.replace(",", ".", 1) if _WITH_COMMA.fullmatch(text) else text
+def _number(cell: str, decimal: str | None, *, given: bool = False) -> float:
+    """Return a number; not a number where it is none.
+
+    ``given`` is whether the mark of decimals was given, and not found: only then a lone group of
+    three digits behind the other mark is sure to be of thousands.
+    """
+    text = cell.replace("−", "-")
+    grouped = _GROUPED.fullmatch(text)
+    if grouped is not None and _has_thousands(grouped, decimal or ".", given=given):
+        text = text.replace(grouped["mark"], "")
+    if decimal == "," and _WITH_COMMA.fullmatch(text):
+        text = text.replace(",", ".", 1)
+    # Python's own numbers may have underscores.
+    if "_" in text:
+        return np.nan
     try:
         return float(text)
     except ValueError:
         return np.nan
+
+
+def _has_thousands(grouped: re.Match[str], decimal: str, *, given: bool) -> bool:
+    """Return whether the mark between groups of three digits can be that of thousands alone."""
+    mark, rest = grouped["mark"], grouped["rest"]
+    if mark == decimal or (rest is not None and rest[0] != decimal):
+        return False
+    return given or mark not in ".," or rest is not None or grouped[0].count(mark) > 1
 
 
 def _other_decimal(cell: str, decimal: str | None) -> str:
@@ -544,7 +601,22 @@ _LEAP = re.compile(r":59:60([.,]\d+)?")
 
 _OFFSET = re.compile(r"(Z|[+-]\d{2}:?\d{2})$")
 
-_WITHOUT_DATE_FORMATS = ("%d.%m.%Y %H:%M:%S", "%d/%m/%Y %H:%M:%S", "%m/%d/%Y %H:%M:%S")
+_WITHOUT_DATE_FORMATS = tuple(
+    f"{date_format} {clock}"
+    for date_format, clock in itertools.product(
+        (
+            "%d.%m.%Y",
+            "%d/%m/%Y",
+            "%m/%d/%Y",
+            "%d-%m-%Y",
+            "%m-%d-%Y",
+            "%d.%m.%y",
+            "%d/%m/%y",
+            "%m/%d/%y",
+        ),
+        ("%H:%M:%S", "%H:%M:%S.%f", "%H:%M", "%I:%M:%S %p", "%I:%M %p"),
+    )
+)
 """Formats that are named where a date is in one of them: none is taken unless it is given."""
 
 
@@ -554,13 +626,18 @@ def _times(table: Table, name: str, day: date | None, pattern: str) -> Moments:
     cells = table.column(name)
     if not cells:
         return Moments(seconds=np.empty(0), dated=False, offset=False)
-    empty = np.array([cell.lower() in _EMPTY for cell in cells])
+    empty = np.array([_is_empty(cell) for cell in cells])
     if pattern:
-        moments = pd.to_datetime(pd.Series(cells), format=pattern, utc=True, errors="coerce")
+        try:
+            moments = pd.to_datetime(pd.Series(cells), format=pattern, utc=True, errors="coerce")
+        except ValueError as error:
+            raise TableError(
+                f'table.time_format is {pattern!r}: {error}; give one as "%d.%m.%Y %H:%M:%S"'
+            ) from None
         example = datetime(2026, 6, 1, 10, tzinfo=UTC).strftime(pattern)
         _refuse_first(table, name, cells, moments.isna().to_numpy() & ~empty, example)
         return Moments(seconds=_since_1970(moments), dated=True, offset="%z" in pattern)
-    numbers = np.array([_number(cell, table.format.decimal) for cell in cells])
+    numbers = table._as_numbers(cells)
     if np.isfinite(numbers).mean() > 0.5:
         _refuse_first(table, name, cells, ~np.isfinite(numbers) & ~empty, "seconds")
         return _numeric_times(table, name, numbers)
@@ -585,8 +662,9 @@ def _times(table: Table, name: str, day: date | None, pattern: str) -> Moments:
 
 def _since_1970(moments: Any) -> Array:
     """Return the seconds since 1970 of moments that pandas has read, NaN for those it has not."""
-    whole = moments.to_numpy(dtype="datetime64[ns]")
-    seconds: Array = whole.astype(np.int64) / 1e9
+    # Nanoseconds would end in the year 2262, and begin again in 1677.
+    whole = moments.to_numpy(dtype="datetime64[us]")
+    seconds: Array = whole.astype(np.int64) / 1e6
     return np.where(np.isnat(whole), np.nan, seconds)
 
 
@@ -627,11 +705,22 @@ def _numeric_times(table: Table, name: str, numbers: Array) -> Moments:
             ' table.time_format = "%Y%m%d%H%M%S", or seconds'
         )
     if unit is None:
-        unit = next((of for size, of in _BY_SIZE if least >= size), "s")
+        unit, other = (_time_unit_by_size(of) for of in (least, float(np.max(known))))
+        # Times of the table's own zero may be as large as they like.
+        if unit != other and least >= _UNIX_FROM:
+            raise TableError(
+                f"times in column '{name}' go from {least:.10g} to {np.max(known):.16g}, {unit} and"
+                f" {other} since 1970 by their size; give all in one unit, or table.time_unit"
+            )
         _refuse_clock(table, name, numbers)
     seconds = _TIME_UNITS[unit] * numbers
     dated = _TIME_UNITS[unit] * least >= _UNIX_FROM
     return Moments(seconds=seconds, dated=dated, offset=dated, plain=unit == "s")
+
+
+def _time_unit_by_size(number: float) -> str:
+    """Return the unit of a time since 1970, or of a table of its own, by how large it is."""
+    return next((unit for size, unit in _BY_SIZE if number >= size), "s")
 
 
 def _time_unit_in(table: Table, name: str) -> str | None:
@@ -663,7 +752,7 @@ def _times_of_day(table: Table, name: str, cells: Sequence[str], day: date | Non
     for row, cell in enumerate(cells):
         match = _TIME_OF_DAY.fullmatch(cell)
         if match is None:
-            if cell.lower() in _EMPTY:
+            if _is_empty(cell):
                 continue
             _refuse_first(table, name, cells, np.arange(len(cells)) == row, "a time of day")
         assert match is not None  # refused above

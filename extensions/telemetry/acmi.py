@@ -26,6 +26,7 @@ class Acmi:
             f"0,RecordingTime={start}",
             f"0,Title={_escaped(flight.flight_id)}",
             "0,DataSource=plume-flight-study",
+            f"0,Comments={_escaped(flight.height_reference)}",
         ]
         for i in range(len(flight.time)):
             lines.append(f"#{flight.time[i]:.3f}")

@@ -26,7 +26,7 @@ class Czml:
 
     def write(self, run: RunData, path: Path) -> None:
         """Write one flight."""
-        flight = next(recorded_flights(run))
+        flight = next(recorded_flights(run)).above_ellipsoid()
         while_flown = f"{flight.utc(0)}/{flight.utc(-1)}"
         clock = {
             "interval": while_flown,
@@ -101,7 +101,13 @@ def _moving(
         "cartographicDegrees": samples,
         **_LINEAR,
     }
-    return {"id": identity, "name": name, "availability": while_flown, "position": position}
+    return {
+        "id": identity,
+        "name": name,
+        "description": flight.height_reference,
+        "availability": while_flown,
+        "position": position,
+    }
 
 
 def _readings(flight: GeographicFlight) -> dict[str, Any]:

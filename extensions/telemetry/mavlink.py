@@ -38,6 +38,9 @@ _AT_REST = 0.05
 _MMSI = 999_999_999
 """Of a vessel whose MMSI is not recorded."""
 
+_INFO = 6
+"""MAV_SEVERITY of a text."""
+
 _SLOW = 1.0
 """Time between heartbeats, and between reports of the vessel [s]."""
 
@@ -48,6 +51,7 @@ _MESSAGES: dict[str, tuple[int, int, str]] = {
     "GLOBAL_POSITION_INT": (33, 104, "<IiiiihhhH"),
     "VFR_HUD": (74, 20, "<ffffhH"),
     "ADSB_VEHICLE": (246, 184, "<IiiiHHhHHB9sBB"),
+    "STATUSTEXT": (253, 83, "<B50sHB"),
     "AIS_VESSEL": (301, 243, "<IiiHHHHHHHbBBBB7s20s"),
 }
 """Number, seed of the checksum, and fields in the order in which they are sent, of the common
@@ -147,6 +151,9 @@ def messages(flight: GeographicFlight) -> Iterator[tuple[float, bytes]]:
     heartbeat and vessel each second.
     """
     packer, due = Packer(), -math.inf
+    # 50 letters at most.
+    heights = b"Heights are above mean sea level"
+    yield float(flight.time[0]), packer.pack("STATUSTEXT", _INFO, heights, 0, 0)
     for i, time in enumerate(flight.time.tolist()):
         if time >= due - 1e-6:
             due = time + _SLOW

@@ -62,11 +62,14 @@ class Mcap:
         """Write one flight."""
         from mcap.writer import Writer
 
-        flight = next(recorded_flights(run))
+        # The schema says "Altitude in meters"; sensor_msgs/NavSatFix, which the programs show in the
+        # same way, is above the WGS 84 ellipsoid.
+        flight = next(recorded_flights(run)).above_ellipsoid()
         drawn = set(flight.every(_DRAWN_EVERY))
         with path.open("wb") as file:
             writer = Writer(file)
             writer.start()
+            writer.add_metadata("heights", {"reference": flight.height_reference})
             channels = {
                 topic: self._channel(writer, topic, schema) for topic, schema in _TOPICS.items()
             }

@@ -4,7 +4,7 @@ and when.
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 
 import numpy as np
@@ -46,7 +46,7 @@ class Body:
     Attributes
     ----------
     latitude, longitude : [deg]
-    altitude : above the ellipsoid [m]
+    altitude : above mean sea level, unless the flight is ``above_ellipsoid`` [m]
     north, east : velocity over the ground by true north [m/s]
     """
 
@@ -67,6 +67,10 @@ class Body:
         """Return the course over the ground from true north, from 0 to 360 [deg]."""
         course: Array = np.degrees(np.arctan2(self.east, self.north)) % 360.0
         return course
+
+    def raised(self, height: float) -> "Body":
+        """Return the body with its altitude raised by a height [m]."""
+        return replace(self, altitude=self.altitude + height)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -90,9 +94,11 @@ class GeographicFlight:
     vessel, vessel_heading : the ship, or none, and where her bow points from true north, at rest as
         before [deg]
     plume_end : a point of the plume's axis, ``PLUME_LENGTH`` from the funnel, or none
-    source_height : of the funnel above the sea [m]
+    source_height : of the funnel above mean sea level, as ``Body.altitude`` [m]
     keepout_radius : r_min, not a number without a vessel [m]
     crossings : its rows of the run's table of crossings
+    geoid_height : of mean sea level above the WGS 84 ellipsoid [m]
+    ellipsoidal : whether altitudes are above the ellipsoid
     """
 
     flight_id: str
@@ -117,6 +123,31 @@ class GeographicFlight:
     source_height: float
     keepout_radius: float
     crossings: pd.DataFrame
+    geoid_height: float = 0.0
+    ellipsoidal: bool = False
+
+    @property
+    def height_reference(self) -> str:
+        """Return in a sentence what altitudes are above; exporters write it into their files."""
+        reference = "the WGS 84 ellipsoid" if self.ellipsoidal else "mean sea level"
+        sea = f"{self.geoid_height:g} m above" if self.geoid_height else "as"
+        return (
+            f"Heights are in metres above {reference}; mean sea level is taken {sea} the ellipsoid"
+            " (place.geoid_m)."
+        )
+
+    def above_ellipsoid(self) -> "GeographicFlight":
+        """Return the flight with altitudes above the WGS 84 ellipsoid, for formats that need them."""
+        if self.ellipsoidal:
+            return self
+        return replace(
+            self,
+            uav=self.uav.raised(self.geoid_height),
+            vessel=self.vessel and self.vessel.raised(self.geoid_height),
+            plume_end=self.plume_end and self.plume_end.raised(self.geoid_height),
+            source_height=self.source_height + self.geoid_height,
+            ellipsoidal=True,
+        )
 
     @property
     def epoch(self) -> str:
@@ -262,6 +293,7 @@ def _flight(run: RunData, row: dict[str, object], history: pd.DataFrame) -> Geog
         source_height=funnel,
         keepout_radius=radius,
         crossings=run.crossings_of(flight_id),
+        geoid_height=float((config.get("place") or {}).get("geoid_m") or 0.0),
     )
 
 

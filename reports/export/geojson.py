@@ -22,15 +22,19 @@ _CORNERS = 3
 
 @EXPORTERS.register("geojson")
 class GeoJson:
-    """A collection of features; what goes over the date line is cut there, as the standard asks
-    for.
+    """A collection of features; what goes over the date line is cut there, and heights are above
+    the ellipsoid, as the standard asks for.
     """
 
     suffix = ".geojson"
 
     def write(self, run: RunData, path: Path) -> None:
         """Write all flights that have a time history."""
-        features = [feature for flight in recorded_flights(run) for feature in _features(flight)]
+        features = [
+            feature
+            for flight in recorded_flights(run)
+            for feature in _features(flight.above_ellipsoid())
+        ]
         path.write_text(
             json.dumps({"type": "FeatureCollection", "features": features}, allow_nan=False),
             encoding="utf-8",
@@ -42,6 +46,7 @@ def _features(flight: GeographicFlight) -> list[dict[str, Any]]:
         "flight_id": flight.flight_id,
         "start_utc": flight.utc(0),
         "end_utc": flight.utc(len(flight.time) - 1),
+        "height_reference": flight.height_reference,
     }
     times = {"times_s": np.round(flight.time, 3).tolist()}
     features = [_feature(_track(flight.uav), about | {"what": "uav"} | times | _readings(flight))]

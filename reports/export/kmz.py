@@ -61,12 +61,10 @@ def _folder(flight: GeographicFlight, *, shown: bool) -> ET.Element:
     folder = ET.Element(_kml("Folder"))
     _text(folder, "name", flight.flight_id)
     _text(folder, "visibility", "1" if shown else "0")
+    about = [flight.height_reference]
     if not flight.placed:
-        _text(
-            folder,
-            "description",
-            "No place is given for this flight: it is shown at latitude and longitude 0.",
-        )
+        about.append("No place is given for this flight: it is shown at latitude and longitude 0.")
+    _text(folder, "description", " ".join(about))
     angles = [
         f"{h:.2f} {p:.2f} {r:.2f}"
         for h, p, r in zip(flight.heading, flight.pitch, flight.roll, strict=True)

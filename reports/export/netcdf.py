@@ -129,6 +129,15 @@ def _flight_variables(flights: Sequence[GeographicFlight]) -> dict[str, Variable
             sizes,
             {"sample_dimension": _SAMPLE, "long_name": "number of samples of the flight"},
         ),
+        "geoid_height": (
+            _FLIGHT,
+            np.array([flight.geoid_height for flight in flights]),
+            {
+                "standard_name": "geoid_height_above_reference_ellipsoid",
+                "long_name": "mean sea level above the WGS 84 ellipsoid, as given (place.geoid_m)",
+                "units": "m",
+            },
+        ),
     }
 
 
@@ -138,6 +147,9 @@ def _sample_variables(flights: Sequence[GeographicFlight]) -> dict[str, Variable
         values = np.concatenate([_motion(flight, what) for flight in flights])
         if np.isfinite(values).any():
             found[name] = (_SAMPLE, values, dict(attributes))
+    # Of each flight, in their order; most runs have one sentence.
+    references = dict.fromkeys(flight.height_reference for flight in flights)
+    found["alt"][2]["comment"] = " ".join(references)
     return found
 
 

@@ -1,5 +1,6 @@
 """Tables as people have them: what is found, what has to be given, and what is refused."""
 
+import math
 from datetime import date
 
 import numpy as np
@@ -310,3 +311,92 @@ def test_a_jump_is_counted_and_measured_against_speed_and_error():
     (jump,) = find_jumps(time, place, speed_max=60.0, error=99.0)
     assert (jump.before, jump.after, jump.distance, jump.seconds) == (0, 2, 1300.0, 20.0)
     assert find_jumps(time, place, speed_max=60.0, error=100.0) == []
+
+
+# Hard files: each is read right, or refused in a line
+
+HARD = [
+    (
+        "UTF-16, semicolons, decimal comma, ug/m3, winter time in Berlin",
+        "Zeit;SO2 [µg/m³]\r\n2026-03-14T10:15:00+01:00;-1,5\r\n2026-03-14T10:15:01+01:00;1.002,5\r\n".encode("utf-16"),
+        {"SO2 [µg/m³]": [-1.5, 1002.5], "Zeit": [1773479700.0, 1773479701.0]},
+    ),
+    ("tabs, points, commas of thousands", b"t\tx\n1\t101,325.5\n2\t-1,101,330.25\n", {"x": [101325.5, -1101330.25]}),
+    (
+        "a comma that was said to be of thousands", b"t;x\n1;1,013\n2;1,014\n", {"x": [1013.0, 1014.0]},
+        {"decimal": "."},
+    ),
+    ("apostrophes of thousands", "t;x\n1;1'013.25\n2;1’998.5\n".encode(), {"x": [1013.25, 1998.5]}),
+    ("narrow blanks of thousands", "t;x\n1;1\u202f013,25\n2;998,5\n".encode(), {"x": [1013.25, 998.5]}),
+    ("the typographer's minus", "t;x\n1;−1,5\n2;−2,25\n".encode(), {"x": [-1.5, -2.25]}),
+    (
+        # date -u -d 2026-10-25T00:59:59Z +%s; the clock goes back from 3:00 to 2:00.
+        "summer time ends", b"t,x\n2026-10-25T02:59:59+02:00,1\n2026-10-25T02:00:00+01:00,2\n",
+        {"t": [1792889999.0, 1792890000.0]},
+    ),
+    (
+        "offsets in a format that is given", b"t,x\n25.10.2026 02:59:59 +0200,1\n25.10.2026 02:00:00 +0100,2\n",
+        {"t": [1792889999.0, 1792890000.0]}, {"time_format": "%d.%m.%Y %H:%M:%S %z"},
+    ),
+    (
+        "milliseconds since 1970, one of them twice", b"t,x\n1780315200000,1\n1780315200000,2\n1780315201500,3\n",
+        {"t": [NOON, NOON, NOON + 1.5]},
+    ),
+    ("seconds and milliseconds mixed", b"t,x\n1780315200,1\n1780315201500,2\n", "s and ms since 1970"),
+    ("all numbers quoted", b'"t";"x"\n"1";"1,5"\n"2";"-2,25"\n', {"x": [1.5, -2.25]}),
+    (
+        "a byte order mark, comments that look like a head", "\ufeff# logger; a, b\nt,x\n1,2.5\n# in, it\n2,3.5\n".encode(),
+        {"x": [2.5, 3.5]},
+    ),
+    ("carriage returns, empty last columns", b"t;x;;;\r1;2,5;;;\r2;3,5;;;\r", {"x": [2.5, 3.5]}),
+    ("units in brackets below the head", b"t;x\n[s];(m/s)\n1;2,5\n2;3,5\n", {"x": [2.5, 3.5]}),
+    ("a head in two rows", b"t;x;x\n;raw;cal\ns;mV;ppb\n1;2;3\n2;3;4\n", "time 's' in column 't' cannot be read (row 3)"),
+    (
+        "day and month without their order", b"t,x\n03-04-2026 10:15,1\n04-04-2026 10:16,2\n",
+        'time_format = "%d-%m-%Y %H:%M", or table.time_format = "%m-%d-%Y %H:%M"',
+    ),
+    (
+        "many words for nothing", "t,x\n1,N/A\n2,-\n3,9999\n4,#N/A\n5,---\n6,–\n7,n.a.\n8,1.5\n".encode(),
+        {"x": [math.nan, math.nan, 9999.0, math.nan, math.nan, math.nan, math.nan, 1.5]},
+    ),
+    (
+        "zeros where a logger lost its power", b"t,x\n" + b"1,2.5\n" * 60 + b"\0" * 500,
+        "line 62 has a letter that no text has",
+    ),
+    ("a row without an end", b"t,x\n1," + b"9" * 200_000 + b"\n2,3.5\n", "200003 letters"),
+    ("Python's own underscores", b"t,x\n1,1_000\n2,2\n", "'1_000' in row 2"),
+    ("years in which nanoseconds end", b"t,x\n1677-01-01T00:00:00Z,1\n2500-01-01T00:00:00Z,2\n", {"t": [-9246096000.0, 16725225600.0]}),
+    ("a format of times that is none", b"t,x\n25.10.2026,1\n26.10.2026,2\n", "table.time_format is '%Q'", {"time_format": "%Q"}),
+]  # fmt: skip
+"""What makes it hard, the file, what its columns hold or the refusal says, and what is given."""
+
+
+@pytest.mark.parametrize(
+    ("data", "expected", "given"),
+    [pytest.param(*(*case, {})[1:4], id=case[0]) for case in HARD],
+)
+def test_a_hard_file_is_read_right_or_refused_in_a_line(tmp_path, data, expected, given):
+    path = tmp_path / "hard.csv"
+    path.write_bytes(data)
+
+    def columns():
+        table = read_table(path, table_format(given), head=("t", "x", "Zeit"))
+        # Times first: a table whose numbers are refused as well is refused for its times.
+        times = {name: table.times(name).seconds for name in table.names if name in ("t", "Zeit")}
+        return {name: table.numbers(name) for name in table.names if name not in times} | times
+
+    if isinstance(expected, str):
+        with pytest.raises(TableError) as error:
+            columns()
+        assert expected in str(error.value)
+        assert "\n" not in str(error.value)
+        return
+    found = columns()
+    for name, values in expected.items():
+        # Times of today have a microsecond's worth of digits.
+        assert found[name] == pytest.approx(values, abs=1e-6, nan_ok=True)
+
+
+def test_a_codec_that_is_none_of_text_is_no_encoding():
+    with pytest.raises(TableError, match="Python knows none"):
+        table_format({"encoding": "hex"})

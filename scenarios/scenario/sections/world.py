@@ -123,6 +123,8 @@ class PlaceConfig(Section):
     """Geodetic latitude of the vessel at the start [deg]."""
     longitude_deg: Annotated[float | None, Field(ge=-180.0, le=180.0), OWN_TRACK] = None
     """Longitude of the vessel at the start, east of Greenwich [deg]."""
+    geoid_m: Annotated[float, Field(ge=-110.0, le=90.0)] = 0.0
+    """Height of mean sea level above the WGS 84 ellipsoid there, for exports [m]."""
     utc: datetime | None = None
     """Time of the start, as in 2026-06-01T12:00:00Z; for a track from a file, that of the first
     report if not given.

@@ -96,9 +96,11 @@ def test_a_flight_is_streamed_in_real_time_and_received_by_a_second_process(run_
         lines = receiver.communicate(timeout=20)[0].split()
     assert (name, seconds) == ("a, <b>", 0.5)
     messages = received([bytes.fromhex(line) for line in lines])
-    assert len(messages) == sent == 4 + 3 * 6
+    # What heights are above, four a second, and three for each sample.
+    assert len(messages) == sent == 1 + 4 + 3 * 6
     assert {message.get_type() for message in messages} == {
         "HEARTBEAT", "SYSTEM_TIME", "AIS_VESSEL", "ADSB_VEHICLE", "ATTITUDE", "GLOBAL_POSITION_INT", "VFR_HUD",
+        "STATUSTEXT",
     }  # fmt: skip
 
 
@@ -134,7 +136,7 @@ def test_the_command_exports_several_formats_of_one_flight_and_streams_it(run_pa
     assert ended.out.splitlines() == [
         f"export: {run_path / 'export' / 'made.a, <b>.tlog'}",
         f"export: {run_path / 'export' / 'made.a, <b>.geojson'}",
-        f"stream: 13 messages of a, <b>, 0 s of flight, to {address}",
+        f"stream: 14 messages of a, <b>, 0 s of flight, to {address}",
     ]
     assert_refused(
         run_command("reports.build", run_path, "--flight", "a, <b>"),

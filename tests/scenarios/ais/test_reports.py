@@ -438,3 +438,20 @@ def test_what_is_wrong_in_the_made_file_is_dropped_and_counted():
     assert sum(found.dropped.values()) == found.rows - len(found.time) >= 5
     assert found.dropped["out of reach of others"] == found.dropped["without speed or course"] == 1
     assert np.diff(found.time).min() > 0.0
+
+
+def test_a_track_over_the_date_line_from_0_to_360_in_another_dialect_is_the_plain_one(tmp_path):
+    # 12 kn eastwards at 16 S for a minute each: 6.1733*60/(111195 cos 16) = 0.0034653 deg.
+    lines = [
+        f"2026-06-01T{10 + h:02d}:{i:02d}:00{zone},219999001,-16.0,{179.99 + 0.0034653 * i:.6f},12.0,90.0"
+        for i, (h, zone) in enumerate([(0, "Z"), (2, "+02:00"), (-4, "-04:00")] * 2)
+    ]
+    text = table(*lines).replace(",", ";").replace(".", ",").replace("-16,0", "−16,0")
+    (tmp_path / "ais.csv").write_text(text, encoding="utf-16")
+    found = read_ais(tmp_path / "ais.csv")
+    assert (len(found.time), found.dropped) == (6, {})
+    assert np.diff(found.time) == pytest.approx(60.0)
+    assert np.degrees(found.latitude) == pytest.approx(-16.0)
+    # Across the line longitudes go on from -180 degrees.
+    expected = [179.99, 179.993465, 179.996931, -179.999604, -179.996139, -179.992674]
+    assert np.degrees(found.longitude) == pytest.approx(expected, abs=1e-6)

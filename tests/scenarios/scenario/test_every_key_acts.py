@@ -185,10 +185,10 @@ ELSEWHERE = {
     "study", "title", "description", "fidelity", "aircraft", "payload.instruments", "vessel.track", "wind.table", "plume.model",
     "reference.shape",
     "flights", "histories", "sweep", "cases", "draws", "comparison", "comparison.variants",
-    "report.title", "report.author", "report.organisation", "report.logo",
+    "report.title", "report.author", "report.organisation", "report.logo", "place.geoid_m",
 }  # fmt: skip
-"""Kinds of study, texts, experiments, parts and reports, which tests of their own are about
-(test_extension_points, test_experiments, test_report_settings)."""
+"""Kinds of study, texts, experiments, parts, reports and exports, which tests of their own are about
+(test_extension_points, test_experiments, test_report_settings, test_heights)."""
 
 LEVEL = {"criteria.airspeed_error_rms_mps", "criteria.altitude_error_max_m"}
 """Criteria that the kinematic vehicle always meets: it is level and as fast as commanded."""

@@ -381,3 +381,20 @@ def test_netcdf_without_a_longitude_is_refused_by_it(longitudes, tmp_path):
         InputError, match=r"longitudes go from .* deg, and the flight begins at -5\.000"
     ):
         read_netcdf(with_longitudes(tmp_path / "era5.nc", longitudes, -5.0), 57.2, -5.0)
+
+
+def test_a_table_in_another_dialect_blows_as_the_plain_one(tmp_path):
+    # The clock goes back at 3:00 in Berlin; a direction of -90 deg is 270.
+    text = (
+        "\ufeff# mast 3; 10 m\rtime_utc\tspeed_mps\tfrom_deg\t\t\r[UTC]\t[m/s]\t[deg]\t\t\r"
+        '2026-10-25T02:30:00+02:00\t4,5\t−90,0\t\t\r2026-10-25T02:30:00+01:00\t8,5\t"−90,0"\t\t\r'
+    )
+    path = tmp_path / "dialect.csv"
+    path.write_bytes(text.encode("utf-8"))
+    # 2026-10-25T00:30:00Z, date -u -d ... +%s.
+    place = replace(KATTEGAT, utc=1792888200.0)
+    assert first_time(str(path), place) == 1792888200.0
+    field = wind(str(path), place, duration=3000.0)
+    # From the west it blows east; after half an hour it has grown half-way to 8.5 m/s.
+    assert field.now(0.0, 60.0) == pytest.approx((0.0, 4.5), abs=1e-12)
+    assert field.now(1800.0, 60.0) == pytest.approx((0.0, 6.5), abs=1e-12)
