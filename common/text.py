@@ -3,6 +3,7 @@
 import difflib
 import json
 import math
+import re
 from collections.abc import Iterable
 from datetime import UTC, datetime
 
@@ -12,6 +13,11 @@ _SHORT = 3
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 """First letters of a text that a spreadsheet computes."""
 
+_HOST_AND_PORT = re.compile(r"([A-Za-z0-9.\-]+):(\d{1,5})")
+
+_PORT_MAX = 65535
+"""Largest port of UDP and TCP."""
+
 MARK = "'"
 """Put before such a text in a cell, so that it is shown and not computed (OWASP, CSV injection)."""
 
@@ -19,6 +25,15 @@ MARK = "'"
 def at_or_below(key: str, above: str) -> bool:
     """Return whether a dotted key is another one, or below it, as wind.speed_mps is below wind."""
     return key == above or key.startswith(f"{above}.")
+
+
+def host_and_port(text: str) -> tuple[str, int] | None:
+    """Return host and port of HOST:PORT, or None where the text is not of that form."""
+    found = _HOST_AND_PORT.fullmatch(text)
+    if found is None:
+        return None
+    host, port = found[1], int(found[2])
+    return (host, port) if 0 < port <= _PORT_MAX else None
 
 
 def one_line(words: str) -> str:

@@ -226,6 +226,21 @@ def print_design(record: dict[str, Any]) -> None:
     print_summary(record)
 
 
+FlightOption = Annotated[
+    str | None, typer.Option(metavar="ID", help="Export or stream this flight alone.")
+]
+"""Which flight an export is of."""
+
+StreamOption = Annotated[
+    str | None,
+    typer.Option(
+        metavar="SCHEME://ADDRESS",
+        help="Send a flight to another program in real time, as to udp://HOST:PORT.",
+    ),
+]
+"""Where a flight is sent to."""
+
+
 def command(
     directory: Annotated[
         Path,
@@ -240,16 +255,8 @@ def command(
             help="Write RUN_DIR/export/... by these exporters, or by FILE.py:NAME, instead of the reports.",
         ),
     ] = None,
-    flight: Annotated[
-        str | None, typer.Option(metavar="ID", help="Export or stream this flight alone.")
-    ] = None,
-    stream: Annotated[
-        str | None,
-        typer.Option(
-            metavar="SCHEME://ADDRESS",
-            help="Send a flight to another program in real time, as to udp://HOST:PORT.",
-        ),
-    ] = None,
+    flight: FlightOption = None,
+    stream: StreamOption = None,
     overrides: Annotated[
         list[str] | None,
         typer.Option(

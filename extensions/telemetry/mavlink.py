@@ -4,13 +4,13 @@ QGroundControl record, and as a stream to a ground station.
 """
 
 import math
-import re
 import socket
 import struct
 from collections.abc import Iterator
 from pathlib import Path
 from time import monotonic, sleep
 
+from common.text import host_and_port
 from reports.errors import ReportError
 from reports.export.geographic import Body, GeographicFlight, recorded_flights
 from reports.run.run_data import RunData
@@ -59,9 +59,7 @@ message set.
 """
 
 
-_ADDRESS = re.compile(r"udp://([A-Za-z0-9.\-]+):(\d{1,5})")
-
-_PORT_MAX = 65535
+_SCHEME = "udp://"
 
 
 class Tlog:
@@ -91,12 +89,12 @@ class UdpStream:
     """
 
     def __init__(self, address: str) -> None:
-        found = _ADDRESS.fullmatch(address)
-        if found is None or not 0 < int(found[2]) <= _PORT_MAX:
+        host = host_and_port(address.removeprefix(_SCHEME))
+        if host is None or not address.startswith(_SCHEME):
             raise ReportError(
                 f"--stream is '{address}'; give udp://HOST:PORT, as in udp://127.0.0.1:14550"
             )
-        self._host = found[1], int(found[2])
+        self._host = host
 
     def send(self, flight: GeographicFlight) -> int:
         """Send a flight in real time; return the number of messages.

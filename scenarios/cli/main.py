@@ -15,6 +15,7 @@ import typer
 
 from common.command_line import PROGRAM, refuse, run_command
 from common.registry import announced, load_announced
+from reports.build import FlightOption, StreamOption
 
 
 def export(
@@ -28,16 +29,8 @@ def export(
             help="Formats, as kmz, geojson, netcdf or tracks_csv, those of extensions, or FILE.py:NAME.",
         ),
     ] = None,
-    flight: Annotated[
-        str | None, typer.Option(metavar="ID", help="Export or stream this flight alone.")
-    ] = None,
-    stream: Annotated[
-        str | None,
-        typer.Option(
-            metavar="SCHEME://ADDRESS",
-            help="Send a flight to another program in real time, as to udp://HOST:PORT.",
-        ),
-    ] = None,
+    flight: FlightOption = None,
+    stream: StreamOption = None,
 ) -> None:
     """Write the flights of a run in other formats, into RUN_DIR/export, or send one in real time."""
     from reports.build import command

@@ -262,9 +262,7 @@ search_method = SEARCH_METHODS.register
 
 
 _RANDOM_EVERY = 4
-"""Every how manieth start is a random point: what no method has found yet is found from there
-alone.
-"""
+"""One start of so many is a random point: what no method has found yet is found from there alone."""
 
 
 WORTHWHILE = 0.1

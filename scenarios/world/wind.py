@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -76,7 +76,11 @@ def sampled_weather(scenario: Scenario, wind: WindField, generator: np.random.Ge
 
 Array = npt.NDArray[np.float64]
 
-COLUMNS = ("time_utc", "height_m", "speed_mps", "from_deg")
+_FROM = "from_deg"
+
+_TIME_AND_HEIGHT, _SPEED_AND_DIRECTION = ("time_utc", "height_m"), ("speed_mps", _FROM)
+
+COLUMNS = (*_TIME_AND_HEIGHT, *_SPEED_AND_DIRECTION)
 """Of a table; one of the first two may be missing."""
 
 _TO = "to_deg"
@@ -216,9 +220,25 @@ def _read_table(path: Path, _stamp: tuple[int, int]) -> TabledWind:
         raise InputError(f"wind.table: {path}: {error}") from None
 
 
-def _rows(path: Path, table: Table) -> Iterator[tuple[int, float, float, float, float]]:
-    """Yield line, time [s], height [m], and where the wind blows to, north and east [m/s]; not a
-    number for what has no column.
+class _Row(NamedTuple):
+    """A row of a table of wind; not a number for what has no column.
+
+    Attributes
+    ----------
+    line : in the file
+    time, height : [s], [m]
+    north, east : where the wind blows to [m/s]
+    """
+
+    line: int
+    time: float
+    height: float
+    north: float
+    east: float
+
+
+def _rows(path: Path, table: Table) -> Iterator[_Row]:
+    """Yield the rows of a table.
 
     Raises
     ------
@@ -226,10 +246,13 @@ def _rows(path: Path, table: Table) -> Iterator[tuple[int, float, float, float, 
     TableError : a cell is no number or no time
     """
     names = [name.lower() for name in table.names]
-    if not set(COLUMNS[2:]) <= set(names) or not set(COLUMNS[:2]) & set(names):
-        remedy = other_units(names, COLUMNS[2:]) or "rename the columns to these"
-        if _TO in names and COLUMNS[3] not in names:
-            remedy = f"{COLUMNS[3]} is where the wind comes from: add 180 deg to '{_TO}', less 360 where it is more, and rename it"
+    if not set(_SPEED_AND_DIRECTION) <= set(names) or not set(_TIME_AND_HEIGHT) & set(names):
+        remedy = other_units(names, _SPEED_AND_DIRECTION) or "rename the columns to these"
+        if _TO in names and _FROM not in names:
+            remedy = (
+                f"{_FROM} is where the wind comes from: add 180 deg to '{_TO}', less 360 where it"
+                " is more, and rename it"
+            )
         raise InputError(
             f"wind.table: {path}, line {table.head_line}: the header is {','.join(names)[:80]!r};"
             f" it must be {','.join(COLUMNS)}, of which time_utc or height_m may be missing: {remedy}"
@@ -243,7 +266,7 @@ def _rows(path: Path, table: Table) -> Iterator[tuple[int, float, float, float, 
     nothing = np.full(len(table), math.nan)
     times = table.times(there["time_utc"]).seconds if "time_utc" in there else nothing
     heights = table.numbers(there["height_m"]) if "height_m" in there else nothing
-    speeds, directions = (table.numbers(there[column]) for column in COLUMNS[2:])
+    speeds, directions = (table.numbers(there[column]) for column in _SPEED_AND_DIRECTION)
     # Where no wind blows it comes from nowhere.
     directions = np.where((speeds == 0.0) & np.isnan(directions), 0.0, directions)
     good = (
@@ -262,13 +285,13 @@ def _rows(path: Path, table: Table) -> Iterator[tuple[int, float, float, float, 
         )
     for row, line in enumerate(table.lines):
         wind = wind_velocity(float(speeds[row]), float(directions[row]))
-        yield line, float(times[row]), float(heights[row]), *wind
+        yield _Row(line, float(times[row]), float(heights[row]), *wind)
 
 
-def _on_grid(path: Path, rows: list[tuple[int, float, float, float, float]]) -> TabledWind:
+def _on_grid(path: Path, rows: list[_Row]) -> TabledWind:
     if not rows:
         raise InputError(f"wind.table: {path}: no row below the header; give one at least")
-    timed, layered = math.isfinite(rows[0][1]), math.isfinite(rows[0][2])
+    timed, layered = math.isfinite(rows[0].time), math.isfinite(rows[0].height)
     at: dict[float, dict[float, tuple[float, float]]] = {}
     before = -math.inf
     for line, time, height, north, east in rows:
