@@ -21,8 +21,6 @@ _EXAMPLES = _HOUSE / "docs" / "examples"
 
 COMMANDS = {
     "sweep": ("scenarios.run", "sweep_nu"),
-    "paper": ("scenarios.run", "paper"),
-    "trials": ("scenarios.run", "sea_trial", "--set", "share=0.02"),
     "monte_carlo": ("scenarios.run", "monte_carlo", "--set", "flights=64"),
     "sulphur": ("scenarios.run", "sulphur"),
     "measuring": (
