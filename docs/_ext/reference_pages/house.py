@@ -56,7 +56,8 @@ _STYLE = (
     ".step{fill:#fff;stroke:#d55e00;stroke-width:1.2}.way{stroke:#d55e00;stroke-width:1.6;fill:none}"
 )
 _TIPS = "".join(
-    f'<marker id="{name}" viewBox="0 0 10 10" refX="9" refY="5" markerWidth="7" markerHeight="7" orient="auto">'
+    f'<marker id="{name}" viewBox="0 0 10 10" refX="9" refY="5" markerWidth="7"'
+    ' markerHeight="7" orient="auto">'
     f'<path d="M0 0 10 5 0 10z" fill="{colour}"/></marker>'
     for name, colour in (("import", "#777"), ("way", "#d55e00"))
 )
@@ -72,7 +73,10 @@ def house_svg() -> str:
     """
     return "\n".join(
         (
-            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 910 640" role="img" aria-label="{_TITLE}">',
+            (
+                '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 910 640" role="img"'
+                f' aria-label="{_TITLE}">'
+            ),
             f"<style>{_STYLE}</style><defs>{_TIPS}</defs>",
             '<rect width="910" height="640" fill="#fff"/>',
             *_imports(),
@@ -101,7 +105,8 @@ def _rooms() -> Iterator[str]:
             len(path.read_text("utf-8").splitlines()) for path in (_HOUSE / name).rglob("*.py")
         )
         yield (
-            f'<rect class="room" x="{box.left}" y="{box.top}" width="{box.width}" height="{box.height}" rx="5"/>'
+            f'<rect class="room" x="{box.left}" y="{box.top}" width="{box.width}"'
+            f' height="{box.height}" rx="5"/>'
         )
         yield _text(box.left + 12, box.top + 21, name, "name")
         yield _text(box.left + 12, box.top + 40, box.holds, "small")
@@ -140,14 +145,16 @@ def _way() -> Iterator[str]:
         top = 20.0 + number * (_STEP_HEIGHT + _STEP_GAP)
         width = _STEP_WIDTH - (left - _STEP_LEFT)
         yield (
-            f'<rect class="step" x="{left}" y="{top}" width="{width}" height="{_STEP_HEIGHT}" rx="5"/>'
+            f'<rect class="step" x="{left}" y="{top}" width="{width}" height="{_STEP_HEIGHT}"'
+            ' rx="5"/>'
         )
         yield _text(left + 10, top + 18, f"{number + 1}  {place}", "name")
         yield _text(left + 10, top + 35, happens, "small")
         if number:
             x = _STEP_LEFT + 0.5 * _STEP_WIDTH
             yield (
-                f'<line class="way" x1="{x}" y1="{top - _STEP_GAP}" x2="{x}" y2="{top}" marker-end="url(#way)"/>'
+                f'<line class="way" x1="{x}" y1="{top - _STEP_GAP}" x2="{x}" y2="{top}"'
+                ' marker-end="url(#way)"/>'
             )
 
 
