@@ -80,7 +80,7 @@ def main() -> int:
 
 
 def build(folder: Path) -> Path:
-    """Compile the modules in a folder of their own, and return the one that holds them by packages."""
+    """Compile the modules in a folder of their own; return the one that holds them by packages."""
     files = [
         str(ROOT / package / f"{name}.py") for package, names in MODULES.items() for name in names
     ]

@@ -169,7 +169,7 @@ def _flown(scenario: Scenario, setup: VehicleSetup) -> tuple[FlightPlan, Measure
 
 
 def _plume_readings(history: pd.DataFrame) -> PlumeReadings:
-    """Return what a search gets at each step of a flight, in parcels as the sniffer passes them on."""
+    """Return what a search gets at each step of a flight, in parcels as the sniffer passes them."""
     if "co2_reading_ppm" not in history:
         return []
     result: list[tuple[float, tuple[tuple[float, float], ...]] | None] = []
