@@ -9,6 +9,7 @@ import pandas as pd
 
 from reports.document.scene import Estimate, Event, Gas, Scene
 from reports.run.columns import Array, column
+from reports.run.faults import fault_marks
 from reports.run.flight_config import keepout_shape, source_height
 from reports.run.ship import hull_of
 from reports.run.time_history import guard_stretches, shown_distances, true_wind, vessel_heading
@@ -137,7 +138,7 @@ def _events(
     times = {
         "closest approach": float(time[int(np.argmin(distance))]),
         "settled": row.get("settling_time_s"),
-        "fault": row.get("fault_time_s"),
+        **fault_marks(row),
         "guard acts": guard[0][0] if guard else math.nan,
         "verdict": row.get("verdict_time_s"),
     }

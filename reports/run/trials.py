@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from common.faults import NO_FAULT
 from common.run_layout import DRAWS
 from common.text import at_or_below
 from common.verdict import Counts, TrialVerdict
@@ -196,7 +197,7 @@ class Trial:
         calm = not (turbulent or self.varies("turbulence"))
         kinds = {
             Kind.SWEEP: bool(self.swept),
-            Kind.FAULTS: self.setting("fault.kind", "none") != "none" or self.varies("fault.kind"),
+            Kind.FAULTS: self._has_faults(),
             Kind.MANOEUVRES: calm
             and (bool(self.setting("vessel.manoeuvres", [])) or self.varies("vessel.manoeuvres")),
             Kind.APPROACH: calm
@@ -204,6 +205,15 @@ class Trial:
             and not self.criteria.get("crossing_interval_error"),
         }
         return next((kind for kind, holds in kinds.items() if holds), Kind.GENERAL)
+
+    def _has_faults(self) -> bool:
+        """Return whether flights have faults, one or several."""
+        given = self.setting("fault", {})
+        entries = given if isinstance(given, list) else [given]
+        keys = [f"fault.{i}.kind" for i in range(len(entries))]
+        return any(entry.get("kind", NO_FAULT) != NO_FAULT for entry in entries) or any(
+            map(self.varies, ["fault.kind", *keys])
+        )
 
 
 def shape_words(rows: pd.DataFrame) -> str:

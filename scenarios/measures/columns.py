@@ -8,6 +8,7 @@ its settling time on.
 """
 
 from common.columns import Column, described
+from common.faults import fault_columns
 from common.premises import PREMISE_COLUMNS
 
 FLIGHT_COLUMNS = described(
@@ -24,6 +25,7 @@ SPEED_RATIO = Column(
     title="Speed ratio",
     symbol="ν",
 )
+
 
 SUMMARY_COLUMNS = described(
     {
@@ -64,8 +66,8 @@ SUMMARY_COLUMNS = described(
         "place_latitude_deg": "latitude of the vessel at time 0, where it is known",
         "place_longitude_deg": "longitude of the vessel at time 0, where it is known",
         "start_utc": Column("UTC of time 0, where it is known", kind="text"),
-        "fault": Column("kind of the fault", kind="text"),
-        "fault_time_s": "time at which the fault begins",
+        "fault": Column("kind of the fault, of several of the first", kind="text"),
+        "fault_time_s": "time at which that fault begins",
         "modes": Column(
             "modes of the guidance, in the order in which they first occurred", kind="text"
         ),
@@ -348,6 +350,17 @@ SUMMARY_COLUMNS = described(
     }
 )
 """Of ``summary.csv`` and ``comparison.csv``: a row per flight."""
+
+
+def further_faults(most: int) -> dict[str, Column]:
+    """Return the columns that the summary has besides where flights have up to ``most`` faults."""
+    declared: dict[str, Column | str] = {}
+    for number in range(2, most + 1):
+        kind, begins = fault_columns(number)
+        declared[kind] = Column(f"kind of fault {number}, in the order of time", kind="text")
+        declared[begins] = f"time at which fault {number} begins"
+    return described(declared)
+
 
 FINDING_COLUMNS = described(
     {

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from aircraft.wind import CALM
+from common.faults import fault_columns
 from common.premises import UNEXPLAINED
 from common.text import utc_text
 from gnc.mission.mission import LEAVING, Mode
@@ -18,6 +19,7 @@ from scenarios.measures.keepout import closest_approach, keepout_figures
 from scenarios.measures.premises import is_unexplained, premise_figures
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.world.ais.track import AisVessel
+from scenarios.world.faults import Faults
 from scenarios.world.vessel import Place
 
 Array = npt.NDArray[np.float64]
@@ -54,7 +56,6 @@ def plan_row(plan: FlightPlan) -> Row:
         "start_aspect_deg": math.degrees(
             math.remainder(math.atan2(start.east, start.north) - axis, 2.0 * math.pi)
         ),
-        "fault_time_s": world.fault.begins if math.isfinite(world.fault.begins) else math.nan,
         "eta": plan.oscillation.eta,
         "omega_0_rad_s": plan.oscillation.omega_0,
         "oscillation_limit": plan.oscillation.limit,
@@ -72,12 +73,22 @@ def plan_row(plan: FlightPlan) -> Row:
             "wind_speed_mps": math.hypot(north, east),
             "wind_from_deg": round(math.degrees(math.atan2(-east, -north)), 6) % 360.0,
         }
-    row |= _place_row(world.place)
+    row |= _fault_row(world.faults) | _place_row(world.place)
     if plan.margin is not None:
         row |= {
             "keepout_margin_m": plan.margin.total,
             "spread_predicted_m": plan.margin.tracking_sigma,
         }
+    return row
+
+
+def _fault_row(faults: Faults) -> Row:
+    """Return kind and time of each fault, in the order of time."""
+    row: Row = {}
+    for number, fault in enumerate(faults.each, start=1):
+        kind, begins = fault_columns(number)
+        row[kind] = fault.kind
+        row[begins] = fault.begins if math.isfinite(fault.begins) else math.nan
     return row
 
 

@@ -83,7 +83,7 @@ from scenarios.scenario.sections.flight import StartConfig
 from scenarios.vehicles.sensors import SensorErrors
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 from scenarios.world.ais.track import AisVessel, received_reports, usual_intervals
-from scenarios.world.faults import NO_FAULT, VESSEL_DATA, sampled_fault
+from scenarios.world.faults import NO_FAULTS, VESSEL_DATA, in_order, sampled_fault
 from scenarios.world.noise import (
     BACKGROUND,
     EXHAUST,
@@ -237,7 +237,7 @@ def _tracking_flight(
             elevation=axis.elevation,
             source_height=scenario.source_height,
             weather=STILL_AIR,
-            fault=NO_FAULT,
+            faults=NO_FAULTS,
             place=place_of(scenario, vessel),
         ),
         oscillation=orbit,
@@ -329,7 +329,7 @@ def _following_flight(
             scenario.reports,
             vessel,
             duration=flight.duration_max_s,
-            outage=world.fault.interval(VESSEL_DATA),
+            outages=world.faults.intervals(VESSEL_DATA),
             generator=generators.reports,
         )
     guard = guarded if g.keepout_guard else None
@@ -489,13 +489,18 @@ def _start_and_world(
     noise: Noise,
     generator: np.random.Generator,
 ) -> tuple[Start, World]:
-    """Return start and world of a flight in a mean wind, sampled in this order: start, fault, air."""
+    """Return start and world of a flight in a mean wind, sampled in this order: start, fault,
+    air, and further faults.
+    """
     plume = plume_of(scenario, vessel)
     start = sampled_start(
         scenario.start, generator, course=vessel.course(0.0), axis=plume.axis(0.0)
     )
-    fault = sampled_fault(scenario.fault, generator)
+    first, *others = scenario.faults
+    fault = sampled_fault(first, generator)
     weather = sampled_weather(scenario, mean, generator)
+    # Start, air and first fault are what they are without another one.
+    faults = in_order([fault, *(sampled_fault(of, generator) for of in others)])
     covered = scenario.flight.duration_max_s + TRACK_MARGIN
     exhaust = exhaust_of(
         scenario,
@@ -511,7 +516,7 @@ def _start_and_world(
         elevation=math.radians(scenario.plume.elevation_deg),
         source_height=scenario.source_height,
         weather=weather,
-        fault=fault,
+        faults=faults,
         exhaust=exhaust,
         background=sampled_background(scenario.air, covered, own_generator(noise, BACKGROUND)),
         place=place_of(scenario, vessel),

@@ -72,6 +72,7 @@ from scenarios.measures.columns import (
     INPUT_COLUMNS,
     INTERVENTION_COLUMNS,
     SUMMARY_COLUMNS,
+    further_faults,
 )
 from scenarios.measures.verdict import Judge, Tally, bound_of
 from scenarios.planning.limits import omega_max
@@ -233,6 +234,7 @@ class FlightStudy:
         figures = SUMMARY_COLUMNS | declared.figures | described(self.FIGURES, part=part)
         if any(setting.finds for setting in settings):
             figures |= FINDING_COLUMNS
+        figures |= further_faults(max(len(setting.faults) for setting in settings))
         keys = dict.fromkeys(key for each in self.experiments.values() for key in each.keys)
         added = {file: described(columns, part=part) for file, columns in self.TABLES.items()}
         tables = {

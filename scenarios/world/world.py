@@ -14,7 +14,7 @@ from common.plugins import call_plugin, is_users, number, numbers
 from scenarios.scenario.extension_points import PLUME_MODELS, VESSEL_TRACKS
 from scenarios.scenario.scenario import Scenario
 from scenarios.world.ais.track import AisVessel, ais_vessel
-from scenarios.world.faults import TimedFault
+from scenarios.world.faults import Faults
 from scenarios.world.plume import UNIFORM, Background, Exhaust, Plume
 from scenarios.world.vessel import (
     Place,
@@ -53,7 +53,7 @@ class World:
     vessel, plume : the ship's motion and the plume's axis
     elevation, source_height : of the plume's axis, and of its origin above the sea [rad, m]
     weather : the air
-    fault : what fails, and when
+    faults : what fails, and when
     exhaust : the vessel's smoke, or none
     background : CO2 of the air beside it
     place : where on earth, and when
@@ -64,7 +64,7 @@ class World:
     elevation: float
     source_height: float
     weather: Weather
-    fault: TimedFault
+    faults: Faults
     place: Place
     exhaust: Exhaust | None = None
     background: Background = UNIFORM

@@ -2,9 +2,18 @@
 is absent is ideal.
 """
 
+import functools
 from typing import Annotated, Any, ClassVar
 
-from pydantic import ConfigDict, Field, field_validator, model_validator
+from pydantic import (
+    ConfigDict,
+    Field,
+    TypeAdapter,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+    field_validator,
+    model_validator,
+)
 
 from scenarios.scenario.extension_points import PAYLOADS
 from scenarios.scenario.sections.needs import OPERATIONAL, Need, when
@@ -71,7 +80,7 @@ class SensorsConfig(Section):
 
 
 class FaultConfig(Section):
-    """A fault in flight."""
+    """A fault in flight; several, each at a time of its own, as a list of tables, [[fault]]."""
 
     NEEDS: ClassVar[tuple[Need, ...]] = (OPERATIONAL,)
 
@@ -118,6 +127,23 @@ class FaultConfig(Section):
     def _ordered(self) -> "FaultConfig":
         check_ordered("at_s", self.at_s)
         return self
+
+
+@functools.cache
+def _several() -> TypeAdapter[tuple[FaultConfig, ...]]:
+    return TypeAdapter(tuple[FaultConfig, ...])
+
+
+def _one_or_several(given: Any, _: ValidatorFunctionWrapHandler) -> Any:
+    """Return a fault, or several from a list: what is wrong is said of the form that is given."""
+    if isinstance(given, list | tuple):
+        return _several().validate_python(given)
+    return FaultConfig.model_validate(given)
+
+
+OneOrSeveralFaults = Annotated[
+    FaultConfig | tuple[FaultConfig, ...], WrapValidator(_one_or_several)
+]
 
 
 class PayloadConfig(PartSection):

@@ -3,6 +3,7 @@ on board: every few seconds, noisy, late, or not at all.
 """
 
 import math
+from collections.abc import Sequence
 from datetime import datetime
 from functools import lru_cache
 from pathlib import Path
@@ -295,7 +296,7 @@ def received_reports(
     vessel: VesselTruth,
     *,
     duration: float,
-    outage: tuple[float, float],
+    outages: Sequence[tuple[float, float]],
     generator: np.random.Generator,
 ) -> list[tuple[float, VesselReport]]:
     """Return the reports that are received, with the time at which each is [s], in the order in
@@ -308,11 +309,11 @@ def received_reports(
     reports : how they come; exact knowledge needs none of this
     vessel : its motion
     duration : of the flight [s]
-    outage : nothing is received between these times [s]
+    outages : nothing is received between these times [s]
     generator : of the random numbers
     """
     if isinstance(vessel, AisVessel):
-        return _received_from_file(reports, vessel, outage=outage, generator=generator)
+        return _received_from_file(reports, vessel, outages=outages, generator=generator)
     received = []
     time = 0.0
     while time <= duration:
@@ -327,7 +328,7 @@ def received_reports(
             velocity_north=v_north + reports.velocity_sigma_mps * float(errors[2]),
             velocity_east=v_east + reports.velocity_sigma_mps * float(errors[3]),
         )
-        if time == 0.0 or not (missed or outage[0] <= time + late < outage[1]):
+        if time == 0.0 or not (missed or _within(outages, time + late)):
             received.append((time + late, report))
         time += float(generator.uniform(*reports.interval_s))
     return sorted(received, key=lambda entry: entry[0])
@@ -337,7 +338,7 @@ def _received_from_file(
     reports: VesselReportsConfig,
     vessel: AisVessel,
     *,
-    outage: tuple[float, float],
+    outages: Sequence[tuple[float, float]],
     generator: np.random.Generator,
 ) -> list[tuple[float, VesselReport]]:
     """Return the file's own reports as they are received: late or missing where the scenario says
@@ -349,6 +350,10 @@ def _received_from_file(
         missed = bool(generator.random() < reports.missing)
         if report.time <= 0.0:
             received.append((report.time, report))
-        elif not (missed or outage[0] <= report.time + late < outage[1]):
+        elif not (missed or _within(outages, report.time + late)):
             received.append((report.time + late, report))
     return sorted(received, key=lambda entry: entry[0])
+
+
+def _within(intervals: Sequence[tuple[float, float]], time: float) -> bool:
+    return any(begins <= time < ends for begins, ends in intervals)
