@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from common.faults import NO_FAULT
+from common.hull import HULL_SHAPES
 from common.run_layout import DRAWS
 from common.text import at_or_below
 from common.verdict import Counts, TrialVerdict
@@ -34,6 +35,8 @@ class Kind(Enum):
 SHAPES = {
     "sphere": "from the keep-out sphere's centre",
     "cylinder": "horizontal, from the keep-out cylinder's axis",
+    HULL_SHAPES["sphere"]: "from the outline of the hull",
+    HULL_SHAPES["cylinder"]: "horizontal, from the outline of the hull",
 }
 """Shapes of keep-out areas, and what a distance is measured from."""
 
@@ -228,7 +231,8 @@ def measured_from(shape: str) -> str:
     """Return what a distance is measured from, given the shape of the keep-out area, or shapes, in
     words.
     """
-    return ", or ".join(words for name, words in SHAPES.items() if name in shape)
+    named = shape.split(" or ")
+    return ", or ".join(words for name, words in SHAPES.items() if name in named)
 
 
 def leaves(tree: Mapping[str, Any], before: str = "") -> dict[str, Any]:

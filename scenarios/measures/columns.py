@@ -99,7 +99,8 @@ SUMMARY_COLUMNS = described(
             symbol="r_CO",
         ),
         "keepout_shape": Column(
-            "sphere about the funnel's mouth, or cylinder about the vertical through it",
+            "sphere about the funnel's mouth, or cylinder about the vertical through it; hull, or"
+            " hull prism of any height, where it is measured from the outline of the hull",
             kind="text",
         ),
         "keepout_radius_m": Column(
@@ -130,7 +131,8 @@ SUMMARY_COLUMNS = described(
             worse="higher",
         ),
         "min_distance_m": Column(
-            "closest approach to the centre of the sphere, or to the axis of the cylinder",
+            "closest approach to the centre of the sphere, to the axis of the cylinder, or to the"
+            " outline of the hull",
             title="Closest approach",
             digits=1,
             worse="lower",
@@ -350,6 +352,29 @@ SUMMARY_COLUMNS = described(
     }
 )
 """Of ``summary.csv`` and ``comparison.csv``: a row per flight."""
+
+
+HULL_COLUMNS = described(
+    {
+        "hull_length_m": Column("length of the ship", title="Length of the ship", digits=0),
+        "hull_beam_m": Column("beam of the ship", title="Beam of the ship", digits=0),
+        "stack_from_bow_m": Column("funnel from the bow", title="Funnel from the bow", digits=0),
+        "stack_from_port_m": Column(
+            "funnel from the port side", title="Funnel from the port side", digits=0
+        ),
+        "antenna_distance_m": Column(
+            "distance of the antenna whose place is reported from the funnel",
+            title="Antenna from the funnel",
+            digits=0,
+        ),
+        "guarded_radius_m": Column(
+            "distance from the funnel that keeps r_min at any heading of the ship",
+            title="Guarded radius",
+            digits=1,
+        ),
+    }
+)
+"""Of the summary, of flights beside a ship whose size is known."""
 
 
 def further_faults(most: int) -> dict[str, Column]:

@@ -205,7 +205,7 @@ def _check_law(scenario: "Scenario") -> None:
 
 def _check_start(scenario: "Scenario") -> None:
     """Refuse a start within the keep-out area."""
-    start, radius = scenario.start, scenario.keepout.radius_m
+    start, radius = scenario.start, scenario.guarded_radius
     if scenario.circles:
         return
     if start.place_m is not None:
@@ -217,7 +217,12 @@ def _check_start(scenario: "Scenario") -> None:
     else:
         nearest, where = start.distance_m[0], "start.distance_m begins at"
     if nearest <= radius:
-        raise ValueError(f"{where} {nearest:g} m; it must exceed keepout.radius_m, {radius:g} m")
+        reach = radius - scenario.keepout.radius_m
+        hull = f" and the {reach:g} m from the funnel to the end of the hull" if reach else ""
+        raise ValueError(
+            f"{where} {nearest:g} m; it must exceed keepout.radius_m,"
+            f" {scenario.keepout.radius_m:g} m{hull}"
+        )
 
 
 def _is_scaled_later(scenario: "Scenario") -> bool:

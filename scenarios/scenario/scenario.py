@@ -228,6 +228,20 @@ class Scenario(_AddedKeys):
         return self.following.plume != "predicted" or self.flight.until == "verdict"
 
     @property
+    def guarded_radius(self) -> float:
+        """Return the distance that has to be kept from the funnel, whatever the ship's heading is:
+        r_min, and, where that is measured from the hull, that of its farthest point [m].
+        """
+        hull = self.vessel.hull
+        reach = hull.farthest if hull is not None and self.keepout.from_hull else 0.0
+        return self.keepout.radius_m + reach
+
+    @property
+    def guarded_keepout(self) -> KeepoutConfig:
+        """Return the keep-out area about the funnel that has ``guarded_radius``."""
+        return self.keepout.model_copy(update={"radius_m": self.guarded_radius})
+
+    @property
     def source_height(self) -> float:
         """Return the height of the funnel's mouth above the sea: as it is given, else that of the
         ship [m].

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Self
 
 from common.faults import faults_in
+from common.hull import HULL_SHAPES
 from common.intervals import TELLING, percent
 from common.premises import TERMS, UNEXPLAINED
 from common.run_layout import SUMMARY
@@ -29,6 +30,8 @@ on the console, at most.
 _MEASURED_FROM = {
     "sphere": " (from the centre of the keep-out sphere)",
     "cylinder": " (horizontally, from the axis of the cylinder)",
+    HULL_SHAPES["sphere"]: " (from the outline of the hull)",
+    HULL_SHAPES["cylinder"]: " (horizontally, from the outline of the hull)",
 }
 """What distances are measured from, by the shape of the keep-out area."""
 
