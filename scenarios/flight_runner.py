@@ -18,6 +18,7 @@ import numpy as np
 import pandas as pd
 
 from common.columns import Column, Table
+from common.faults import fault_columns
 from common.plugins import call_plugin
 from common.run_layout import CROSSINGS, DRAWS, INTERVENTIONS, OVERRIDES
 from common.text import as_json_cell
@@ -377,7 +378,10 @@ def _request_row(request: FlightRequest) -> Row:
         "aircraft": scenario.aircraft if scenario.fidelity == "six_dof" else "none",
         "fidelity": scenario.fidelity,
         "seed": request.seed,
-        "fault": scenario.fault.kind,
+        **{
+            fault_columns(number)[0]: fault.kind
+            for number, fault in enumerate(scenario.faults, start=1)
+        },
         "required": scenario.criteria.required,
     }
     if scenario.circles:

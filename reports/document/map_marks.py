@@ -53,7 +53,7 @@ def hull_line(hull: Hull, angle: float, x: float = 0.0, y: float = 0.0) -> Line:
     where her size is not known.
     """
     right, ahead = (np.array(side) for side in zip(*(*_HULL, _HULL[0]), strict=True))
-    across, along = hull.beam * right, hull.length * (ahead - hull.funnel)
+    across, along = hull.beam * right + hull.aside, hull.length * (ahead - hull.funnel)
     return Line(
         x=x + math.cos(angle) * across + math.sin(angle) * along,
         y=y - math.sin(angle) * across + math.cos(angle) * along,

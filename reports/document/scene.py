@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from common.hull import ShipHull
 from reports.run.columns import Array
 from reports.run.ship import Hull
 
@@ -65,7 +66,8 @@ class Scene:
     distances : least and largest distance that its curve shows, of what the keep-out area is about
         [m]
     keepout_radius : r_min [m]
-    keepout_shape : "sphere" or "cylinder"
+    keepout_shape : "sphere" or "cylinder", or one of ``HULL_SHAPES``
+    outline : of the hull, where the keep-out area is about it
     source_height : of the stack's mouth above the sea [m]
     plume_length, plume_rise : how far a plume without smoke is drawn [m], and how much it climbs [-]
     hull : its shape
@@ -88,6 +90,7 @@ class Scene:
     plume_length: float
     plume_rise: float
     hull: Hull
+    outline: ShipHull | None
     gas: Gas | None
     estimate: Estimate | None
     smoke: Mapping[str, Any] | None

@@ -1,5 +1,6 @@
 """Maps about a ship: her hull to scale, her plume up the page, the keep-out area, wind and north."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -7,6 +8,7 @@ import numpy as np
 from reports.document.chart import Line, Note, Panel, circle
 from reports.document.map_marks import hull_line, on_map, plume_lines
 from reports.document.palette import Meaning
+from reports.run.columns import Array
 from reports.run.ship import Hull
 from reports.run.surroundings import Surroundings
 
@@ -59,7 +61,7 @@ def ship_lines(about: Surroundings, up: float, x: float = 0.0, y: float = 0.0) -
     """Return keep-out area, plume and ship, on a page on which the course ``up`` [rad] is up, with
     her funnel at a place.
     """
-    right, along = circle(about.radius)
+    right, along = area_outline(about, about.heading - up)
     plume = about.plume
     return [
         Line(
@@ -70,6 +72,21 @@ def ship_lines(about: Surroundings, up: float, x: float = 0.0, y: float = 0.0) -
         ),
         hull_line(about.hull, about.heading - up, x, y),
     ]
+
+
+def area_outline(about: Surroundings, angle: float) -> tuple[Array, Array]:
+    """Return the edge of the keep-out area about the funnel, or about the hull whose bow points at
+    an angle.
+    """
+    if about.outline is None:
+        return circle(about.radius)
+    ahead, starboard = about.outline.corners().T
+    right = math.cos(angle) * starboard + math.sin(angle) * ahead
+    along = math.cos(angle) * ahead - math.sin(angle) * starboard
+    # On each bearing r_min beyond the corner that is farthest on it.
+    x, y = circle(1.0)
+    corner = np.argmax(np.outer(x, right) + np.outer(y, along), axis=1)
+    return right[corner] + about.radius * x, along[corner] + about.radius * y
 
 
 def ship_panel(
@@ -115,7 +132,6 @@ def ship_words(*about: Surroundings, panels: Sequence[Panel] | None = None) -> s
         where all is inside
     """
     shown = (SHIP, AREA, PLUME) if panels is None else seen(panels)
-    shapes = " or ".join(dict.fromkeys(of.shape for of in about))
     hulls = "; or ".join(hull_words(hull) for hull in dict.fromkeys(of.hull for of in about))
     smoke, changing = (
         PLUME in shown and any(of.plume.smoke for of in about),
@@ -124,9 +140,7 @@ def ship_words(*about: Surroundings, panels: Sequence[Panel] | None = None) -> s
     width = (
         " Its width is two standard deviations of the mean smoke to either side." if smoke else ""
     )
-    told = "; ".join(
-        [f"the keep-out {shapes} is about her funnel"] * (AREA in shown) + [hulls] * (SHIP in shown)
-    )
+    told = "; ".join([_area_words(about)] * (AREA in shown) + [hulls] * (SHIP in shown))
     still = "Ship, north and wind are" if SHIP in shown else "North and wind are"
     moved = f" {still} as they were at the closest approach." if changing else ""
     return (
@@ -136,9 +150,22 @@ def ship_words(*about: Surroundings, panels: Sequence[Panel] | None = None) -> s
     )
 
 
+def _area_words(about: Sequence[Surroundings]) -> str:
+    """Return what the keep-out area is about."""
+    shapes = " or ".join(dict.fromkeys(of.shape for of in about if of.outline is None))
+    words = [f"the keep-out {shapes} is about her funnel"] if shapes else []
+    if any(of.outline is not None for of in about):
+        words.append(
+            "the keep-out area is what is within r_min of her hull, the rectangle about it"
+        )
+    return "; or ".join(words)
+
+
 def hull_words(hull: Hull) -> str:
     """Return how large a ship is drawn, and why."""
     size = f"{hull.length:g} m by {hull.beam:g} m"
+    if hull.given:
+        return f"her hull is {size}"
     if hull.known:
         return f"her hull is that of {hull.title}, {size}, as the scenario gives none"
     return f"her size is not known, and drawn is {hull.title} of {size}"

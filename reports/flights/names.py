@@ -1,4 +1,4 @@
-"""What flights, swept keys, faults and manoeuvres are called."""
+"""What flights, swept keys and manoeuvres are called."""
 
 import json
 import math
@@ -206,11 +206,6 @@ def _digits(values: tuple[float, ...], kind: str, least: int) -> int:
 
 def _is_number(value: Any) -> bool:
     return isinstance(value, Number) and not isinstance(value, bool)
-
-
-def fault_name(kind: object) -> str:
-    """Return what a fault is called."""
-    return str(kind).replace("_", " ")
 
 
 def manoeuvre_name(manoeuvres: list[dict[str, Any]]) -> str:

@@ -14,6 +14,7 @@ from reports.flights.names import flight_name
 from reports.flights.tracks import track_chart
 from reports.flights.trials.crossing_gaps import crossing_gap, gap_words
 from reports.run.columns import NOTICEABLE, Array, column, is_figure
+from reports.run.faults import fault_marks
 from reports.run.flight_config import keepout_shape, source_height
 from reports.run.time_history import (
     ERROR_MIN,
@@ -111,7 +112,7 @@ class _Histories:
             return None
         low, high = self._distance_range()
         upright = {
-            "fault": self._view.row.get("fault_time_s"),
+            **fault_marks(self._view.row),
             "manoeuvre ends": self._view.row.get("manoeuvre_end_s"),
         }
         marks = [

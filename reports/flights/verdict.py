@@ -45,6 +45,7 @@ from reports.run.columns import (
     total,
     was_flown,
 )
+from reports.run.faults import faults_name
 from reports.run.run_data import RunData
 from reports.run.trials import SHAPES, Trial, measured_from
 
@@ -141,7 +142,7 @@ def _nearest_found(run: RunData, nearest: Closest) -> str:
     """Return the nearest flight that a search found, where, and what was violated or lost."""
     counts = run.verdict.counts
     row = run.summary[run.summary["flight_id"] == nearest.flight].iloc[0]
-    fault = str(row["fault"]).replace("_", " ")
+    fault = faults_name(row)
     return (
         f"Nearest of {_plural(counts.flown, 'flight')}: {_beyond(nearest)} m beyond r_min,"
         f" {nearest.flight} (fault {fault}, wind {row['wind_speed_mps']:.1f} m/s);"

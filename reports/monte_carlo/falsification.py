@@ -12,6 +12,7 @@ from reports.document.chart import Chart, Line, Panel, Style
 from reports.document.palette import Meaning, series_colour
 from reports.document.tables import approach, beside_limit
 from reports.run.columns import beside_vessel, clearance, violated
+from reports.run.faults import faults_name
 from reports.run.run_data import RunData
 
 _POINTS_MAX = 4000
@@ -232,7 +233,7 @@ def worst_table(flights: pd.DataFrame, worst: list[dict[str, Any]]) -> Table:
                 f"{entry['confirmations_violating']} of {repeats}" if repeats else "–",
                 approach(nearest, 0.0) if nearest is not None else "–",
                 f"{float(row['keepout_margin_m']):.1f}",
-                str(row["fault"]).replace("_", " "),
+                faults_name(row),
                 f"{float(row['nu_min']):.2f}–{float(row['nu_max']):.2f}",
                 f"{float(row['wind_speed_mps']):.1f}",
                 str(row["turbulence"]),

@@ -12,7 +12,7 @@ from reports.document.palette import Meaning
 from reports.document.ship_map import ship_lines
 from reports.paper.flown import VEHICLES, Flown, find_flight, vehicle_name
 from reports.run.columns import Array, column
-from reports.run.flight_config import flight_config, keepout_shape
+from reports.run.flight_config import flight_config, is_level, keepout_shape
 from reports.run.run_data import RunData
 from reports.run.surroundings import surroundings
 from reports.run.time_history import keepout_distance
@@ -102,7 +102,7 @@ def sim_3_charts(run: RunData) -> list[Chart]:
         )
         crossed = column(
             crossings,
-            "distance_m" if keepout_shape(config) == "sphere" else "horizontal_distance_m",
+            "horizontal_distance_m" if is_level(keepout_shape(config)) else "distance_m",
         )
         return [
             _level(flown.time, float(flown.row["keepout_radius_m"]), "r_min"),

@@ -123,6 +123,7 @@ def draw_scene(scene: Scene) -> Data:
             "radius": scene.keepout_radius,
             "shape": scene.keepout_shape,
             "height": scene.source_height,
+            "sides": list(scene.outline.sides) if scene.outline else None,
         },
         "hull": _hull(scene.hull),
         "utc": scene.utc,
@@ -137,7 +138,13 @@ def draw_scene(scene: Scene) -> Data:
 def _hull(hull: Hull) -> Data:
     """Return a hull's size, what the legend calls her, and what is said of her size."""
     name = "ship" if hull.known else f"ship, {SIZE_NOT_KNOWN}"
-    size = {"length": hull.length, "beam": hull.beam, "funnel": hull.funnel, "known": hull.known}
+    size = {
+        "length": hull.length,
+        "beam": hull.beam,
+        "funnel": hull.funnel,
+        "aside": hull.aside,
+        "known": hull.known,
+    }
     return size | {"name": name, "words": f"Of the ship: {hull_words(hull)}."}
 
 

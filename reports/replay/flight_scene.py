@@ -7,11 +7,19 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from common.hull import HULL_SHAPES
 from reports.document.scene import Estimate, Event, Gas, Scene
 from reports.run.columns import Array, column
-from reports.run.flight_config import keepout_shape, source_height
-from reports.run.ship import hull_of
-from reports.run.time_history import guard_stretches, shown_distances, true_wind, vessel_heading
+from reports.run.faults import fault_marks
+from reports.run.flight_config import is_level, keepout_shape, source_height
+from reports.run.ship import hull_of, outline_of
+from reports.run.time_history import (
+    guard_stretches,
+    keepout_distance,
+    shown_distances,
+    true_wind,
+    vessel_heading,
+)
 from reports.run.trials import Trial
 
 INTERVAL = 0.2
@@ -70,8 +78,11 @@ def flight_scene(trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame | No
         at_times(column(history, "altitude_m")),
         float(row["keepout_radius_m"]),
     )
-    up = 0.0 if keepout_shape(config) == "cylinder" else altitude - source_height(config)
+    shape = keepout_shape(config)
+    up = 0.0 if is_level(shape) else altitude - source_height(config)
     distance = np.hypot(np.hypot(places["north"], places["east"]), up)
+    if shape in HULL_SHAPES.values():
+        distance = at_times(keepout_distance(history, config))
     wind_north, wind_east = (at_times(values) for values in true_wind(history, row))
     past = np.hypot(
         wind_north - np.gradient(vessel["north"], interval),
@@ -113,7 +124,8 @@ def flight_scene(trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame | No
         crossings=column(trial.run.crossings_of(flight_id).dropna(subset="time_s"), "time_s"),
         distances=shown_distances(distance, time >= float(row["settling_time_s"]), radius),
         keepout_radius=radius,
-        keepout_shape=keepout_shape(config),
+        keepout_shape=shape,
+        outline=outline_of(config) if shape in HULL_SHAPES.values() else None,
         source_height=source_height(config),
         plume_length=_PLUME_LENGTH * radius,
         plume_rise=math.tan(math.radians(float(config["plume"].get("elevation_deg", 0.0)))),
@@ -137,7 +149,7 @@ def _events(
     times = {
         "closest approach": float(time[int(np.argmin(distance))]),
         "settled": row.get("settling_time_s"),
-        "fault": row.get("fault_time_s"),
+        **fault_marks(row),
         "guard acts": guard[0][0] if guard else math.nan,
         "verdict": row.get("verdict_time_s"),
     }

@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from common.hull import HULL_SHAPES, ShipHull
 from reports.run.columns import column
 from reports.run.flight_config import Config, keepout_shape
 from reports.run.plume_shape import PlumeShape, plume_shape
-from reports.run.ship import Hull, hull_of
+from reports.run.ship import Hull, hull_of, outline_of
 from reports.run.time_history import about_the_plume, true_wind, vessel_heading
 
 _TURNED = math.radians(2.0)
@@ -39,6 +40,7 @@ class Surroundings:
     axis : course along which her plume trails [rad]
     plume : its shape
     radius, shape : r_min [m], and the shape of the keep-out area
+    outline : of the hull, where the keep-out area is about it
     wind : its speed [m/s], and the course that it blows along [rad]
     changing : whether the plume's course or the wind changed in flight
     """
@@ -49,6 +51,7 @@ class Surroundings:
     plume: PlumeShape
     radius: float
     shape: str
+    outline: ShipHull | None
     wind: tuple[float, float]
     changing: bool
 
@@ -76,6 +79,7 @@ def surroundings(
     apparent = math.hypot(wind_north[at] - north, wind_east[at] - east)
     reach = _BEYOND * float(np.nanmax(np.hypot(*about_the_plume(history))))
     length = min(max(reach, _SHORTEST * radius), _LONGEST * radius)
+    shape = keepout_shape(config)
     return Surroundings(
         hull=hull_of(config),
         heading=float(heading[at]),
@@ -88,7 +92,8 @@ def surroundings(
             length=length,
         ),
         radius=radius,
-        shape=keepout_shape(config),
+        shape=shape,
+        outline=outline_of(config) if shape in HULL_SHAPES.values() else None,
         wind=wind,
         changing=bool(np.ptp(np.unwrap(axis)) > _TURNED or veered > _VEERED),
     )

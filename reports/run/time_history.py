@@ -6,9 +6,11 @@ from collections.abc import Iterable
 import numpy as np
 import pandas as pd
 
+from common.hull import HULL_SHAPES, ship_frame
 from common.physics import wind_velocity
 from reports.run.columns import Array, Mask, column
-from reports.run.flight_config import Config, Row, keepout_shape, source_height
+from reports.run.flight_config import Config, Row, is_level, keepout_shape, source_height
+from reports.run.ship import outline_of
 
 _AT_REST = 0.01
 """Speed below which a vessel's heading is not that of its motion [m/s]."""
@@ -54,7 +56,8 @@ def keepout_distance(history: pd.DataFrame, config: Config) -> Array:
     """Return the distance that the keep-out area is about at every sample [m]; not a number without
     a vessel.
 
-    It is measured from the funnel's mouth, or horizontally from the axis of a cylinder.
+    It is measured from the funnel's mouth, or horizontally from the axis of a cylinder; or from the
+    outline of the hull, at the height of the funnel's mouth or horizontally.
 
     Parameters
     ----------
@@ -65,8 +68,13 @@ def keepout_distance(history: pd.DataFrame, config: Config) -> Array:
         column(history, f"{axis}_m") - column(history, f"vessel_{axis}_m")
         for axis in ("north", "east")
     )
-    level = keepout_shape(config) == "cylinder"
+    shape, hull = keepout_shape(config), outline_of(config)
+    level = is_level(shape)
     up = np.zeros(len(history)) if level else column(history, "altitude_m") - source_height(config)
+    if shape in HULL_SHAPES.values() and hull is not None:
+        heading = column(history, "vessel_heading_rad")
+        from_hull: Array = np.hypot(hull.distance(*ship_frame(north, east, heading)), up)
+        return from_hull
     distance: Array = np.sqrt(north**2 + east**2 + up**2)
     return distance
 
@@ -131,6 +139,9 @@ def vessel_heading(history: pd.DataFrame, course_deg: float) -> Array:
     course_deg : of a vessel that is at rest all the time [deg]
     """
     north, east = (column(history, f"vessel_velocity_{axis}_mps") for axis in ("north", "east"))
+    recorded = column(history, "vessel_heading_rad")
+    if len(recorded) and np.isfinite(recorded).all():
+        return recorded
     moving = np.hypot(north, east) > _AT_REST
     if not moving.any():
         return np.full(len(history), math.radians(course_deg))

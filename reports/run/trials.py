@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from common.faults import NO_FAULT
+from common.hull import HULL_SHAPES
 from common.run_layout import DRAWS
 from common.text import at_or_below
 from common.verdict import Counts, TrialVerdict
@@ -33,6 +35,8 @@ class Kind(Enum):
 SHAPES = {
     "sphere": "from the keep-out sphere's centre",
     "cylinder": "horizontal, from the keep-out cylinder's axis",
+    HULL_SHAPES["sphere"]: "from the outline of the hull",
+    HULL_SHAPES["cylinder"]: "horizontal, from the outline of the hull",
 }
 """Shapes of keep-out areas, and what a distance is measured from."""
 
@@ -196,7 +200,7 @@ class Trial:
         calm = not (turbulent or self.varies("turbulence"))
         kinds = {
             Kind.SWEEP: bool(self.swept),
-            Kind.FAULTS: self.setting("fault.kind", "none") != "none" or self.varies("fault.kind"),
+            Kind.FAULTS: self._has_faults(),
             Kind.MANOEUVRES: calm
             and (bool(self.setting("vessel.manoeuvres", [])) or self.varies("vessel.manoeuvres")),
             Kind.APPROACH: calm
@@ -204,6 +208,15 @@ class Trial:
             and not self.criteria.get("crossing_interval_error"),
         }
         return next((kind for kind, holds in kinds.items() if holds), Kind.GENERAL)
+
+    def _has_faults(self) -> bool:
+        """Return whether flights have faults, one or several."""
+        given = self.setting("fault", {})
+        entries = given if isinstance(given, list) else [given]
+        keys = [f"fault.{i}.kind" for i in range(len(entries))]
+        return any(entry.get("kind", NO_FAULT) != NO_FAULT for entry in entries) or any(
+            map(self.varies, ["fault.kind", *keys])
+        )
 
 
 def shape_words(rows: pd.DataFrame) -> str:
@@ -218,7 +231,8 @@ def measured_from(shape: str) -> str:
     """Return what a distance is measured from, given the shape of the keep-out area, or shapes, in
     words.
     """
-    return ", or ".join(words for name, words in SHAPES.items() if name in shape)
+    named = shape.split(" or ")
+    return ", or ".join(words for name, words in SHAPES.items() if name in named)
 
 
 def leaves(tree: Mapping[str, Any], before: str = "") -> dict[str, Any]:

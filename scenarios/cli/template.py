@@ -5,6 +5,7 @@ scenario.
 import contextlib
 import textwrap
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,7 @@ from scenarios.scenario.documentation import (
     documented_part_keys,
     documented_sections,
 )
-from scenarios.scenario.effect import compares, unused
+from scenarios.scenario.effect import compares, sections_of, unused
 from scenarios.scenario.files import OPERATIONAL, OPERATIONAL_STUDIES, load_document, load_study
 from scenarios.scenario.overrides import Document, as_toml
 from scenarios.scenario.scenario import Scenario
@@ -116,6 +117,14 @@ def _section(
     sections: Mapping[str, DocumentedSection],
 ) -> Iterator[str]:
     values: Any = document.get(section.name, {}) if section.name else document
+    if section.name and (entries := sections_of(config, section.name))[1:]:
+        # A list of tables, of which each is as one alone.
+        for number, (name, _) in enumerate(entries):
+            yield from _head(f"[[{section.name}]]", section)
+            for key in section.keys:
+                own = replace(key, key=f"{name}.{key.key.rpartition('.')[2]}")
+                yield from _key(own, values[number], config)
+        return
     # A list in place of the section, as of instruments, stands for its first key.
     values = (
         values if isinstance(values, Mapping) else {section.keys[0].key.rpartition(".")[2]: values}
@@ -126,7 +135,7 @@ def _section(
         if of.listed and of.name.rpartition(".0")[0].rpartition(".")[0] == section.name
     ]
     if section.name:
-        yield from ("", f"[{section.name}]", *_comment(section.meaning), "")
+        yield from _head(f"[{section.name}]", section)
     for key in section.keys:
         if key.key != "sweep":
             yield from _key(key, values, config)
@@ -137,6 +146,10 @@ def _section(
         sweep := next((key for key in section.keys if key.key == "sweep"), None)
     ):
         yield from _sweep(sweep, values)
+
+
+def _head(brackets: str, section: DocumentedSection) -> Iterator[str]:
+    yield from ("", brackets, *_comment(section.meaning), "")
 
 
 def _sweep(key: DocumentedKey, values: Mapping[str, Any]) -> Iterator[str]:

@@ -299,6 +299,11 @@ def _with_samples(point: Point, values: Values) -> Scenario:
     return with_values(point.scenario, not_displaced(values, point.given))
 
 
+def _used(scenario: Scenario, section: str, values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return those values of a section that its flights use."""
+    return {key: value for key, value in values.items() if not unused(scenario, f"{section}.{key}")}
+
+
 def scenario_file(request: FlightRequest, *, title: str) -> bytes:
     """Return a scenario that replays a flight, to the last bit.
 
@@ -311,15 +316,19 @@ def scenario_file(request: FlightRequest, *, title: str) -> bytes:
     document = request.scenario.model_dump(mode="json", exclude_none=True)
     # The margin is planned for every fault that the experiment may bring, also for those that this
     # flight does not have.
-    document["fault"]["declared"] = sorted(
-        request.scenario.declared_faults - {request.scenario.fault.kind}
+    own = {fault.kind for fault in request.scenario.faults}
+    faults = document["fault"]
+    (faults[0] if isinstance(faults, list) else faults)["declared"] = sorted(
+        request.scenario.declared_faults - own
     )
     alone = request.scenario.model_copy(update={"draws": (), "sweep": SweepConfig()})
     for section, values in document.items():
         if isinstance(values, dict):
-            document[section] = {
-                key: value for key, value in values.items() if not unused(alone, f"{section}.{key}")
-            }
+            document[section] = _used(alone, section, values)
+        elif section == "fault":
+            document[section] = [
+                _used(alone, f"{section}.{number}", of) for number, of in enumerate(values)
+            ]
     for experiment in (
         "method",
         "sampling",

@@ -231,7 +231,7 @@ class Viewer(Protocol):
 
 def failable(plan: FlightPlan) -> bool:
     """Return whether a part of the aircraft may fail in a flight."""
-    return plan.world is not None and plan.world.fault.of_aircraft()
+    return plan.world is not None and bool(plan.world.faults.of_aircraft())
 
 
 def release(

@@ -363,11 +363,12 @@ class Ending:
         return f"after {settling.crossings}{f' of {demanded}' if demanded else ''} crossings"
 
     def _after_fault(self) -> str:
-        """Return which fault of the scenario had begun, or nothing."""
-        fault = self._plan.world.fault if self._plan.world else None
-        if fault is None or fault.begins > self._end:
+        """Return which faults of the scenario had begun, or nothing."""
+        begun = self._plan.world.faults.begun(self._end) if self._plan.world else ()
+        if not begun:
             return ""
-        return f", after the fault '{fault.kind}' at {fault.begins:.1f} s"
+        named = " and ".join(f"'{fault.kind}' at {fault.begins:.1f} s" for fault in begun)
+        return f", after the fault{'s' * (len(begun) > 1)} {named}"
 
     def _what_was_noticed(self) -> str:
         """Return the fault that was noticed in flight and not taken back, or nothing."""

@@ -135,7 +135,7 @@ def axis_of(guidance: Guidance) -> ExpectedAxis | None:
 
 
 class OnboardSensing:
-    """Sensors with errors, reports of the vessel, and the flight's fault.
+    """Sensors with errors, reports of the vessel, and the flight's faults.
 
     Parameters
     ----------
@@ -168,9 +168,10 @@ class OnboardSensing:
                 " filter"
             )
         self._vehicle, self._guidance, self._readings = vehicle, guidance, readings
-        self._fault, self._vessel = world.fault, world.vessel
-        self._fault_pending = world.fault.of_aircraft()
-        self._satellites_fail = world.fault.kind == SATELLITES
+        self._faults, self._vessel = world.faults, world.vessel
+        self._pending = list(reversed(world.faults.of_aircraft()))
+        self._vessel_lost = bool(world.faults.intervals(VESSEL_DATA))
+        self._satellites_lost = bool(world.faults.intervals(SATELLITES))
         self._read_with_errors = sensing.errors.read
         self._air_data, self._servo_error = vehicle.air_data, vehicle.servo_error
         self._engine = vehicle.engine
@@ -185,22 +186,21 @@ class OnboardSensing:
         fails now.
         """
         airspeed, heading, roll = self._air_data()
-        fault = self._fault
+        faults = self._faults
         if self._exact:
             # The flight begins with a vessel that is known, whatever fails.
-            outage = step > 0 and fault.lasts(VESSEL_DATA, time)
+            outage = self._vessel_lost and step > 0 and faults.lasts(VESSEL_DATA, time)
             if step % self._guidance.plan_interval == 0 and not outage:
                 self._report(VesselReport(time, *self._vessel.motion(time)))
         else:
             while self._received and self._received[-1][0] <= time:
                 self._report(self._received.pop()[1])
-        if self._fault_pending and time >= fault.begins:
-            self._fault_pending = False
-            self._vehicle.fail(fault.kind)
+        while self._pending and time >= self._pending[-1].begins:
+            self._vehicle.fail(self._pending.pop().kind)
         # It begins with a place that is known, too: dead reckoning goes on from one.
-        satellites = not self._satellites_fail or step == 0 or not fault.lasts(SATELLITES, time)
+        lost = self._satellites_lost and step > 0 and faults.lasts(SATELLITES, time)
         fix, measured, measured_heading = self._read_with_errors(
-            step, motion, airspeed, heading, satellites=satellites
+            step, motion, airspeed, heading, satellites=not lost
         )
         self.airspeed_error = measured - airspeed
         return SensorReadings(

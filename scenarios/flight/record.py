@@ -134,6 +134,7 @@ HISTORY_COLUMNS = described(
         "phi_rad": "course through the air against that of z, equation (19)",
         "true_wind_north_mps": "velocity of the mean wind at the place and height of the UAV, true",
         "true_wind_east_mps": "velocity of the mean wind at the place and height of the UAV, true",
+        "vessel_heading_rad": "heading of the vessel, true",
         "latitude_deg": "latitude of the UAV, true",
         "longitude_deg": "longitude of the UAV, true",
         "time_utc": "time in UTC",
@@ -149,10 +150,13 @@ RELATIVE_COLUMNS = ("delta_m", "rho_m", "phi_r_rad", "phi_rad")
 WIND_COLUMNS = ("true_wind_north_mps", "true_wind_east_mps")
 """The mean wind, of flights in wind: it follows from the scenario, too."""
 
+HULL_COLUMNS = ("vessel_heading_rad",)
+"""Where the bow points, of flights beside a ship whose size is known."""
+
 PLACE_COLUMNS = ("latitude_deg", "longitude_deg", "time_utc")
 """Where and when on earth, of flights of which that is known: they follow from the others, too."""
 
-_DERIVED = RELATIVE_COLUMNS + WIND_COLUMNS + PLACE_COLUMNS
+_DERIVED = RELATIVE_COLUMNS + WIND_COLUMNS + HULL_COLUMNS + PLACE_COLUMNS
 
 COLUMNS = tuple(column for column in HISTORY_COLUMNS if column not in _DERIVED)
 """Columns of a flight's record."""

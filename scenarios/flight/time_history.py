@@ -22,7 +22,13 @@ from gnc.numeric import wrapped
 from gnc.paper import LookAhead
 from scenarios.engine.task import Row, Task
 from scenarios.flight.outcome import Outcome
-from scenarios.flight.record import PLACE_COLUMNS, RELATIVE_COLUMNS, WIND_COLUMNS, FlightRecord
+from scenarios.flight.record import (
+    HULL_COLUMNS,
+    PLACE_COLUMNS,
+    RELATIVE_COLUMNS,
+    WIND_COLUMNS,
+    FlightRecord,
+)
 from scenarios.planning.flight_plan import FlightPlan
 
 Array = npt.NDArray[np.float64]
@@ -52,6 +58,9 @@ def flight_history(plan: FlightPlan, record: FlightRecord) -> pd.DataFrame:
     if wind != CALM:
         names = (*names, *WIND_COLUMNS)
         states = (*states, *wind.at(column("time_s"), column("altitude_m")))
+    if plan.world is not None and plan.world.hull is not None:
+        names = (*names, *HULL_COLUMNS)
+        states = (*states, plan.world.headings(column("time_s")))
     # One table at once: to add columns to one takes five times as long.
     history = pd.DataFrame(np.column_stack([record.every_step, *states]), columns=list(names))
     place = plan.world.place if plan.world else None

@@ -30,7 +30,7 @@ from measurement.sniffer.spec import SnifferSpec, sensor_of, sensor_presets
 from scenarios.instruments.fuel_estimate import FIGURES, TABLES, fuel_estimate
 from scenarios.instruments.instrument import Evaluation, payload
 from scenarios.scenario.scenario import Scenario
-from scenarios.world.faults import SNIFFER_DEAD, SNIFFER_SATURATED
+from scenarios.world.faults import OF_SNIFFER, SNIFFER_DEAD, SNIFFER_SATURATED
 from scenarios.world.plume import Background, Exhaust
 from scenarios.world.world import World
 
@@ -345,7 +345,7 @@ class SnifferOnBoard:
             )
         self._exhaust = world.exhaust
         self._settings = scenario.payload.settings(type(self))
-        self._fault = world.fault
+        self._fault = world.faults.first(OF_SNIFFER)
         self.spec: SnifferSpec = self._settings.spec
         actual = self.spec if self._settings.exact else self.spec.drawn(generator)
         self._sniffer = Sniffer(actual, generator=generator, time_step=TIME_STEP)

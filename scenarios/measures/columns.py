@@ -8,6 +8,7 @@ its settling time on.
 """
 
 from common.columns import Column, described
+from common.faults import fault_columns
 from common.premises import PREMISE_COLUMNS
 
 FLIGHT_COLUMNS = described(
@@ -24,6 +25,7 @@ SPEED_RATIO = Column(
     title="Speed ratio",
     symbol="ν",
 )
+
 
 SUMMARY_COLUMNS = described(
     {
@@ -64,8 +66,8 @@ SUMMARY_COLUMNS = described(
         "place_latitude_deg": "latitude of the vessel at time 0, where it is known",
         "place_longitude_deg": "longitude of the vessel at time 0, where it is known",
         "start_utc": Column("UTC of time 0, where it is known", kind="text"),
-        "fault": Column("kind of the fault", kind="text"),
-        "fault_time_s": "time at which the fault begins",
+        "fault": Column("kind of the fault, of several of the first", kind="text"),
+        "fault_time_s": "time at which that fault begins",
         "modes": Column(
             "modes of the guidance, in the order in which they first occurred", kind="text"
         ),
@@ -97,7 +99,8 @@ SUMMARY_COLUMNS = described(
             symbol="r_CO",
         ),
         "keepout_shape": Column(
-            "sphere about the funnel's mouth, or cylinder about the vertical through it",
+            "sphere about the funnel's mouth, or cylinder about the vertical through it; hull, or"
+            " hull prism of any height, where it is measured from the outline of the hull",
             kind="text",
         ),
         "keepout_radius_m": Column(
@@ -128,7 +131,8 @@ SUMMARY_COLUMNS = described(
             worse="higher",
         ),
         "min_distance_m": Column(
-            "closest approach to the centre of the sphere, or to the axis of the cylinder",
+            "closest approach to the centre of the sphere, to the axis of the cylinder, or to the"
+            " outline of the hull",
             title="Closest approach",
             digits=1,
             worse="lower",
@@ -348,6 +352,40 @@ SUMMARY_COLUMNS = described(
     }
 )
 """Of ``summary.csv`` and ``comparison.csv``: a row per flight."""
+
+
+HULL_COLUMNS = described(
+    {
+        "hull_length_m": Column("length of the ship", title="Length of the ship", digits=0),
+        "hull_beam_m": Column("beam of the ship", title="Beam of the ship", digits=0),
+        "stack_from_bow_m": Column("funnel from the bow", title="Funnel from the bow", digits=0),
+        "stack_from_port_m": Column(
+            "funnel from the port side", title="Funnel from the port side", digits=0
+        ),
+        "antenna_distance_m": Column(
+            "distance of the antenna whose place is reported from the funnel",
+            title="Antenna from the funnel",
+            digits=0,
+        ),
+        "guarded_radius_m": Column(
+            "distance from the funnel that keeps r_min at any heading of the ship",
+            title="Guarded radius",
+            digits=1,
+        ),
+    }
+)
+"""Of the summary, of flights beside a ship whose size is known."""
+
+
+def further_faults(most: int) -> dict[str, Column]:
+    """Return the columns that the summary has besides where flights have up to ``most`` faults."""
+    declared: dict[str, Column | str] = {}
+    for number in range(2, most + 1):
+        kind, begins = fault_columns(number)
+        declared[kind] = Column(f"kind of fault {number}, in the order of time", kind="text")
+        declared[begins] = f"time at which fault {number} begins"
+    return described(declared)
+
 
 FINDING_COLUMNS = described(
     {

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
+from common.faults import faults_in
 from common.verdict import KeepOut
 from scenarios.engine.task import Row
 from scenarios.flight.outcome import Outcome
@@ -111,7 +112,10 @@ def _completes(row: Row) -> Judged:
 
 def _part_failed(row: Row) -> bool:
     """Return whether a part of the aircraft had failed; otherwise it was given up on a false alarm."""
-    return row["fault"] not in NOT_OF_AIRCRAFT and bool(row["duration_s"] >= row["fault_time_s"])
+    return any(
+        kind not in NOT_OF_AIRCRAFT and row["duration_s"] >= begins
+        for kind, begins in faults_in(row)
+    )
 
 
 def _tracking(row: Row, criteria: CriteriaConfig) -> Iterator[Judged]:

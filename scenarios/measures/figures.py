@@ -4,8 +4,11 @@ import math
 
 import numpy as np
 import numpy.typing as npt
+from scipy.interpolate import CubicHermiteSpline
 
 from aircraft.wind import CALM
+from common.faults import fault_columns
+from common.hull import HULL_SHAPES
 from common.premises import UNEXPLAINED
 from common.text import utc_text
 from gnc.mission.mission import LEAVING, Mode
@@ -14,10 +17,16 @@ from scenarios.engine.task import Row
 from scenarios.flight.outcome import Outcome
 from scenarios.flight.record import FlightRecord
 from scenarios.measures.crossings import Crossing, find_crossings
-from scenarios.measures.keepout import closest_approach, keepout_figures
+from scenarios.measures.keepout import (
+    closest_approach,
+    hull_distance,
+    hull_keepout_figures,
+    keepout_figures,
+)
 from scenarios.measures.premises import is_unexplained, premise_figures
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.world.ais.track import AisVessel
+from scenarios.world.faults import Faults
 from scenarios.world.vessel import Place
 
 Array = npt.NDArray[np.float64]
@@ -54,13 +63,15 @@ def plan_row(plan: FlightPlan) -> Row:
         "start_aspect_deg": math.degrees(
             math.remainder(math.atan2(start.east, start.north) - axis, 2.0 * math.pi)
         ),
-        "fault_time_s": world.fault.begins if math.isfinite(world.fault.begins) else math.nan,
         "eta": plan.oscillation.eta,
         "omega_0_rad_s": plan.oscillation.omega_0,
         "oscillation_limit": plan.oscillation.limit,
         "r_co_m": plan.centre_distance,
-        "keepout_shape": plan.keepout_shape,
+        "keepout_shape": plan.keepout_shape
+        if plan.keepout_hull is None
+        else HULL_SHAPES[plan.keepout_shape],
         "keepout_radius_m": plan.keepout_radius,
+        **_hull_row(plan),
         "crossing_interval_predicted_s": plan.oscillation.crossing_interval,
         "manoeuvre_end_s": world.vessel.manoeuvres_end,
     }
@@ -72,12 +83,37 @@ def plan_row(plan: FlightPlan) -> Row:
             "wind_speed_mps": math.hypot(north, east),
             "wind_from_deg": round(math.degrees(math.atan2(-east, -north)), 6) % 360.0,
         }
-    row |= _place_row(world.place)
+    row |= _fault_row(world.faults) | _place_row(world.place)
     if plan.margin is not None:
         row |= {
-            "keepout_margin_m": plan.margin.total,
+            "keepout_margin_m": plan.margin.total + plan.guarded_radius - plan.keepout_radius,
             "spread_predicted_m": plan.margin.tracking_sigma,
         }
+    return row
+
+
+def _hull_row(plan: FlightPlan) -> Row:
+    """Return what is known of the vessel's hull, and what the guard makes of it."""
+    hull = plan.world.hull if plan.world else None
+    if hull is None:
+        return {}
+    return {
+        "hull_length_m": hull.length,
+        "hull_beam_m": hull.beam,
+        "stack_from_bow_m": hull.stack[0],
+        "stack_from_port_m": hull.stack[1],
+        "antenna_distance_m": hull.antenna_distance,
+        "guarded_radius_m": plan.guarded_radius,
+    }
+
+
+def _fault_row(faults: Faults) -> Row:
+    """Return kind and time of each fault, in the order of time."""
+    row: Row = {}
+    for number, fault in enumerate(faults.each, start=1):
+        kind, begins = fault_columns(number)
+        row[kind] = fault.kind
+        row[begins] = fault.begins if math.isfinite(fault.begins) else math.nan
     return row
 
 
@@ -150,7 +186,11 @@ def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Cr
         row["spread_m"] = _spread(record, beside, position)
     row |= _estimation_figures(plan, record, settled)
     crossings = crossings_of(plan, record, settled, position, velocity)
-    return row | _crossing_figures(plan, record, crossings), crossings
+    row |= _crossing_figures(plan, record, crossings)
+    if crossings:
+        nearest = _nearest_crossing(plan, time, position, velocity, crossings)
+        row["crossing_clearance_min_m"] = nearest - plan.keepout_radius
+    return row, crossings
 
 
 def in_vessel_frame(record: FlightRecord, source_height: float) -> tuple[Array, Array]:
@@ -202,7 +242,19 @@ def _keepout_figures(
 ) -> Row:
     """Measure the keep-out area and its guard over the whole flight."""
     time = record.column("time_s")
-    keepout = keepout_figures(time, position, velocity, plan.keepout_radius, plan.keepout_shape)
+    hull = plan.keepout_hull
+    if hull is None or plan.world is None:
+        keepout = keepout_figures(time, position, velocity, plan.keepout_radius, plan.keepout_shape)
+    else:
+        keepout = hull_keepout_figures(
+            time,
+            position,
+            velocity,
+            plan.keepout_radius,
+            plan.keepout_shape,
+            hull,
+            plan.world.headings,
+        )
     row: Row = {
         "keepout_violations": keepout.violations,
         "keepout_time_s": keepout.time_inside,
@@ -296,6 +348,21 @@ def crossings_of(
     )
 
 
+def _nearest_crossing(
+    plan: FlightPlan, time: Array, position: Array, velocity: Array, crossings: list[Crossing]
+) -> float:
+    """Return the least distance of a crossing from what the keep-out area is about [m]."""
+    if plan.keepout_hull is None or plan.world is None:
+        return min(
+            crossing.horizontal_distance if plan.keepout_shape == "cylinder" else crossing.distance
+            for crossing in crossings
+        )
+    moments = np.array([crossing.time for crossing in crossings])
+    places = CubicHermiteSpline(time, position, velocity)(moments)
+    headings = plan.world.headings(moments)
+    return float(hull_distance(plan.keepout_hull, places, headings, plan.keepout_shape).min())
+
+
 def _crossing_figures(plan: FlightPlan, record: FlightRecord, crossings: list[Crossing]) -> Row:
     """Measure the crossings of a settled flight; means are over whole periods of the orbit.
 
@@ -307,14 +374,9 @@ def _crossing_figures(plan: FlightPlan, record: FlightRecord, crossings: list[Cr
     alike = _crossings_until_alike(plan, record)
     if crossings:
         whole = crossings[: len(crossings) // alike * alike] or crossings
-        to_centre = [
-            crossing.horizontal_distance if plan.keepout_shape == "cylinder" else crossing.distance
-            for crossing in crossings
-        ]
         row |= {
             "crossing_distance_mean_m": float(np.mean([crossing.distance for crossing in whole])),
             "crossing_distance_min_m": min(crossing.distance for crossing in crossings),
-            "crossing_clearance_min_m": min(to_centre) - plan.keepout_radius,
             "crossing_angle_mean_deg": math.degrees(
                 float(np.mean([crossing.angle for crossing in whole]))
             ),

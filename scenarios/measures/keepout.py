@@ -1,14 +1,22 @@
-"""How a path keeps out of a sphere or an upright cylinder about a moving point."""
+"""How a path keeps out of a sphere or an upright cylinder about a moving point, or of what is near to
+a hull that moves and turns.
+"""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.interpolate import CubicHermiteSpline
 
+from common.hull import ShipHull, ship_frame
 from scenarios.scenario.sections.world import Shape
 
 Array = npt.NDArray[np.float64]
+
+_LOOKS = 10
+"""Looks at a path between two of its samples, where its distance from a hull is no polynomial [-]."""
 
 _BINOMIAL = [math.comb(3, i) for i in range(4)]
 
@@ -76,6 +84,62 @@ def keepout_figures(
         depth=max(0.0, radius - distance_min),
         distance_min=distance_min,
     )
+
+
+def hull_keepout_figures(
+    time: Array,
+    position: Array,
+    velocity: Array,
+    radius: float,
+    shape: Shape,
+    hull: ShipHull,
+    heading: Callable[[Array], Array],
+) -> KeepoutFigures:
+    """Measure a path against all that is within a radius of a hull's outline, at the height of the
+    funnel's mouth (sphere) or at every height (cylinder).
+
+    The path between samples is looked at ``_LOOKS`` times: at 10 Hz and 30 m/s its closest approach
+    to a corner at 200 m is true to 0.1 mm.
+
+    Parameters
+    ----------
+    time, position, velocity, radius, shape : as of ``keepout_figures``, from the funnel
+    hull : seen from the funnel
+    heading : returns the ship's heading at some times [rad]
+    """
+    share = np.arange(len(time) * _LOOKS - _LOOKS + 1) / _LOOKS
+    fine = np.interp(share, np.arange(len(time)), time)
+    place = CubicHermiteSpline(time, position, velocity)(fine)
+    distance = hull_distance(hull, place, heading(fine), shape)
+    inside = distance < radius
+    excess, step = distance - radius, np.diff(fine)
+    # Where the edge is crossed between two looks, the share of the time that is inside.
+    before, after = excess[:-1], excess[1:]
+    crossed = inside[:-1] != inside[1:]
+    within = np.minimum(before, after) / np.where(crossed, -np.abs(after - before), 1.0)
+    part = np.where(crossed, within, inside[:-1].astype(np.float64))
+    nearest = float(distance.min())
+    return KeepoutFigures(
+        violations=int(np.count_nonzero(inside[1:] & ~inside[:-1])) + int(inside[0]),
+        time_inside=float(np.sum(part * step)),
+        depth=max(0.0, radius - nearest),
+        distance_min=nearest,
+    )
+
+
+def hull_distance(hull: ShipHull, position: Array, heading: Array, shape: Shape) -> Array:
+    """Return how far places are from a hull's outline, shape (n,) [m].
+
+    Parameters
+    ----------
+    hull : seen from the funnel
+    position : shape (n, 3), north, east and up from the funnel's mouth [m]
+    heading : of the ship at each, shape (n,) [rad]
+    shape : a sphere counts the height, a cylinder does not
+    """
+    level = hull.distance(*ship_frame(position[:, 0], position[:, 1], heading))
+    distance: Array = level if shape == "cylinder" else np.hypot(level, position[:, 2])
+    return distance
 
 
 def closest_approach(time: Array, position: Array, velocity: Array) -> float:

@@ -203,8 +203,8 @@ class _Flight:
             for sigma, lost in zip(by_gusts, self.lost_for, strict=True)
         ]
         self.velocity_error = np.array(reckoned) + self.allowance
-        fault = plan.world.fault
-        self.part_fails_at = fault.begins if fault.of_aircraft() else math.inf
+        failing = plan.world.faults.of_aircraft()
+        self.part_fails_at = failing[0].begins if failing else math.inf
 
     def gusts(self) -> tuple[Array, Array]:
         """Return the discrete gusts of the flight, north and east [m/s]."""

@@ -14,11 +14,13 @@ from gnc.estimation.vessel import KEPT, VesselLimits, VesselReport, radius_after
 from scenarios.scenario.scenario import Scenario
 from scenarios.world.ais.track import AisVessel
 from scenarios.world.vessel import (
+    TRACK_STEP,
     SteadyVessel,
     VesselTruth,
     largest_acceleration,
     largest_inconsistency,
     largest_speed,
+    sampled,
     track_times,
 )
 
@@ -33,6 +35,11 @@ _LOOKS = 10
 bends by millimetres.
 """
 
+_SLOWEST = 1.0
+"""Least speed by which the error of a course is reckoned with [m/s]: slower ships keep the last one
+that was sound.
+"""
+
 Array = npt.NDArray[np.float64]
 
 
@@ -45,6 +52,34 @@ def check_vessel(scenario: Scenario, vessel: VesselTruth, limits: VesselLimits) 
         # The error of the vehicle's own place is not part of the reports'.
         of_reports = replace(limits, position_sigma=scenario.reports.position_sigma_m)
         _check_reports(vessel, of_reports, scenario.flight.duration_max_s)
+
+
+def with_antenna_errors(scenario: Scenario, vessel: VesselTruth) -> Scenario:
+    """Return the scenario with the errors of reports as they are of the funnel: those of heading
+    and rate of turn add to them over the distance of the antenna.
+    """
+    hull, reports = scenario.vessel.hull, scenario.reports
+    distance = 0.0 if hull is None else hull.antenna_distance
+    if distance == 0.0 or reports.exact:
+        return scenario
+    heading = math.radians(reports.heading_sigma_deg)
+    if isinstance(vessel, AisVessel):
+        velocity, _ = vessel.samples
+        speed = max(_SLOWEST, float(np.hypot(*velocity.T).min()))
+        heading = math.hypot(heading, reports.velocity_sigma_mps / speed)
+    turning = math.radians(reports.turn_rate_sigma_deg_s)
+    fastest = fastest_turn(distance, scenario.following.vessel_acceleration_mps2)
+    added = math.hypot(distance * turning, distance * fastest * heading)
+    return scenario.model_copy(
+        update={
+            "reports": reports.model_copy(
+                update={
+                    "position_sigma_m": math.hypot(reports.position_sigma_m, distance * heading),
+                    "velocity_sigma_mps": math.hypot(reports.velocity_sigma_mps, added),
+                }
+            )
+        }
+    )
 
 
 def check_declared(scenario: Scenario, vessel: VesselTruth) -> None:
@@ -67,6 +102,7 @@ def check_declared(scenario: Scenario, vessel: VesselTruth) -> None:
             " together; declared are at most following.vessel_acceleration_mps2 ="
             f" {f.vessel_acceleration_mps2:g}, {relied}"
         )
+    _check_turn(scenario, vessel, duration)
     if f.vessel_speed_max_mps is not None and speed > f.vessel_speed_max_mps:
         raise InfeasibleError(
             f"the vessel moves at up to {_at_least(speed)} m/s over the ground; it is declared to"
@@ -78,6 +114,38 @@ def check_declared(scenario: Scenario, vessel: VesselTruth) -> None:
             f"vessel.track '{scenario.vessel.track}': its places and the integral of the velocity"
             f" that motion() returns differ by up to {off:.2g} m; {_INCONSISTENCY_MAX:g} m are"
             " allowed for rounding: let the velocity be the derivative of the place"
+        )
+
+
+def fastest_turn(distance: float, acceleration: float) -> float:
+    """Return the largest rate at which a ship is taken to turn [rad/s]: at which its antenna
+    accelerates about its funnel as is declared of the vessel.
+
+    Parameters
+    ----------
+    distance : of the antenna from the funnel [m]
+    acceleration : declared of the vessel [m/s^2]
+    """
+    return math.sqrt(acceleration / distance)
+
+
+def _check_turn(scenario: Scenario, vessel: VesselTruth, duration: float) -> None:
+    """Raise an InfeasibleError for a vessel that turns faster than it is taken to, where its
+    antenna is not at the funnel.
+    """
+    hull = scenario.vessel.hull
+    distance = 0.0 if hull is None or scenario.vessel_known else hull.antenna_distance
+    if distance == 0.0:
+        return
+    _, course = sampled(vessel, duration)
+    rate = float(np.abs(np.diff(course)).max(initial=0.0)) / TRACK_STEP
+    acceleration = scenario.following.vessel_acceleration_mps2
+    if rate > fastest_turn(distance, acceleration):
+        raise InfeasibleError(
+            f"the vessel turns at up to {math.degrees(rate):.2g} deg/s, which moves its antenna,"
+            f" {distance:g} m from the funnel (vessel.antenna_from_bow_m), with"
+            f" {_at_least(rate**2 * distance)} m/s2; declared are at most"
+            f" following.vessel_acceleration_mps2 = {acceleration:g}: declare more"
         )
 
 

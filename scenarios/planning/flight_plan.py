@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+from common.hull import ShipHull
 from gnc.estimation.vessel import VesselReport
 from gnc.guidance import GuidanceParameters
 from gnc.reference.reference import PeriodicPath
@@ -62,6 +63,8 @@ class FlightPlan:
     start : of the UAV
     keepout_shape, keepout_radius : a sphere about the plume's origin or an upright cylinder through
         it, and its r_min [m]
+    keepout_hull : outline that r_min is measured from; None where it is the funnel
+    guarded_radius : distance from the funnel that keeps out at any heading of the ship [m]
     speed_ratio_max : up to which a vessel is followed [-]
     heading_rate_max : omega_max, whether commands are cut at it or not [rad/s]
     duration_max, crossings : when to stop [s, -]
@@ -88,6 +91,8 @@ class FlightPlan:
     start: Start
     keepout_shape: Shape
     keepout_radius: float
+    keepout_hull: ShipHull | None
+    guarded_radius: float
     speed_ratio_max: float
     heading_rate_max: float
     duration_max: float
@@ -128,6 +133,8 @@ class FlightPlan:
             start=start,
             keepout_shape=scenario.keepout.shape,
             keepout_radius=scenario.keepout.radius_m,
+            keepout_hull=scenario.vessel.hull if scenario.keepout.from_hull else None,
+            guarded_radius=scenario.guarded_radius,
             speed_ratio_max=scenario.following.speed_ratio_max,
             heading_rate_max=omega_max(g),
             duration_max=flight.duration_max_s,

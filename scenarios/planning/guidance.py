@@ -411,7 +411,7 @@ def following_parameters(
     errors : of the flight
     """
     g, f, reports = scenario.guidance, scenario.following, scenario.reports
-    fastest, radius = omega_max(g), scenario.keepout.radius_m
+    fastest, radius = omega_max(g), scenario.guarded_radius
     centre = CentreParameters(
         distance_min=radius + margin.total + additional_distance,
         speed_ratio_max=f.speed_ratio_max,

@@ -39,7 +39,7 @@ from scenarios.planning.air.wind import (
     navigation_parameters,
     wind_known_on_orbit,
 )
-from scenarios.planning.declared_vessel import check_vessel
+from scenarios.planning.declared_vessel import check_vessel, with_antenna_errors
 from scenarios.planning.flight_plan import FlightPlan, Sensing, Start
 from scenarios.planning.guidance import (
     Steering,
@@ -83,10 +83,11 @@ from scenarios.scenario.sections.flight import StartConfig
 from scenarios.vehicles.sensors import SensorErrors
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 from scenarios.world.ais.track import AisVessel, received_reports, usual_intervals
-from scenarios.world.faults import NO_FAULT, VESSEL_DATA, sampled_fault
+from scenarios.world.faults import NO_FAULTS, VESSEL_DATA, in_order, sampled_fault
 from scenarios.world.noise import (
     BACKGROUND,
     EXHAUST,
+    HEADING,
     Noise,
     own_generator,
     start_generator,
@@ -99,10 +100,12 @@ from scenarios.world.world import (
     TRACK_MARGIN,
     ApparentWind,
     World,
+    antenna_offset,
     apparent_wind,
     mean_wind,
     place_of,
     plume_of,
+    sized,
     vessel_of,
 )
 
@@ -139,6 +142,7 @@ def plan_flight(
         keep-out area, or manoeuvres of its vessel overlap, or it turns too fast for the rate at
         which it is recorded
     """
+    scenario = sized(scenario)
     check_recorded(scenario)
     check_manoeuvres(scenario.vessel, scenario.vessel_speed)
     noise = seed if isinstance(seed, Noise) else Noise(seed)
@@ -171,7 +175,7 @@ def _tracking_flight(
     scenario: Scenario, flight_id: str, noise: Noise, setup: VehicleSetup
 ) -> FlightPlan:
     """Return a flight beside a steady vessel that is known exactly, in still air."""
-    g, radius = scenario.guidance, scenario.keepout.radius_m
+    g, radius = scenario.guidance, scenario.guarded_radius
     vessel = vessel_of(scenario)
     plume = plume_of(scenario, vessel)
     course, (_, _, v_north, v_east) = vessel.course(0.0), vessel.motion(0.0)
@@ -181,7 +185,7 @@ def _tracking_flight(
         heading=math.radians(scenario.plume.heading_deg),
         elevation=math.radians(scenario.plume.elevation_deg),
     )
-    distance = distance_kept(g, scenario.keepout, orbit, axis)
+    distance = distance_kept(g, scenario.guarded_keepout, orbit, axis)
     ahead, right, above = centre_of_oscillation(distance, axis)
     steering = plan_steering(scenario, omega_max(g), orbit.amplitude)
     trails = plume.axis(0.0)
@@ -215,6 +219,18 @@ def _tracking_flight(
         centre=Centre(*centre, nu),
         joining=joining,
     )
+    world = World(
+        vessel=vessel,
+        plume=plume,
+        elevation=axis.elevation,
+        source_height=scenario.source_height,
+        weather=STILL_AIR,
+        faults=NO_FAULTS,
+        place=place_of(scenario, vessel),
+        hull=scenario.vessel.hull,
+    )
+    nearest = math.hypot(ahead, right) - orbit.half_widths()[0] - g.tracking_allowance_m
+    _check_hull(scenario, world, nearest)
     return FlightPlan.of(
         scenario,
         flight_id,
@@ -231,15 +247,7 @@ def _tracking_flight(
         steering=steering,
         start=start,
         period=orbit.period,
-        world=World(
-            vessel=vessel,
-            plume=plume,
-            elevation=axis.elevation,
-            source_height=scenario.source_height,
-            weather=STILL_AIR,
-            fault=NO_FAULT,
-            place=place_of(scenario, vessel),
-        ),
+        world=world,
         oscillation=orbit,
         centre_distance=distance,
     )
@@ -312,25 +320,30 @@ def _following_flight(
     g, flight = scenario.guidance, scenario.flight
     vessel = vessel_of(scenario)
     scenario = _with_usual_intervals(scenario, vessel)
+    as_reported = scenario.reports
+    scenario = with_antenna_errors(scenario, vessel)
     wind = apparent_wind(scenario, vessel)
     _check_plume(scenario, wind)
     limits = vessel_limits(scenario, turn_time(scenario, setup.reversal))
     check_vessel(scenario, vessel, limits)
     mean = mean_wind(scenario, vessel)
     errors = flight_errors(scenario, setup, mean, spreads.turning if spreads else AS_COMMANDED)
-    guarded = guard_parameters(scenario, setup, scenario.keepout.radius_m, errors)
+    guarded = guard_parameters(scenario, setup, scenario.guarded_radius, errors)
     planned = _planned_orbit(scenario, setup, spreads, vessel, wind, limits, guarded)
     check_not_outrun(scenario, vessel, mean, planned.climbed_to)
     generators = streams(noise)
     start, world = _start_and_world(scenario, vessel, mean, noise, generators.world)
+    _check_hull(scenario, world, scenario.guarded_radius + planned.margin.total)
     received = None
     if not scenario.vessel_known:
         received = received_reports(
-            scenario.reports,
+            as_reported,
             vessel,
             duration=flight.duration_max_s,
-            outage=world.fault.interval(VESSEL_DATA),
+            outages=world.faults.intervals(VESSEL_DATA),
             generator=generators.reports,
+            antenna=antenna_offset(scenario),
+            heading_generator=own_generator(noise, HEADING),
         )
     guard = guarded if g.keepout_guard else None
     # What the guard knows at the start: a report of a file may be minutes old by then, and any may
@@ -345,7 +358,7 @@ def _following_flight(
         wind=mean.now(0.0, scenario.altitude),
         known=first_known(scenario, setup),
         airspeed=g.airspeed_mps,
-        keepout_radius=scenario.keepout.radius_m,
+        keepout_radius=scenario.guarded_radius,
     )
     return FlightPlan.of(
         scenario,
@@ -372,6 +385,28 @@ def _following_flight(
         margin=planned.margin,
         apparent_wind=wind,
     )
+
+
+def _check_hull(scenario: Scenario, world: World, nearest: float) -> None:
+    """Raise an InfeasibleError for a hull that reaches as far along the plume, or about a circle,
+    as the orbit.
+
+    Parameters
+    ----------
+    scenario, world : the flight
+    nearest : distance of the orbit from the funnel [m]
+    """
+    hull = world.hull
+    if hull is None:
+        return
+    bearing = world.plume.axis(0.0) - world.vessel.course(0.0)
+    reach = hull.farthest if scenario.stands_off else hull.reach(bearing)
+    if reach >= nearest:
+        raise InfeasibleError(
+            f"vessel.length_m is {hull.length:g} m: the hull reaches {reach:.0f} m from the funnel"
+            f" towards the orbit, which begins at {nearest:.0f} m; set keepout.from to 'hull', or a"
+            f" larger keepout.radius_m than {scenario.keepout.radius_m:g} m"
+        )
 
 
 def _with_usual_intervals(scenario: Scenario, vessel: VesselTruth) -> Scenario:
@@ -434,7 +469,7 @@ def _planned_orbit(
     """Return the orbit nearest to the vessel that keeps the margin and leaves the guard nothing to
     do; farther where the sulphur is measured better.
     """
-    g, f, radius = scenario.guidance, scenario.following, scenario.keepout.radius_m
+    g, f, radius = scenario.guidance, scenario.following, scenario.guarded_radius
     nu = wind.at_start / g.airspeed_mps
     sigma, level = tracking_level(scenario, spreads, nu)
     orbit = oscillation_at(g, scenario.reference, nu)
@@ -489,13 +524,18 @@ def _start_and_world(
     noise: Noise,
     generator: np.random.Generator,
 ) -> tuple[Start, World]:
-    """Return start and world of a flight in a mean wind, sampled in this order: start, fault, air."""
+    """Return start and world of a flight in a mean wind, sampled in this order: start, fault,
+    air, and further faults.
+    """
     plume = plume_of(scenario, vessel)
     start = sampled_start(
         scenario.start, generator, course=vessel.course(0.0), axis=plume.axis(0.0)
     )
-    fault = sampled_fault(scenario.fault, generator)
+    first, *others = scenario.faults
+    fault = sampled_fault(first, generator)
     weather = sampled_weather(scenario, mean, generator)
+    # Start, air and first fault are what they are without another one.
+    faults = in_order([fault, *(sampled_fault(of, generator) for of in others)])
     covered = scenario.flight.duration_max_s + TRACK_MARGIN
     exhaust = exhaust_of(
         scenario,
@@ -511,10 +551,11 @@ def _start_and_world(
         elevation=math.radians(scenario.plume.elevation_deg),
         source_height=scenario.source_height,
         weather=weather,
-        fault=fault,
+        faults=faults,
         exhaust=exhaust,
         background=sampled_background(scenario.air, covered, own_generator(noise, BACKGROUND)),
         place=place_of(scenario, vessel),
+        hull=scenario.vessel.hull,
     )
     return start, world
 

@@ -59,7 +59,7 @@ def theory_over_speed_ratio(scenario: Scenario) -> dict[str, list[float]]:
         "r_co_m",
         *(f"crossing_interval_{shape}_s" for shape in _OSCILLATIONS),
     )
-    points = _points(scenario.guidance, scenario.reference, scenario.keepout, axis)
+    points = _points(scenario.guidance, scenario.reference, scenario.guarded_keepout, axis)
     curves = {name: [point[i] for point in points] for i, name in enumerate(names)}
     if scenario.follows:
         del curves["r_co_m"]

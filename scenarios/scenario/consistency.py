@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 
 from pydantic import BaseModel
 
+from common.faults import NO_FAULT
 from common.text import at_or_below
 from gnc.laws import ON_CIRCLE, ON_OSCILLATION
 from measurement.plume.spread import SOURCE_HEIGHT_MAX
 from scenarios.scenario.added_keys import ADDED
+from scenarios.scenario.errors import may_stand_several_times, without_indices
 from scenarios.scenario.sections.equipment import REPORTS_MAX
 from scenarios.scenario.sections.experiment import FLIGHTS_MAX, SPEED_KEYS, STUDY, swept_key
 from scenarios.scenario.sections.guidance import law_refusal
@@ -187,7 +189,8 @@ def unsteady(scenario: "Scenario") -> tuple[str, ...]:
     steady and known.
     """
     varied = (*scenario.sweep.root, *(draw.key for draw in scenario.draws))
-    return (*scenario.unsteady_keys, *(key for key in varied if key.startswith(_UNSTEADY)))
+    unsteadying = (key for key in varied if without_indices(key).startswith(_UNSTEADY))
+    return (*scenario.unsteady_keys, *unsteadying)
 
 
 def _check_law(scenario: "Scenario") -> None:
@@ -202,7 +205,7 @@ def _check_law(scenario: "Scenario") -> None:
 
 def _check_start(scenario: "Scenario") -> None:
     """Refuse a start within the keep-out area."""
-    start, radius = scenario.start, scenario.keepout.radius_m
+    start, radius = scenario.start, scenario.guarded_radius
     if scenario.circles:
         return
     if start.place_m is not None:
@@ -214,7 +217,12 @@ def _check_start(scenario: "Scenario") -> None:
     else:
         nearest, where = start.distance_m[0], "start.distance_m begins at"
     if nearest <= radius:
-        raise ValueError(f"{where} {nearest:g} m; it must exceed keepout.radius_m, {radius:g} m")
+        reach = radius - scenario.keepout.radius_m
+        hull = f" and the {reach:g} m from the funnel to the end of the hull" if reach else ""
+        raise ValueError(
+            f"{where} {nearest:g} m; it must exceed keepout.radius_m,"
+            f" {scenario.keepout.radius_m:g} m{hull}"
+        )
 
 
 def _is_scaled_later(scenario: "Scenario") -> bool:
@@ -228,11 +236,12 @@ def _is_scaled_later(scenario: "Scenario") -> bool:
 def _check_duration(scenario: "Scenario") -> None:
     """Refuse a fault, gusts and reports for which a flight is too short or too long."""
     air, duration = scenario.turbulence, scenario.flight.duration_max_s
-    if scenario.fault.kind != "none" and scenario.fault.at_s[1] >= duration:
-        raise ValueError(
-            f"fault.at_s ends at {scenario.fault.at_s[1]:g} s; it must lie within"
-            f" flight.duration_max_s, {duration:g} s"
-        )
+    for number, fault in enumerate(scenario.faults):
+        if fault.kind != NO_FAULT and fault.at_s[1] >= duration:
+            raise ValueError(
+                f"{scenario.fault_key(number, 'at_s')} ends at {fault.at_s[1]:g} s; it must lie"
+                f" within flight.duration_max_s, {duration:g} s"
+            )
     if air.gusts * 2.0 * air.gust_length_s > 0.9 * duration:
         raise ValueError(
             f"turbulence.gusts is {air.gusts}, each {2.0 * air.gust_length_s:g} s long; they do not"
@@ -329,8 +338,11 @@ def _tables_of(scenario: "Scenario") -> Iterator[tuple[str, str, Collection[str]
 
 def _is_of_run(scenario: "Scenario", key: str) -> bool:
     """Return whether a key is outside of sections, or of a section on which no flight depends."""
-    return f"{key}.".startswith(_WITHOUT_EFFECT) or (
-        key in type(scenario).model_fields and not isinstance(getattr(scenario, key), BaseModel)
+    field = type(scenario).model_fields.get(key)
+    if f"{key}.".startswith(_WITHOUT_EFFECT):
+        return True
+    return field is not None and not (
+        isinstance(getattr(scenario, key), BaseModel) or may_stand_several_times(field)
     )
 
 

@@ -12,7 +12,13 @@ from common.errors import PluginError
 from scenarios.errors import InputError
 from scenarios.scenario.added_keys import ADDED
 from scenarios.scenario.consistency import unsteady
-from scenarios.scenario.errors import fields_along, known_keys, models_in
+from scenarios.scenario.errors import (
+    fields_along,
+    known_keys,
+    may_stand_several_times,
+    models_in,
+    without_indices,
+)
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.needs import Need, of_others, of_study
 
@@ -76,7 +82,7 @@ def reject_unused_keys(
     ------
     InputError : a key has no effect; the message names the part that would use it
     """
-    given = sorted(given)
+    given = sorted(_with_entries(scenario, given))
     turned_off = {*unsteady(overridden)} - {*unsteady(scenario)} if overridden else set()
     for key in given:
         if key not in turned_off and (user := unused(scenario, key)):
@@ -116,11 +122,59 @@ def unused(scenario: Scenario, key: str) -> str:
     """Return the part that would use a dotted key, where no part of a scenario's flights does;
     otherwise nothing.
     """
+    seen, above = _alone(scenario, key)
     for need in needs_of(key):
-        read: set[str] = set()
-        if not need.acts(_Watched(scenario, "", read)) and not _acts_in_some(need, scenario, read):
-            return need.user
+        if not any(_acts(need, of) for of in seen):
+            return (
+                need.user.replace(f"{without_indices(above)}.", f"{above}.") if above else need.user
+            )
     return ""
+
+
+def _acts(need: Need, scenario: Scenario) -> bool:
+    read: set[str] = set()
+    return bool(need.acts(_Watched(scenario, "", read))) or _acts_in_some(need, scenario, read)
+
+
+def _several(scenario: BaseModel, section: str) -> tuple[BaseModel, ...]:
+    """Return the entries of a section that stands several times; none of any other."""
+    field = type(scenario).model_fields.get(section)
+    given = getattr(scenario, section, None)
+    listed = field is not None and may_stand_several_times(field) and isinstance(given, tuple)
+    return given if listed else ()  # type: ignore[return-value]
+
+
+def sections_of(scenario: BaseModel, name: str) -> list[tuple[str, BaseModel]]:
+    """Return a section with its name, each entry of one that stands several times; nothing of what
+    is no section.
+    """
+    section = getattr(scenario, name)
+    if isinstance(section, BaseModel):
+        return [(name, section)]
+    return [(f"{name}.{i}", entry) for i, entry in enumerate(_several(scenario, name))]
+
+
+def _with_entries(scenario: Scenario, given: Iterable[str]) -> Iterator[str]:
+    """Yield keys, and those that are set in each entry of sections among them."""
+    for key in given:
+        yield key
+        for number, entry in enumerate(_several(scenario, key)):
+            yield from (f"{key}.{number}.{name}" for name in entry.model_fields_set)
+
+
+def _alone(scenario: Scenario, key: str) -> tuple[list[Scenario], str]:
+    """Return a scenario as the needs of a key read it, which know a section that stands once, and
+    the entry that the key is in; where the key names none, a scenario for each entry.
+    """
+    section, _, rest = key.partition(".")
+    entries = _several(scenario, section)
+    if not (entries and rest):
+        return [scenario], ""
+    seen = [scenario.model_copy(update={section: entry}) for entry in entries]
+    number = rest.partition(".")[0]
+    if not number.isdecimal():
+        return seen, ""
+    return seen[int(number) : int(number) + 1], f"{section}.{number}"
 
 
 def _needs_by_study(key: str) -> Iterator[Need]:
@@ -179,6 +233,7 @@ def _acts_in_some(need: Need, scenario: Scenario, read: set[str]) -> bool:
 
 def _is_read(key: str, read: set[str]) -> bool:
     """Return whether a key, or one above or below it, is among those that were read."""
+    key = without_indices(key)
     return any(
         key == of or key.startswith(f"{of.rstrip('.')}.") or of.startswith(f"{key}.") for of in read
     )
@@ -220,7 +275,8 @@ def _varied_by(scenario: Scenario, given: Iterable[str]) -> Iterator[tuple[str, 
 
 
 def _is_known(key: str) -> bool:
-    return ".".join("0" if part.isdecimal() else part for part in key.split(".")) in _known_keys()
+    with_first = ".".join("0" if part.isdecimal() else part for part in key.split("."))
+    return not {with_first, without_indices(key)}.isdisjoint(_known_keys())
 
 
 @functools.cache

@@ -31,9 +31,23 @@ def known_keys(kind: type[BaseModel]) -> list[str]:
         return keys
     for name, field in kind.model_fields.items():
         keys.append(name)
+        # The keys of a section that may stand several times are those of one.
+        several = may_stand_several_times(field)
         for model, listed in models_in(field.annotation):
-            keys += [f"{name}.0.{key}" if listed else f"{name}.{key}" for key in known_keys(model)]
+            if not (several and listed):
+                above = f"{name}.0" if listed else name
+                keys += [f"{above}.{key}" for key in known_keys(model)]
     return keys
+
+
+def may_stand_several_times(field: FieldInfo) -> bool:
+    """Return whether a section is a table or a list of tables, as it is given."""
+    return {False, True} <= {listed for _, listed in models_in(field.annotation)}
+
+
+def without_indices(key: str) -> str:
+    """Return a dotted key without the numbers of entries."""
+    return ".".join(part for part in key.split(".") if not part.isdecimal())
 
 
 def models_in(annotation: Any) -> Iterator[tuple[type[BaseModel], bool]]:
@@ -63,8 +77,8 @@ def entry_model(kind: type[BaseModel], parts: Sequence[str]) -> type[BaseModel] 
     sections.
     """
     *_, field = fields_along(kind, parts)
-    model, listed = next(models_in(field.annotation), (None, False)) if field else (None, False)
-    return model if listed else None
+    found = models_in(field.annotation) if field else ()
+    return next((model for model, listed in found if listed), None)
 
 
 def split_unit(description: str) -> tuple[str, str]:
@@ -91,7 +105,11 @@ def suggestion(kind: type[BaseModel], key: str) -> str:
     *parents, last = key.split(".")
     section = ["0" if part.isdecimal() else part for part in parents]
     known = [name.split(".") for name in known_keys(kind)]
-    siblings = [name[-1] for name in known if name[:-1] == section]
+    # The keys of a section that may stand several times are known without a number.
+    alone = [part for part in section if part != "0"]
+    siblings = [name[-1] for name in known if name[:-1] == section] or [
+        name[-1] for name in known if name[:-1] == alone
+    ]
     # A key without its section, such as speed_mps, is likelier than another key that is spelt
     # similarly.
     found = (

@@ -6,12 +6,14 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from common.faults import NO_FAULT
 from measurement.emission import stack_height_of
 from scenarios.scenario.added_keys import ADDED
 from scenarios.scenario.consistency import check_consistency
 from scenarios.scenario.sections.equipment import (
     FaultConfig,
     KinematicConfig,
+    OneOrSeveralFaults,
     PayloadConfig,
     SensorsConfig,
     VesselReportsConfig,
@@ -146,7 +148,7 @@ class Scenario(_AddedKeys):
     air: AirConfig = AirConfig()
     reports: VesselReportsConfig = VesselReportsConfig()
     sensors: SensorsConfig = SensorsConfig()
-    fault: FaultConfig = FaultConfig()
+    fault: OneOrSeveralFaults = FaultConfig()
     emission: EmissionConfig = EmissionConfig()
     payload: PayloadConfig = PayloadConfig()
     kinematic: KinematicConfig = KinematicConfig()
@@ -206,7 +208,7 @@ class Scenario(_AddedKeys):
             "vessel.track": self.vessel.track != "manoeuvres",
             "reports.interval_s": not self.reports.exact,
             **{f"sensors.{name}": error > 0.0 for name, error in sensors.items()},
-            "fault.kind": self.fault.kind != "none",
+            "fault.kind": any(fault.kind != NO_FAULT for fault in self.faults),
         }
         return tuple(key for key, has in given.items() if has)
 
@@ -224,6 +226,20 @@ class Scenario(_AddedKeys):
     def finds(self) -> bool:
         """Return whether a plume is searched for, given, or measured until there is a verdict."""
         return self.following.plume != "predicted" or self.flight.until == "verdict"
+
+    @property
+    def guarded_radius(self) -> float:
+        """Return the distance that has to be kept from the funnel, whatever the ship's heading is:
+        r_min, and, where that is measured from the hull, that of its farthest point [m].
+        """
+        hull = self.vessel.hull
+        reach = hull.farthest if hull is not None and self.keepout.from_hull else 0.0
+        return self.keepout.radius_m + reach
+
+    @property
+    def guarded_keepout(self) -> KeepoutConfig:
+        """Return the keep-out area about the funnel that has ``guarded_radius``."""
+        return self.keepout.model_copy(update={"radius_m": self.guarded_radius})
 
     @property
     def source_height(self) -> float:
@@ -247,11 +263,28 @@ class Scenario(_AddedKeys):
     @property
     def declared_faults(self) -> frozenset[str]:
         """Return the kinds of faults that its flights may have, and those that they declare."""
-        drawn = [
-            value for draw in self.draws if draw.key == "fault.kind" for value in draw.choice or ()
-        ]
-        varied = [*map(str, drawn), *map(str, self.sweep.root.get("fault.kind", ()))]
-        return frozenset({self.fault.kind, *self.fault.declared, *varied} - {"none"})
+        declared = {kind for fault in self.faults for kind in fault.declared}
+        flown = {kind for i in range(len(self.faults)) for kind in self.kinds_of_fault(i)}
+        return frozenset((declared | flown) - {NO_FAULT})
+
+    @property
+    def faults(self) -> tuple[FaultConfig, ...]:
+        """Return its faults, one at least: ``none`` is one, too."""
+        given = self.fault if isinstance(self.fault, tuple) else (self.fault,)
+        return given or (FaultConfig(),)
+
+    def fault_key(self, number: int, name: str) -> str:
+        """Return the dotted key of a fault, by its number from 0."""
+        return f"fault.{number}.{name}" if isinstance(self.fault, tuple) else f"fault.{name}"
+
+    def kinds_of_fault(self, number: int) -> frozenset[str]:
+        """Return the kinds that a fault, by its number from 0, has in its flights: its own, and
+        those swept or sampled.
+        """
+        key = self.fault_key(number, "kind")
+        drawn = [value for draw in self.draws if draw.key == key for value in draw.choice or ()]
+        varied = [*map(str, drawn), *map(str, self.sweep.root.get(key, ()))]
+        return frozenset({self.faults[number].kind, *varied})
 
     @property
     def plume_by_wind(self) -> bool:

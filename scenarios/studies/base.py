@@ -69,9 +69,11 @@ from scenarios.measures.columns import (
     DERIVED_COLUMNS,
     FINDING_COLUMNS,
     FLIGHT_COLUMNS,
+    HULL_COLUMNS,
     INPUT_COLUMNS,
     INTERVENTION_COLUMNS,
     SUMMARY_COLUMNS,
+    further_faults,
 )
 from scenarios.measures.verdict import Judge, Tally, bound_of
 from scenarios.planning.limits import omega_max
@@ -107,6 +109,7 @@ from scenarios.studies.summary import (
     unexplained_lines,
 )
 from scenarios.vehicles.vehicle_setup import aircraft_setup, design_of, kinematic_setup, spec_of
+from scenarios.world.world import sized
 
 STUDIES: Registry[Callable[..., Study]] = Registry(
     "study", folder="scenarios.studies", methods=("work", "run", "postprocess", "export", "summary")
@@ -126,6 +129,15 @@ def frame(rows: Iterable[Row], columns: Sequence[str]) -> pd.DataFrame:
     return pd.DataFrame(
         [[row.get(name) for name in columns] for row in rows], columns=list(columns)
     )
+
+
+def _has_hull(setting: Scenario) -> bool:
+    """Return whether the size of the ship is known in flights of a scenario."""
+    try:
+        return sized(setting).vessel.hull is not None
+    except InputError:
+        # What is wrong with a file is said where it is flown.
+        return False
 
 
 @study("flights")
@@ -233,6 +245,9 @@ class FlightStudy:
         figures = SUMMARY_COLUMNS | declared.figures | described(self.FIGURES, part=part)
         if any(setting.finds for setting in settings):
             figures |= FINDING_COLUMNS
+        if any(_has_hull(setting) for setting in settings):
+            figures |= HULL_COLUMNS
+        figures |= further_faults(max(len(setting.faults) for setting in settings))
         keys = dict.fromkeys(key for each in self.experiments.values() for key in each.keys)
         added = {file: described(columns, part=part) for file, columns in self.TABLES.items()}
         tables = {

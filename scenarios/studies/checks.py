@@ -1,6 +1,8 @@
 """What can be checked of a study before anything is flown."""
 
-from collections.abc import Iterable, Iterator
+import itertools
+import math
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -9,6 +11,7 @@ from aircraft.fleet.find import find_spec
 from aircraft.spec import AircraftError, Envelope
 from aircraft.weather import TURBULENCE, low_altitude_turbulence
 from common.errors import PluginError
+from common.faults import NO_FAULT
 from common.files import is_data_file
 from common.registry import Registry
 from common.run_layout import NAME_BYTES_MAX, is_file_name
@@ -26,7 +29,7 @@ from scenarios.planning.plume import flown_altitudes, sniffer_on_board
 from scenarios.scenario.extension_points import PAYLOADS, PLUME_MODELS, VESSEL_TRACKS
 from scenarios.scenario.parts import names_file, part_names
 from scenarios.scenario.scenario import Scenario
-from scenarios.world.faults import NOT_OF_AIRCRAFT
+from scenarios.world.faults import NOT_OF_AIRCRAFT, OF_SNIFFER, SATELLITES, VESSEL_DATA
 from scenarios.world.plume import Smoke, without_smoke
 from scenarios.world.vessel import check_manoeuvres
 from scenarios.world.world import mean_wind, vessel_of
@@ -203,10 +206,79 @@ def _check_fault(scenario: Scenario) -> None:
         known |= set(fault_names(find_spec(scenario.aircraft)))
     for kind in sorted(kinds - known):
         guess = did_you_mean(kind, known)
-        key = "fault.declared has" if kind in scenario.fault.declared else "fault.kind is"
         raise InputError(
-            f"{key} '{kind}'{guess or ';'} what can fail is {', '.join(sorted(known))}"
+            f"{_where_named(scenario, kind)} '{kind}'{guess or ';'} what can fail is"
+            f" {', '.join(sorted(known))}"
         )
+    numbers = range(len(scenario.faults))
+    for one, other in itertools.combinations(numbers, 2):
+        _check_apart(scenario, one, other)
+
+
+def _where_named(scenario: Scenario, kind: str) -> str:
+    """Return the key that names a kind of fault, as the beginning of a sentence."""
+    for number, fault in enumerate(scenario.faults):
+        if kind in fault.declared:
+            return f"{scenario.fault_key(number, 'declared')} has"
+        if kind in scenario.kinds_of_fault(number):
+            return f"{scenario.fault_key(number, 'kind')} is"
+    raise ValueError(f"no fault is of the kind '{kind}'")
+
+
+def _check_apart(scenario: Scenario, one: int, other: int) -> None:
+    """Refuse two faults of the same item, by their numbers, of which one may begin before the other
+    has ended.
+    """
+    first, second = (_may_fail(scenario, number) for number in (one, other))
+    for item in sorted(first.keys() & second.keys()):
+        (begins, ends), (begins_other, ends_other) = first[item], second[item]
+        if begins < ends_other and begins_other < ends:
+            keys = " and ".join(scenario.fault_key(number, "at_s") for number in (one, other))
+            raise InputError(
+                f"{keys}: {item} may fail {_between(begins, ends)}, and again"
+                f" {_between(begins_other, ends_other)}; let one of them end before the other"
+                " begins, or leave one out"
+            )
+
+
+def _between(begins: float, ends: float) -> str:
+    last = "the end of the flight" if ends == math.inf else f"{ends:g} s"
+    return f"between {begins:g} s and {last}"
+
+
+def _may_fail(scenario: Scenario, number: int) -> dict[str, tuple[float, float]]:
+    """Return what may fail by a fault, each item with its earliest beginning and latest end [s]."""
+    fault = scenario.faults[number]
+    earliest, latest = _extremes(scenario, number, "at_s", fault.at_s)
+    ends: dict[str, float] = {}
+    for kind in scenario.kinds_of_fault(number) - {NO_FAULT}:
+        lasts = math.inf
+        if kind in (VESSEL_DATA, SATELLITES):
+            name = f"{kind}_s"
+            _, lasts = _extremes(scenario, number, name, (getattr(fault, name),))
+        item = "the sniffer" if kind in OF_SNIFFER else f"'{kind}'"
+        ends[item] = max(latest + lasts, ends.get(item, 0.0))
+    return {item: (earliest, end) for item, end in ends.items()}
+
+
+def _extremes(
+    scenario: Scenario, number: int, name: str, own: Sequence[float]
+) -> tuple[float, float]:
+    """Return the least and the largest value of a key of a fault: its own, or those that are
+    sampled; without limits where these have none.
+    """
+    key = scenario.fault_key(number, name)
+    draw = next((draw for draw in scenario.draws if draw.key == key), None)
+    if draw is None:
+        return min(own), max(own)
+    known = draw.uniform or draw.within or draw.choice or ()
+    values = [
+        float(value)
+        for of in known
+        for value in (of if isinstance(of, list | tuple) else (of,))
+        if isinstance(value, int | float)
+    ]
+    return min(values, default=0.0), max(values, default=math.inf)
 
 
 def _check_vessel(scenario: Scenario) -> None:

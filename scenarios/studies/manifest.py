@@ -35,7 +35,7 @@ from scenarios.scenario.documentation import (
     described_fields,
     documented_part_keys,
 )
-from scenarios.scenario.effect import differing, unused
+from scenarios.scenario.effect import differing, sections_of, unused
 from scenarios.scenario.errors import line, split_unit
 from scenarios.scenario.files import AnyStudy
 from scenarios.scenario.parts import names_file, names_folder, part_names
@@ -212,24 +212,29 @@ def _of_sections(scenario: BaseModel) -> list[dict[str, Any]]:
     """Return every key of the scenario's sections and of the parts that they name."""
     listed: list[dict[str, Any]] = []
     for section_name in type(scenario).model_fields:
-        section = getattr(scenario, section_name)
-        if not isinstance(section, BaseModel) or section_name in ("comparison", "sweep", "report"):
+        if section_name in ("comparison", "sweep", "report"):
             continue
-        values = section.model_dump(mode="json")
-        for key, field in type(section).model_fields.items():
-            meaning, unit = split_unit(line(field.description or ""))
-            parameter = {
-                "key": f"{section_name}.{key}",
-                "value": values[key],
-                "unit": unit.replace(DIMENSIONLESS, ""),
-                "meaning": meaning,
-            }
-            if not field.is_required():
-                parameter["default"] = to_jsonable_python(
-                    field.get_default(call_default_factory=True)
-                )
-            listed.append(parameter)
-        listed += _of_parts(section_name, section)
+        for name, section in sections_of(scenario, section_name):
+            listed += _of_section(name, section)
+    return listed
+
+
+def _of_section(name: str, section: BaseModel) -> list[dict[str, Any]]:
+    """Return every key of a section, and of the parts that it names."""
+    listed: list[dict[str, Any]] = []
+    values = section.model_dump(mode="json")
+    for key, field in type(section).model_fields.items():
+        meaning, unit = split_unit(line(field.description or ""))
+        parameter = {
+            "key": f"{name}.{key}",
+            "value": values[key],
+            "unit": unit.replace(DIMENSIONLESS, ""),
+            "meaning": meaning,
+        }
+        if not field.is_required():
+            parameter["default"] = to_jsonable_python(field.get_default(call_default_factory=True))
+        listed.append(parameter)
+    listed += _of_parts(name, section)
     return listed
 
 

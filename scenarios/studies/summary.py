@@ -6,6 +6,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Self
 
+from common.faults import faults_in
+from common.hull import HULL_SHAPES
 from common.intervals import TELLING, percent
 from common.premises import TERMS, UNEXPLAINED
 from common.run_layout import SUMMARY
@@ -28,6 +30,8 @@ on the console, at most.
 _MEASURED_FROM = {
     "sphere": " (from the centre of the keep-out sphere)",
     "cylinder": " (horizontally, from the axis of the cylinder)",
+    HULL_SHAPES["sphere"]: " (from the outline of the hull)",
+    HULL_SHAPES["cylinder"]: " (horizontally, from the outline of the hull)",
 }
 """What distances are measured from, by the shape of the keep-out area."""
 
@@ -213,8 +217,9 @@ class FlightNotes:
         self.unflown_manoeuvres += row.get("manoeuvres_unflown", 0) > 0
         if row.get("plume_axis_crossings", 0) and not row["smoke_passes"]:
             self.beside_smoke.append(row["axis_height_error_mean_m"])
-        if row.get("fault") in OF_SNIFFER and row["fault_time_s"] <= row.get("duration_s", 0.0):
-            self.sniffer_faults[row["fault"]] += 1
+        for kind, begins in faults_in(row):
+            if kind in OF_SNIFFER and begins <= row.get("duration_s", 0.0):
+                self.sniffer_faults[kind] += 1
         if math.isfinite(row.get("fsc_percent", math.nan)):
             self.sulphur = self.sulphur or row
             self.verdicts[row["sulphur_verdict"], row["sulphur_quality"]] += 1

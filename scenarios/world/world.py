@@ -10,11 +10,13 @@ import numpy.typing as npt
 from aircraft.weather import Weather
 from aircraft.wind import WindField
 from common.errors import PluginError
+from common.hull import ShipHull
 from common.plugins import call_plugin, is_users, number, numbers
+from scenarios.errors import InputError
 from scenarios.scenario.extension_points import PLUME_MODELS, VESSEL_TRACKS
 from scenarios.scenario.scenario import Scenario
-from scenarios.world.ais.track import AisVessel, ais_vessel
-from scenarios.world.faults import TimedFault
+from scenarios.world.ais.track import AT_THE_FUNNEL, AisVessel, ais_vessel, with_size_of_file
+from scenarios.world.faults import Faults
 from scenarios.world.plume import UNIFORM, Background, Exhaust, Plume
 from scenarios.world.vessel import (
     Place,
@@ -53,10 +55,11 @@ class World:
     vessel, plume : the ship's motion and the plume's axis
     elevation, source_height : of the plume's axis, and of its origin above the sea [rad, m]
     weather : the air
-    fault : what fails, and when
+    faults : what fails, and when
     exhaust : the vessel's smoke, or none
     background : CO2 of the air beside it
     place : where on earth, and when
+    hull : of the vessel, where it is known; the vessel's place is that of its funnel
     """
 
     vessel: VesselTruth
@@ -64,10 +67,15 @@ class World:
     elevation: float
     source_height: float
     weather: Weather
-    fault: TimedFault
+    faults: Faults
     place: Place
+    hull: ShipHull | None = None
     exhaust: Exhaust | None = None
     background: Background = UNIFORM
+
+    def headings(self, times: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Return the ship's heading at some times, shape (n,) [rad]."""
+        return np.array([self.vessel.course(time) for time in times.tolist()])
 
 
 _MOTION = numbers(4, "north, east [m] and their rates [m/s]")
@@ -85,7 +93,7 @@ def vessel_of(scenario: Scenario) -> VesselTruth:
         use
     InputError : its file cannot be read, or does not cover the longest flight
     """
-    config, duration = scenario.vessel, scenario.flight.duration_max_s
+    config, duration = sized(scenario).vessel, scenario.flight.duration_max_s
     if config.from_file:
         altitude = scenario.source_height
         return ais_vessel(
@@ -108,6 +116,32 @@ def vessel_of(scenario: Scenario) -> VesselTruth:
     if is_users(track):
         _check_track(part, track, duration)
     return track
+
+
+def sized(scenario: Scenario) -> Scenario:
+    """Return the scenario with the size of the ship and the place of the antenna that the file of
+    its track says, where they are not given.
+
+    Raises
+    ------
+    InputError : the file cannot be read, or the size is needed and nothing says it
+    """
+    vessel = scenario.vessel
+    if vessel.from_file:
+        vessel = with_size_of_file(vessel)
+    if vessel.hull is None and (scenario.keepout.from_hull or vessel.stack_from_bow_m is not None):
+        needs = "keepout.from 'hull'" if scenario.keepout.from_hull else "vessel.stack_from_bow_m"
+        raise InputError(
+            f"{needs} needs the size of the ship, and nothing says it; give vessel.length_m and"
+            " vessel.beam_m"
+        )
+    return scenario.model_copy(update={"vessel": vessel})
+
+
+def antenna_offset(scenario: Scenario) -> tuple[float, float]:
+    """Return the place of the antenna, ahead of the funnel and to starboard of it [m]."""
+    hull = scenario.vessel.hull
+    return AT_THE_FUNNEL if hull is None else hull.antenna_offset
 
 
 def _check_track(part: str, track: VesselTruth, duration: float) -> None:

@@ -18,7 +18,7 @@ from reports.document.panels import (
     quartiles,
     strips,
 )
-from reports.flights.names import changes_flights, fault_name, manoeuvres_flown, swept_words
+from reports.flights.names import changes_flights, manoeuvres_flown, swept_words
 from reports.flights.trials.panels_over import (
     LIMIT_LABEL,
     PanelsOver,
@@ -27,6 +27,7 @@ from reports.flights.trials.panels_over import (
 )
 from reports.monte_carlo.names import input_name
 from reports.run.columns import NOTICEABLE, Array, clearance, column, figure, total
+from reports.run.faults import names_of_faults
 from reports.run.ship import hull_of
 from reports.run.trials import Kind, Trial
 
@@ -362,7 +363,7 @@ def _faults(trial: Trial) -> list[Chart]:
             trial,
             "faults",
             caption,
-            [fault_name(kind) for kind in trial.flown["fault"]],
+            names_of_faults(trial.flown),
             "Fault",
             [kept, end],
         )

@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from common.faults import faults_in
 from common.premises import TERMS, ratio_column
 from common.verdict import Premises, RunVerdict
 from reports.document.tables import ending, in_symbols, number, span
 from reports.flights.criteria import counted, criterion_title, limits_words
-from reports.flights.names import fault_name, told_name
+from reports.flights.names import told_name
 from reports.run.columns import (
     Mask,
     column,
@@ -21,6 +22,7 @@ from reports.run.columns import (
     met,
     was_flown,
 )
+from reports.run.faults import fault_name
 from reports.run.trials import Trial
 
 _NAMED_MAX = 3
@@ -123,7 +125,14 @@ def noteworthy(verdict: RunVerdict, flown: pd.DataFrame) -> list[str]:
         )
     begun = flown[column(flown, "fault_time_s") <= column(flown, "duration_s")]
     if len(begun):
-        kinds, times = begun["fault"].map(fault_name), span(column(begun, "fault_time_s"), "{:.0f}")
+        faults = [
+            (fault_name(kind), at)
+            for row in begun.to_dict("records")
+            for kind, at in faults_in(row)
+            if at <= row["duration_s"]
+        ]
+        kinds = pd.Series([kind for kind, _ in faults])
+        times = span(np.array([at for _, at in faults]), "{:.0f}")
         kind = kinds.iloc[0] if kinds.nunique() == 1 else counted(kinds)
         lines.append(
             f"{_in_flights(len(begun), len(flown))} a fault began, as the scenario has it: {kind}, at {times} s."

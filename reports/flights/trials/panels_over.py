@@ -12,6 +12,7 @@ from reports.document.panels import Group, around, capped, level, points
 from reports.flights.names import flown_elsewhere, words_together
 from reports.monte_carlo.names import input_label
 from reports.run.columns import clearance, column, interval_error, violated
+from reports.run.flight_config import is_level
 from reports.run.trials import Trial
 
 _OSCILLATIONS: tuple[tuple[str, str, str, Style], ...] = (
@@ -145,7 +146,7 @@ class PanelsOver:
         """Return the distances of the crossings and the closest approach."""
         closest = (
             "closest approach, horizontal"
-            if self._trial.shape == "cylinder"
+            if is_level(self._trial.shape)
             else "closest approach, whole flight"
         )
         lines = [

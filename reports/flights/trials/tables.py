@@ -15,7 +15,7 @@ from reports.document.blocks import Block, Table, Text
 from reports.document.tables import approach, ending, number, outcome, span
 from reports.flights.bounds import trial_bound
 from reports.flights.criteria import counted, criterion_title, limits_words, worst_words
-from reports.flights.names import fault_name, told_name
+from reports.flights.names import told_name
 from reports.run.columns import (
     clearance,
     column,
@@ -29,6 +29,7 @@ from reports.run.columns import (
     violated,
     was_flown,
 )
+from reports.run.faults import names_of_faults
 from reports.run.run_data import RunData
 from reports.run.time_history import keepout_distance
 from reports.run.trials import Trial
@@ -224,8 +225,8 @@ def _whose(trial: Trial, of: Criterion) -> str:
 
 
 def fault_table(trial: Trial) -> Table:
-    """Return a row per kind of fault: how the flights ended, and how close they came from the fault
-    on.
+    """Return a row per kind of fault: how the flights ended, and how close they came from the fault,
+    of several from the first, on.
     """
     flown = trial.flown
     differ = radii_differ(flown)
@@ -234,11 +235,11 @@ def fault_table(trial: Trial) -> Table:
         for _, row in flown.iterrows()
     }
     rows = []
-    for kind, members in flown.groupby("fault", sort=False):
+    for kind, members in flown.groupby(names_of_faults(flown), sort=False):
         closest = [after[str(flight_id)] for flight_id in members["flight_id"]]
         known = [value for value in closest if value is not None]
         rows.append([
-            fault_name(kind),
+            str(kind),
             f"{len(members)}",
             f"{count(kept_out(members))}",
             f"{count(completed(members))}",

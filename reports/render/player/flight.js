@@ -24,6 +24,12 @@ function decodedColumn(column, samples) {
   return values;
 }
 
+// How far a place seen from the funnel is ahead or astern of the hull and beside it [m]; sides are bow, stern, port and starboard.
+function beyondHull({north, east, vessel_heading: heading}, [bow, stern, port, starboard]) {
+  const ahead = Math.cos(heading) * north + Math.sin(heading) * east, right = Math.cos(heading) * east - Math.sin(heading) * north;
+  return [Math.max(ahead - bow, -stern - ahead, 0), Math.max(right - starboard, -port - right, 0)];
+}
+
 class Flight {
   constructor(data) {
     this.start = data.start;
@@ -57,8 +63,9 @@ class Flight {
   at(time) {
     const now = {time};
     for (const name of Object.keys(this.columns)) now[name] = this.value(name, time);
-    const up = this.keepout.shape === "cylinder" ? 0 : now.altitude - this.keepout.height;
-    now.distance = Math.hypot(now.north, now.east, up);
+    const {shape, height, sides} = this.keepout;
+    const up = ["cylinder", "hull prism"].includes(shape) ? 0 : now.altitude - height;
+    now.distance = Math.hypot(...(sides ? beyondHull(now, sides) : [now.north, now.east]), up);
     for (const axis of ["north", "east"])
       for (const what of ["", "reference_"]) {
         now[`relative_${what}${axis}`] = now[what + axis];

@@ -56,7 +56,7 @@ function block(width, height, length, x, y, z, colour) {
 
 // A ship about her funnel, of whose mouth the height above the sea is given, and the share of her length that is aft of it.
 // One whose size is not known is pale.
-function shipShape({length, beam, funnel: share, known}, height, colour) {
+function shipShape({length, beam, funnel: share, aside, known}, height, colour) {
   const group = new THREE.Group(), aft = share * length, fore = aft - length, half = beam / 2, deck = 0.22 * height;
   const outline = [[0, fore], [0.3, fore + 0.06 * length], [0.5, fore + 0.2 * length], [0.5, aft - 0.04 * length], [0.4, aft]];
   const round = [...outline, ...outline.slice(1).reverse().map(([x, z]) => [-x, z])];
@@ -67,6 +67,7 @@ function shipShape({length, beam, funnel: share, known}, height, colour) {
   group.add(block(0.84 * beam, 0.5 * height, 0.09 * length, 0, deck, -0.07 * length, "#f4f6f8"));
   group.add(block(0.94 * beam, 0.05 * height, 0.05 * length, 0, deck + 0.5 * height, -0.085 * length, "#dfe5ea"));
   for (let z = -0.24; z - 0.06 > share - 0.85; z -= 0.15) group.add(block(0.8 * beam, 0.14 * height, 0.12 * length, 0, deck, z * length, "#b9c1c9"));
+  for (const part of group.children) part.position.x += aside;
   const funnel = new THREE.Mesh(
     new THREE.CylinderGeometry(0.11 * beam, 0.15 * beam, height - deck, 20), new THREE.MeshLambertMaterial({color: colour}),
   );
@@ -134,8 +135,32 @@ function ring(radius, height, colour, width) {
   return curve(points, {colour, width});
 }
 
+// All that is within a radius of a hull, whose sides are bow, stern, port and starboard from the funnel: a wall up to a height.
+function hullKeepoutShape(radius, [bow, stern, port, starboard], top, colour) {
+  const group = new THREE.Group(), corners = [[-port, -bow], [starboard, -bow], [starboard, stern], [-port, stern]];
+  const edge = [];
+  for (let k = 0; k <= 120; k++) {
+    const x = Math.sin((Math.PI * k) / 60), z = Math.cos((Math.PI * k) / 60);
+    const [right, aft] = corners.reduce((far, corner) => (corner[0] * x + corner[1] * z > far[0] * x + far[1] * z ? corner : far));
+    edge.push([right + radius * x, aft + radius * z]);
+  }
+  const places = [], triangles = [];
+  edge.forEach(([x, z], k) => {
+    places.push(x, 0, z, x, top, z);
+    if (k) triangles.push(2 * k - 2, 2 * k - 1, 2 * k, 2 * k, 2 * k - 1, 2 * k + 1);
+  });
+  const wall = new THREE.BufferGeometry();
+  wall.setAttribute("position", new THREE.BufferAttribute(new Float32Array(places), 3));
+  wall.setIndex(triangles);
+  const look = {color: colour, transparent: true, opacity: 0.07, depthWrite: false, side: THREE.DoubleSide};
+  const line = (height, width) => curve(edge.flatMap(([x, z]) => [x, height, z]), {colour, width});
+  group.add(new THREE.Mesh(wall, new THREE.MeshBasicMaterial(look)), line(top, 2.5), line(0.4, 1.5));
+  return group;
+}
+
 // The keep-out area, with where it is widest and where it meets the sea.
-function keepoutShape({radius, shape, height}, colour) {
+function keepoutShape({radius, shape, height, sides}, colour) {
+  if (sides) return hullKeepoutShape(radius, sides, shape === "hull prism" ? 2.5 * height : height, colour);
   const group = new THREE.Group(), look = {color: colour, transparent: true, opacity: 0.07, depthWrite: false, side: THREE.DoubleSide};
   if (shape === "cylinder") {
     const top = 2.5 * height, wall = new THREE.CylinderGeometry(radius, radius, top, 72, 1, true);

@@ -22,7 +22,9 @@ class World {
     this.wake = new Wake(flight.hull);
     this.vessel = new THREE.Group();
     this.ship = shipShape(flight.hull, flight.keepout.height, colours.ship);
-    this.vessel.add(this.ship, keepoutShape(flight.keepout, colours.limit));
+    this.vessel.add(this.ship);
+    // About a hull it turns with the ship.
+    (flight.keepout.sides ? this.ship : this.vessel).add(keepoutShape(flight.keepout, colours.limit));
     this.smoke = new SmokeShape(flight.smoke, colours.plume);
     this.aircraft = aircraftShape(colours.aircraft);
     this.aircraft.rotation.order = "YXZ";

@@ -107,7 +107,7 @@ def drift_rate(
     """
     if not scenario.follows or SATELLITES not in scenario.declared_faults:
         return 0.0
-    outage, duration = scenario.fault.satellite_navigation_s, scenario.flight.duration_max_s
+    outage, duration = _longest_outage(scenario), scenario.flight.duration_max_s
     # The wind may have changed before the loss, too, and its estimate not have followed.
     changed = largest_wind_change(scenario, wind, outage + wind_followed(scenario), altitude_error)
     age = np.linspace(0.0, min(outage, duration), _AGES)
@@ -121,6 +121,17 @@ def drift_rate(
     )
     steady = max(scenario.following.drift_rate_mps, sensed)
     return steady + changed + _gust_taken_for_wind(scenario) + covered
+
+
+def _longest_outage(scenario: Scenario) -> float:
+    """Return how long satellite navigation is lost at a time, at most, of the faults that flights
+    may have or that are declared [s].
+    """
+    return max(
+        fault.satellite_navigation_s
+        for number, fault in enumerate(scenario.faults)
+        if SATELLITES in {*scenario.kinds_of_fault(number), *fault.declared}
+    )
 
 
 def _by_noise(scenario: Scenario, age: Array, turn: float) -> float:

@@ -43,7 +43,7 @@ _LOOKED_AT = 30
 
 def climbed_along(scenario: Scenario) -> float:
     """Return the distance from the vessel up to which an inclined plume is climbed along [m]."""
-    radius = scenario.keepout.radius_m
+    radius = scenario.guarded_radius
     turn = scenario.guidance.airspeed_mps / omega_max(scenario.guidance)
     return max(
         _RADII * radius,

@@ -2,9 +2,18 @@
 is absent is ideal.
 """
 
+import functools
 from typing import Annotated, Any, ClassVar
 
-from pydantic import ConfigDict, Field, field_validator, model_validator
+from pydantic import (
+    ConfigDict,
+    Field,
+    TypeAdapter,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+    field_validator,
+    model_validator,
+)
 
 from scenarios.scenario.extension_points import PAYLOADS
 from scenarios.scenario.sections.needs import OPERATIONAL, Need, when
@@ -22,6 +31,15 @@ _NOW_AND_THEN = Need(
 )
 
 
+_OFF_THE_STACK = Need(
+    lambda s: (
+        (s.vessel.hull is not None and s.vessel.hull.antenna_distance > 0.0)
+        or (s.vessel.from_file and s.vessel.stack_from_bow_m is not None)
+    ),
+    "an antenna that is not at the funnel: set vessel.antenna_from_bow_m",
+)
+
+
 class VesselReportsConfig(Section):
     """Reports of the vessel's motion, as by AIS."""
 
@@ -33,6 +51,11 @@ class VesselReportsConfig(Section):
     """Error of each coordinate of a report, one sigma [m]."""
     velocity_sigma_mps: Annotated[NonNegative, _NOW_AND_THEN] = 0.15
     """Error of each component of the velocity, one sigma [m/s]."""
+    heading_sigma_deg: Annotated[NonNegative, _NOW_AND_THEN, _OFF_THE_STACK] = 0.5
+    """Error of the ship's heading in a report, one sigma; with it the place of the antenna is taken
+    to the funnel. In a file the course stands for the heading, with its own error besides [deg]."""
+    turn_rate_sigma_deg_s: Annotated[NonNegative, _NOW_AND_THEN, _OFF_THE_STACK] = 0.02
+    """Error of the rate of turn in a report, one sigma [deg/s]."""
     latency_max_s: Annotated[NonNegative, _NOW_AND_THEN] = 0.0
     """Longest delay between the time that a report states and its reception [s]."""
     missing: Annotated[float, Field(ge=0.0, lt=1.0), _NOW_AND_THEN] = 0.0
@@ -71,7 +94,7 @@ class SensorsConfig(Section):
 
 
 class FaultConfig(Section):
-    """A fault in flight."""
+    """A fault in flight; several, each at a time of its own, as a list of tables, [[fault]]."""
 
     NEEDS: ClassVar[tuple[Need, ...]] = (OPERATIONAL,)
 
@@ -118,6 +141,23 @@ class FaultConfig(Section):
     def _ordered(self) -> "FaultConfig":
         check_ordered("at_s", self.at_s)
         return self
+
+
+@functools.cache
+def _several() -> TypeAdapter[tuple[FaultConfig, ...]]:
+    return TypeAdapter(tuple[FaultConfig, ...])
+
+
+def _one_or_several(given: Any, _: ValidatorFunctionWrapHandler) -> Any:
+    """Return a fault, or several from a list: what is wrong is said of the form that is given."""
+    if isinstance(given, list | tuple):
+        return _several().validate_python(given)
+    return FaultConfig.model_validate(given)
+
+
+OneOrSeveralFaults = Annotated[
+    FaultConfig | tuple[FaultConfig, ...], WrapValidator(_one_or_several)
+]
 
 
 class PayloadConfig(PartSection):

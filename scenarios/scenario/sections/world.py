@@ -2,15 +2,16 @@
 is absent is ideal.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields
 from datetime import datetime
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
-from pydantic import BeforeValidator, Field, field_validator, model_validator
+from pydantic import BeforeValidator, Field, create_model, field_validator, model_validator
 
 from common.files import is_data_file
+from common.hull import STACK_FROM_BOW, ShipHull
 from common.registry import is_file_part
 from measurement.emission import fuel_preset, ship_of, stack_height_of
 from measurement.gases import FUEL_SULPHUR_MOST
@@ -54,6 +55,14 @@ class ManoeuvreConfig(Section):
     """Rate of the change of speed [m/s2]."""
 
 
+_HULL_GIVEN = Need(
+    lambda s: s.vessel.length_m is not None or s.vessel.from_file,
+    "a hull: set vessel.length_m and vessel.beam_m",
+)
+_REPORTED = Need(
+    lambda s: not s.vessel_known,
+    "a vessel that reports the place of its antenna: set reports.interval_s",
+)
 _FILE = Need(
     lambda s: s.vessel.from_file,
     "a track from a file: set vessel.track to a file of AIS reports",
@@ -64,6 +73,11 @@ _NO_RATIO = Need(
     ),
     "a vessel whose speed is not given by sweep.nu or vessel.speed_ratio: leave one of them out",
 )
+
+
+def _first_known(places: Sequence[float | None]) -> float:
+    """Return the first place that is known, of which there is one."""
+    return next(place for place in places if place is not None)
 
 
 class VesselConfig(Section):
@@ -88,6 +102,22 @@ class VesselConfig(Section):
     """
     gap_max_s: Annotated[Positive, _FILE] = GAP_MAX
     """Longest gap between reports of a file over which the track is interpolated [s]."""
+    length_m: Annotated[float, Field(ge=5.0, le=600.0)] | None = None
+    """Length of the hull, whose outline is the rectangle of length and beam; without it the ship is
+    a point. Of a track from a file, what its reports say if not given [m]."""
+    beam_m: Annotated[float, Field(ge=1.0, le=150.0)] | None = None
+    """Beam of the hull, with length_m [m]."""
+    stack_from_bow_m: Annotated[NonNegative | None, _HULL_GIVEN] = None
+    """Place of the funnel from the bow. If not given: at the antenna, or, where that is not known
+    either, at 0.8 of the length [m]."""
+    stack_from_port_m: Annotated[NonNegative | None, _HULL_GIVEN] = None
+    """Place of the funnel from the port side. If not given: half the beam [m]."""
+    antenna_from_bow_m: Annotated[NonNegative | None, _HULL_GIVEN, _REPORTED] = None
+    """Place of the antenna whose position is reported from the bow, A of AIS message 5. If not
+    given: as reports of a file say, where stack_from_bow_m is given; else at the funnel [m]."""
+    antenna_from_port_m: Annotated[NonNegative | None, _HULL_GIVEN, _REPORTED] = None
+    """Place of that antenna from the port side, C of AIS message 5. If not given: as the other
+    one, or half the beam [m]."""
     manoeuvres: Annotated[tuple[ManoeuvreConfig, ...], OWN_TRACK, OPERATIONAL] = ()
     """Manoeuvres of the vessel, in the order of their times."""
 
@@ -107,6 +137,56 @@ class VesselConfig(Section):
         if times != sorted(times):
             raise ValueError(f"manoeuvres begin at {times} s; put them in their order")
         return self
+
+    @model_validator(mode="after")
+    def _on_the_hull(self) -> "VesselConfig":
+        places = {
+            name: getattr(self, name)
+            for name in (
+                "stack_from_bow_m",
+                "stack_from_port_m",
+                "antenna_from_bow_m",
+                "antenna_from_port_m",
+            )
+            if getattr(self, name) is not None
+        }
+        if self.length_m is None or self.beam_m is None:
+            sizes = {name: getattr(self, name) for name in ("length_m", "beam_m")}
+            given = [name for name, size in {**sizes, **places}.items() if size is not None]
+            missing = [name for name, size in sizes.items() if size is None]
+            if given and not self.from_file:
+                raise ValueError(
+                    f"{given[0]} is given without {' and '.join(missing)}; a hull has a length_m"
+                    " and a beam_m: give both"
+                )
+            return self
+        if self.beam_m > self.length_m:
+            raise ValueError(
+                f"beam_m is {self.beam_m:g} m; it must not exceed length_m, {self.length_m:g} m"
+            )
+        for name, place in places.items():
+            size = "length_m" if "bow" in name else "beam_m"
+            if place > getattr(self, size):
+                raise ValueError(
+                    f"{name} is {place:g} m, outside of the hull; it must not exceed {size},"
+                    f" {getattr(self, size):g} m"
+                )
+        return self
+
+    @property
+    def hull(self) -> ShipHull | None:
+        """The hull, where it is known: funnel and antenna are at one place if only one of them is."""
+        if self.length_m is None or self.beam_m is None:
+            return None
+        middle, usual = 0.5 * self.beam_m, STACK_FROM_BOW * self.length_m
+        along = [self.stack_from_bow_m, self.antenna_from_bow_m, usual]
+        across = [self.stack_from_port_m, self.antenna_from_port_m, middle]
+        stack = _first_known(along), _first_known(across)
+        antenna = (
+            _first_known([self.antenna_from_bow_m, stack[0]]),
+            _first_known([self.antenna_from_port_m, stack[1]]),
+        )
+        return ShipHull(length=self.length_m, beam=self.beam_m, stack=stack, antenna=antenna)
 
     @property
     def from_file(self) -> bool:
@@ -271,9 +351,31 @@ class EmissionConfig(Section):
         return fuel
 
 
-class KeepoutConfig(Section):
+if TYPE_CHECKING:
+    _MeasuredFrom = Section
+else:
+    # The key's name is a word of Python.
+    _MeasuredFrom = create_model(
+        "_MeasuredFrom",
+        __base__=Section,
+        __module__=__name__,
+        **{
+            "from": (
+                Annotated[Literal["stack", "hull"], _HULL_GIVEN],
+                Field(
+                    "stack",
+                    description="What the distance is measured from: the funnel (stack), or the"
+                    " outline of the hull at the height of the funnel's mouth (hull), of which"
+                    " vessel.length_m and vessel.beam_m are the sides.",
+                ),
+            )
+        },
+    )
+
+
+class KeepoutConfig(_MeasuredFrom):
     """What the UAV must not enter: a sphere about the funnel's mouth, or an upright cylinder
-    through it.
+    through it; or all that is as near to the outline of the hull.
     """
 
     NEEDS: ClassVar[tuple[Need, ...]] = (VESSEL,)
@@ -284,6 +386,11 @@ class KeepoutConfig(Section):
     """
     radius_m: Annotated[float, Field(ge=10.0, le=10_000.0)] = 200.0
     """r_min, radius of the keep-out area [m]."""
+
+    @property
+    def from_hull(self) -> bool:
+        """Whether distances are measured from the hull's outline."""
+        return bool(getattr(self, "from") == "hull")
 
 
 _NO_TABLE = Need(

@@ -3,5 +3,6 @@ track through them.
 """
 
 from scenarios.world.ais.reports import AisReports, read_ais
+from scenarios.world.ais.size import ShipSize
 
-__all__ = ["AisReports", "read_ais"]
+__all__ = ["AisReports", "ShipSize", "read_ais"]

@@ -22,6 +22,7 @@ from common.tables import Jump, Table, TableError, find_jumps, longitude_within,
 from common.text import install_words, other_units
 from scenarios.errors import InputError
 from scenarios.scenario.sections.world import GAP_MAX
+from scenarios.world.ais.size import SIZE_COLUMNS, ShipSize, ship_size, size_of_all
 
 
 class AisRow(NamedTuple):
@@ -41,48 +42,6 @@ class AisRow(NamedTuple):
     longitude: float
     speed: float
     course: float
-
-
-@dataclass(frozen=True, slots=True)
-class ShipSize:
-    """A ship's size as its reports say it.
-
-    Attributes
-    ----------
-    length, beam : [m]
-    to_bow, to_port : from the antenna whose place is reported, or None where it is not said [m]
-    """
-
-    length: float
-    beam: float
-    to_bow: float | None = None
-    to_port: float | None = None
-
-    def described(self) -> str:
-        """Return the size in words."""
-        size = f"{self.length:g} m by {self.beam:g} m"
-        return size if self.to_bow is None else f"{size}, antenna {self.to_bow:g} m from the bow"
-
-
-def ship_size(
-    *,
-    length: float = math.nan,
-    width: float = math.nan,
-    a: float = math.nan,
-    b: float = math.nan,
-    c: float = math.nan,
-    d: float = math.nan,
-) -> ShipSize | None:
-    """Return the size by the distances of the antenna from bow, stern, port and starboard (``a`` to
-    ``d`` of ITU-R M.1371-5, figure 41), or by length and width [m]; None where neither is said.
-
-    0 says nothing. With 0 to bow and port the antenna's place is not known.
-    """
-    along, across = a + b, c + d
-    if along > 0.0 and across > 0.0:
-        placed = a > 0.0 or c > 0.0
-        return ShipSize(along, across, a if placed else None, c if placed else None)
-    return ShipSize(length, width) if length > 0.0 and width > 0.0 else None
 
 
 Array = npt.NDArray[np.float64]
@@ -138,6 +97,7 @@ class AisReports:
     rows : of the vessel in the file
     dropped : number of rows of no use, by why they are
     size : of the vessel, where the file says it
+    size_remark : what the file says of it that is not used, or that other rows contradict
     lost_directions : directions of travel [deg], by sectors, of which all rows were dropped
     """
 
@@ -152,6 +112,7 @@ class AisReports:
     rows: int
     dropped: dict[str, int]
     size: ShipSize | None = None
+    size_remark: str = ""
     lost_directions: tuple[int, ...] = ()
 
     @property
@@ -189,14 +150,16 @@ class AisReports:
             "dropped": self.dropped,
             "warning": self.warning,
             "size": asdict(self.size) if self.size else None,
+            "size_remark": self.size_remark,
         }
 
     def described(self) -> str:
         """Return how many rows were used and dropped, in a line."""
         dropped = ", ".join(f"{count} {why}" for why, count in self.dropped.items())
         used = f"{self.path.name}: {len(self.time)} of {self.rows} rows of MMSI {self.mmsi} used"
-        size = f"; {self.size.described()}" if self.size else ""
-        return f"{used}{size}; dropped: {dropped}" if dropped else f"{used}{size}"
+        described = self.size.described() if self.size else ""
+        size = "; ".join(filter(None, [described, self.size_remark]))
+        return "; ".join(filter(None, [used, size, dropped and f"dropped: {dropped}"]))
 
 
 def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
@@ -215,7 +178,7 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
     path = Path(path)
     if mmsi is not None and (isinstance(mmsi, bool) or not isinstance(mmsi, Integral)):
         raise InputError(f"{path}: mmsi is {mmsi!r}; give a whole number, as in mmsi=219999001")
-    identity, rows, size = rows_of(path, mmsi)
+    identity, rows, sizes = rows_of(path, mmsi)
     dropped: Counter[str] = Counter()
     first: dict[str, int] = {}
     kept = placed = rows
@@ -240,6 +203,7 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
             f"{path}: {len(kept)} of {len(rows)} rows of MMSI {identity} used, two are needed;{f' dropped: {why};' if why else ''}"
             " correct the rows, or give another file"
         )
+    size, size_remark = size_of_all(sizes)
     columns = np.array(kept).T
     directed = np.isfinite(columns[5]) & (columns[5] < 360.0)
     reports = AisReports(
@@ -255,6 +219,7 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
         rows=len(rows),
         dropped=dict(dropped),
         size=size,
+        size_remark=size_remark,
         lost_directions=_lost_directions(rows, kept),
     )
     mistaken = [jump for jump in reports.jumps() if jump.mistake]
@@ -442,7 +407,7 @@ class _Said(NamedTuple):
 
     mmsi: int
     row: AisRow | None = None
-    size: ShipSize | None = None
+    size: tuple[ShipSize, str] | None = None
 
 
 def _all_said(path: Path, mmsi: int | None) -> Iterator[_Said]:
@@ -508,18 +473,21 @@ def _from_table(path: Path, mmsi: int | None) -> Iterator[_Said]:
             yield _Said(int(digits), row, size_of(number))
 
 
-def _sizes(table: Table, heads: Mapping[str, str]) -> Callable[[int], ShipSize | None]:
-    """Return the size that each row of a table says by its number, None where it says none."""
+def _sizes(table: Table, heads: Mapping[str, str]) -> Callable[[int], tuple[ShipSize, str] | None]:
+    """Return the size that each row of a table says, by its number."""
     known = {
-        key: table.numbers(heads[key], words=True)
-        for key in ("length", "width", "a", "b", "c", "d")
-        if key in heads
+        dimension: table.numbers(heads[name], words=True)
+        for dimension, names in SIZE_COLUMNS.items()
+        if (name := next((name for name in names if name in heads), None))
     }
+    if not known:
+        return lambda _: None
     return lambda number: ship_size(**{key: float(of[number]) for key, of in known.items()})
 
 
-def rows_of(path: Path, mmsi: int | None) -> tuple[int, list[AisRow], ShipSize | None]:
-    """Return the vessel's identity, its rows in the order of the file, and its size if it is said.
+def rows_of(path: Path, mmsi: int | None) -> tuple[int, list[AisRow], list[tuple[ShipSize, str]]]:
+    """Return the vessel's identity, its rows in the order of the file, and its size as often as it
+    is said.
 
     Parameters
     ----------
@@ -532,10 +500,10 @@ def rows_of(path: Path, mmsi: int | None) -> tuple[int, list[AisRow], ShipSize |
     """
     found: list[AisRow] = []
     counts: Counter[int] = Counter()
-    sizes: dict[int, ShipSize] = {}
+    sizes: dict[int, list[tuple[ShipSize, str]]] = {}
     for said in _all_said(path, mmsi):
         if said.size is not None:
-            sizes.setdefault(said.mmsi, said.size)
+            sizes.setdefault(said.mmsi, []).append(said.size)
         if said.row is not None:
             counts[said.mmsi] += 1
             if mmsi is None or said.mmsi == mmsi:
@@ -548,7 +516,7 @@ def rows_of(path: Path, mmsi: int | None) -> tuple[int, list[AisRow], ShipSize |
     if not found:
         raise _no_row(path, mmsi)
     identity = mmsi if mmsi is not None else next(iter(counts))
-    return identity, found, sizes.get(identity)
+    return identity, found, sizes.get(identity, [])
 
 
 def _no_row(path: Path, mmsi: int | None) -> InputError:
@@ -582,6 +550,9 @@ _AROUND_TIMES = " \t\r\n,;"
 _POSITION_REPORTS = (1, 2, 3, 18, 19)
 """Message types with position, speed and course (ITU-R M.1371-5): class A, and class B."""
 
+_SIDES = ("bow", "stern", "port", "starboard")
+"""Sides of the ship that messages have the antenna's distances from."""
+
 _MILLISECONDS_FROM, _DATE_FROM = 100_000_000_000, 10_000_000_000_000
 """Times since 1970 from which on they are milliseconds, of seconds from the year 5138 on; and from
 which on they are no time, but a date without its marks, as 20260601100000, of milliseconds from the
@@ -609,14 +580,16 @@ def _from_sentences(lines: Iterable[str], path: Path) -> Iterator[_Said]:
         if found is None:
             continue
         whole = [found[0]]
-        _, count, _, group, channel, *_ = found[0].split(",")
+        _, count, part, group, channel, *_ = found[0].split(",")
         if count != "1":
-            # The last sentence of a message completes it.
-            whole = parts.setdefault((group, channel), [])
+            # The last sentence of a message completes it, if none before it was lost.
+            whole = parts.pop((group, channel), []) if part != "1" else []
             whole.append(found[0])
-            if len(whole) < int(count):
+            if len(whole) < int(part):
                 continue
-            del parts[group, channel]
+            if len(whole) < int(count):
+                parts[group, channel] = whole
+                continue
         try:
             said: dict[str, Any] = pyais.decode(*whole).asdict()
         except Exception:  # noqa: BLE001 - whatever radio and decoder make of a line, it is one that says nothing
@@ -630,10 +603,9 @@ def _from_sentences(lines: Iterable[str], path: Path) -> Iterator[_Said]:
         else:
             others.add(int(said["msg_type"]))
         if "to_bow" in said:
-            a, b, c, d = (
-                _value(said, f"to_{end}") for end in ("bow", "stern", "port", "starboard")
-            )
-            yield _Said(identity, size=ship_size(a=a, b=b, c=c, d=d))
+            # Of a boat of a ship pyais has that ship's identity instead of dimensions.
+            sides = {end: _value(said, f"to_{end}") for end in _SIDES}
+            yield _Said(identity, size=ship_size(**sides))
     if not read:
         types = (
             f"messages of type {', '.join(map(str, sorted(others)))} alone"

@@ -3,6 +3,7 @@ on board: every few seconds, noisy, late, or not at all.
 """
 
 import math
+from collections.abc import Sequence
 from datetime import datetime
 from functools import lru_cache
 from pathlib import Path
@@ -10,9 +11,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
+from pydantic import ValidationError
 
 from common.geodesy import LocalFrame
 from common.text import utc_text
+from gnc.estimation.antenna import AntennaReport, at_antenna, at_funnel, turned_offset
 from gnc.estimation.vessel import VesselReport
 from scenarios.errors import InputError
 from scenarios.scenario.sections.equipment import VesselReportsConfig
@@ -24,6 +27,13 @@ if TYPE_CHECKING:
     from scipy.interpolate import BPoly
 
 Array = npt.NDArray[np.float64]
+
+AT_THE_FUNNEL = (0.0, 0.0)
+"""Offset of an antenna that is at the funnel, or taken to be there [m]."""
+
+_TURN_TIME = 20.0
+"""Time over which a rate of turn is the mean at least [s]: a course is wrong by a degree, and so
+the rate by 0.05 deg/s."""
 
 _AROUND = 600.0
 """Reports of this time before a flight and after it have a part in its smooth track [s]."""
@@ -53,16 +63,24 @@ class AisVessel(TabledVessel):
     start : time of the start, since 1970 [s]
     duration : of the longest flight [s]
     margin : for how long the track goes straight on after it [s]
+    antenna : place that reports are of, ahead of the funnel and to starboard of it [m]
 
     Attributes
     ----------
-    place : where and when the flight begins: the origin is on the smooth track
+    place : where and when the flight begins: the origin is on the smooth track of the funnel
     reports : those of the file, in the flight's time and frame
     source : the file's
     """
 
     def __init__(
-        self, reports: AisReports, *, altitude: float, start: float, duration: float, margin: float
+        self,
+        reports: AisReports,
+        *,
+        altitude: float,
+        start: float,
+        duration: float,
+        margin: float,
+        antenna: tuple[float, float] = AT_THE_FUNNEL,
     ) -> None:
         self.source = reports
         near = _around(reports.time, start, start + duration)
@@ -70,7 +88,12 @@ class AisVessel(TabledVessel):
         latitude, longitude = reports.latitude[near], reports.longitude[near]
         speed, course = reports.speed[near], reports.course[near]
         first = LocalFrame(float(latitude[0]), float(longitude[0]), altitude)
-        origin = smooth_motion(since, *_in_frame(first, latitude, longitude, speed, course))(0.0)
+        smooth = smooth_motion(since, *_in_frame(first, latitude, longitude, speed, course))
+        times = np.minimum(track_times(duration + margin), duration)
+        origin = smooth(0.0)
+        if antenna != AT_THE_FUNNEL:
+            heading = float(_course_of(smooth.derivative()(times))[0])
+            origin = origin - np.array(turned_offset(antenna, heading))
         latitude_there, longitude_there = first.to_geodetic(origin[0], origin[1])
         self.place = Place(
             latitude=float(latitude_there),
@@ -85,10 +108,41 @@ class AisVessel(TabledVessel):
             for t, p, v in zip(since, place, velocity, strict=True)
             if earliest <= t <= duration
         ]
-        smooth = smooth_motion(since, place, velocity).derivative()(
-            np.minimum(track_times(duration + margin), duration)
-        )
-        super().__init__(smooth, _course_of(smooth), _manoeuvres_end(smooth))
+        track = smooth_motion(since, place, velocity).derivative()(times)
+        course = _course_of(track)
+        if antenna != AT_THE_FUNNEL:
+            self.reports = _at_the_funnel(self.reports, antenna)
+            track = track + _turning(course, antenna)
+        super().__init__(track, course, _manoeuvres_end(track))
+
+
+def _turning(heading: Array, antenna: tuple[float, float]) -> Array:
+    """Return the velocity of the funnel over that of the antenna at ``track_times``, shape (n, 2)
+    [m/s], given the ship's heading there [rad].
+    """
+    ahead, right = antenna
+    rate = np.gradient(heading, TRACK_STEP)
+    cos_h, sin_h = np.cos(heading), np.sin(heading)
+    north, east = ahead * cos_h - right * sin_h, ahead * sin_h + right * cos_h
+    return np.column_stack([rate * east, -rate * north])
+
+
+def _at_the_funnel(reports: list[VesselReport], antenna: tuple[float, float]) -> list[VesselReport]:
+    """Return the reports of an antenna as they are of the funnel, by what is known when each is
+    received.
+
+    The ship's heading is taken for its course, and its rate of turn is the mean over the reports of
+    ``_TURN_TIME`` at least.
+    """
+    times = np.array([report.time for report in reports])
+    course = _course_of(np.array([report[3:5] for report in reports]))
+    taken = []
+    for i, report in enumerate(reports):
+        before = max(0, int(np.searchsorted(times, report.time - _TURN_TIME, "right")) - 1)
+        since = report.time - times[before]
+        rate = float(course[i] - course[before]) / since if since > 0.0 else 0.0
+        taken.append(at_funnel(AntennaReport(report, float(course[i]), rate), antenna))
+    return taken
 
 
 def ais_vessel(
@@ -107,6 +161,50 @@ def ais_vessel(
     ------
     InputError : the file is not usable, or does not cover the flight
     """
+    reports = _read(*_file_of(config), config.mmsi)
+    begin = float(reports.time[0]) if utc is None else utc.timestamp()
+    _check_covered(reports, begin, begin + duration, config.gap_max_s)
+    _check_jumps(reports, begin, begin + duration)
+    hull = config.hull
+    antenna = AT_THE_FUNNEL if hull is None else hull.antenna_offset
+    return _vessel(reports, altitude, begin, duration, margin, antenna)
+
+
+def with_size_of_file(config: VesselConfig) -> VesselConfig:
+    """Return the section with the size that the reports of its file say, and the place
+    of the antenna, where it does not give them.
+
+    Raises
+    ------
+    InputError : the file is not usable, or its size and what is given do not go together
+    """
+    said = _read(*_file_of(config), config.mmsi).size
+    if said is None:
+        return config
+    found = {
+        "length_m": said.length,
+        "beam_m": said.beam,
+        "antenna_from_bow_m": said.to_bow,
+        "antenna_from_port_m": said.to_port,
+    }
+    given = config.model_dump(exclude_none=True)
+    known = {name: value for name, value in found.items() if value is not None}
+    try:
+        return VesselConfig.model_validate(known | given)
+    except ValidationError as error:
+        raise InputError(
+            f"vessel: {error.errors()[0]['msg'].removeprefix('Value error, ')}; {config.track} says"
+            f" {said.described()}"
+        ) from None
+
+
+def _file_of(config: VesselConfig) -> tuple[Path, tuple[int, int]]:
+    """Return the file of a track, and what tells one state of it from another.
+
+    Raises
+    ------
+    InputError : there is none
+    """
     path = Path(config.track)
     try:
         stamp = path.stat()
@@ -114,11 +212,7 @@ def ais_vessel(
         raise InputError(
             f"vessel.track: {path}: cannot be read: {error.strerror}; check the path"
         ) from None
-    reports = _read(path, (stamp.st_mtime_ns, stamp.st_size), config.mmsi)
-    begin = float(reports.time[0]) if utc is None else utc.timestamp()
-    _check_covered(reports, begin, begin + duration, config.gap_max_s)
-    _check_jumps(reports, begin, begin + duration)
-    return _vessel(reports, altitude, begin, duration, margin)
+    return path, (stamp.st_mtime_ns, stamp.st_size)
 
 
 def _check_covered(reports: AisReports, begin: float, end: float, gap_max: float) -> None:
@@ -159,9 +253,21 @@ def _check_jumps(reports: AisReports, begin: float, end: float) -> None:
 
 @lru_cache(maxsize=_KEPT)
 def _vessel(
-    reports: AisReports, altitude: float, start: float, duration: float, margin: float
+    reports: AisReports,
+    altitude: float,
+    start: float,
+    duration: float,
+    margin: float,
+    antenna: tuple[float, float],
 ) -> AisVessel:
-    return AisVessel(reports, altitude=altitude, start=start, duration=duration, margin=margin)
+    return AisVessel(
+        reports,
+        altitude=altitude,
+        start=start,
+        duration=duration,
+        margin=margin,
+        antenna=antenna,
+    )
 
 
 @lru_cache(maxsize=_KEPT)
@@ -295,8 +401,10 @@ def received_reports(
     vessel: VesselTruth,
     *,
     duration: float,
-    outage: tuple[float, float],
+    outages: Sequence[tuple[float, float]],
     generator: np.random.Generator,
+    antenna: tuple[float, float] = AT_THE_FUNNEL,
+    heading_generator: np.random.Generator | None = None,
 ) -> list[tuple[float, VesselReport]]:
     """Return the reports that are received, with the time at which each is [s], in the order in
     which they are received.
@@ -308,11 +416,14 @@ def received_reports(
     reports : how they come; exact knowledge needs none of this
     vessel : its motion
     duration : of the flight [s]
-    outage : nothing is received between these times [s]
+    outages : nothing is received between these times [s]
     generator : of the random numbers
+    antenna : place that reports are of, ahead of the funnel and to starboard of it [m]; what is
+        received of it is taken to the funnel
+    heading_generator : of the errors of heading and rate of turn, where the antenna is elsewhere
     """
     if isinstance(vessel, AisVessel):
-        return _received_from_file(reports, vessel, outage=outage, generator=generator)
+        return _received_from_file(reports, vessel, outages=outages, generator=generator)
     received = []
     time = 0.0
     while time <= duration:
@@ -327,17 +438,48 @@ def received_reports(
             velocity_north=v_north + reports.velocity_sigma_mps * float(errors[2]),
             velocity_east=v_east + reports.velocity_sigma_mps * float(errors[3]),
         )
-        if time == 0.0 or not (missed or outage[0] <= time + late < outage[1]):
+        if antenna != AT_THE_FUNNEL and heading_generator is not None:
+            report = _by_antenna(report, vessel, reports, antenna, heading_generator)
+        if time == 0.0 or not (missed or _within(outages, time + late)):
             received.append((time + late, report))
         time += float(generator.uniform(*reports.interval_s))
     return sorted(received, key=lambda entry: entry[0])
+
+
+def _by_antenna(
+    funnel: VesselReport,
+    vessel: VesselTruth,
+    reports: VesselReportsConfig,
+    antenna: tuple[float, float],
+    generator: np.random.Generator,
+) -> VesselReport:
+    """Return what is made on board of the report of an antenna.
+
+    Parameters
+    ----------
+    funnel : motion that would be reported of the funnel
+    vessel, reports, antenna, generator : as of ``received_reports``
+    """
+    time, off = funnel.time, generator.standard_normal(2)
+    heading, rate = vessel.course(time), _turn_rate(vessel, time)
+    reported = AntennaReport(
+        motion=at_antenna(funnel, antenna, heading, rate),
+        heading=heading + math.radians(reports.heading_sigma_deg) * float(off[0]),
+        turn_rate=rate + math.radians(reports.turn_rate_sigma_deg_s) * float(off[1]),
+    )
+    return at_funnel(reported, antenna)
+
+
+def _turn_rate(vessel: VesselTruth, time: float) -> float:
+    """Return how fast a vessel turns [rad/s], over a step of its track."""
+    return (vessel.course(time + TRACK_STEP) - vessel.course(time)) / TRACK_STEP
 
 
 def _received_from_file(
     reports: VesselReportsConfig,
     vessel: AisVessel,
     *,
-    outage: tuple[float, float],
+    outages: Sequence[tuple[float, float]],
     generator: np.random.Generator,
 ) -> list[tuple[float, VesselReport]]:
     """Return the file's own reports as they are received: late or missing where the scenario says
@@ -349,6 +491,10 @@ def _received_from_file(
         missed = bool(generator.random() < reports.missing)
         if report.time <= 0.0:
             received.append((report.time, report))
-        elif not (missed or outage[0] <= report.time + late < outage[1]):
+        elif not (missed or _within(outages, report.time + late)):
             received.append((report.time + late, report))
     return sorted(received, key=lambda entry: entry[0])
+
+
+def _within(intervals: Sequence[tuple[float, float]], time: float) -> bool:
+    return any(begins <= time < ends for begins, ends in intervals)

@@ -2,6 +2,7 @@
 
 import base64
 import json
+import math
 import re
 from dataclasses import replace
 from html.parser import HTMLParser
@@ -177,6 +178,16 @@ def test_one_can_go_to_the_closest_approach_and_to_what_happened(trial, row):
     assert events["closest approach"] == pytest.approx(
         history["time_s"].iloc[nearest], abs=INTERVAL
     )
+
+
+def test_each_of_several_faults_is_an_event_at_its_time(trial, row):
+    happened = row.copy()
+    happened["fault"], happened["fault_time_s"] = "vessel_data", 7.5
+    happened["fault_2"], happened["fault_2_time_s"] = "engine", 9.0
+    happened["fault_3"], happened["fault_3_time_s"] = "none", math.nan
+    events = dict(flight_scene(trial, happened, history_of(trial, row)).events)
+    found = {name: time for name, time in events.items() if name.startswith("fault")}
+    assert found == {"fault 1, vessel data": 7.5, "fault 2, engine": 9.0}
 
 
 def test_a_ship_whose_size_is_not_known_is_told_from_one_of_a_known_class(scene):

@@ -1,6 +1,7 @@
 """Files of AIS reports: known layouts, rows of no use, and files of no use."""
 
 import math
+from dataclasses import asdict
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ import pytest
 from common.physics import METRES_PER_SECOND_PER_KNOT
 from scenarios.errors import InputError
 from scenarios.scenario.files import CATALOG
-from scenarios.world.ais import read_ais
+from scenarios.world.ais import ShipSize, read_ais
 from scenarios.world.ais.synthetic import SYNTHETIC, danish_file, marine_cadastre_file
 
 PLAIN = "time_utc,mmsi,lat_deg,lon_deg,sog_kn,cog_deg"
@@ -147,13 +148,80 @@ def test_longitudes_from_0_to_360_are_those_from_minus_180(read):
     )
 
 
-def test_length_beam_and_antenna_are_read(read):
+def danish(*sizes):
+    """Return a Danish file with a row for each "width,length" and "A,B,C,D"."""
     head, row = LAYOUTS["danish"]
-    lines = [row.format(second, 57.0 + 1e-5 * second) for second in (0, 10, 20)]
-    sized = table(*(line.replace(",AIS,,,,", ",AIS,90,30,9,9") for line in lines), head=head)
-    size = read(sized).size
-    assert (size.length, size.beam, size.to_bow, size.to_port) == (120.0, 18.0, 90.0, 9.0)
-    assert "120 m by 18 m, antenna 90 m from the bow" in read(sized).described()
+    lines = []
+    for number, (size, sides) in enumerate(sizes):
+        line = row.format(10 * number, 57.0 + 5e-5 * number)
+        line = line.replace("Unknown,,,,,,,,", f"Unknown,,,,,{size},,")
+        lines.append(line.replace(",AIS,,,,", f",AIS,{sides}"))
+    return table(*lines, head=head)
+
+
+@pytest.mark.parametrize(
+    ("size", "sides", "expected"),
+    [
+        # ITU-R M.1371-5, figure 41: A ahead, B astern, C to port, D to starboard; 0 is not known.
+        ("18,120", "90,30,7,11", ShipSize(120.0, 18.0, 90.0, 7.0)),
+        (",", "90,30,7,11", ShipSize(120.0, 18.0, 90.0, 7.0)),
+        ("18,120", ",,,", ShipSize(120.0, 18.0)),
+        ("18,120", "0,0,0,0", ShipSize(120.0, 18.0)),
+        ("0,120", "0,0,0,0", ShipSize(120.0)),
+        # With A = C = 0 the others are length and beam, of a place that is not known.
+        (",", "0,120,0,18", ShipSize(120.0, 18.0)),
+        # The antenna at the bow, and at the port side.
+        (",", "0,120,9,9", ShipSize(120.0, 18.0, 0.0, 9.0)),
+        (",", "90,30,0,18", ShipSize(120.0, 18.0, 90.0, 0.0)),
+        (",", "90,30,0,0", ShipSize(120.0, None, 90.0)),
+        # Each of the three is rounded.
+        ("17.6,119.2", "90,30,7,11", ShipSize(120.0, 18.0, 90.0, 7.0)),
+    ],
+)
+def test_length_beam_and_antenna_are_read(read, size, sides, expected):
+    found = read(danish(*[(size, sides)] * 3))
+    assert (found.size, found.size_remark, found.record()["size"]) == (
+        expected,
+        "",
+        asdict(expected),
+    )
+
+
+@pytest.mark.parametrize(
+    ("size", "sides", "left", "remark"),
+    [
+        # A + B is 120 m: the ship has no length that is known, and its beam is not in doubt.
+        ("18,200", "90,30,7,11", ShipSize(None, 18.0, None, 7.0), "200 m and A + B 90 + 30 m"),
+        ("40,120", "90,30,7,11", ShipSize(120.0, None, 90.0), "width is 40 m and C + D 7 + 11 m"),
+        # The largest numbers stand for more: ITU-R M.1371-5, table 52.
+        (",", "511,30,7,11", ShipSize(None, 18.0, None, 7.0), "511 m may be more"),
+        ("18,120", "90,30,63,11", ShipSize(120.0, 18.0, 90.0), "63 m may be more"),
+        ("120,18", ",,,", None, "18 m long and 120 m wide"),
+    ],
+)
+def test_a_size_that_contradicts_itself_is_not_used_and_said(read, size, sides, left, remark):
+    found = read(danish(*[(size, sides)] * 3))
+    assert found.size == left
+    assert remark in found.size_remark
+    assert remark in found.described()
+
+
+def test_a_size_that_only_some_rows_say_is_read_and_others_are_named(read):
+    some = read(danish((",", ",,,"), ("18,120", ",,,"), ("18,120", "90,30,7,11")))
+    assert (some.size, some.size_remark) == (ShipSize(120.0, 18.0, 90.0, 7.0), "")
+    turned = read(danish(*[(",", "90,30,7,11")] * 2, (",", "30,90,7,11")))
+    assert turned.size == ShipSize(120.0, 18.0, 90.0, 7.0)
+    assert turned.size_remark == (
+        "other reports say 120 m by 18 m, antenna 30 m from the bow and 7 m from the port side"
+    )
+
+
+def test_columns_by_their_words_say_the_same_as_by_their_letters(read):
+    sized = table(
+        *(f"{row},90,30,7,11" for row in rows()),
+        head=f"{PLAIN},to_bow,to_stern,to_port,to_starboard",
+    )
+    assert read(sized).size == ShipSize(120.0, 18.0, 90.0, 7.0)
 
 
 def test_many_dropped_reports_are_a_warning_and_duplicates_are_none(read):
@@ -397,6 +465,45 @@ def test_nmea_sentences_are_decoded_with_the_time_before_them(read):
     )
     with pytest.raises(InputError, match="line 1: the sentence has no time"):
         read(lines[0].rpartition("\\")[2] + "\n", name="ais.nmea")
+
+
+def sentences(mmsi, *others):
+    """Return three position reports of a ship, and other sentences between the first two."""
+    encode = pytest.importorskip("pyais.encode", reason="pyais is an extra")
+    said = {"msg_type": 1, "mmsi": mmsi, "lon": 11.3, "speed": 12.0, "course": 0.0}
+    reports = [
+        f"{1780308000 + second} "
+        + encode.encode_dict(said | {"lat": 57.0 + 5.5e-5 * second}, talker_id="AI")[0]
+        for second in (0, 10, 20)
+    ]
+    return "\n".join([reports[0], *others, *reports[1:]]) + "\n"
+
+
+EVER_DIADEM = (
+    "!AIVDM,2,1,1,A,55?MbV02;H;s<HtKR20EHE:0@T4@Dn2222222216L961O5Gf0NSQEp6ClRp8,0*1C",
+    "!AIVDM,2,2,1,A,88888888880,2*25",
+)
+"""Static report of a ship as received, whose antenna is 225 m from the bow, 70 m from the stern, 1 m
+from port and 31 m from starboard (E. S. Raymond, AIVDM/AIVDO protocol decoding, example of type
+5)."""
+
+
+def test_static_reports_in_two_sentences_say_the_size(read):
+    expected = ShipSize(295.0, 32.0, 225.0, 1.0)
+    assert read(sentences(351759000, *EVER_DIADEM)).size == expected
+    # A part that was lost completes no message, neither this one nor the next.
+    assert read(sentences(351759000, EVER_DIADEM[1], *EVER_DIADEM)).size == expected
+    assert read(sentences(351759000, EVER_DIADEM[0], *EVER_DIADEM)).size == expected
+    assert read(sentences(351759000, *EVER_DIADEM[::-1])).size is None
+
+
+def test_a_boat_of_a_ship_reports_that_ship_and_no_size(read):
+    encode = pytest.importorskip("pyais.encode", reason="pyais is an extra")
+    static = {"msg_type": 24, "partno": 1, "mothership_mmsi": 219999001}
+    static |= {"to_bow": 5, "to_stern": 3, "to_port": 1, "to_starboard": 1}
+    for mmsi, expected in ((219999001, ShipSize(8.0, 2.0, 5.0, 1.0)), (982199901, None)):
+        said = encode.encode_dict(static | {"mmsi": mmsi}, talker_id="AI")[0]
+        assert read(sentences(mmsi, said)).size == expected
 
 
 def test_an_mmsi_that_a_table_has_with_decimals_is_the_same(read):

@@ -12,7 +12,7 @@ from gnc.mission.mission import Mode
 from scenarios.flight.ending import Ending, StopReason
 from scenarios.flight.outcome import Outcome
 from scenarios.scenario.sections.equipment import FaultConfig
-from scenarios.world.faults import sampled_fault
+from scenarios.world.faults import in_order, sampled_fault
 
 AT_THE_MAST, ON_THE_WATER = (60.0,), (1.0,)
 
@@ -37,7 +37,7 @@ def ended(
 ):
     """Return how a flight ended at 300 s."""
     of_world = FaultConfig(kind="engine", at_s=fault_at) if fault_at else FaultConfig()
-    world = SimpleNamespace(fault=sampled_fault(of_world, np.random.default_rng(1)))
+    world = SimpleNamespace(faults=in_order([sampled_fault(of_world, np.random.default_rng(1))]))
     plan = SimpleNamespace(
         crossings=asked,
         after_settling=after,

@@ -75,7 +75,7 @@ def test_nothing_else_of_a_flight_changes_with_a_start_that_is_given(key, value,
     del one[place], other[place]
     assert other == pytest.approx(one, rel=1e-12)
     assert given.sensing.received == sampled.sensing.received
-    assert given.world.fault == sampled.world.fault
+    assert given.world.faults == sampled.world.faults
     for step in (0, 1, 100):
         one, other = (
             flight.sensing.errors.read(

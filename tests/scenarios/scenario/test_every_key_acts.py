@@ -83,6 +83,16 @@ fault = { kind = "satellite_navigation", at_s = [40.0, 50.0] }
 flight.crossings = 0
 start.distance_m = [300.0, 400.0]
 """,
+    "hull": """
+flight.duration_max_s = 120.0
+guidance.mission = "follow"
+keepout = { from = "hull", radius_m = 120.0 }
+vessel = { speed_mps = 6.0, length_m = 110.0, beam_m = 17.0, stack_from_bow_m = 80.0, antenna_from_bow_m = 10.0 }
+reports.interval_s = [2.0, 5.0]
+following.vessel_acceleration_mps2 = 0.15
+flight.crossings = 0
+start.distance_m = [400.0, 500.0]
+""",
     "circle": 'flight.duration_max_s = 120.0\nreference.path = "circle"\nstart.place_m = [80.0, -60.0]\n',
 }
 """Flights of the kinematic vehicle with each mission, and without a vessel."""
@@ -108,6 +118,9 @@ VALUES = {
     "vessel.manoeuvres": [{"at_s": 20.0, "turn_deg": 30.0}],
     "vessel.manoeuvres.0.at_s": 50.0, "vessel.manoeuvres.0.turn_deg": 30.0, "vessel.manoeuvres.0.turn_rate_deg_s": 1.0,
     "vessel.manoeuvres.0.speed_mps": 8.0, "vessel.manoeuvres.0.acceleration_mps2": 0.1,
+    "vessel.length_m": 120.0, "vessel.beam_m": 18.0, "vessel.stack_from_bow_m": 90.0, "vessel.stack_from_port_m": 4.0,
+    "vessel.antenna_from_bow_m": 20.0, "vessel.antenna_from_port_m": 3.0, "keepout.from": "stack",
+    "reports.heading_sigma_deg": 3.0, "reports.turn_rate_sigma_deg_s": 0.2,
     "plume.direction": "apparent_wind", "plume.heading_deg": 170.0, "plume.elevation_deg": 10.0, "plume.source_height_m": 80.0,
     "emission.ship": "cruise", "emission.fuel": "mgo", "emission.sulphur_percent": 0.2, "emission.load": 0.5,
     "wind.temperature_c": 30.0, "wind.stability_per_s": 0.03, "flight.after_settling_s": 60.0, "flight.measured_s": 15.0,
@@ -178,7 +191,17 @@ MEASURING = tuple(
 )
 """Keys that act on what is measured, of a flight that is shorter than a verdict takes."""
 
-LOOKED_AT = {"measuring": (*MEASURING, "plume.meander", "payload.exact"), "searching": SEARCHING}
+OF_HULL = (
+    "vessel.length_m", "vessel.beam_m", "vessel.stack_from_bow_m", "vessel.stack_from_port_m", "vessel.antenna_from_bow_m",
+    "vessel.antenna_from_port_m", "keepout.from", "reports.heading_sigma_deg", "reports.turn_rate_sigma_deg_s",
+)  # fmt: skip
+"""Keys that act beside a ship with a hull."""
+
+LOOKED_AT = {
+    "hull": OF_HULL,
+    "measuring": (*MEASURING, "plume.meander", "payload.exact"),
+    "searching": SEARCHING,
+}
 """Keys that are tried in a flight in which the others do nothing more than elsewhere."""
 
 ELSEWHERE = {

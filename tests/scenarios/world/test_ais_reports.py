@@ -11,13 +11,13 @@ DURATION = 4000.0
 VESSEL = SteadyVessel(8.0, 0.0)
 
 
-def received(*, outage=None, seed=3, duration=DURATION, **changes):
+def received(*, outages=(), seed=3, duration=DURATION, **changes):
     values = {"interval_s": (2.0, 10.0), "latency_max_s": 2.0, "missing": 0.1} | changes
     return received_reports(
         VesselReportsConfig(**values),
         VESSEL,
         duration=duration,
-        outage=outage or (math.inf, math.inf),
+        outages=outages,
         generator=np.random.default_rng(seed),
     )
 
@@ -49,7 +49,7 @@ def test_reports_are_handed_on_in_the_order_in_which_they_are_received():
 
 def test_the_first_report_is_always_received_at_once():
     for seed in range(20):
-        arrivals = received(missing=0.99, outage=(0.0, 100.0), seed=seed, duration=50.0)
+        arrivals = received(missing=0.99, outages=[(0.0, 100.0)], seed=seed, duration=50.0)
         assert arrivals[0][0] == arrivals[0][1].time == 0.0
 
 
@@ -60,7 +60,7 @@ def test_a_fraction_of_them_is_missing():
 
 
 def test_nothing_is_received_during_an_outage():
-    arrivals, everything = received(outage=(100.0, 160.0), missing=0.0), received(missing=0.0)
+    arrivals, everything = received(outages=[(100.0, 160.0)], missing=0.0), received(missing=0.0)
     when = np.array([arrival[0] for arrival in arrivals])
     assert not np.any((when >= 100.0) & (when < 160.0))
     # Before and after it, nothing changes.

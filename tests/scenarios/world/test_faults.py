@@ -8,7 +8,14 @@ from aircraft.faults import ENGINE
 from aircraft.fleet.x8 import X8
 from aircraft.spec import Actuator, AircraftError, check_spec
 from scenarios.scenario.sections.equipment import FaultConfig
-from scenarios.world.faults import NO_FAULT, NOT_OF_AIRCRAFT, SATELLITES, VESSEL_DATA, sampled_fault
+from scenarios.world.faults import (
+    NO_FAULT,
+    NOT_OF_AIRCRAFT,
+    SATELLITES,
+    VESSEL_DATA,
+    in_order,
+    sampled_fault,
+)
 
 
 def generator():
@@ -21,12 +28,13 @@ def test_a_passing_fault_lasts_from_its_beginning_to_its_end(kind, lasts):
     assert 100.0 <= fault.begins <= 250.0
     assert fault.ends == fault.begins + lasts
     assert not fault.of_aircraft()
+    faults = in_order([fault])
     found = [
-        fault.lasts(kind, t)
+        faults.lasts(kind, t)
         for t in (fault.begins - 0.01, fault.begins, fault.ends - 0.01, fault.ends)
     ]
     assert found == [False, True, True, False]
-    assert not fault.lasts(SATELLITES if kind == VESSEL_DATA else VESSEL_DATA, fault.begins)
+    assert not faults.lasts(SATELLITES if kind == VESSEL_DATA else VESSEL_DATA, fault.begins)
 
 
 def test_one_number_is_the_time_of_a_fault():

@@ -3,7 +3,6 @@ filtered and kept.
 """
 
 import itertools
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -54,7 +53,7 @@ def reaches(scenario, limits, hours):
         scenario.reports,
         SteadyVessel(7.0, 0.0),
         duration=3600.0 * hours,
-        outage=(math.inf, math.inf),
+        outages=(),
         generator=np.random.default_rng(3),
     )
     known, reach, found = (
