@@ -84,6 +84,7 @@ _UNSTEADY = (
     "emission.ship",
     "vessel.manoeuvres",
     "vessel.track",
+    "traffic",
     "reports.",
     "sensors.",
     "fault.kind",

@@ -33,6 +33,7 @@ from common.run_layout import (
     SULPHUR,
     SULPHUR_TABLE,
     SUMMARY,
+    TRAFFIC,
     time_history_path,
 )
 from common.text import from_json_cell
@@ -72,6 +73,8 @@ from scenarios.measures.columns import (
     INPUT_COLUMNS,
     INTERVENTION_COLUMNS,
     SUMMARY_COLUMNS,
+    TRAFFIC_COLUMNS,
+    TRAFFIC_FIGURES,
 )
 from scenarios.measures.verdict import Judge, Tally, bound_of
 from scenarios.planning.limits import omega_max
@@ -233,6 +236,9 @@ class FlightStudy:
         figures = SUMMARY_COLUMNS | declared.figures | described(self.FIGURES, part=part)
         if any(setting.finds for setting in settings):
             figures |= FINDING_COLUMNS
+        with_traffic = any(setting.has_traffic for setting in settings)
+        if with_traffic:
+            figures |= TRAFFIC_FIGURES
         keys = dict.fromkeys(key for each in self.experiments.values() for key in each.keys)
         added = {file: described(columns, part=part) for file, columns in self.TABLES.items()}
         tables = {
@@ -241,6 +247,8 @@ class FlightStudy:
             INTERVENTIONS: dict(INTERVENTION_COLUMNS),
             DRAWS: INPUT_COLUMNS | described(dict.fromkeys(keys, ANY_KEY)),
         }
+        if with_traffic:
+            tables[TRAFFIC] = dict(TRAFFIC_COLUMNS)
         for file, columns in (declared.tables | added).items():
             tables[file] = FLIGHT_COLUMNS | columns
         if self.comparisons:
@@ -515,11 +523,10 @@ def clearance(row: Row, *, unmeasured: float) -> float:
     """Return how far from the keep-out area a flight stayed at its closest, or ``unmeasured`` if
     that is not known [m].
     """
-    return (
-        float(row["min_distance_m"] - row["keepout_radius_m"])
-        if "min_distance_m" in row
-        else unmeasured
-    )
+    if "min_distance_m" not in row:
+        return unmeasured
+    beyond = float(row["min_distance_m"] - row["keepout_radius_m"])
+    return min(beyond, float(row.get("others_clearance_min_m", math.inf)))
 
 
 class ChosenFlightsStudy(FlightStudy):

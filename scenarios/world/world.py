@@ -16,6 +16,7 @@ from scenarios.scenario.scenario import Scenario
 from scenarios.world.ais.track import AisVessel, ais_vessel
 from scenarios.world.faults import TimedFault
 from scenarios.world.plume import UNIFORM, Background, Exhaust, Plume
+from scenarios.world.traffic import OtherShip
 from scenarios.world.vessel import (
     Place,
     SteadyVessel,
@@ -57,6 +58,7 @@ class World:
     exhaust : the vessel's smoke, or none
     background : CO2 of the air beside it
     place : where on earth, and when
+    traffic : ships besides the vessel
     """
 
     vessel: VesselTruth
@@ -68,6 +70,7 @@ class World:
     place: Place
     exhaust: Exhaust | None = None
     background: Background = UNIFORM
+    traffic: tuple[OtherShip, ...] = ()
 
 
 _MOTION = numbers(4, "north, east [m] and their rates [m/s]")
