@@ -18,6 +18,12 @@ TERMS: Mapping[str, str] = {
 }
 """Terms of the error budget that are measured, and what each is called."""
 
+TRAFFIC_TERM, TRAFFIC_TITLE = "traffic", "other ships within their discs"
+"""The same of flights with ships besides the one that is measured."""
+
+TITLES: Mapping[str, str] = {**TERMS, TRAFFIC_TERM: TRAFFIC_TITLE}
+"""What all of them are called."""
+
 EXCEEDED = "premises_exceeded"
 """Column that names the terms whose ratio is above 1, separated by commas, or says ``HELD``."""
 
@@ -41,16 +47,16 @@ def time_column(term: str) -> str:
     return f"{ratio_column(term)}_s"
 
 
-def _columns_of(term: str) -> dict[str, Column]:
+def _columns_of(term: str, title: str) -> dict[str, Column]:
     return {
         ratio_column(term): Column(
-            f"largest error over what the guard reckons with: {TERMS[term]}",
-            title=f"Error over what the guard reckons with: {TERMS[term]}",
+            f"largest error over what the guard reckons with: {title}",
+            title=f"Error over what the guard reckons with: {title}",
             worse="higher",
         ),
         time_column(term): Column(
             "time of that ratio; of turns, at which the turn began",
-            title=f"Time of that ratio: {TERMS[term]}",
+            title=f"Time of that ratio: {title}",
             digits=1,
         ),
     }
@@ -63,10 +69,18 @@ PREMISE_COLUMNS = described(
             " or none",
             kind="text",
         ),
-        **{name: column for term in TERMS for name, column in _columns_of(term).items()},
+        **{
+            name: column
+            for term, title in TERMS.items()
+            for name, column in _columns_of(term, title).items()
+        },
     }
 )
 """Columns of a flight's row: how the premises of the guard's theorem held."""
+
+
+TRAFFIC_PREMISE_COLUMNS = described(_columns_of(TRAFFIC_TERM, TRAFFIC_TITLE))
+"""The same of flights with ships besides the one that is measured."""
 
 
 def exceeded_terms(row: Mapping[str, object]) -> list[str]:

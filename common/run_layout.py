@@ -26,6 +26,9 @@ CROSSINGS = "crossings.csv"
 INTERVENTIONS = "interventions.csv"
 """A row per intervention of the keep-out guard."""
 
+TRAFFIC = "traffic.csv"
+"""A row per flight and ship besides the one that is measured."""
+
 DRAWS = "draws.csv"
 """The values of the random variables of each flight."""
 
@@ -70,6 +73,7 @@ TABLES = (
     COMPARISON,
     CROSSINGS,
     INTERVENTIONS,
+    TRAFFIC,
     DRAWS,
     SAMPLES,
     PREMISES,
@@ -102,6 +106,9 @@ HISTORY_SUFFIX = ".parquet"
 
 EVALUATION_SUFFIX = ".json"
 """Suffix of instruments' evaluations of flights."""
+
+TRAFFIC_SUFFIX = ".traffic.json"
+"""Suffix of the tracks of other ships, as maps and replays draw them."""
 
 SMOKE_SUFFIX = ".smoke.json"
 """Suffix of the parcels of exhausts, as replays draw them."""
@@ -139,9 +146,14 @@ def smoke_path(flight_id: str) -> str:
     return f"{FLIGHTS}/{flight_id}{SMOKE_SUFFIX}"
 
 
+def traffic_path(flight_id: str) -> str:
+    """Return the path of the tracks of other ships of a flight, relative to the run directory."""
+    return f"{FLIGHTS}/{flight_id}{TRAFFIC_SUFFIX}"
+
+
 def flight_of(path: str) -> str:
     """Return the ID of a flight by a path ``RUN_DIR/flights/ID``, with or without a suffix."""
     name = Path(path).name
-    for suffix in (HISTORY_SUFFIX, SMOKE_SUFFIX, EVALUATION_SUFFIX):
+    for suffix in (HISTORY_SUFFIX, SMOKE_SUFFIX, TRAFFIC_SUFFIX, EVALUATION_SUFFIX):
         name = name.removesuffix(suffix)
     return name

@@ -13,6 +13,7 @@ from gnc.estimation.navigation import (
     OwnMotion,
     TrueNavigation,
 )
+from gnc.estimation.traffic import OtherVessel, Traffic
 from gnc.estimation.vessel import (
     FilterParameters,
     ReachableSet,
@@ -28,6 +29,7 @@ from gnc.mission.follow import FollowingParameters, PlumeFollowing
 from gnc.mission.mission import FAULTY, TRACK, Mission, Mode, Order
 from gnc.mission.standoff import StandoffOrbit, StandoffParameters
 from gnc.mission.track import DirectParameters, DirectTracking
+from gnc.mission.yielding import HORIZON, Yielding, YieldParameters
 from gnc.numeric import limited
 from gnc.tracker import TrackingParameters
 
@@ -44,6 +46,22 @@ class ReportedVessel:
 
     filter: FilterParameters
     limits: VesselLimits
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrafficParameters:
+    """The other vessels of a flight.
+
+    Attributes
+    ----------
+    vessels : that are known
+    speed_max : largest airspeed of the vehicle [m/s]
+    yielding : how the mission gives way to them
+    """
+
+    vessels: tuple[OtherVessel, ...]
+    speed_max: float
+    yielding: YieldParameters
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,6 +82,7 @@ class GuidanceParameters:
     mission : following a plume, circling the vessel, or tracking a reference that is known in
         advance
     health : of the vehicle
+    traffic : other vessels than that of the mission
     """
 
     speed: float
@@ -77,6 +96,7 @@ class GuidanceParameters:
     guard: GuardParameters | None
     mission: FollowingParameters | StandoffParameters | DirectParameters
     health: HealthParameters | None
+    traffic: TrafficParameters | None = None
 
 
 class Guidance:
@@ -92,6 +112,7 @@ class Guidance:
     mission : what to do, and the tracker of its reference
     guard : of the keep-out area, or None
     monitor : of the vehicle's health, or None
+    traffic, yielding : other vessels, and how the mission gives way to them; or None
     plan_interval : steps between plans of the mission; with 0 there is one plan, in the first step
     mode : what is being done
     guarding : whether the keep-out guard changed the last command
@@ -127,6 +148,17 @@ class Guidance:
             )
             self.guard = KeepoutGuard(p.guard, speeds)
         self.monitor = HealthMonitor(p.health) if p.health else None
+        self.traffic: Traffic | None = None
+        self.yielding: Yielding | None = None
+        if p.traffic:
+            self.traffic = Traffic(
+                p.traffic.vessels, speed_max=p.traffic.speed_max, horizon=HORIZON
+            )
+            self.yielding = Yielding(
+                p.traffic.yielding,
+                heading_rate_max=p.tracking.heading_rate_max,
+                lag=p.tracking.lag,
+            )
         self.mode = Mode.APPROACH
         self.guarding = False
         self._vessel_discs: Sequence[Tube] = ()
@@ -167,7 +199,8 @@ class Guidance:
         guard = self.guard
         if guard is not None:
             demand = Demand(time, command, pace, leaving)
-            guarded = guard.filter(demand, own, self._vessel_discs)
+            near = self.traffic.near if self.traffic is not None else ()
+            guarded = guard.filter(demand, own, self._vessel_discs, near)
             command, pace, held = guarded.heading_rate, guarded.pace, guarded.pace_held
             self.guarding = guarded.status is not GuardStatus.FREE
         tracker.heading_rate_command = command
@@ -203,6 +236,19 @@ class Guidance:
         if monitor is not None and monitor.check(measurement, self.heading_rate_command):
             self.mission.react(monitor.fault)
         order = self.mission.plan(time, self.own, target, renew=renew, guarding=self.guarding)
+        if self.traffic is not None and self.yielding is not None:
+            if renew:
+                self.traffic.update(time, self.own)
+            order = self.yielding.order(
+                order,
+                time,
+                self.own,
+                target,
+                self.mission.orbit,
+                self.traffic.near,
+                self.mission.tracker.heading_rate_command,
+                renew=renew,
+            )
         self.mode = order.mode
         self.altitude_command = order.altitude
         return order

@@ -20,7 +20,7 @@ import pandas as pd
 from common.columns import Column, Table
 from common.faults import fault_columns
 from common.plugins import call_plugin
-from common.run_layout import CROSSINGS, DRAWS, INTERVENTIONS, OVERRIDES
+from common.run_layout import CROSSINGS, DRAWS, INTERVENTIONS, OVERRIDES, TRAFFIC
 from common.text import as_json_cell
 from common.verdict import KeepOut
 from scenarios.engine.task import Result, Row, Task
@@ -33,6 +33,7 @@ from scenarios.flight.outcome import Outcome
 from scenarios.flight.record import HISTORY_COLUMNS, FlightRecord
 from scenarios.flight.smoke import smoke_record
 from scenarios.flight.time_history import flight_history, history_files
+from scenarios.flight.traffic_belief import TrafficBelief
 from scenarios.instruments.fuel_estimate import repeated_figures, with_verdict
 from scenarios.instruments.instrument import (
     EvaluatedInstrument,
@@ -45,6 +46,7 @@ from scenarios.measures.crossings import crossing_rows
 from scenarios.measures.figures import flight_figures, plan_row
 from scenarios.measures.finding import finding_figures
 from scenarios.measures.own_instruments import check_instruments, evaluated
+from scenarios.measures.traffic import traffic_record, traffic_rows
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.planning.missions import plan_flight
 from scenarios.planning.spreads import PredictedSpreads
@@ -89,6 +91,7 @@ class Findings:
     history : its time history, once it was flown
     document : what an instrument says of it beside its columns and figures
     smoke : parcels of the exhaust that it was flown in, if there was any
+    traffic : tracks of other ships, if there were any
     """
 
     row: Row
@@ -96,6 +99,7 @@ class Findings:
     history: pd.DataFrame | None = None
     document: Mapping[str, Any] | None = None
     smoke: bytes | None = None
+    traffic: bytes | None = None
 
     @property
     def named(self) -> Row:
@@ -129,6 +133,10 @@ class Findings:
         )
         figures, crossings = flight_figures(plan, record)
         self.row |= figures
+        if flown.plan.world is not None and flown.plan.world.traffic:
+            rows = traffic_rows(plan, record)
+            self.tables[TRAFFIC] = [self.named | of for of in rows]
+            self.traffic = traffic_record(plan, float(self.history["time_s"].iloc[-1]))
         # How many manoeuvres of the vessel begin after the end of the flight.
         if begins := [each.at_s for each in flown.request.scenario.vessel.manoeuvres]:
             self.row["manoeuvres_unflown"] = sum(at >= figures["duration_s"] for at in begins)
@@ -356,6 +364,7 @@ class FlightRunner:
                 history,
                 findings.document,
                 findings.smoke,
+                traffic=findings.traffic,
                 columns={} if history is None else self.columns,
                 planned=self._ends[-1],
                 kept=self.histories,
@@ -368,6 +377,8 @@ def history_columns(experiments: Iterable[Experiment]) -> dict[str, Column]:
     """Return the columns that time histories of some experiments may have."""
     points = [point.scenario for of in experiments for point in of.points]
     beliefs = BELIEF_COLUMNS | GuardBelief.COLUMNS
+    if any(point.has_traffic for point in points):
+        beliefs = beliefs | TrafficBelief.COLUMNS
     return HISTORY_COLUMNS | beliefs | declarations(points).histories
 
 

@@ -49,7 +49,9 @@ from typing import NamedTuple
 
 from gnc.estimation.error_budget import EXACT, ErrorBudget, WindErrorByGusts
 from gnc.estimation.navigation import AirMotion
+from gnc.estimation.traffic import KnownVessel
 from gnc.estimation.vessel import Tube
+from gnc.guard.common_turn import CommonTurn, CommonTurns
 from gnc.guard.turn import (
     CHANGE_DECAY,
     LEAST_CHANGE,
@@ -83,6 +85,15 @@ _SHORTFALL_MAX = 0.5
 """By how much skipped commands may be less of the turn away than the one that was looked at, over
 omega_max [-]. A larger share keeps more slack for rolling; a smaller one brings the next look
 sooner."""
+
+_COMMON_REACH = 2.0
+"""Turns away within which another vessel has to be out of reach, to be left out of a look [-]."""
+
+_FAR_MOST = 1.0
+"""Time for which other vessels are left out of looks at most [s]: speeds and wind change."""
+
+_FREE_ENOUGH = 0.5
+"""Time until the next look for which a common turn is kept without looking for another one [s]."""
 
 _PACE_DECAY = 2.0
 """Time constant with which former paces fade, over that of the airspeed [-]: an overshoot lasts
@@ -220,7 +231,13 @@ class KeepoutGuard:
             change=turns.history.change,
         )
 
-    def filter(self, demand: Demand, own: AirMotion, vessels: Sequence[Tube]) -> Guarded:
+    def filter(
+        self,
+        demand: Demand,
+        own: AirMotion,
+        vessels: Sequence[Tube],
+        others: Sequence[KnownVessel] = (),
+    ) -> Guarded:
         """Return the commands that keep out and are nearest to the demand.
 
         Parameters
@@ -228,6 +245,7 @@ class KeepoutGuard:
         demand : of the guidance
         own : the vehicle's motion
         vessels : discs, at least one, in each of which the vessel is
+        others : vessels besides her, of which those out of reach cost next to nothing
         """
         time, command, pace = demand.time, demand.heading_rate, demand.pace
         leaving = demand.leaving
@@ -237,10 +255,12 @@ class KeepoutGuard:
             pace, pace_held = self._speed, True
         fastest, slowest = self._speeds_with(pace, own.speed)
         rises = pace > speeds.highest + _PACE_TOLERANCE and not leaving
-        if rises and not heading_rates.allows(command, time, own, vessels, fastest, slowest):
+        if rises and not heading_rates.allows(
+            command, time, own, vessels, fastest, slowest, others
+        ):
             pace, pace_held = speeds.highest, True
             fastest, slowest = self._speeds_with(pace, own.speed)
-        command = heading_rates.limit(command, time, own, vessels, fastest, slowest)
+        command = heading_rates.limit(command, time, own, vessels, fastest, slowest, others)
         status = heading_rates.status
         if status is not GuardStatus.FREE and not leaving:
             pace, pace_held = self._speed, True
@@ -277,6 +297,56 @@ class Encounter:
     def __init__(self, disc: Tube, motions: tuple[RelativeMotion, ...]) -> None:
         self.disc = disc
         self.motions = motions
+
+
+class Ship:
+    """A vessel as the guard looks at her.
+
+    Attributes
+    ----------
+    name : of another vessel; empty for the one that is measured
+    radius : to keep from her [m]
+    discs : at least one, in each of which she is
+    """
+
+    def __init__(self, name: str, radius: float, discs: Sequence[Tube]) -> None:
+        self.name = name
+        self.radius = radius
+        self.discs = discs
+
+
+class Several:
+    """Several vessels that are near.
+
+    Attributes
+    ----------
+    names, discs : of each of them
+    motions : relative to all of these discs, when a command begins to act: one or three of each
+    """
+
+    def __init__(
+        self, names: Sequence[str], discs: Sequence[Tube], motions: Sequence[RelativeMotion]
+    ) -> None:
+        self.names = names
+        self.discs = discs
+        self.motions = motions
+
+
+class _Look:
+    """What a look has found where a command may not pass.
+
+    Attributes
+    ----------
+    ship, encounters : the only vessel that is near, and her discs
+    several : vessels that are near, by discs that may be kept off; empty where there is one alone
+    """
+
+    def __init__(
+        self, ship: Ship, encounters: Sequence[Encounter], several: Sequence[Several]
+    ) -> None:
+        self.ship = ship
+        self.encounters = encounters
+        self.several = several
 
 
 class _BackupTurn(NamedTuple):
@@ -349,9 +419,21 @@ class HeadingRateFilter:
         # In one step the command may differ from the turn by 2 omega_max, which displaces the
         # vehicle by V omega_max dt^2. In turn radii:
         self._resolution = max(_RESOLUTION, (p.heading_rate_max * p.time_step) ** 2)
-        # The turn that was safe: to which side, and from which disc.
+        # The turn that was safe: to which side, and from which disc of which vessel.
         self._side = 0.0
-        self._kept_off: Tube | None = None
+        self._kept_off: dict[str, Tube] = {}
+        # Where several vessels are near.
+        self.common_turns = CommonTurns(
+            self.prediction,
+            heading_rate_max=p.heading_rate_max,
+            lag=p.lag,
+            time_step=p.time_step,
+            delay=p.delay,
+            turn_time=self._turn_time,
+        )
+        self._common: CommonTurn | None = None
+        # Until when other vessels are out of reach [s].
+        self._far_until: dict[str, float] = {}
         self.status = GuardStatus.FREE
 
     def limit(
@@ -362,6 +444,7 @@ class HeadingRateFilter:
         vessels: Sequence[Tube],
         fastest: float,
         slowest: float = math.inf,
+        others: Sequence[KnownVessel] = (),
     ) -> float:
         """Return the command, or as much of a turn away as is needed [rad/s].
 
@@ -373,13 +456,16 @@ class HeadingRateFilter:
         vessels : discs, at least one, in each of which the vessel is
         fastest, slowest : airspeeds that the vehicle may come to; a turn away has to keep off at
             all speeds between them. The slowest counts where it is below the fastest [m/s]
+        others : vessels besides her
         """
         if not self.budget.may_skip(command, fastest, slowest):
-            encounters = self._look(command, time, own, vessels, fastest, slowest)
-            if encounters is None:
+            found = self._look(command, time, own, vessels, fastest, slowest, others)
+            if found is None:
                 self.status = GuardStatus.FREE
+            elif found.several:
+                command = self._mix_common(command, found.several)
             else:
-                command = self._mix(command, encounters)
+                command = self._mix(command, found.ship, found.encounters)
         # At the largest bank a command comes in part where the vehicle flies faster.
         flown = command
         if own.speed > self._turn_speed:
@@ -395,9 +481,10 @@ class HeadingRateFilter:
         vessels: Sequence[Tube],
         fastest: float,
         slowest: float = math.inf,
+        others: Sequence[KnownVessel] = (),
     ) -> bool:
         """Return whether ``limit``, called next with the same parameters, lets the command pass."""
-        if self._look(command, time, own, vessels, fastest, slowest) is not None:
+        if self._look(command, time, own, vessels, fastest, slowest, others) is not None:
             return False
         self.status = GuardStatus.FREE
         self.budget.refund(command)
@@ -415,6 +502,7 @@ class HeadingRateFilter:
         vessels: Sequence[Tube],
         speed: float,
         enough: float = math.inf,
+        radius: float | None = None,
     ) -> float:
         """Return by how much the better turn away, begun now, keeps off [m]; negative if none does.
 
@@ -428,12 +516,13 @@ class HeadingRateFilter:
         vessels : discs, at least one, in each of which the vessel is
         speed : airspeed of the vehicle [m/s]
         enough : clearance above which the search may end early [m]
+        radius : to keep; that of the parameters if not given [m]
         """
         within_step = (self._resolution - _RESOLUTION) / self._rate * speed
         pending = self.history.take_in(own.heading_rate)
         best = -math.inf
         for disc in vessels:
-            relative = self.relative_motion(disc, time, own, speed, speed, pending)
+            relative = self.relative_motion(disc, time, own, speed, speed, pending, radius)
             motions = self.motions_when_acting(relative)
             first = motions[0]
             nearer = nearer_side(first.x, first.y, first.course)
@@ -464,15 +553,53 @@ class HeadingRateFilter:
         vessels: Sequence[Tube],
         fastest: float,
         slowest: float,
-    ) -> list[Encounter] | None:
-        """Return None if a turn away keeps off some disc after the command, or the encounters."""
+        others: Sequence[KnownVessel],
+    ) -> _Look | None:
+        """Return None if a turn keeps off after the command, or what is near."""
+        measured = Ship("", self._p.radius, vessels)
+        if not others:
+            self._common = None
+            return self._look_at(measured, command, time, own, fastest, slowest)
+        ships, far_for = self._within_reach(others, time, own, fastest, slowest)
+        if ships:
+            disc = self._least_reaching(vessels, time, own)
+            motion = self.relative_motion(disc, time, own, fastest, slowest, 0.0)
+            free = self.time_until_near(motion)
+            if free > 0.0:
+                far_for = min(far_for, free)
+            else:
+                ships.append(measured)
+        else:
+            ships.append(measured)
+        if len(ships) == 1:
+            self._common = None
+            found = self._look_at(ships[0], command, time, own, fastest, slowest)
+        else:
+            found = self._look_at_several(ships, command, time, own, fastest, slowest)
+        # No longer than until the next of the others comes within reach.
+        if far_for < self.budget.steps * self._time_step:
+            self.budget.steps = int(far_for / self._time_step)
+        return found
+
+    def _look_at(
+        self,
+        ship: Ship,
+        command: float,
+        time: float,
+        own: AirMotion,
+        fastest: float,
+        slowest: float,
+    ) -> _Look | None:
+        """Return None if a turn away keeps off some disc of a vessel after the command, or the
+        encounters.
+        """
         history = self.history
         pending = history.take_in(own.heading_rate)
         change = history.change_with(command)
         encounters: list[Encounter] = []
         side, turn = 0.0, None
-        for disc in self._candidates(vessels, time, own):
-            motion = self.relative_motion(disc, time, own, fastest, slowest, pending)
+        for disc in self._candidates(ship, time, own):
+            motion = self.relative_motion(disc, time, own, fastest, slowest, pending, ship.radius)
             far_for = self.time_until_near(motion)
             if far_for > 0.0:
                 side, turn = 0.0, TurnAway(math.inf, far_for, math.inf, change, True)
@@ -484,28 +611,220 @@ class HeadingRateFilter:
                 else:
                     self._side = side
             if turn is not None:
-                self._kept_off = disc
+                self._kept_off[ship.name] = disc
                 break
+        self._begin_skipping(turn, side, command, fastest, slowest)
+        return _Look(ship, encounters, ()) if turn is None else None
+
+    def _begin_skipping(
+        self,
+        turn: TurnAway | None,
+        side: float,
+        command: float,
+        fastest: float,
+        slowest: float,
+    ) -> None:
+        """Let commands pass without a look that cannot spoil a turn; none without one."""
         self.budget.reset(
             turn,
             side,
             command=command,
-            recent=history.range_with(command),
+            recent=self.history.range_with(command),
             slowest=min(slowest, fastest) - _SAME_SPEED,
             fastest=fastest + _SAME_SPEED,
         )
-        return encounters if turn is None else None
 
-    def _candidates(self, vessels: Sequence[Tube], time: float, own: AirMotion) -> Sequence[Tube]:
+    def _within_reach(
+        self,
+        others: Sequence[KnownVessel],
+        time: float,
+        own: AirMotion,
+        fastest: float,
+        slowest: float,
+    ) -> tuple[list[Ship], float]:
+        """Return the other vessels that may come near on a common turn, and for how long the rest
+        stay farther off [s].
+        """
+        ships: list[Ship] = []
+        far_for = math.inf
+        for other in others:
+            until = self._far_until.get(other.name, -math.inf)
+            if until <= time:
+                radius = other.radius + self._p.errors.failed_part.size
+                disc = self._least_reaching(other.tubes, time, own)
+                motion = self.relative_motion(disc, time, own, fastest, slowest, 0.0, radius)
+                free = min(self.time_until_near(motion, _COMMON_REACH), _FAR_MOST)
+                if free <= 0.0:
+                    ships.append(Ship(other.name, radius, other.tubes))
+                    continue
+                until = self._far_until[other.name] = time + free
+            far_for = min(far_for, until - time)
+        return ships, far_for
+
+    def _look_at_several(
+        self,
+        ships: Sequence[Ship],
+        command: float,
+        time: float,
+        own: AirMotion,
+        fastest: float,
+        slowest: float,
+    ) -> _Look | None:
+        """Return None if a common turn keeps off all of several vessels after the command."""
+        history = self.history
+        pending = history.take_in(own.heading_rate)
+        change = history.change_with(command)
+        floor = self._resolution * fastest / self._rate
+        nearest = [self._least_reaching(ship.discs, time, own) for ship in ships]
+        kept = [
+            self._kept_off.get(ship.name, disc) for ship, disc in zip(ships, nearest, strict=True)
+        ]
+        several: list[Several] = []
+        for discs in (nearest, kept):
+            motions: list[RelativeMotion] = []
+            for ship, disc in zip(ships, discs, strict=True):
+                motion = self.relative_motion(
+                    disc, time, own, fastest, slowest, pending, ship.radius
+                )
+                motions += self.motions_when_acting(motion)
+            found = Several([ship.name for ship in ships], discs, motions)
+            turn = self._common_turn_after(command, found, change, floor)
+            if turn is not None:
+                self._keep_to(turn, found)
+                skipped = TurnAway(turn.slack, turn.free_time, turn.free_course, turn.change)
+                # At its end, commands to the side of the turn spoil it, too.
+                over = turn.to_turn <= self._rate * (self._p.lag + self._time_step)
+                self._begin_skipping(skipped, 0.0 if over else turn.side, command, fastest, slowest)
+                return None
+            several.append(found)
+            if kept == nearest:
+                break
+        self.budget.steps = 0
+        return _Look(ships[0], (), several)
+
+    def _common_turn_after(
+        self, command: float, several: Several, change: float, floor: float
+    ) -> CommonTurn | None:
+        """Return a common turn that keeps off all vessels after a command, or None."""
+        turn: CommonTurn | None = None
+        last = self._common
+        if last is not None:
+            against = 0.5 - 0.5 * self.budget.least_of_turn(last.side, command) / self._rate
+            turn = self.common_turns.to_course(
+                last.side,
+                last.course,
+                command,
+                several.motions,
+                change=change,
+                against=against,
+                floor=floor,
+            )
+            if turn.keeps_off(floor) and turn.free_time >= _FREE_ENOUGH:
+                return turn
+        best = self.common_turns.best(command, several.motions, change=change, floor=floor)
+        if best.keeps_off(floor) and (
+            turn is None or not turn.keeps_off(floor) or best.free_time > turn.free_time
+        ):
+            return best
+        return turn if turn is not None and turn.keeps_off(floor) else None
+
+    def _keep_to(self, turn: CommonTurn, several: Several) -> None:
+        """Take note of a common turn that is safe, and from which discs."""
+        self._common = turn
+        self._side = turn.side
+        for name, disc in zip(several.names, several.discs, strict=True):
+            self._kept_off[name] = disc
+
+    def _mix_common(self, command: float, several: Sequence[Several]) -> float:
+        """Return the command with the least of a common turn that keeps off, or that turn
+        [rad/s].
+        """
+        turn, found, turned = self._backup_common_turn(several)
+        first = found.motions[0]
+        floor = self._resolution * first.fastest / self._rate
+        lost = turn.slack < -self._explained_slack(first) - floor
+        self.status = GuardStatus.LOST if lost else GuardStatus.INTERVENING
+        self._common = turn
+        self._side = turn.side
+        if turn.slack < 0.0 or not turn.ends:
+            return turned
+        self._keep_to(turn, found)
+        low, high, mixed = 0.0, 1.0, turned
+        for _ in range(_BISECTIONS):
+            fraction = 0.5 * (low + high)
+            trial = command + fraction * (turned - command)
+            tried = self._to_course_after(trial, turn, found, floor)
+            if tried.slack >= floor:
+                high, mixed = fraction, trial
+            else:
+                low = fraction
+        return mixed
+
+    def _to_course_after(
+        self, command: float, turn: CommonTurn, several: Several, floor: float
+    ) -> CommonTurn:
+        """Return a common turn, after a command."""
+        return self.common_turns.to_course(
+            turn.side,
+            turn.course,
+            command,
+            several.motions,
+            change=self.history.change_with(command),
+            against=1.0,
+            floor=floor,
+        )
+
+    def _backup_common_turn(self, several: Sequence[Several]) -> tuple[CommonTurn, Several, float]:
+        """Return the common turn to fly, the vessels that it keeps off, and its command [rad/s].
+
+        The turn that was safe is continued as long as the declared errors explain the slack that it
+        lacks. Beyond that it is the turn with the most slack.
+        """
+        last = self._common
+        continued: tuple[CommonTurn, Several, float] | None = None
+        if last is not None:
+            for found in several:
+                command = self.common_turns.command(last, found.motions[0])
+                turn = self._to_course_after(command, last, found, -math.inf)
+                if turn.slack >= 0.0 and turn.ends:
+                    return turn, found, command
+                if continued is None or turn.slack > continued[0].slack:
+                    continued = turn, found, command
+        best: tuple[CommonTurn, Several, float] | None = None
+        for found in several:
+            for command in (self._rate, -self._rate, 0.0):
+                change = self.history.change_with(command)
+                turn = self.common_turns.best(command, found.motions, change=change, floor=0.0)
+                if (
+                    best is None
+                    or (turn.keeps_off(0.0) and not best[0].keeps_off(0.0))
+                    or (
+                        turn.keeps_off(0.0) == best[0].keeps_off(0.0) and turn.slack > best[0].slack
+                    )
+                ):
+                    best = turn, found, command
+        if best is None:
+            raise ValueError("there is no vessel to keep off")
+        if continued is not None and not best[0].keeps_off(0.0):
+            explained = self._explained_slack(continued[1].motions[0])
+            if continued[0].slack >= -explained:
+                return continued
+        return best
+
+    def _candidates(self, ship: Ship, time: float, own: AirMotion) -> Sequence[Tube]:
         """Return the disc that reaches least far towards the vehicle, and the one kept off last."""
-        least_reaching = vessels[0]
-        if len(vessels) > 1:
-            gaps = [self._gap(disc, time, own) for disc in vessels]
-            least_reaching = vessels[gaps.index(max(gaps))]
-        last = self._kept_off
+        least_reaching = self._least_reaching(ship.discs, time, own)
+        last = self._kept_off.get(ship.name)
         return (
             (least_reaching,) if last is None or last is least_reaching else (least_reaching, last)
         )
+
+    def _least_reaching(self, discs: Sequence[Tube], time: float, own: AirMotion) -> Tube:
+        """Return the disc that reaches least far towards the vehicle."""
+        if len(discs) == 1:
+            return discs[0]
+        gaps = [self._gap(disc, time, own) for disc in discs]
+        return discs[gaps.index(max(gaps))]
 
     def _gap(self, disc: Tube, time: float, own: AirMotion) -> float:
         """Return the distance from a disc after a quarter of a turn, if the vehicle stayed [m]."""
@@ -523,8 +842,12 @@ class HeadingRateFilter:
         fastest: float,
         slowest: float,
         pending_rate: float,
+        radius: float | None = None,
     ) -> RelativeMotion:
-        """Return the motion relative to a disc, with all that is uncertain in radius and growth."""
+        """Return the motion relative to a disc, with all that is uncertain in radius and growth.
+
+        The radius to keep is that of the parameters if not given [m].
+        """
         since = time - disc.time
         wind_error = own.wind_error
         drifted = (self._drift_rate + wind_error) * own.lost
@@ -539,7 +862,7 @@ class HeadingRateFilter:
             heading_rate=own.heading_rate,
             fastest=fastest,
             slowest=slowest if slowest < fastest - _SAME_SPEED else fastest,
-            radius=self._p.radius
+            radius=(self._p.radius if radius is None else radius)
             + drifted
             + disc.radius
             + (disc.growth + 0.5 * disc.acceleration * since) * since,
@@ -550,12 +873,13 @@ class HeadingRateFilter:
             displacement=self._displacement if self._gusty else None,
         )
 
-    def time_until_near(self, motion: RelativeMotion) -> float:
+    def time_until_near(self, motion: RelativeMotion, turns: float = 1.0) -> float:
         """Return for how long the disc stays out of reach of a turn away [s]; below 0 if it is not.
 
-        Out of reach is what is farther off than disc and vehicle can close during a turn.
+        Out of reach is what is farther off than disc and vehicle can close during a turn, or
+        several ``turns``.
         """
-        duration = self._turn_time * max(1.0, motion.fastest / self._turn_speed)
+        duration = turns * self._turn_time * max(1.0, motion.fastest / self._turn_speed)
         acceleration = motion.acceleration
         disc_speed = math.hypot(motion.disc_north, motion.disc_east)
         closing = motion.fastest + disc_speed + motion.growth
@@ -630,7 +954,7 @@ class HeadingRateFilter:
                 break
         return TurnAway(slack, free_time, free_course, counted, ends)
 
-    def _mix(self, command: float, encounters: Sequence[Encounter]) -> float:
+    def _mix(self, command: float, ship: Ship, encounters: Sequence[Encounter]) -> float:
         """Return the command with the least of a turn away that keeps off, or that turn [rad/s]."""
         backup = self._backup_turn(encounters)
         self._side = backup.side
@@ -642,7 +966,7 @@ class HeadingRateFilter:
         self.status = GuardStatus.LOST if lost else GuardStatus.INTERVENING
         if backup.slack < 0.0 or not backup.ends:
             return turn
-        self._kept_off = backup.encounter.disc
+        self._kept_off[ship.name] = backup.encounter.disc
         low, high, mixed = 0.0, 1.0, turn
         for _ in range(_BISECTIONS):
             fraction = 0.5 * (low + high)

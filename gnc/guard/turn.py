@@ -22,6 +22,7 @@ the left. ``docs/keepout_guard.md`` derives what is used here.
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from gnc.estimation.error_budget import Displacement
 from gnc.numeric import limited
@@ -58,6 +59,12 @@ the shortest time in which they can use up the slack by the course that they tak
 SPEED_SWITCH_ERROR = 0.05
 """Share of the difference between the turn radii when fast and slow by which a vehicle that slows
 down at any moment may come nearer than predicted [-]."""
+
+_LEVER_MIN = 1e-3
+"""Lever of commands that have no time to act [s]."""
+
+_SPACING = 0.5
+"""Spacing of the times at which displacements on straight ways are evaluated [s]."""
 
 _NEWTON_STEPS = 3
 """Steps that find the closest approach between two points: each squares the error of the one before
@@ -440,21 +447,11 @@ class TurnPrediction:
         floor : slack below which the search may end early [m]
         against : how far commands before the turn may be against it, over a full reversal [-]
         """
-        rate, lag, time_step = self._rate, self._lag, self._step.duration
+        lag = self._lag
         duration, decay = self._spacing.duration, self._spacing.decay
-        heading_rate = entry_rate(side, start.heading_rate, motion.pending_rate)
-        counted = max(change, rolled_change(side, heading_rate, rate))
-        deviation = self._deviation * counted
-        leg = self._leg(side, motion.fastest)
-        path = _TurnPath(side, start, heading_rate, motion, self._spacing, time, deviation, leg)
-        if motion.slowest != motion.fastest:
-            self._let_slow_down(path, side, motion, leg)
-        loss_rate = 2.0 * motion.fastest * rate * against / _ROLLING_TIMES
-        # Commands before the turn displace the vehicle by the course that they take from it, times
-        # a lever; and they use up slack by rolling, which makes the turn deviate more.
-        rolling = self._rolling_deviation(change, against, counted) / (
-            loss_rate * max(lag, time_step)
-        )
+        begun = self._begun(side, start, motion, change=change, time=time, against=against)
+        path, leg, deviation = begun.path, begun.leg, begun.deviation
+        loss_rate, rolling = begun.loss_rate, begun.rolling
         acting = time - self._delay
         fade = self._step.decay if time > self._delay else 1.0
         # At the start itself the vehicle has not deviated yet.
@@ -502,10 +499,63 @@ class TurnPrediction:
             least,
             free_time,
             free_rate / motion.fastest,
-            counted,
+            begun.counted,
             # A disc may gain on the vehicle for as long as a turn takes, and longer.
             ends=over or rise + path.displaced_by >= 0.0,
         )
+
+    def followed(
+        self,
+        side: float,
+        start: TurnStart,
+        motion: RelativeMotion,
+        *,
+        change: float,
+        time: float,
+        against: float = 1.0,
+    ) -> "FollowedTurn":
+        """Return a full turn that is followed course by course; parameters of ``turn_away``."""
+        begun = self._begun(side, start, motion, change=change, time=time, against=against)
+        return FollowedTurn(
+            begun,
+            side,
+            start,
+            motion,
+            lag=self._lag,
+            rollout=motion.fastest * self._rate * self._lag * (self._lag + self._step.duration),
+            duration=self._spacing.duration,
+            decay=self._spacing.decay,
+            acting=time - self._delay,
+            fade=self._step.decay if time > self._delay else 1.0,
+            on_leg=2.0 / self._rate,
+        )
+
+    def _begun(
+        self,
+        side: float,
+        start: TurnStart,
+        motion: RelativeMotion,
+        *,
+        change: float,
+        time: float,
+        against: float,
+    ) -> "_BegunTurn":
+        """Return a full turn at its start; parameters of ``turn_away``."""
+        rate, lag, time_step = self._rate, self._lag, self._step.duration
+        heading_rate = entry_rate(side, start.heading_rate, motion.pending_rate)
+        counted = max(change, rolled_change(side, heading_rate, rate))
+        deviation = self._deviation * counted
+        leg = self._leg(side, motion.fastest)
+        path = _TurnPath(side, start, heading_rate, motion, self._spacing, time, deviation, leg)
+        if motion.slowest != motion.fastest:
+            self._let_slow_down(path, side, motion, leg)
+        loss_rate = 2.0 * motion.fastest * rate * against / _ROLLING_TIMES
+        # Commands before the turn displace the vehicle by the course that they take from it, times
+        # a lever; and they use up slack by rolling, which makes the turn deviate more.
+        rolling = self._rolling_deviation(change, against, counted) / (
+            loss_rate * max(lag, time_step)
+        )
+        return _BegunTurn(path, leg, counted, deviation, loss_rate, rolling)
 
     def _let_slow_down(
         self, path: "_TurnPath", side: float, motion: RelativeMotion, leg: _Leg
@@ -560,6 +610,177 @@ class TurnPrediction:
         across = speed * math.sin(until_away) + disc_speed
         nearest = max(motion.radius, math.hypot(x, y) - (speed + disc_speed) * to_turn / self._rate)
         return to_turn / (self._rate + across / nearest) if nearest > 0.0 else 0.0
+
+
+class _BegunTurn:
+    """A full turn at its start.
+
+    Attributes
+    ----------
+    path, leg : of it, and what is flown between two points
+    counted : share of a full reversal that its deviation counts [-]
+    deviation : that is kept from the start on [m]
+    loss_rate : at which commands against it take from its slack, per lever [m/s^2]
+    rolling : lever that stands for what rolling uses up [s]
+    """
+
+    def __init__(
+        self,
+        path: "_TurnPath",
+        leg: _Leg,
+        counted: float,
+        deviation: float,
+        loss_rate: float,
+        rolling: float,
+    ) -> None:
+        self.path = path
+        self.leg = leg
+        self.counted = counted
+        self.deviation = deviation
+        self.loss_rate = loss_rate
+        self.rolling = rolling
+
+
+class FollowedTurn:
+    """A full turn that is followed course by course, to see on which of them it may end.
+
+    Parameters
+    ----------
+    begun : the turn at its start
+    side, start, motion : of ``TurnPrediction.turn_away``
+    lag : of the heading rate behind its command [s]
+    rollout : distance that the end of a turn may deviate by from one that ends at once [m]
+    duration, decay : of a step from point to point [s, -]
+    acting, fade : time since a command begins to act, and what its lag has left of it [s, -]
+    on_leg : lever of commands before the turn on the straight way after it, besides that at its
+        end [s]: they make it begin later by the course that they take, over omega_max
+
+    Attributes
+    ----------
+    turned : course turned so far [rad]
+    slack : least so far [m]
+    rate : least slack per lever so far [m/s]
+    counted : share of a full reversal that its deviation counts [-]
+    loss_rate : at which commands against it take from that [m/s^2]
+    fastest : airspeed [m/s]
+    """
+
+    def __init__(
+        self,
+        begun: _BegunTurn,
+        side: float,
+        start: TurnStart,
+        motion: RelativeMotion,
+        *,
+        lag: float,
+        rollout: float,
+        duration: float,
+        decay: float,
+        acting: float,
+        fade: float,
+        on_leg: float,
+    ) -> None:
+        self._path = begun.path
+        self._side = side
+        self._course = start.course
+        self._motion = motion
+        self._lag = lag
+        self._rollout = rollout
+        self._duration = duration
+        self._decay = decay
+        self._acting = acting
+        self._fade = fade
+        self._on_leg = on_leg
+        self._rolling = begun.rolling
+        self._rise = 0.0
+        self._first = True
+        self.turned = 0.0
+        # At the start itself the vehicle has not deviated yet.
+        self.slack = begun.path.slack + begun.deviation
+        self.rate = math.inf
+        self.counted = begun.counted
+        self.loss_rate = begun.loss_rate
+        self.fastest = motion.fastest
+
+    def turn_to(self, angle: float, floor: float) -> None:
+        """Go on until so much course is turned [rad], or slack falls below ``floor`` [m]."""
+        path = self._path
+        while self.turned < angle and self.slack >= floor:
+            last_slack, last_rise = path.slack, self._rise
+            path.advance()
+            self._rise = path.slack - last_slack
+            self._acting += self._duration
+            self._fade *= self._decay
+            least = path.slack
+            if self._rise >= 0.0 and (last_rise < 0.0 or self._first):
+                least = path.closest_about_last_point(first=self._first)
+            self._first = False
+            self.slack = min(self.slack, least)
+            self.rate = min(self.rate, least / self._lever())
+            self.turned = self._side * (path.place.course - self._course)
+
+    def straight_on(self, duration: float, turn_time: float) -> "StraightOn":
+        """Return how near the disc comes if the turn ends here.
+
+        Parameters
+        ----------
+        duration : for which the vehicle flies straight on [s]
+        turn_time : of a turn away, for which room has to be left then where the disc still closes
+            in [s]
+        """
+        motion, path = self._motion, self._path
+        place = path.place
+        cos, sin = math.cos(place.course), math.sin(place.course)
+        slack, ends = math.inf, True
+        for speed in (motion.fastest, motion.slowest):
+            north = speed * cos - motion.disc_north
+            east = speed * sin - motion.disc_east
+            square = north * north + east * east
+            inwards = -(place.x * north + place.y * east)
+            nearest_at = min(max(0.0, inwards / square if square > 0.0 else 0.0), duration)
+            for time in (nearest_at, self._later(nearest_at, duration, square)):
+                distance = math.hypot(place.x + north * time, place.y + east * time)
+                slack = min(slack, distance - path.allowed_after(time))
+            x, y = place.x + north * duration, place.y + east * duration
+            distance = math.hypot(x, y)
+            left = distance - path.allowed_after(duration)
+            slack = min(slack, left)
+            growth = motion.growth + motion.acceleration * duration
+            if x * north + y * east < growth * distance:
+                reach = speed + math.hypot(motion.disc_north, motion.disc_east) + growth
+                ends = ends and left >= reach * turn_time
+            if motion.slowest == motion.fastest:
+                break
+        slack -= self._rollout
+        return StraightOn(slack, slack / (self._lever() + self._on_leg), ends)
+
+    def _later(self, nearest_at: float, duration: float, square: float) -> float:
+        """Return when slack is least, as the disc grows after it came nearest [s].
+
+        With the distance m there and the relative speed w, slack sqrt(m^2 + w^2 t^2) - g t is least
+        at t = g m / (w sqrt(w^2 - g^2)).
+        """
+        motion, place = self._motion, self._path.place
+        growth = motion.growth + motion.acceleration * nearest_at
+        room = square - growth * growth
+        if room <= 0.0:
+            return duration
+        distance = math.hypot(place.x, place.y)
+        return min(nearest_at + growth * distance / math.sqrt(square * room), duration)
+
+    def _lever(self) -> float:
+        """Return the lever of commands before the turn, on where it leads until now [s]."""
+        return _LEVER_MIN + self._acting - self._lag * (1.0 - self._fade) + self._rolling
+
+
+class StraightOn(NamedTuple):
+    """How near a disc comes on a straight way after a turn: the least slack [m], that per lever of
+    commands before the turn [m/s], and whether the disc falls behind in the end or is still far.
+    """
+
+    slack: float
+    rate: float
+    ends: bool
 
 
 class _TurnPath:
@@ -618,6 +839,22 @@ class _TurnPath:
         self._radii_difference = 0.0
         self._start_course = course
         self._switch, self._turned_at_switch = self._now, 0.0
+
+    @property
+    def place(self) -> TurnPoint:
+        """The last point."""
+        return self._now
+
+    def allowed_after(self, time: float) -> float:
+        """Return the distance from the disc's centre to keep some time after the last point [s, m].
+
+        Displacements are kept by their times, so that these are rounded up to a few.
+        """
+        later, motion = self._time + time, self._motion
+        allowed = self._kept + (motion.growth + 0.5 * motion.acceleration * later) * later
+        if motion.displacement is not None:
+            allowed += motion.displacement.after(_SPACING * math.ceil(later / _SPACING))
+        return allowed
 
     def slow_down_while_receding(self, slow_leg: _Leg, radii_difference: float) -> None:
         """Fly a slower leg while the vehicle flies away; the radii differ by so much [m]."""

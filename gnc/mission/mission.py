@@ -33,6 +33,7 @@ class Mode(Enum):
     SENSOR_FAILED = "sensor failed"
     DEPARTING = "departing"
     RETREATING = "retreating"
+    YIELDING = "yielding to traffic"
 
 
 for _i, _mode in enumerate(Mode):

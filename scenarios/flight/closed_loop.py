@@ -17,6 +17,7 @@ from scenarios.flight.ending import EarlyStop, Ending, Settling
 from scenarios.flight.guard_belief import GuardBelief
 from scenarios.flight.onboard import OnboardSensing, PlumeBelief, PlumeReadings, axis_of
 from scenarios.flight.record import NO_REFERENCE, FlightRecord, GuardedStep, Recorder, interventions
+from scenarios.flight.traffic_belief import TrafficBelief
 from scenarios.instruments.instrument import GasReader, Instrument
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.vehicles.jsbsim import JsbsimVehicle
@@ -70,6 +71,8 @@ class ClosedLoop:
             vessel = plan.world.vessel
             self._guard_belief = GuardBelief(guidance, guidance.guard, vessel, plan.time_step)
             beliefs.append(self._guard_belief)
+            if plan.world.traffic:
+                beliefs.append(TrafficBelief(guidance, plan.world.traffic))
         self._recorder = Recorder(
             guidance, vehicle, plan.world, (*payload, *beliefs), self.settling
         )

@@ -178,6 +178,10 @@ class OnboardSensing:
         self._exact = sensing.received is None
         self._received = list(reversed(sensing.received or []))
         self._report = guidance.target.report
+        self._ships = [ship.track for ship in world.traffic]
+        self._of_traffic = [
+            None if received is None else list(reversed(received)) for received in sensing.traffic
+        ]
         self._altitude, self._elevator_held = altitude, False
         self.airspeed_error = 0.0
 
@@ -212,6 +216,21 @@ class OnboardSensing:
             self._servo_error(),
             self._engine(),
         )
+
+    def _report_traffic(self, step: int, time: float) -> None:
+        """Hand on what reports of other ships have come, at each plan."""
+        traffic = self._guidance.traffic
+        if traffic is None or step % self._guidance.plan_interval != 0:
+            return
+        outage = self._vessel_lost and step > 0 and self._faults.lasts(VESSEL_DATA, time)
+        for number, received in enumerate(self._of_traffic):
+            if received is None:
+                if traffic.is_due(number, time) and not outage:
+                    motion = self._ships[number].motion(time)
+                    traffic.report(number, VesselReport(time, *motion))
+            else:
+                while received and received[-1][0] <= time:
+                    traffic.report(number, received.pop()[1])
 
     def act(self, step: int, time: float, motion: MeasuredMotion) -> None:
         """Pass on what the guidance has decided beside heading rate and airspeed, and to it what

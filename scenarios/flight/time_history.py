@@ -17,7 +17,7 @@ import pyarrow.parquet as pq
 from aircraft.wind import CALM
 from common.columns import Table, column_of
 from common.geodesy import LocalFrame
-from common.run_layout import FLIGHTS, evaluation_path, smoke_path, time_history_path
+from common.run_layout import FLIGHTS, evaluation_path, smoke_path, time_history_path, traffic_path
 from gnc.numeric import wrapped
 from gnc.paper import LookAhead
 from scenarios.engine.task import Row, Task
@@ -127,19 +127,21 @@ def history_files(
     document: Mapping[str, Any] | None,
     smoke: bytes | None,
     *,
+    traffic: bytes | None = None,
     columns: Table,
     planned: int,
     kept: int,
     row: Row,
 ) -> dict[str, bytes]:
     """Return the time history of a flight as a Parquet file, by its path, if there is one and it is
-    kept; with it the document and the smoke.
+    kept; with it the document, the smoke and the tracks of other ships.
 
     Parameters
     ----------
     history : of the flight, if it has one
     document : what an instrument made of the flight, if any did
     smoke : parcels of the exhaust, if there was any
+    traffic : tracks of other ships, if there were any
     columns : what the columns of time histories are
     task, planned, kept, row : same as ``keeps_history``
     """
@@ -150,6 +152,8 @@ def history_files(
         files[evaluation_path(row["flight_id"])] = json.dumps(document).encode()
     if smoke is not None:
         files[smoke_path(row["flight_id"])] = smoke
+    if traffic is not None:
+        files[traffic_path(row["flight_id"])] = traffic
     return files
 
 

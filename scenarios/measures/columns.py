@@ -9,7 +9,7 @@ its settling time on.
 
 from common.columns import Column, described
 from common.faults import fault_columns
-from common.premises import PREMISE_COLUMNS
+from common.premises import PREMISE_COLUMNS, TRAFFIC_PREMISE_COLUMNS
 
 FLIGHT_COLUMNS = described(
     {
@@ -112,7 +112,7 @@ SUMMARY_COLUMNS = described(
             title="Planned margin",
         ),
         "keepout_violations": Column(
-            "number of times that it entered the keep-out area",
+            "number of times that it entered the keep-out area, or that of another ship",
             title="Keep-out violations",
             digits=0,
             worse="higher",
@@ -386,6 +386,60 @@ def further_faults(most: int) -> dict[str, Column]:
         declared[begins] = f"time at which fault {number} begins"
     return described(declared)
 
+
+TRAFFIC_FIGURES = described(
+    {
+        "others_nearest": Column(
+            "other ship whose radius the path came nearest to, or went farthest into",
+            title="Nearest other ship",
+            kind="text",
+        ),
+        "others_distance_min_m": Column(
+            "closest approach to her, measured horizontally",
+            title="Closest approach to another ship",
+            digits=1,
+            worse="lower",
+        ),
+        "others_clearance_min_m": Column(
+            "closest approach to her beyond her radius, negative inside",
+            title="Closest approach to another ship, beyond her radius",
+            digits=1,
+            worse="lower",
+        ),
+        "others_violations": Column(
+            "entries into the areas of other ships, which count in keepout_violations as well",
+            title="Entries into areas of other ships",
+            digits=0,
+            worse="higher",
+            adds_up=True,
+        ),
+        "yielded_s": Column(
+            "time in which the mission gave way to other ships",
+            title="Time given way to other ships",
+            digits=1,
+            worse="higher",
+            adds_up=True,
+        ),
+        **TRAFFIC_PREMISE_COLUMNS,
+    }
+)
+"""More of them, of flights with ships besides the one that is measured."""
+
+TRAFFIC_COLUMNS = described(
+    {
+        **FLIGHT_COLUMNS,
+        "ship": Column("name of the other ship", title="Ship", kind="text"),
+        "radius_m": Column("radius that is kept from her", title="Radius", digits=0),
+        "distance_min_m": Column(
+            "closest approach to her, measured horizontally", title="Closest approach", digits=1
+        ),
+        "time_s": Column("time of the sample nearest to that approach", title="At", digits=1),
+        "violations": Column("entries into her area", title="Entries", digits=0, adds_up=True),
+        "time_inside_s": Column("time in it", title="Time inside", digits=1, adds_up=True),
+    }
+)
+"""Of ``traffic.csv``: a row per flight and ship besides the one that is measured, of those whose
+track is known in the time of the flight."""
 
 FINDING_COLUMNS = described(
     {

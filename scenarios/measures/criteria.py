@@ -85,19 +85,29 @@ def judged_criteria(row: Row, criteria: CriteriaConfig) -> Iterator[Judged]:
 def _keeps_out(row: Row) -> Judged:
     count, clearance = row["keepout_violations"], _clearance(row)
     message = ""
-    if count:
+    others = row.get("others_violations", 0)
+    if count > others:
+        own = count - others
         message = (
-            f"{count} keep-out violation{'s' * (count != 1)}, the deepest by"
+            f"{own} keep-out violation{'s' * (own != 1)}, the deepest by"
             f" {row.get('keepout_depth_m', math.nan):.2f} m"
         )
+    if others:
+        beside = (
+            f"{others} keep-out violation{'s' * (others != 1)} of other ships, the deepest by"
+            f" {-row['others_clearance_min_m']:.2f} m, of {row['others_nearest']}"
+        )
+        message = "; ".join(filter(None, (message, beside)))
     known = KeepOut.of(row) is not KeepOut.UNKNOWN
     return Judged("keep_out", "clearance_m", clearance, 0.0, -clearance, -clearance, message, known)
 
 
 def _clearance(row: Row) -> float:
-    """Return how far from the keep-out area a flight stayed at its closest [m]."""
+    """Return how far from the keep-out area, or from that of another ship, a flight stayed at its
+    closest [m].
+    """
     nearest, radius = (row.get(name, math.nan) for name in ("min_distance_m", "keepout_radius_m"))
-    return float(nearest - radius)
+    return min(float(nearest - radius), float(row.get("others_clearance_min_m", math.inf)))
 
 
 def _completes(row: Row) -> Judged:

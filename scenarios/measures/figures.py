@@ -24,6 +24,7 @@ from scenarios.measures.keepout import (
     keepout_figures,
 )
 from scenarios.measures.premises import is_unexplained, premise_figures
+from scenarios.measures.traffic import traffic_figures
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.world.ais.track import AisVessel
 from scenarios.world.faults import Faults
@@ -134,7 +135,9 @@ def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Cr
     """Measure a flight.
 
     Keep-out, guard and limits count from the first second, and crossings from settling. Tracking,
-    airspeed and altitude count from settling until the vehicle leaves for good.
+    airspeed and altitude count from settling until the vehicle leaves for good, but not while it
+    gives way to other ships, until it is back within the settling band. Nor do intervals between
+    crossings with such a time in them.
 
     Returns
     -------
@@ -170,7 +173,9 @@ def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Cr
     settled = time >= record.settled_at
     if np.count_nonzero(settled) < 2:
         settled = np.zeros_like(settled)
-    beside = settled & ~np.isin(column("mode"), [mode.number for mode in LEAVING])
+    yielded = _yielded(record, to_reference, plan.settling_band)
+    leaves = np.isin(column("mode"), [mode.number for mode in LEAVING])
+    beside = settled & ~leaves & ~yielded
     if beside.any():
         row |= _tracking_figures(plan, record, beside, to_reference[beside])
     row["settling_time_s"] = record.settled_at
@@ -178,6 +183,8 @@ def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Cr
         return row, []
     position, velocity = in_vessel_frame(record, plan.source_height)
     row |= _keepout_figures(plan, record, position, velocity) | premise_figures(plan, record)
+    row |= traffic_figures(plan, record)
+    row["keepout_violations"] += row.get("others_violations", 0)
     if is_unexplained(row):
         row |= {"outcome": Outcome.UNEXPLAINED_VIOLATION.value, "message": UNEXPLAINED}
     if not settled.any():
@@ -186,11 +193,29 @@ def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Cr
         row["spread_m"] = _spread(record, beside, position)
     row |= _estimation_figures(plan, record, settled)
     crossings = crossings_of(plan, record, settled, position, velocity)
-    row |= _crossing_figures(plan, record, crossings)
+    row |= _crossing_figures(plan, record, crossings, yielded)
     if crossings:
         nearest = _nearest_crossing(plan, time, position, velocity, crossings)
         row["crossing_clearance_min_m"] = nearest - plan.keepout_radius
     return row, crossings
+
+
+def _yielded(record: FlightRecord, to_reference: Array, band: float) -> Mask:
+    """Return when a flight gives way to other ships, or is on its way back from there.
+
+    Parameters
+    ----------
+    record : of the flight
+    to_reference : distance from the reference at each sample, shape (n,) [m]
+    band : within which it is back [m]
+    """
+    yielding: Mask = record.column("mode") == Mode.YIELDING.number
+    if not yielding.any():
+        return yielding
+    numbers = np.arange(len(yielding))
+    last_yielding = np.maximum.accumulate(np.where(yielding, numbers, -1))
+    last_back = np.maximum.accumulate(np.where(~yielding & (to_reference < band), numbers, -1))
+    return last_yielding > last_back
 
 
 def in_vessel_frame(record: FlightRecord, source_height: float) -> tuple[Array, Array]:
@@ -363,7 +388,9 @@ def _nearest_crossing(
     return float(hull_distance(plan.keepout_hull, places, headings, plan.keepout_shape).min())
 
 
-def _crossing_figures(plan: FlightPlan, record: FlightRecord, crossings: list[Crossing]) -> Row:
+def _crossing_figures(
+    plan: FlightPlan, record: FlightRecord, crossings: list[Crossing], yielded: Mask
+) -> Row:
     """Measure the crossings of a settled flight; means are over whole periods of the orbit.
 
     From one crossing of a period to the next, interval and distance may differ. A flight with less
@@ -385,11 +412,16 @@ def _crossing_figures(plan: FlightPlan, record: FlightRecord, crossings: list[Cr
     if not last and plan.oscillation is not None and plan.oscillation.symmetric:
         last = len(crossings) - 1
     if last > 0:
-        intervals = np.diff([crossing.time for crossing in crossings[: last + 1]])
-        row |= {
-            "crossing_interval_mean_s": float(np.mean(intervals)),
-            "crossing_interval_std_s": float(np.std(intervals)),
-        }
+        times = np.array([crossing.time for crossing in crossings[: last + 1]])
+        intervals = np.diff(times)
+        if yielded.any():
+            before = np.cumsum(yielded)[np.searchsorted(record.column("time_s"), times) - 1]
+            intervals = intervals[np.diff(before) == 0]
+        if len(intervals):
+            row |= {
+                "crossing_interval_mean_s": float(np.mean(intervals)),
+                "crossing_interval_std_s": float(np.std(intervals)),
+            }
         wind = plan.apparent_wind
         if wind is not None and wind.greatest > wind.least:
             row["crossing_interval_predicted_s"] = _predicted_interval(

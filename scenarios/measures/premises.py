@@ -48,7 +48,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from common.premises import EXCEEDED, HELD, ratio_column, time_column
+from common.premises import EXCEEDED, HELD, TRAFFIC_TERM, ratio_column, time_column
 from gnc.estimation.error_budget import ErrorBudget, WindErrorByGusts, deviations
 from gnc.guard.guard import GuardParameters
 from gnc.guard.turn import PENDING_DECAY, pending_turn_rate, rolled_change
@@ -57,6 +57,7 @@ from scenarios.engine.task import Row
 from scenarios.flight.guard_belief import GuardBelief
 from scenarios.flight.outcome import Outcome
 from scenarios.flight.record import FlightRecord
+from scenarios.measures.traffic import traffic_premise
 from scenarios.planning.flight_plan import FlightPlan
 
 Array = npt.NDArray[np.float64]
@@ -129,7 +130,10 @@ def premise_figures(plan: FlightPlan, record: FlightRecord) -> Row:
         row |= {ratio_column(term): largest, time_column(term): time}
         if largest > 1.0:
             exceeded.append(term)
-    return {EXCEEDED: ", ".join(exceeded) or HELD} | row
+    of_traffic = traffic_premise(record)
+    if of_traffic.get(ratio_column(TRAFFIC_TERM), 0.0) > 1.0:
+        exceeded.append(TRAFFIC_TERM)
+    return {EXCEEDED: ", ".join(exceeded) or HELD} | row | of_traffic
 
 
 def is_unexplained(row: Row) -> bool:

@@ -26,12 +26,14 @@ class Sensing:
     received : reports of the vessel and when each is received [s]; none where the vessel is known
         exactly
     errors : of the sensors
+    traffic : the same of each of the other ships as ``received``
     reads_plume, knows_axis : whether a sniffer is read in flight, and whether the flight is given
         the plume's true axis
     """
 
     received: list[tuple[float, VesselReport]] | None
     errors: SensorErrors
+    traffic: tuple[list[tuple[float, VesselReport]] | None, ...] = ()
     reads_plume: bool = False
     knows_axis: bool = False
 

@@ -78,6 +78,14 @@ from scenarios.planning.reference import (
     oscillation_at,
     swing_of,
 )
+from scenarios.planning.traffic import (
+    Footprint,
+    check_room,
+    check_start_beside,
+    check_traffic_declared,
+    received_of,
+    traffic_parameters,
+)
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.flight import StartConfig
 from scenarios.vehicles.sensors import SensorErrors
@@ -88,12 +96,14 @@ from scenarios.world.noise import (
     BACKGROUND,
     EXHAUST,
     HEADING,
+    TRAFFIC,
     Noise,
     own_generator,
     start_generator,
     streams,
 )
 from scenarios.world.plume import exhaust_of, sampled_background
+from scenarios.world.traffic import traffic_of
 from scenarios.world.vessel import VesselTruth, check_manoeuvres
 from scenarios.world.wind import STILL_AIR, sampled_weather
 from scenarios.world.world import (
@@ -334,17 +344,31 @@ def _following_flight(
     generators = streams(noise)
     start, world = _start_and_world(scenario, vessel, mean, noise, generators.world)
     _check_hull(scenario, world, scenario.guarded_radius + planned.margin.total)
+    check_traffic_declared(scenario, world.traffic)
+    check_room(scenario, world, planned.footprint)
+    outages = world.faults.intervals(VESSEL_DATA)
     received = None
     if not scenario.vessel_known:
         received = received_reports(
             as_reported,
             vessel,
             duration=flight.duration_max_s,
-            outages=world.faults.intervals(VESSEL_DATA),
+            outages=outages,
             generator=generators.reports,
             antenna=antenna_offset(scenario),
             heading_generator=own_generator(noise, HEADING),
         )
+    of_traffic = received_of(
+        scenario, world.traffic, outages=outages, generator=own_generator(noise, TRAFFIC)
+    )
+    traffic = traffic_parameters(
+        scenario,
+        world.traffic,
+        horizon=limits.horizon,
+        speed_max=setup.airspeed_max,
+        footprint=planned.footprint,
+        measured_radius=scenario.guarded_radius + planned.margin.total,
+    )
     guard = guarded if g.keepout_guard else None
     # What the guard knows at the start: a report of a file may be minutes old by then, and any may
     # be wrong.
@@ -360,17 +384,22 @@ def _following_flight(
         airspeed=g.airspeed_mps,
         keepout_radius=scenario.guarded_radius,
     )
+    own = _at_start(start, mean.now(0.0, scenario.altitude), first_known(scenario, setup))
+    check_start_beside(scenario, start, guard, traffic, world.traffic, of_traffic, own)
     return FlightPlan.of(
         scenario,
         flight_id,
         nu=wind.at_start / g.airspeed_mps,
-        guidance=_following_guidance(scenario, setup, planned.mission, guard, limits),
+        guidance=replace(
+            _following_guidance(scenario, setup, planned.mission, guard, limits), traffic=traffic
+        ),
         steering=given_steering(g),
         start=start,
         period=planned.orbit.period,
         world=world,
         sensing=Sensing(
             received=received,
+            traffic=of_traffic,
             errors=SensorErrors(
                 scenario.sensors,
                 steps=round(flight.duration_max_s * g.rate_hz) + 2,
@@ -448,6 +477,7 @@ class _PlannedOrbit:
     mission : that flies it
     margin : that it keeps from the keep-out area
     climbed_to : distance from the vessel up to which an inclined plume is climbed along [m]
+    footprint : where the orbit lies, for other ships to leave it free
     """
 
     orbit: PeriodicPath
@@ -455,6 +485,7 @@ class _PlannedOrbit:
     mission: FollowingParameters | StandoffParameters
     margin: KeepoutMargin
     climbed_to: float
+    footprint: Footprint
 
 
 def _planned_orbit(
@@ -494,6 +525,9 @@ def _planned_orbit(
             mission=standoff_parameters(scenario, setup, about.radius, height),
             margin=margin,
             climbed_to=about.radius,
+            footprint=Footprint(
+                radius=about.radius, distance=0.0, room=margin.total, period=about.period
+            ),
         )
     nearest = radius + margin.total + orbit.half_widths()[0]
     further = additional_distance(scenario, vessel, nearest, wind.at_start)
@@ -513,7 +547,17 @@ def _planned_orbit(
         errors=guard.errors,
     )
     return _PlannedOrbit(
-        orbit=orbit, periods=periods, mission=mission, margin=margin, climbed_to=nearest + further
+        orbit=orbit,
+        periods=periods,
+        mission=mission,
+        margin=margin,
+        climbed_to=nearest + further,
+        footprint=Footprint(
+            radius=max(orbit.half_widths()),
+            distance=nearest + further,
+            room=margin.total,
+            period=orbit.period,
+        ),
     )
 
 
@@ -537,6 +581,7 @@ def _start_and_world(
     # Start, air and first fault are what they are without another one.
     faults = in_order([fault, *(sampled_fault(of, generator) for of in others)])
     covered = scenario.flight.duration_max_s + TRACK_MARGIN
+    place = place_of(scenario, vessel)
     exhaust = exhaust_of(
         scenario,
         vessel,
@@ -554,8 +599,9 @@ def _start_and_world(
         faults=faults,
         exhaust=exhaust,
         background=sampled_background(scenario.air, covered, own_generator(noise, BACKGROUND)),
-        place=place_of(scenario, vessel),
         hull=scenario.vessel.hull,
+        place=place,
+        traffic=traffic_of(scenario, vessel, place, margin=TRACK_MARGIN),
     )
     return start, world
 
@@ -685,15 +731,7 @@ def check_start(
             " (guidance.bank_deg), or give a kinematic vehicle a shorter lag"
             " (kinematic.heading_rate_lag_s)"
         )
-    own = AirMotion(
-        ground_north=start.north,
-        ground_east=start.east,
-        course=start.course,
-        wind_north=wind[0],
-        wind_east=wind[1],
-        wind_error=known.wind_error if known else 0.0,
-        wind_by_gusts=known.wind_by_gusts if known else None,
-    )
+    own = _at_start(start, wind, known)
     clearance = HeadingRateFilter(guard).clearance(0.0, own, vessel, airspeed)
     if clearance < 0.0:
         raise InfeasibleError(
@@ -704,6 +742,19 @@ def check_start(
             f" {guard.radius:.1f} m{_most_of_errors(guard, own)}: start farther away"
             " (start.distance_m) or on another course (start.course_deg)"
         )
+
+
+def _at_start(start: Start, wind: tuple[float, float], known: AirMotion | None) -> AirMotion:
+    """Return the vehicle's motion at the start; parameters of ``check_start``."""
+    return AirMotion(
+        ground_north=start.north,
+        ground_east=start.east,
+        course=start.course,
+        wind_north=wind[0],
+        wind_east=wind[1],
+        wind_error=known.wind_error if known else 0.0,
+        wind_by_gusts=known.wind_by_gusts if known else None,
+    )
 
 
 def _most_of_errors(guard: GuardParameters, own: AirMotion) -> str:

@@ -86,6 +86,7 @@ _UNSTEADY = (
     "emission.ship",
     "vessel.manoeuvres",
     "vessel.track",
+    "traffic",
     "reports.",
     "sensors.",
     "fault.kind",

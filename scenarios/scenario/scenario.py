@@ -34,6 +34,7 @@ from scenarios.scenario.sections.guidance import FollowingConfig, GuidanceConfig
 from scenarios.scenario.sections.needs import Need, when
 from scenarios.scenario.sections.report import ReportConfig
 from scenarios.scenario.sections.section import Range, Section, Seed, Title
+from scenarios.scenario.sections.traffic import TRAFFIC_MAX, TrafficConfig
 from scenarios.scenario.sections.world import (
     AirConfig,
     EmissionConfig,
@@ -143,6 +144,7 @@ class Scenario(_AddedKeys):
     vessel: VesselConfig = VesselConfig()
     plume: PlumeConfig = PlumeConfig()
     keepout: KeepoutConfig = KeepoutConfig()
+    traffic: Annotated[tuple[TrafficConfig, ...], Field(max_length=TRAFFIC_MAX)] = ()
     wind: WindConfig = WindConfig()
     turbulence: TurbulenceConfig = TurbulenceConfig()
     air: AirConfig = AirConfig()
@@ -206,6 +208,7 @@ class Scenario(_AddedKeys):
             "emission.ship": self.emission.ship is not None,
             "vessel.manoeuvres": bool(self.vessel.manoeuvres),
             "vessel.track": self.vessel.track != "manoeuvres",
+            "traffic": bool(self.traffic),
             "reports.interval_s": not self.reports.exact,
             **{f"sensors.{name}": error > 0.0 for name, error in sensors.items()},
             "fault.kind": any(fault.kind != NO_FAULT for fault in self.faults),
@@ -216,6 +219,12 @@ class Scenario(_AddedKeys):
     def vessel_known(self) -> bool:
         """Return whether the vessel's motion is known at all times, and not from reports."""
         return self.reports.exact and not self.vessel.from_file
+
+    @property
+    def has_traffic(self) -> bool:
+        """Return whether there may be ships besides the one that is measured."""
+        studied = any(self.study == keys.STUDY and keys.TRAFFIC for keys in ADDED)
+        return bool(self.traffic) or self.vessel.from_file or studied
 
     @property
     def stands_off(self) -> bool:

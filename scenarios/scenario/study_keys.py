@@ -30,6 +30,7 @@ class StudyKeys(Section):
     UNUSED : keys of other sections that the study does not use, or beginnings of keys that end in a
         dot, each with what it uses instead
     LAW_KEYS : its keys that name steering laws
+    TRAFFIC : whether its flights have ships besides the one that is measured
     """
 
     STUDY: ClassVar[str]
@@ -37,6 +38,7 @@ class StudyKeys(Section):
     ONE_POINT: ClassVar[str] = ""
     UNUSED: ClassVar[Mapping[str, str]] = {}
     LAW_KEYS: ClassVar[tuple[str, ...]] = ()
+    TRAFFIC: ClassVar[bool] = False
 
     @classmethod
     def of(cls, scenario: Any) -> Self:

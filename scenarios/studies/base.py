@@ -33,6 +33,7 @@ from common.run_layout import (
     SULPHUR,
     SULPHUR_TABLE,
     SUMMARY,
+    TRAFFIC,
     time_history_path,
 )
 from common.text import from_json_cell
@@ -73,6 +74,8 @@ from scenarios.measures.columns import (
     INPUT_COLUMNS,
     INTERVENTION_COLUMNS,
     SUMMARY_COLUMNS,
+    TRAFFIC_COLUMNS,
+    TRAFFIC_FIGURES,
     further_faults,
 )
 from scenarios.measures.verdict import Judge, Tally, bound_of
@@ -248,6 +251,9 @@ class FlightStudy:
         if any(_has_hull(setting) for setting in settings):
             figures |= HULL_COLUMNS
         figures |= further_faults(max(len(setting.faults) for setting in settings))
+        with_traffic = any(setting.has_traffic for setting in settings)
+        if with_traffic:
+            figures |= TRAFFIC_FIGURES
         keys = dict.fromkeys(key for each in self.experiments.values() for key in each.keys)
         added = {file: described(columns, part=part) for file, columns in self.TABLES.items()}
         tables = {
@@ -256,6 +262,8 @@ class FlightStudy:
             INTERVENTIONS: dict(INTERVENTION_COLUMNS),
             DRAWS: INPUT_COLUMNS | described(dict.fromkeys(keys, ANY_KEY)),
         }
+        if with_traffic:
+            tables[TRAFFIC] = dict(TRAFFIC_COLUMNS)
         for file, columns in (declared.tables | added).items():
             tables[file] = FLIGHT_COLUMNS | columns
         if self.comparisons:
@@ -530,11 +538,10 @@ def clearance(row: Row, *, unmeasured: float) -> float:
     """Return how far from the keep-out area a flight stayed at its closest, or ``unmeasured`` if
     that is not known [m].
     """
-    return (
-        float(row["min_distance_m"] - row["keepout_radius_m"])
-        if "min_distance_m" in row
-        else unmeasured
-    )
+    if "min_distance_m" not in row:
+        return unmeasured
+    beyond = float(row["min_distance_m"] - row["keepout_radius_m"])
+    return min(beyond, float(row.get("others_clearance_min_m", math.inf)))
 
 
 class ChosenFlightsStudy(FlightStudy):

@@ -9,7 +9,7 @@ from typing import Self
 from common.faults import faults_in
 from common.hull import HULL_SHAPES
 from common.intervals import TELLING, percent
-from common.premises import TERMS, UNEXPLAINED
+from common.premises import TITLES, UNEXPLAINED
 from common.run_layout import SUMMARY
 from common.verdict import Bound, Counts, RunVerdict, TrialVerdict
 from measurement.estimate.verdict import (
@@ -104,7 +104,7 @@ def premise_lines(verdict: RunVerdict) -> list[str]:
     of = plural(premises.measured, "flight")
     if not premises.exceeded:
         return [f"premises of the keep-out guard: all held in {of}"]
-    terms = ", ".join(f"{TERMS[term]} in {number}" for term, number in premises.terms.items())
+    terms = ", ".join(f"{TITLES[term]} in {number}" for term, number in premises.terms.items())
     return [f"premises of the keep-out guard: exceeded in {premises.exceeded} of {of}: {terms}"]
 
 

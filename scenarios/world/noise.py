@@ -20,7 +20,7 @@ Array = npt.NDArray[np.float64]
 
 _STREAMS = 3
 
-PAYLOAD, EXHAUST, BACKGROUND, HEADING = 1, 2, 3, 4
+PAYLOAD, EXHAUST, BACKGROUND, TRAFFIC, HEADING = 1, 2, 3, 4, 5
 """Numbers of streams beside those of ``Streams``: what uses them changes nothing of a flight that
 is without it.
 """
@@ -97,7 +97,7 @@ def start_generator(noise: Noise) -> np.random.Generator:
 
 
 def own_generator(noise: Noise, stream: int) -> np.random.Generator:
-    """Return the random numbers of ``PAYLOAD``, ``EXHAUST``, ``BACKGROUND`` or ``HEADING``."""
+    """Return the random numbers of a stream: one of the numbers above."""
     return np.random.default_rng([noise.seed, stream])
 
 

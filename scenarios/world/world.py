@@ -18,6 +18,7 @@ from scenarios.scenario.scenario import Scenario
 from scenarios.world.ais.track import AT_THE_FUNNEL, AisVessel, ais_vessel, with_size_of_file
 from scenarios.world.faults import Faults
 from scenarios.world.plume import UNIFORM, Background, Exhaust, Plume
+from scenarios.world.traffic import OtherShip
 from scenarios.world.vessel import (
     Place,
     SteadyVessel,
@@ -60,6 +61,7 @@ class World:
     background : CO2 of the air beside it
     place : where on earth, and when
     hull : of the vessel, where it is known; the vessel's place is that of its funnel
+    traffic : ships besides the vessel
     """
 
     vessel: VesselTruth
@@ -72,6 +74,7 @@ class World:
     hull: ShipHull | None = None
     exhaust: Exhaust | None = None
     background: Background = UNIFORM
+    traffic: tuple[OtherShip, ...] = ()
 
     def headings(self, times: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """Return the ship's heading at some times, shape (n,) [rad]."""

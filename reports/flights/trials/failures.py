@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from common.faults import faults_in
-from common.premises import TERMS, ratio_column
+from common.premises import TITLES, ratio_column
 from common.verdict import Premises, RunVerdict
 from reports.document.tables import ending, in_symbols, number, span
 from reports.flights.criteria import counted, criterion_title, limits_words
@@ -145,7 +145,7 @@ def _premise_lines(premises: Premises, flown: pd.DataFrame) -> list[str]:
     if not premises.exceeded:
         return []
     largest_of = "; ".join(
-        f"{TERMS[term]} in {number_of:,}, up to {np.nanmax(column(flown, ratio_column(term))):.2f}"
+        f"{TITLES[term]} in {number_of:,}, up to {np.nanmax(column(flown, ratio_column(term))):.2f}"
         for term, number_of in premises.terms.items()
     )
     return [

@@ -386,6 +386,16 @@ class KeepoutConfig(_MeasuredFrom):
     """
     radius_m: Annotated[float, Field(ge=10.0, le=10_000.0)] = 200.0
     """r_min, radius of the keep-out area [m]."""
+    other_radius_m: Annotated[
+        Annotated[float, Field(ge=10.0, le=10_000.0)] | None,
+        Need(
+            lambda s: s.has_traffic,
+            "ships besides the one that is measured: give traffic, or a vessel.track from a file",
+        ),
+    ] = None
+    """Radius of an upright cylinder about every other ship, which is kept out of as well; radius_m
+    if not given [m].
+    """
 
     @property
     def from_hull(self) -> bool:

@@ -76,6 +76,9 @@ _DROPPED_MOST = 0.1
 _METRES_PER_DEGREE = 111_195.0
 """Of latitude, on a sphere."""
 
+_HOUR = 3600.0
+"""[s]"""
+
 _ALONE = 3600.0
 """Time to the nearest report of a vessel from which on a clock may be wrong [s]."""
 
@@ -179,6 +182,102 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
     if mmsi is not None and (isinstance(mmsi, bool) or not isinstance(mmsi, Integral)):
         raise InputError(f"{path}: mmsi is {mmsi!r}; give a whole number, as in mmsi=219999001")
     identity, rows, sizes = rows_of(path, mmsi)
+    found = _sorted_out(rows)
+    kept, dropped = found.kept, found.dropped
+    if len(kept) < 2:
+        why = ", ".join(
+            f"{count} {reason} (first in line {found.first[reason]})"
+            for reason, count in dropped.items()
+        )
+        jumps = _jumps_of_rows(found.placed)
+        if jumps:
+            why += f"; {jumps[0].described([row.line for row in found.placed])}"
+        raise InputError(
+            f"{path}: {len(kept)} of {len(rows)} rows of MMSI {identity} used, two are needed;{f' dropped: {why};' if why else ''}"
+            " correct the rows, or give another file"
+        )
+    reports = _reports(path, identity, rows, found, sizes)
+    mistaken = [jump for jump in reports.jumps() if jump.mistake]
+    if mistaken:
+        raise InputError(
+            f"{path}: {mistaken[0].described(reports.line)}: correct the rows that are wrong, or"
+            " remove them"
+        )
+    check_units(
+        path, reports.time, reports.latitude, reports.longitude, reports.speed, reports.course
+    )
+    return reports
+
+
+def read_others(
+    path: str | Path,
+    *,
+    without: int | None,
+    only: int | None,
+    begin: float,
+    end: float,
+) -> list[AisReports]:
+    """Read the reports of all vessels of a file but one, in some time.
+
+    Rows of no use are left out, and so are vessels with fewer than two others, and those of which
+    neighbouring reports lie so far apart that no vessel goes there: as two that share an MMSI.
+
+    Parameters
+    ----------
+    path : of the file, as of ``read_ais``
+    without, only : MMSI of a vessel that is left out; or of the only one that is read
+    begin, end : of the time, since 1970 [s]
+
+    Raises
+    ------
+    InputError : the file cannot be read, or its layout is unknown
+    """
+    path = Path(path)
+    rows: dict[int, list[AisRow]] = {}
+    sizes: dict[int, list[tuple[ShipSize, str]]] = {}
+    for said in _all_said(path, only, hours=_hours(begin, end)):
+        if said.mmsi == without or (only is not None and said.mmsi != only):
+            continue
+        if said.size is not None:
+            sizes.setdefault(said.mmsi, []).append(said.size)
+        if said.row is not None and begin <= said.row.time <= end:
+            rows.setdefault(said.mmsi, []).append(said.row)
+    others = []
+    for mmsi, of_vessel in sorted(rows.items()):
+        found = _sorted_out(of_vessel)
+        if len(found.kept) > 1:
+            reports = _reports(path, mmsi, of_vessel, found, sizes.get(mmsi, []))
+            if not reports.jumps():
+                others.append(reports)
+    return others
+
+
+def _hours(begin: float, end: float) -> "re.Pattern[str]":
+    """Return what lines of a table have in which a time is between two others [s], and few besides:
+    date and hour of the known layouts.
+    """
+    hours = []
+    hour = math.floor(begin / _HOUR)
+    while hour * _HOUR <= end:
+        at = datetime.fromtimestamp(hour * _HOUR, UTC)
+        hours += [f"{at:%Y-%m-%d}[ T]{at:%H}:", f"{at:%d/%m/%Y} {at:%H}:"]
+        hour += 1
+    return re.compile("|".join(hours))
+
+
+class _SortedOut(NamedTuple):
+    """Rows of a vessel, sorted out: those of use in the order of their times, those that had a
+    possible place, numbers of those that were dropped by why, and the first line of each.
+    """
+
+    kept: list[AisRow]
+    placed: list[AisRow]
+    dropped: dict[str, int]
+    first: dict[str, int]
+
+
+def _sorted_out(rows: list[AisRow]) -> _SortedOut:
+    """Return the rows of a vessel that are of use."""
     dropped: Counter[str] = Counter()
     first: dict[str, int] = {}
     kept = placed = rows
@@ -192,23 +291,23 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
         kept = [row for row, reason in zip(kept, reasons, strict=True) if not reason]
         if sorted_out is _by_their_clock:
             kept.sort(key=lambda row: row.time)
-    if len(kept) < 2:
-        why = ", ".join(
-            f"{count} {reason} (first in line {first[reason]})" for reason, count in dropped.items()
-        )
-        jumps = _jumps_of_rows(placed)
-        if jumps:
-            why += f"; {jumps[0].described([row.line for row in placed])}"
-        raise InputError(
-            f"{path}: {len(kept)} of {len(rows)} rows of MMSI {identity} used, two are needed;{f' dropped: {why};' if why else ''}"
-            " correct the rows, or give another file"
-        )
+    return _SortedOut(kept, placed, dict(dropped), first)
+
+
+def _reports(
+    path: Path,
+    mmsi: int,
+    rows: Sequence[AisRow],
+    found: _SortedOut,
+    sizes: Sequence[tuple[ShipSize, str]],
+) -> AisReports:
+    """Return the reports of a vessel of a file from her rows, and from those of use."""
     size, size_remark = size_of_all(sizes)
-    columns = np.array(kept).T
+    columns = np.array(found.kept).T
     directed = np.isfinite(columns[5]) & (columns[5] < 360.0)
-    reports = AisReports(
+    return AisReports(
         path=path,
-        mmsi=identity,
+        mmsi=mmsi,
         line=columns[0],
         time=columns[1],
         latitude=np.radians(columns[2]),
@@ -217,21 +316,11 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
         speed=METRES_PER_SECOND_PER_KNOT * np.where(directed, columns[4], 0.0),
         course=np.radians(np.where(directed, columns[5], 0.0)),
         rows=len(rows),
-        dropped=dict(dropped),
+        dropped=found.dropped,
         size=size,
         size_remark=size_remark,
-        lost_directions=_lost_directions(rows, kept),
+        lost_directions=_lost_directions(rows, found.kept),
     )
-    mistaken = [jump for jump in reports.jumps() if jump.mistake]
-    if mistaken:
-        raise InputError(
-            f"{path}: {mistaken[0].described(reports.line)}: correct the rows that are wrong, or"
-            " remove them"
-        )
-    check_units(
-        path, reports.time, reports.latitude, reports.longitude, reports.speed, reports.course
-    )
-    return reports
 
 
 def _by_what_they_say(rows: Sequence[AisRow]) -> list[str]:
@@ -410,8 +499,12 @@ class _Said(NamedTuple):
     size: tuple[ShipSize, str] | None = None
 
 
-def _all_said(path: Path, mmsi: int | None) -> Iterator[_Said]:
+def _all_said(
+    path: Path, mmsi: int | None, hours: "re.Pattern[str] | None" = None
+) -> Iterator[_Said]:
     """Yield what a file says of vessels, in its order; of others than the given one not all.
+
+    Of a table, with ``hours`` only lines in which it finds something.
 
     Raises
     ------
@@ -427,18 +520,25 @@ def _all_said(path: Path, mmsi: int | None) -> Iterator[_Said]:
             with path.open(encoding="utf-8-sig", errors="replace") as lines:
                 yield from _from_sentences(lines, path)
         else:
-            yield from _from_table(path, mmsi)
+            yield from _from_table(path, mmsi, hours)
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}; check the path") from None
     except TableError as error:
         raise InputError(f"{path}: {error}") from None
 
 
-def _from_table(path: Path, mmsi: int | None) -> Iterator[_Said]:
+def _from_table(
+    path: Path, mmsi: int | None, hours: "re.Pattern[str] | None" = None
+) -> Iterator[_Said]:
     identifier = "" if mmsi is None else str(mmsi)
     names = [name for layout in LAYOUTS for name in layout.columns]
-    # Files of a day have millions of lines: those of other vessels are passed over as they are.
-    table = read_table(path, head=names, keep=lambda line: identifier in line)
+
+    def keep(line: str) -> bool:
+        return identifier in line and (hours is None or hours.search(line) is not None)
+
+    # Files of a day have millions of lines: those of other vessels, or of another time, are passed
+    # over as they are.
+    table = read_table(path, head=names, keep=keep)
     heads = {name.lower(): name for name in reversed(table.names)}
     layout = next((layout for layout in LAYOUTS if set(layout.columns) <= set(heads)), None)
     if layout is None:

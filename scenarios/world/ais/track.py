@@ -4,6 +4,7 @@ on board: every few seconds, noisy, late, or not at all.
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from datetime import datetime
 from functools import lru_cache
 from pathlib import Path
@@ -20,7 +21,7 @@ from gnc.estimation.vessel import VesselReport
 from scenarios.errors import InputError
 from scenarios.scenario.sections.equipment import VesselReportsConfig
 from scenarios.scenario.sections.world import VesselConfig
-from scenarios.world.ais.reports import AisReports, read_ais
+from scenarios.world.ais.reports import AisReports, read_ais, read_others
 from scenarios.world.vessel import TRACK_STEP, Place, TabledVessel, VesselTruth, track_times
 
 if TYPE_CHECKING:
@@ -48,6 +49,9 @@ _AT_REST = 0.3
 
 _MANOEUVRE, _MANOEUVRE_TIME = 0.03, 30.0
 """Mean acceleration over some time above which a vessel manoeuvres [m/s^2, s]."""
+
+_OTHERS_KEPT = 64
+"""Other ships of a track that a process keeps."""
 
 _KEPT = 4
 """Tracks that a process keeps: flights of a study mostly share one."""
@@ -275,6 +279,127 @@ def _read(path: Path, _stamp: tuple[int, int], mmsi: int | None) -> AisReports:
     return read_ais(path, mmsi)
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FileShip:
+    """A ship of a file besides the one that is measured.
+
+    Attributes
+    ----------
+    mmsi : of her
+    track : smooth, from the origin at time 0; straight on where she has no reports
+    origin : her place at time 0, north and east [m]
+    begins, ends : times of her first and last report within the flight or about it [s]
+    reports : in the flight's time and frame
+    """
+
+    mmsi: int
+    track: TabledVessel
+    origin: tuple[float, float]
+    begins: float
+    ends: float
+    reports: tuple[VesselReport, ...]
+
+
+@lru_cache(maxsize=_KEPT)
+def _read_others(
+    path: Path,
+    _stamp: tuple[int, int],
+    without: int | None,
+    only: int | None,
+    begin: float,
+    end: float,
+) -> tuple[AisReports, ...]:
+    return tuple(read_others(path, without=without, only=only, begin=begin, end=end))
+
+
+@lru_cache(maxsize=_KEPT * _OTHERS_KEPT)
+def _file_ship(reports: AisReports, place: Place, duration: float, margin: float) -> FileShip:
+    """Return a ship on the smooth track through her reports, in the frame of a flight."""
+    since = reports.time - place.utc
+    at, velocity = _in_frame(
+        place.frame, reports.latitude, reports.longitude, reports.speed, reports.course
+    )
+    smooth = smooth_motion(since, at, velocity)
+    first, last = float(since[0]), float(since[-1])
+    times = track_times(duration + margin)
+    along = smooth.derivative()(np.clip(times, first, min(last, duration)))
+    origin = smooth(max(first, 0.0)) - max(first, 0.0) * along[0]
+    earliest = max((float(t) for t in since if t <= -_KNOWN_BEFORE), default=float(since[0]))
+    return FileShip(
+        mmsi=reports.mmsi,
+        track=TabledVessel(along, _course_of(along), _manoeuvres_end(along)),
+        origin=(float(origin[0]), float(origin[1])),
+        begins=first,
+        ends=last,
+        reports=tuple(
+            VesselReport(float(t), float(p[0]), float(p[1]), float(v[0]), float(v[1]))
+            for t, p, v in zip(since, at, velocity, strict=True)
+            if earliest <= t <= duration
+        ),
+    )
+
+
+def ships_of_file(
+    path: str | Path,
+    *,
+    without: int | None,
+    only: int | None = None,
+    place: Place,
+    duration: float,
+    margin: float,
+    key: str = "vessel",
+) -> list[FileShip]:
+    """Return the ships of a file of AIS reports but one that have reports during a flight.
+
+    Parameters
+    ----------
+    path : of the file
+    without, only : MMSI of a ship that is left out; or of the only one that is taken
+    place : where and when the flight begins
+    duration, margin : of the longest flight, and for how long tracks go on after it [s]
+    key : of the scenario that has the file
+
+    Raises
+    ------
+    InputError : the file cannot be read, its layout is unknown, or it has not got the only one
+    """
+    path = Path(path)
+    try:
+        stamp = path.stat()
+    except OSError as error:
+        raise InputError(
+            f"{key}.track: {path}: cannot be read: {error.strerror}; check the path"
+        ) from None
+    begin, end = place.utc - _AROUND, place.utc + duration + _AROUND
+    read = _read_others(path, (stamp.st_mtime_ns, stamp.st_size), without, only, begin, end)
+    ships = [
+        _file_ship(reports, place, duration, margin)
+        for reports in read
+        if reports.time[0] <= place.utc + duration and reports.time[-1] >= place.utc
+    ]
+    if not ships and key != "vessel":
+        which = "no other ship" if only is None else f"no ship of MMSI {only}"
+        raise InputError(
+            f"{key}.track: {path}: {which} has two reports from {utc_text(place.utc)} to"
+            f" {utc_text(place.utc + duration)}, the time of the longest flight: check"
+            f" {key}.mmsi, place.utc and the file"
+        )
+    return ships
+
+
+def received_of_file(
+    reports: VesselReportsConfig,
+    ship: Sequence[VesselReport],
+    *,
+    outages: Sequence[tuple[float, float]],
+    generator: np.random.Generator,
+) -> list[tuple[float, VesselReport]]:
+    """Return reports of a file as they are received, with the time of each [s]; parameters of
+    ``received_reports``.
+    """
+    return _received(reports, ship, outages=outages, generator=generator)
+
+
 def usual_intervals(vessel: AisVessel) -> tuple[float, float]:
     """Return the shortest time between reports, and the longest but for one in twenty [s]: of the
     file where a flight has one.
@@ -485,8 +610,19 @@ def _received_from_file(
     """Return the file's own reports as they are received: late or missing where the scenario says
     so, but for those before.
     """
+    return _received(reports, vessel.reports, outages=outages, generator=generator)
+
+
+def _received(
+    reports: VesselReportsConfig,
+    sent: Sequence[VesselReport],
+    *,
+    outages: Sequence[tuple[float, float]],
+    generator: np.random.Generator,
+) -> list[tuple[float, VesselReport]]:
+    """Return reports of a file as they are received."""
     received = []
-    for report in vessel.reports:
+    for report in sent:
         late = float(generator.uniform(0.0, reports.latency_max_s))
         missed = bool(generator.random() < reports.missing)
         if report.time <= 0.0:
