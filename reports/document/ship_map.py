@@ -86,7 +86,9 @@ def area_outline(about: Surroundings, angle: float) -> tuple[Array, Array]:
     # On each bearing r_min beyond the corner that is farthest on it.
     x, y = circle(1.0)
     corner = np.argmax(np.outer(x, right) + np.outer(y, along), axis=1)
-    return right[corner] + about.radius * x, along[corner] + about.radius * y
+    edge = right[corner] + about.radius * x, along[corner] + about.radius * y
+    # A side between two corners may be the first and the last.
+    return np.append(edge[0], edge[0][0]), np.append(edge[1], edge[1][0])
 
 
 def ship_panel(
