@@ -82,6 +82,20 @@ class ShipHull:
         distance: Array = np.hypot(along, across)
         return distance
 
+    def around(self, radius: float, bearing: Array) -> tuple[Array, Array]:
+        """Return the edge of all that is within a radius of the outline, ahead of the funnel and to
+        starboard of it: on each bearing, clockwise from the bow, where it is farthest out [m].
+
+        Between two corners the edge is straight: with the first point again at the end, bearings
+        once round make it whole.
+        """
+        ahead, right = np.cos(bearing), np.sin(bearing)
+        corners = self.corners()
+        farthest = corners[
+            np.argmax(np.outer(ahead, corners[:, 0]) + np.outer(right, corners[:, 1]), axis=1)
+        ]
+        return farthest[:, 0] + radius * ahead, farthest[:, 1] + radius * right
+
     def reach(self, bearing: float) -> float:
         """Return how far the outline is from the funnel on a bearing, clockwise from the bow
         [m, rad].

@@ -43,7 +43,7 @@ class Acmi:
 
 def _vessel_line(flight: GeographicFlight, vessel: Body, i: int) -> str:
     named = (
-        f",Type=Sea+Watercraft,Name=Vessel,Color=Blue,EngagementRange={flight.keepout_radius:g}"
+        f",Type=Sea+Watercraft,Name=Vessel,Color=Blue,EngagementRange={flight.keepout_circle:g}"
         if i == 0
         else ""
     )

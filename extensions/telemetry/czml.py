@@ -51,8 +51,8 @@ class Czml:
                 while_flown,
             )
             keepout = {
-                "semiMajorAxis": flight.keepout_radius,
-                "semiMinorAxis": flight.keepout_radius,
+                "semiMajorAxis": flight.keepout_circle,
+                "semiMinorAxis": flight.keepout_circle,
                 "height": flight.source_height,
             }
             packets += [

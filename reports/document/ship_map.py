@@ -24,6 +24,10 @@ _POINTS = 500
 """Points of a line that are looked at."""
 
 
+_EDGE_POINTS = 181
+"""Points of the edge of a keep-out area about a hull."""
+
+
 def seen(panels: Sequence[Panel]) -> list[str]:
     """Return which of ship, keep-out area and plume are large enough on any of some maps to be seen
     there.
@@ -80,13 +84,10 @@ def area_outline(about: Surroundings, angle: float) -> tuple[Array, Array]:
     """
     if about.outline is None:
         return circle(about.radius)
-    ahead, starboard = about.outline.corners().T
+    bearing = np.append(np.linspace(0.0, 2.0 * np.pi, _EDGE_POINTS), 0.0)
+    ahead, starboard = about.outline.around(about.radius, bearing)
     right = math.cos(angle) * starboard + math.sin(angle) * ahead
-    along = math.cos(angle) * ahead - math.sin(angle) * starboard
-    # On each bearing r_min beyond the corner that is farthest on it.
-    x, y = circle(1.0)
-    corner = np.argmax(np.outer(x, right) + np.outer(y, along), axis=1)
-    return right[corner] + about.radius * x, along[corner] + about.radius * y
+    return right, math.cos(angle) * ahead - math.sin(angle) * starboard
 
 
 def ship_panel(

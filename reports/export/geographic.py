@@ -11,12 +11,14 @@ import numpy as np
 import pandas as pd
 
 from common.geodesy import LocalFrame
+from common.hull import HULL_SHAPES, ShipHull
 from common.text import moment, utc_text
 from measurement.gases import GASES, UNITS
 from reports.errors import ReportError
 from reports.run.columns import Array, column
-from reports.run.flight_config import flight_config, source_height
+from reports.run.flight_config import flight_config, keepout_shape, source_height
 from reports.run.run_data import RunData
+from reports.run.ship import outline_of
 from reports.run.time_history import vessel_heading
 
 PLUME_LENGTH = 1000.0
@@ -99,6 +101,7 @@ class GeographicFlight:
     crossings : its rows of the run's table of crossings
     geoid_height : of mean sea level above the WGS 84 ellipsoid [m]
     ellipsoidal : whether altitudes are above the ellipsoid
+    outline : of the hull, where the keep-out area is about it
     """
 
     flight_id: str
@@ -125,6 +128,14 @@ class GeographicFlight:
     crossings: pd.DataFrame
     geoid_height: float = 0.0
     ellipsoidal: bool = False
+    outline: ShipHull | None = None
+
+    @property
+    def keepout_circle(self) -> float:
+        """Return the radius of a circle about the funnel that holds the keep-out area, for formats
+        that draw circles alone: r_min, or that and the farthest corner of the hull [m].
+        """
+        return self.keepout_radius + (self.outline.farthest if self.outline else 0.0)
 
     @property
     def height_reference(self) -> str:
@@ -172,8 +183,8 @@ class GeographicFlight:
         return sorted({*range(0, len(self.time), step), len(self.time) - 1})
 
     def keepout_ring(self, i: int) -> list[tuple[float, float]]:
-        """Return longitude and latitude [deg] of a circle about the vessel at a sample, closed and
-        counter-clockwise.
+        """Return longitude and latitude [deg] of the edge of the keep-out area at a sample, closed
+        and counter-clockwise: a circle about the vessel, or what is as near to its hull.
         """
         if self.vessel is None:
             return []
@@ -181,9 +192,13 @@ class GeographicFlight:
             math.radians(self.vessel.latitude[i]), math.radians(self.vessel.longitude[i])
         )
         angle = np.linspace(0.0, -2.0 * math.pi, _RING_POINTS + 1)
-        latitude, longitude = frame.to_geodetic(
-            self.keepout_radius * np.cos(angle), self.keepout_radius * np.sin(angle)
-        )
+        north, east = self.keepout_radius * np.cos(angle), self.keepout_radius * np.sin(angle)
+        if self.outline is not None:
+            ahead, right = self.outline.around(self.keepout_radius, np.append(angle[:-1], 0.0))
+            bow = math.radians(float(self.vessel_heading[i]))
+            north = math.cos(bow) * ahead - math.sin(bow) * right
+            east = math.sin(bow) * ahead + math.cos(bow) * right
+        latitude, longitude = frame.to_geodetic(north, east)
         # In one piece, also where it lies over the date line.
         centre = float(self.vessel.longitude[i])
         around = centre + (np.degrees(longitude) - centre + 180.0) % 360.0 - 180.0
@@ -293,6 +308,7 @@ def _flight(run: RunData, row: dict[str, object], history: pd.DataFrame) -> Geog
         source_height=funnel,
         keepout_radius=radius,
         crossings=run.crossings_of(flight_id),
+        outline=outline_of(config) if keepout_shape(config) in HULL_SHAPES.values() else None,
         geoid_height=float((config.get("place") or {}).get("geoid_m") or 0.0),
     )
 

@@ -61,3 +61,13 @@ def test_the_antenna_is_seen_from_the_funnel():
 def test_a_place_north_of_a_ship_that_heads_east_is_to_port():
     ahead, starboard = ship_frame(np.array(100.0), np.array(0.0), np.array(0.5 * math.pi))
     assert (float(ahead), float(starboard)) == pytest.approx((0.0, -100.0), abs=1e-9)
+
+
+def test_the_edge_about_a_hull_is_as_far_from_it_everywhere_and_goes_once_round():
+    bearing = np.append(np.linspace(0.0, 2.0 * np.pi, 181), 0.0)
+    ahead, starboard = HULL.around(200.0, bearing)
+    assert HULL.distance(ahead, starboard) == pytest.approx(200.0)
+    assert (ahead[0], starboard[0]) == (ahead[-1], starboard[-1])
+    # Around a rectangle: its sides and a whole circle, whose chords are short of the arcs by 5e-5.
+    length = np.hypot(np.diff(ahead), np.diff(starboard)).sum()
+    assert length == pytest.approx(2.0 * (120.0 + 18.0) + 2.0 * math.pi * 200.0, rel=1e-4)

@@ -15,10 +15,12 @@ from scenarios.measures.columns import (
     DERIVED_COLUMNS,
     FINDING_COLUMNS,
     FLIGHT_COLUMNS,
+    HULL_COLUMNS,
     INPUT_COLUMNS,
     INTERVENTION_COLUMNS,
     SEARCH_COLUMNS,
     SUMMARY_COLUMNS,
+    further_faults,
 )
 from scenarios.statistics.estimates import TABLE_COLUMNS as PREMISE_COLUMNS
 
@@ -43,6 +45,8 @@ def tables() -> dict[str, Table]:
     return {
         "summary.csv and comparison.csv": SUMMARY_COLUMNS,
         SNIFFER_TITLE: SnifferOnBoard.FIGURES,
+        "summary.csv, of flights beside a ship whose size is known": HULL_COLUMNS,
+        "summary.csv, of flights with several faults": further_faults(2),
         SEARCH_TITLE: FINDING_COLUMNS,
         "derived figures": DERIVED_COLUMNS,
         "crossings.csv": CROSSING_COLUMNS,

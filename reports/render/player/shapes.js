@@ -144,6 +144,7 @@ function hullKeepoutShape(radius, [bow, stern, port, starboard], top, colour) {
     const [right, aft] = corners.reduce((far, corner) => (corner[0] * x + corner[1] * z > far[0] * x + far[1] * z ? corner : far));
     edge.push([right + radius * x, aft + radius * z]);
   }
+  edge.push(edge[0]);
   const places = [], triangles = [];
   edge.forEach(([x, z], k) => {
     places.push(x, 0, z, x, top, z);

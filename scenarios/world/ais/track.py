@@ -116,7 +116,10 @@ class AisVessel(TabledVessel):
         course = _course_of(track)
         if antenna != AT_THE_FUNNEL:
             self.reports = _at_the_funnel(self.reports, antenna)
-            track = track + _turning(course, antenna)
+            flown = int(np.count_nonzero(np.diff(times))) + 1
+            turning = _turning(course[:flown], antenna)
+            # It goes straight on after that.
+            track = track + turning[np.minimum(np.arange(len(track)), flown - 1)]
         super().__init__(track, course, _manoeuvres_end(track))
 
 

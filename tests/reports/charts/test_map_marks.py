@@ -3,6 +3,7 @@
 import math
 import tomllib
 from importlib.resources import files
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,8 +12,8 @@ from measurement.emission import ship_of
 from reports.document.chart import Line, Note, Panel
 from reports.document.map_marks import arrow, hull_line, on_map, plume_lines
 from reports.document.palette import Meaning
-from reports.document.ship_map import seen
-from reports.run.ship import ANY, HULLS, Hull, hull_of
+from reports.document.ship_map import area_outline, hull_words, seen
+from reports.run.ship import ANY, HULLS, Hull, hull_of, outline_of
 from reports.run.time_history import turned
 
 
@@ -149,3 +150,34 @@ def test_a_ship_whose_size_is_not_known_is_not_drawn_as_one_to_scale():
     assert (own.label, known.label) == ("ship, size not known", "ship, to scale")
     assert own.style != known.style
     assert own.opacity < known.opacity
+
+
+GIVEN = {
+    "vessel": {
+        "length_m": 120.0,
+        "beam_m": 18.0,
+        "stack_from_bow_m": 90.0,
+        "stack_from_port_m": 12.0,
+    }
+}
+
+
+def test_a_ship_of_a_given_size_is_drawn_so_about_her_funnel():
+    hull = hull_of(GIVEN)
+    line = hull_line(hull, 0.0, x=10.0, y=-5.0)
+    assert (line.label, line.style) == ("ship, to scale", "thin")
+    # 90 m ahead of the funnel and 30 m astern; 12 m to port and 6 m to starboard.
+    assert (line.y.min(), line.y.max()) == pytest.approx((-35.0, 85.0))
+    assert (line.x.min(), line.x.max()) == pytest.approx((-2.0, 16.0))
+    assert hull_words(hull) == "her hull is 120 m by 18 m"
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.7, math.pi])
+def test_the_area_about_a_hull_ends_r_min_from_its_outline(angle):
+    about = SimpleNamespace(outline=outline_of(GIVEN), radius=200.0)
+    x, y = area_outline(about, angle)
+    assert (x[0], y[0]) == (x[-1], y[-1])
+    # Back to places ahead of the funnel and to starboard of it.
+    ahead = math.sin(angle) * x + math.cos(angle) * y
+    starboard = math.cos(angle) * x - math.sin(angle) * y
+    assert about.outline.distance(ahead, starboard) == pytest.approx(200.0)

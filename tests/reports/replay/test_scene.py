@@ -13,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from common.hull import ShipHull
 from reports.document.blocks import FlightPicker
 from reports.document.scene import COLUMNS
 from reports.registry import content
@@ -188,6 +189,14 @@ def test_each_of_several_faults_is_an_event_at_its_time(trial, row):
     events = dict(flight_scene(trial, happened, history_of(trial, row)).events)
     found = {name: time for name, time in events.items() if name.startswith("fault")}
     assert found == {"fault 1, vessel data": 7.5, "fault 2, engine": 9.0}
+
+
+def test_the_area_about_a_hull_is_sent_with_the_sides_of_the_hull(scene):
+    outline = ShipHull(length=120.0, beam=18.0, stack=(90.0, 12.0), antenna=(90.0, 12.0))
+    sent = replay.draw_scene(replace(scene, keepout_shape="hull", outline=outline))["keepout"]
+    # Bow, stern, port and starboard, from the funnel.
+    assert (sent["shape"], sent["sides"]) == ("hull", [90.0, 30.0, 12.0, 6.0])
+    assert replay.draw_scene(scene)["keepout"]["sides"] is None
 
 
 def test_a_ship_whose_size_is_not_known_is_told_from_one_of_a_known_class(scene):

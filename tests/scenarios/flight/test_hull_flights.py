@@ -9,6 +9,7 @@ import pytest
 from flight_cases import fly, plan, scenario
 
 from gnc.errors import InfeasibleError
+from reports.run.time_history import keepout_distance
 from scenarios.errors import InputError
 from scenarios.scenario.files import load_study
 
@@ -202,3 +203,13 @@ def test_a_ship_that_turns_faster_than_its_antenna_may_be_accelerated_is_refused
     vessel["manoeuvres"] = ({"at_s": 60.0, "turn_deg": 40.0, "turn_rate_deg_s": 2.0},)
     with pytest.raises(InfeasibleError, match=r"turns at up to 2 deg/s.*antenna_from_bow_m"):
         plan(scenario(vessel=vessel, **SEA))
+
+
+def test_reports_measure_the_distance_from_the_hull_as_the_flight_does():
+    changes = {"vessel": ship(120, "bow"), "keepout": {"from": "hull"}, **SEA}
+    flown = fly(**changes)
+    found = keepout_distance(flown.history, scenario(**changes).model_dump(mode="json"))
+    # Samples are 0.1 s apart, 3 m of way at most, which is across the distance where it is least.
+    nearest = 200.0 + flown.row["crossing_clearance_min_m"]
+    assert found.min() == pytest.approx(flown.row["min_distance_m"], abs=0.02)
+    assert found.min() <= nearest

@@ -3,7 +3,8 @@ import math
 import numpy as np
 import pytest
 
-from scenarios.measures.keepout import closest_approach, keepout_figures
+from common.hull import ShipHull
+from scenarios.measures.keepout import closest_approach, hull_keepout_figures, keepout_figures
 
 
 def line(offset, speed=19.42, duration=40.0, step=0.1):
@@ -106,3 +107,54 @@ def test_a_path_that_starts_inside_counts_from_its_first_second():
     figures = keepout_figures(*(values[inside] for values in line(0.0)), radius=200.0)
     assert figures.violations == 1
     assert figures.time_inside == pytest.approx(200.0 / 19.42, rel=1e-9)
+
+
+HULL = ShipHull(length=400.0, beam=60.0, stack=(320.0, 30.0), antenna=(320.0, 30.0))
+
+
+def beside(offset, *, height=0.0, heading=0.0, shape="sphere", radius=200.0):
+    """Return the figures of a straight way north, ``offset`` metres to starboard of the funnel of a
+    ship on a heading.
+    """
+    time, position, velocity = line(offset)
+    position[:, 2] = height
+    return hull_keepout_figures(
+        time, position, velocity, radius, shape, HULL, lambda times: np.full(len(times), heading)
+    )
+
+
+def test_beside_a_hull_the_distance_is_that_from_its_side():
+    # From 388.4 m south of the funnel to as far north of it, which is 68.4 m ahead of the bow.
+    figures = beside(230.5)
+    assert figures.distance_min == pytest.approx(200.5, abs=1e-9)
+    assert (figures.violations, figures.time_inside, figures.depth) == (0, 0.0, 0.0)
+    # Inside up to sqrt(200^2 - 170^2) = 105.4 m behind the stern, 80 m from the funnel, and as far
+    # ahead of the bow, where the way has ended.
+    inside = beside(200.0)
+    assert inside.depth == pytest.approx(30.0, abs=1e-9)
+    assert inside.violations == 1
+    way = 388.4 + 80.0 + math.sqrt(200.0**2 - 170.0**2)
+    assert inside.time_inside == pytest.approx(way / 19.42, abs=1e-4)
+
+
+def test_the_height_counts_about_a_hull_and_not_about_a_prism():
+    assert beside(150.0, height=50.0).distance_min == pytest.approx(math.hypot(120.0, 50.0))
+    assert beside(150.0, height=50.0, shape="cylinder").distance_min == pytest.approx(120.0)
+
+
+def test_ahead_of_a_ship_that_heads_east_the_distance_is_from_the_bow():
+    # The bow is 320 m east of the funnel.
+    assert beside(500.0, heading=0.5 * math.pi).distance_min == pytest.approx(180.0, abs=1e-9)
+
+
+def test_about_a_hull_of_no_size_figures_are_those_about_a_point():
+    small = ShipHull(length=1e-6, beam=1e-6, stack=(0.0, 0.0), antenna=(0.0, 0.0))
+    way = line(150.0)
+    about_hull = hull_keepout_figures(
+        *way, 200.0, "sphere", small, lambda times: np.zeros(len(times))
+    )
+    about_point = keepout_figures(*way, radius=200.0)
+    assert about_hull.distance_min == pytest.approx(about_point.distance_min, abs=1e-4)
+    # Looks are 10 ms apart, and the edge between two of them is found on a straight line.
+    assert about_hull.time_inside == pytest.approx(about_point.time_inside, abs=1e-4)
+    assert about_hull.violations == about_point.violations
