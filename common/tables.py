@@ -56,6 +56,14 @@ class TableFormat:
     time_format: str | None = None
     time_unit: str | None = None
 
+    def given(self) -> list[str]:
+        """Return the names of what is not None."""
+        return [each.name for each in fields(self) if getattr(self, each.name) is not None]
+
+
+FOUND = TableFormat()
+"""Nothing is given: all is found."""
+
 
 def table_format(given: Mapping[str, Any]) -> TableFormat:
     """Return the format that a section ``[table]`` gives.
@@ -246,7 +254,7 @@ def _is_empty(cell: str) -> bool:
 
 def read_table(
     path: Path,
-    given: TableFormat | None = None,
+    given: TableFormat = FOUND,
     *,
     keep: Callable[[str], bool] | None = None,
     head: Sequence[str] = (),
@@ -266,7 +274,6 @@ def read_table(
     TableError : the file is no table as text. The message does not name the file
     OSError : it cannot be opened
     """
-    given = given or TableFormat()
     encoding, text = _opened(path, given.encoding)
     with text:
         try:

@@ -38,6 +38,7 @@ from scenarios.scenario.sections.world import (
     KeepoutConfig,
     PlaceConfig,
     PlumeConfig,
+    TableConfig,
     TurbulenceConfig,
     VesselConfig,
     WindConfig,
@@ -142,6 +143,7 @@ class Scenario(_AddedKeys):
     plume: PlumeConfig = PlumeConfig()
     keepout: KeepoutConfig = KeepoutConfig()
     wind: WindConfig = WindConfig()
+    table: TableConfig = TableConfig()
     turbulence: TurbulenceConfig = TurbulenceConfig()
     air: AirConfig = AirConfig()
     reports: VesselReportsConfig = VesselReportsConfig()

@@ -94,6 +94,7 @@ def vessel_of(scenario: Scenario) -> VesselTruth:
             utc=scenario.place.utc,
             duration=duration,
             margin=TRACK_MARGIN,
+            written=scenario.table.of("vessel.track", config.track),
         )
     if config.track == "manoeuvres" and not config.manoeuvres:
         return SteadyVessel(scenario.vessel_speed, math.radians(config.course_deg))
@@ -148,7 +149,7 @@ def place_of(scenario: Scenario, vessel: VesselTruth) -> Place:
     place, table = given_place(scenario.place, scenario.source_height), scenario.wind.table
     if table is None or math.isfinite(place.utc):
         return place
-    return replace(place, utc=first_time(table, place))
+    return replace(place, utc=first_time(table, place, scenario.table.of("wind.table", table)))
 
 
 def mean_wind(scenario: Scenario, vessel: VesselTruth) -> WindField:

@@ -12,12 +12,13 @@ import numpy as np
 import numpy.typing as npt
 
 from common.geodesy import LocalFrame
+from common.tables import FOUND, TableFormat
 from common.text import utc_text
 from gnc.estimation.vessel import VesselReport
 from scenarios.errors import InputError
 from scenarios.scenario.sections.equipment import VesselReportsConfig
 from scenarios.scenario.sections.world import VesselConfig
-from scenarios.world.ais.reports import AisReports, read_ais
+from scenarios.world.ais.reports import AisReports, read_reports
 from scenarios.world.vessel import TRACK_STEP, Place, TabledVessel, VesselTruth, track_times
 
 if TYPE_CHECKING:
@@ -92,7 +93,13 @@ class AisVessel(TabledVessel):
 
 
 def ais_vessel(
-    config: VesselConfig, *, altitude: float, utc: datetime | None, duration: float, margin: float
+    config: VesselConfig,
+    *,
+    altitude: float,
+    utc: datetime | None,
+    duration: float,
+    margin: float,
+    written: TableFormat = FOUND,
 ) -> AisVessel:
     """Return the vessel of a scenario whose track is a file.
 
@@ -102,6 +109,7 @@ def ais_vessel(
     altitude : at which metres are counted [m]
     utc : of the start; the first report's if not given
     duration, margin : of the longest flight, and for how long the track goes on after it [s]
+    written : how the file is written if it is a table, as far as it is given
 
     Raises
     ------
@@ -114,7 +122,7 @@ def ais_vessel(
         raise InputError(
             f"vessel.track: {path}: cannot be read: {error.strerror}; check the path"
         ) from None
-    reports = _read(path, (stamp.st_mtime_ns, stamp.st_size), config.mmsi)
+    reports = _read(path, (stamp.st_mtime_ns, stamp.st_size), config.mmsi, written)
     begin = float(reports.time[0]) if utc is None else utc.timestamp()
     _check_covered(reports, begin, begin + duration, config.gap_max_s)
     _check_jumps(reports, begin, begin + duration)
@@ -165,8 +173,10 @@ def _vessel(
 
 
 @lru_cache(maxsize=_KEPT)
-def _read(path: Path, _stamp: tuple[int, int], mmsi: int | None) -> AisReports:
-    return read_ais(path, mmsi)
+def _read(
+    path: Path, _stamp: tuple[int, int], mmsi: int | None, written: TableFormat
+) -> AisReports:
+    return read_reports(path, mmsi, written)
 
 
 def usual_intervals(vessel: AisVessel) -> tuple[float, float]:

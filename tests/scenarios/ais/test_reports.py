@@ -104,7 +104,10 @@ def test_a_row_of_no_use_is_dropped_and_counted(read, row, reason):
     first, second, third = rows()
     found = read(table(first, row, second, third))
     assert (len(found.time), found.rows, found.dropped) == (3, 4, {reason: 1})
-    assert found.described() == f"ais.csv: 3 of 4 rows of MMSI 219999001 used; dropped: 1 {reason}"
+    assert found.described() == (
+        f"ais.csv: 3 of 4 rows of MMSI 219999001 used; dropped: 1 {reason};"
+        " separated by commas, decimal point, utf-8"
+    )
 
 
 @pytest.mark.parametrize("order", [reversed, lambda lines: [*lines[::2], *lines[1::2]]])
