@@ -16,7 +16,7 @@ from aircraft.fdm import TIME_STEP
 from aircraft.weather import STEPS_BETWEEN_GUSTS, TURBULENCE, Gust, Weather
 from aircraft.wind import CALM, WindField, constant_wind, over_the_sea
 from common.physics import wind_velocity
-from common.tables import FOUND, Table, TableError, TableFormat, read_table, unit_factor
+from common.tables import FOUND, MISTAKES, Table, TableError, TableFormat, read_table, unit_factor
 from common.text import install_words, other_units, utc_text
 from scenarios.errors import InputError
 from scenarios.scenario.scenario import Scenario
@@ -548,13 +548,15 @@ def _check_wind(path: Path, data: Any, time: str, names: list[str]) -> None:
 
 def _at_place(path: Path, data: Any, latitude_deg: float, longitude_deg: float) -> Any:
     """Return the data of one place, by bilinear interpolation."""
+    mistake = _mistake(data, latitude_deg, longitude_deg)
     data, longitude_deg = _round_the_earth(data, longitude_deg)
     for name, value in zip(_PLACES, (latitude_deg, longitude_deg), strict=True):
         low, high = float(data[name].min()), float(data[name].max())
         if not low <= value <= high:
+            fits = f"; with {mistake} it would be within it" if mistake else ""
             raise InputError(
                 f"wind.table: {path}: {name}s go from {low:g} to {high:g} deg, and the flight"
-                f" begins at {value:.3f}; give a file of that place"
+                f" begins at {value:.3f}{fits}; give a file of that place"
             )
         data = data.sel({name: low}) if low == high else data.sortby(name)
     left = [name for name in _PLACES if name in data.dims]
@@ -565,6 +567,19 @@ def _at_place(path: Path, data: Any, latitude_deg: float, longitude_deg: float) 
             if name in left
         }
     )
+
+
+def _mistake(data: Any, latitude_deg: float, longitude_deg: float) -> str:
+    """Return what brings a place into the area of a grid, empty if nothing does."""
+    for mistake, corrected in MISTAKES.items():
+        place = corrected(latitude_deg, longitude_deg)
+        within, east = _round_the_earth(data, place[1])
+        if all(
+            float(within[name].min()) <= value <= float(within[name].max())
+            for name, value in zip(_PLACES, (place[0], east), strict=True)
+        ):
+            return mistake
+    return ""
 
 
 def _round_the_earth(data: Any, longitude_deg: float) -> tuple[Any, float]:

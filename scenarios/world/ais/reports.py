@@ -599,7 +599,7 @@ def rows_of(path: Path, mmsi: int | None, written: TableFormat) -> VesselRows:
     if mmsi is None and len(counts) > 1:
         raise InputError(
             f"{path}: it has {len(counts)} vessels, {_most(counts)}; name one of them by its MMSI"
-            " (vessel.mmsi)"
+            " (vessel.mmsi; --mmsi of an estimate)"
         )
     if not found:
         raise _no_row(path, mmsi, written)
@@ -614,7 +614,7 @@ def _no_row(path: Path, mmsi: int | None, written: TableFormat) -> InputError:
         counts = Counter(of.mmsi for of in said if of.row is not None)
     if counts:
         return InputError(
-            f"{path}: no row of MMSI {mmsi}; it has {_most(counts)}: check the number (vessel.mmsi)"
+            f"{path}: no row of MMSI {mmsi}; it has {_most(counts)}: check the number (vessel.mmsi; --mmsi of an estimate)"
         )
     return InputError(
         f"{path}: no row below the header has an MMSI in digits, as 219999001, in the column of its"
