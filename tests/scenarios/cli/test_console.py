@@ -2,6 +2,7 @@
 
 import importlib.metadata
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -64,14 +65,25 @@ def test_the_commands_are_these():
         assert f"plume-flight {word}" in console(word, "--help").out
 
 
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 @pytest.mark.parametrize(
     ("words", "completed"), [("des", {"design", "describe"}), ("describe --he", {"--help"})]
 )
-def test_a_shell_completes_commands_and_options(words, completed, monkeypatch):
-    monkeypatch.setenv("_PLUME_FLIGHT_COMPLETE", "complete_bash")
+def test_a_shell_completes_commands_and_options(words, completed, shell, monkeypatch):
+    monkeypatch.setenv("_PLUME_FLIGHT_COMPLETE", f"complete_{shell}")
+    # Bash has the words and the number of the last one, the others a line.
     monkeypatch.setenv("COMP_WORDS", f"plume-flight {words}")
     monkeypatch.setenv("COMP_CWORD", str(len(words.split())))
-    assert {*console().out.split()} == completed
+    monkeypatch.setenv("_TYPER_COMPLETE_ARGS", f"plume-flight {words}")
+    monkeypatch.setenv("_TYPER_COMPLETE_FISH_ACTION", "get-args")
+    said = console().out
+    # Zsh has each word in quotation marks, fish before its help; bash has words alone.
+    found = {
+        "bash": said.split(),
+        "zsh": re.findall(r'"([\w-]+)":', said),
+        "fish": [line.partition("\t")[0] for line in said.splitlines()],
+    }[shell]
+    assert {*found} == completed
 
 
 @pytest.mark.usefixtures("sketched")
