@@ -56,6 +56,14 @@ class TableFormat:
     time_format: str | None = None
     time_unit: str | None = None
 
+    def given(self) -> list[str]:
+        """Return the names of what is not None."""
+        return [each.name for each in fields(self) if getattr(self, each.name) is not None]
+
+
+FOUND = TableFormat()
+"""Nothing is given: all is found."""
+
 
 def table_format(given: Mapping[str, Any]) -> TableFormat:
     """Return the format that a section ``[table]`` gives.
@@ -246,7 +254,7 @@ def _is_empty(cell: str) -> bool:
 
 def read_table(
     path: Path,
-    given: TableFormat | None = None,
+    given: TableFormat = FOUND,
     *,
     keep: Callable[[str], bool] | None = None,
     head: Sequence[str] = (),
@@ -266,7 +274,6 @@ def read_table(
     TableError : the file is no table as text. The message does not name the file
     OSError : it cannot be opened
     """
-    given = given or TableFormat()
     encoding, text = _opened(path, given.encoding)
     with text:
         try:
@@ -904,6 +911,15 @@ def longitude_within(degrees: Array) -> Array:
     return np.where((values >= 180.0) & (values <= 360.0), values - 360.0, values)
 
 
+MISTAKES: Mapping[str, Callable[[Any, Any], tuple[Any, Any]]] = {
+    "latitude and longitude exchanged": lambda latitude, longitude: (longitude, latitude),
+    "the other sign of longitude": lambda latitude, longitude: (latitude, -longitude),
+    "the other sign of latitude": lambda latitude, longitude: (-latitude, longitude),
+    "the other signs of both": lambda latitude, longitude: (-latitude, -longitude),
+}
+"""Mistakes in places, and what corrects latitude and longitude [deg]."""
+
+
 class Jump(NamedTuple):
     """A way between two rows that is too long for the time between them.
 
@@ -982,12 +998,8 @@ def _mistake(degrees: tuple[Array, Array], before: int, after: int, reach: float
     if not math.isfinite(latitude + longitude):
         return ""
     from_there = cartesian(*(np.radians(values[before]) for values in degrees))
-    for mistake, (north, east) in {
-        "latitude and longitude exchanged": (longitude, latitude),
-        "the other sign of longitude": (latitude, -longitude),
-        "the other sign of latitude": (-latitude, longitude),
-        "the other signs of both": (-latitude, -longitude),
-    }.items():
+    for mistake, corrected in MISTAKES.items():
+        north, east = corrected(latitude, longitude)
         there = cartesian(np.radians(np.float64(north)), np.radians(np.float64(east)))
         if abs(north) <= 90.0 and np.linalg.norm(there - from_there) <= reach:
             return mistake

@@ -3,7 +3,7 @@
 import argparse
 import math
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -22,13 +22,14 @@ from measurement.estimate.verdict import (
 )
 from measurement.gases import ASSUMED_LEAST, FUEL_SULPHUR_MOST, GASES
 from measurement.log.analysis import Analysis, analyse, find_gaps
-from measurement.log.config import LogConfig, read_config
+from measurement.log.config import FlightDetails, LogConfig, read_config
 from measurement.log.read import LoggedFlight, read_flight
 from measurement.log.run_files import (
     build_report,
     check_directory,
     write_run,
 )
+from measurement.log.ship import ShipTrack
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
 
@@ -44,13 +45,21 @@ _ERRORS = {
 """Names of the common errors in words."""
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Estimate, print and write; return the exit status, 0 or 2 for bad input."""
-    given = _parser().parse_args(arguments)
+ReadShip = Callable[[Path, int | None], ShipTrack]
+"""Reads the track of a ship from a file of AIS reports, by its MMSI if that is known."""
+
+
+def main(arguments: list[str] | None = None, *, read_ship: ReadShip | None = None) -> int:
+    """Estimate, print and write; return the exit status, 0 or 2 for bad input.
+
+    ``read_ship`` reads a file of AIS reports; without it there is no option for one.
+    """
+    given = _parser(with_ship=read_ship is not None).parse_args(arguments)
     directory = given.out or Path("runs") / f"measurement_{given.flight.stem}"
     try:
         config = read_config(given.config) if given.config else LogConfig()
-        flight = read_flight(given.flight, config)
+        ships = list(_ships(config.flight, given, read_ship))
+        flight = read_flight(given.flight, config, ships)
         check_directory(directory, given.flight, named_after_log=given.out is None)
         with naming(given.flight):
             analysis = analyse(
@@ -74,7 +83,35 @@ def main(arguments: list[str] | None = None) -> int:
     return 0
 
 
-def _parser() -> argparse.ArgumentParser:
+def _ships(
+    details: FlightDetails, given: argparse.Namespace, read_ship: ReadShip | None
+) -> Iterator[ShipTrack]:
+    """Yield where the ship was, by the configuration and by a file.
+
+    Raises
+    ------
+    MeasurementError : the file has no track of it, or two numbers are given for it
+    """
+    if details.position is not None:
+        latitude, longitude = (np.array([of]) for of in details.position)
+        name = (
+            f"flight.latitude_deg, longitude_deg = {details.position[0]:g}, {details.position[1]:g}"
+        )
+        yield ShipTrack(name=name, latitude=latitude, longitude=longitude, time=np.empty(0))
+    if read_ship is None:
+        return
+    if given.mmsi is not None and details.mmsi not in (None, given.mmsi):
+        raise MeasurementError(
+            f"--mmsi is {given.mmsi}, and flight.mmsi of the configuration is {details.mmsi}; leave"
+            " one of them out"
+        )
+    if given.ais is not None:
+        yield read_ship(given.ais, details.mmsi if given.mmsi is None else given.mmsi)
+    elif given.mmsi is not None:
+        raise MeasurementError("--mmsi names a ship of --ais FILE; give that file, too")
+
+
+def _parser(*, with_ship: bool) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="python -m measurement.estimate",
         description="Estimate the fuel sulphur content of a ship from a flight through its plume.",
@@ -98,6 +135,9 @@ def _parser() -> argparse.ArgumentParser:
         metavar="DIR",
         help="directory of files and report; default runs/measurement_FLIGHT",
     )
+    if with_ship:
+        parser.add_argument("--ais", type=Path)
+        parser.add_argument("--mmsi", type=int)
     parser.add_argument("--no-report", action="store_true", help="write no report")
     return parser
 
@@ -184,6 +224,7 @@ def _missing(flight: LoggedFlight, analysis: Analysis) -> Iterator[str]:
     yield from (f"{title.lower()}: {words}" for title, words in gaps.remarks.items())
     if flight.about.place_remark:
         yield f"places: {flight.about.place_remark}"
+    yield from (f"ship: {distance}" for distance in flight.about.ships)
 
 
 def _unused_gases(readings: Readings, instrument: SnifferSpec) -> Iterator[str]:

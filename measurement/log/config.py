@@ -35,7 +35,10 @@ COLUMNS = {
 }
 """Columns of a logged flight, and their names unless the configuration gives others."""
 
-_FLIGHT_KEYS = ("vessel", "imo", "mmsi", "date", "place", "operator")
+_FLIGHT_KEYS = (
+    *("vessel", "imo", "mmsi", "latitude_deg", "longitude_deg"),
+    *("date", "place", "operator"),
+)
 """Keys of the table ``[flight]``; each may be left out."""
 
 _KEYS = (
@@ -69,6 +72,7 @@ class FlightDetails:
     Attributes
     ----------
     vessel, imo, mmsi : of the ship that was measured
+    position : latitude and longitude of a ship that lay there [deg]
     day : date of the flight in UTC
     start : of the log's first reading in UTC, or None where only the date is given
     place : in words
@@ -78,6 +82,7 @@ class FlightDetails:
     vessel: str = ""
     imo: int | None = None
     mmsi: int | None = None
+    position: tuple[float, float] | None = None
     day: date | None = None
     start: datetime | None = None
     place: str = ""
@@ -311,7 +316,28 @@ def _details(table: Mapping[str, Any]) -> FlightDetails:
         )
     day, start = _date(table.get("date"))
     texts = {key: text.strip() for key, text in words.items()}
-    return FlightDetails(imo=imo, mmsi=mmsi, day=day, start=start, **texts)
+    return FlightDetails(
+        imo=imo, mmsi=mmsi, position=_position(table), day=day, start=start, **texts
+    )
+
+
+def _position(table: Mapping[str, Any]) -> tuple[float, float] | None:
+    """Return the latitude and longitude of the ship [deg], or None without one."""
+    given = []
+    for key, most in (("latitude_deg", 90.0), ("longitude_deg", 180.0)):
+        if key not in table:
+            continue
+        value = table[key]
+        if not _is_finite(value) or abs(value) > most:
+            raise MeasurementError(
+                f"flight.{key} is {value!r}; give the ship's, from {-most:g} to {most:g}"
+            )
+        given.append(float(value))
+    if len(given) == 1:
+        raise MeasurementError(
+            "one of flight.latitude_deg and flight.longitude_deg is given; give both, or neither"
+        )
+    return (given[0], given[1]) if given else None
 
 
 def _date(value: Any) -> tuple[date | None, datetime | None]:

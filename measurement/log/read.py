@@ -29,6 +29,7 @@ from measurement.errors import MeasurementError, naming
 from measurement.estimate.record import check_increasing, check_units, lowest_reading, shown_step
 from measurement.gases import GASES, UNITS
 from measurement.log.config import COLUMNS, FlightDetails, LogConfig
+from measurement.log.ship import LoggedPlaces, ShipTrack, distance_words
 from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings
 
@@ -62,6 +63,7 @@ class FlightRecord:
     offset : whether the log's times have an offset from UTC; those without are taken as UTC
     first_position, last_position : first and last known place of the log, or None where it has none
     place_remark : which of its places are taken as missing, or empty
+    ships : how far the log lies from each place or track of its ship that is known, in words
     columns, scale, missing : as the log was read
     table : how the log was read, in one line
     stated : keys of the instrument's channels in the configuration, same as in ``LogConfig``
@@ -76,6 +78,7 @@ class FlightRecord:
     first_position: Position | None
     last_position: Position | None
     place_remark: str
+    ships: tuple[str, ...]
     columns: Mapping[str, str]
     scale: Mapping[str, float]
     missing: tuple[float, ...]
@@ -108,25 +111,27 @@ class LoggedFlight:
     about: FlightRecord
 
 
-def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
+def read_flight(path: Path, config: LogConfig, ships: Sequence[ShipTrack] = ()) -> LoggedFlight:
     """Return the flight in a table with a row per reading, or with rows faster than the sensors.
 
     How the table may be written, ``common.tables`` says. Times are seconds, or dates and times.
+    ``ships`` are where its ship was, by a file or the configuration.
 
     Raises
     ------
     MeasurementError : the file cannot be read, has no readings, lacks a column or has it twice, has
         words in it, a gas without a unit, readings out of range or too low, times that do not
-        increase, longer rows than its head line, or places that no aircraft can have
+        increase, longer rows than its head line, places that no aircraft can have, or places far
+        from its ship
     """
     with naming(path):
         try:
-            return _flight(_read_table(path, config), config)
+            return _flight(_read_table(path, config), config, ships)
         except TableError as error:
             raise MeasurementError(str(error)) from None
 
 
-def _flight(table: Table, config: LogConfig) -> LoggedFlight:
+def _flight(table: Table, config: LogConfig, ships: Sequence[ShipTrack]) -> LoggedFlight:
     """Return the flight in the table of a log."""
     time, moments, kept = _times(table, config)
     scale = {gas: _factor(table, gas, config) for gas in GASES if config.columns[gas] in table}
@@ -156,6 +161,8 @@ def _flight(table: Table, config: LogConfig) -> LoggedFlight:
         logged = _utc(known[0]), _utc(known[-1])
     first_utc, last_utc, utc_from = _utc_times(config.flight, logged, float(time[-1] - time[0]))
     first_position, last_position = _end_positions(places)
+    start = first_utc.timestamp() if first_utc else None
+    logged_places = _logged_places(places, start, time, rows)
     about = FlightRecord(
         readings=len(values),
         details=config.flight,
@@ -166,6 +173,7 @@ def _flight(table: Table, config: LogConfig) -> LoggedFlight:
         first_position=first_position,
         last_position=last_position,
         place_remark=remark,
+        ships=tuple(distance_words(logged_places, ship) for ship in ships),
         columns={key: name for key, name in config.columns.items() if name in table},
         scale={gas: factor for gas, factor in scale.items() if factor != 1.0},
         missing=config.missing,
@@ -491,6 +499,19 @@ def _check_jumps(
                 f"{jumps[0].described(lines)}: correct the places that are wrong, or leave them"
                 " empty"
             )
+
+
+def _logged_places(
+    places: Mapping[str, Array], start: float | None, time: Array, lines: Rows
+) -> LoggedPlaces:
+    """Return where the aircraft was; ``start`` is the time of the first row since 1970 [s]."""
+    nowhere = np.full(len(time), np.nan)
+    return LoggedPlaces(
+        latitude=places.get("latitude", nowhere),
+        longitude=places.get("longitude", nowhere),
+        time=None if start is None else start + time - time[0],
+        lines=lines,
+    )
 
 
 def _known_positions(places: Mapping[str, Array]) -> Rows:

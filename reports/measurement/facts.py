@@ -38,7 +38,7 @@ def logged_facts(run: RunData, record: Record) -> list[Fact]:
     return [
         Fact(_TIMES, _time_words(flight)),
         Fact("Place", _place_words(flight)),
-        Fact("Ship", _ship_words(details)),
+        Fact("Ship", "; ".join([_ship_words(details), *flight.get("ships", ())])),
         *operator,
         Fact(
             "Instrument",

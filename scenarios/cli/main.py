@@ -65,6 +65,20 @@ def estimate(
             show_default="runs/measurement_FLIGHT",
         ),
     ] = None,
+    ais: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE", help="AIS reports of the ship, which the log has to lie beside."
+        ),
+    ] = None,
+    mmsi: Annotated[
+        int | None,
+        typer.Option(
+            metavar="NUMBER",
+            help="The ship in that file.",
+            show_default="flight.mmsi of the configuration",
+        ),
+    ] = None,
     no_report: Annotated[
         bool, typer.Option("--no-report", help="Do not write report.html and report.pdf.")
     ] = False,
@@ -73,13 +87,13 @@ def estimate(
     judge it.
     """
     from measurement.log.command import main as estimate_logged
+    from scenarios.cli.ship import read_ship
 
-    options = [("--config", config), ("--out", out)]
-    given = [word for name, value in options if value is not None for word in (name, str(value))]
+    options = [("--config", config), ("--out", out), ("--ais", ais), ("--mmsi", mmsi)]
+    given = [f"{name}={value}" for name, value in options if value is not None]
     # A name that begins with a dash is no option.
-    raise typer.Exit(
-        estimate_logged([*given, *(["--no-report"] if no_report else []), "--", str(flight)])
-    )
+    words = [*given, *(["--no-report"] if no_report else []), "--", str(flight)]
+    raise typer.Exit(estimate_logged(words, read_ship=read_ship))
 
 
 def describe(

@@ -41,6 +41,7 @@ from scenarios.scenario.sections.world import (
     KeepoutConfig,
     PlaceConfig,
     PlumeConfig,
+    TableConfig,
     TurbulenceConfig,
     VesselConfig,
     WindConfig,
@@ -146,6 +147,7 @@ class Scenario(_AddedKeys):
     keepout: KeepoutConfig = KeepoutConfig()
     traffic: Annotated[tuple[TrafficConfig, ...], Field(max_length=TRAFFIC_MAX)] = ()
     wind: WindConfig = WindConfig()
+    table: TableConfig = TableConfig()
     turbulence: TurbulenceConfig = TurbulenceConfig()
     air: AirConfig = AirConfig()
     reports: VesselReportsConfig = VesselReportsConfig()

@@ -99,6 +99,7 @@ from scenarios.studies.manifest import (
     refuse_changed,
     trial_entries,
     vessel_files,
+    wind_files,
     write_logo,
 )
 from scenarios.studies.summary import (
@@ -189,6 +190,7 @@ class FlightStudy:
         self.tables = self._declared_tables(without_folders(scenario.study))
         self.plugins = plugins(self._settings_of_points())
         self.vessel_files = vessel_files(self._settings_of_points())
+        self.wind_files = wind_files(self._settings_of_points())
         self.config_hash = config_hash(
             scenario, *self.trials.values(), files=self.plugins, names=list(self.trials)
         )
@@ -199,6 +201,7 @@ class FlightStudy:
             **trial_entries(self.trials, as_read={} if flown is trials else trials),
             "plugins": self.plugins,
             "vessel_files": {name: reports.record() for name, reports in self.vessel_files.items()},
+            "wind_files": {name: wind.record() for name, wind in self.wind_files.items()},
         }
 
     def _make_flights(self, trials: Mapping[str, Scenario]) -> Mapping[str, Scenario]:
@@ -504,6 +507,7 @@ class FlightStudy:
         lines = [
             *unexplained_lines(verdict),
             *(line for reports in self.vessel_files.values() for line in reports.lines()),
+            *(f"{Path(name).name}: {of.described()}" for name, of in self.wind_files.items()),
             f"flights: {trial_line(whole)}",
         ]
         if len(verdict.trials) > 1:

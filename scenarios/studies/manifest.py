@@ -45,7 +45,8 @@ from scenarios.scenario.sections.part_section import PartSection
 from scenarios.scenario.sections.report import ReportConfig, read_logo, report_entry
 from scenarios.world.ais.reports import AisReports
 from scenarios.world.ais.track import AisVessel
-from scenarios.world.world import vessel_of
+from scenarios.world.wind import TabledWind, wind_file
+from scenarios.world.world import place_of, vessel_of
 
 _HASH_LENGTH = 16
 """Digits of the hash of an aircraft's files, as many as ``file_hash`` has."""
@@ -168,6 +169,19 @@ def vessel_files(scenarios: Iterable[Scenario]) -> dict[str, AisReports]:
     """
     found = (vessel_of(scenario) for scenario in scenarios if scenario.vessel.from_file)
     return {f"{v.source.path} {v.source.mmsi}": v.source for v in found if isinstance(v, AisVessel)}
+
+
+def wind_files(scenarios: Iterable[Scenario]) -> dict[str, TabledWind]:
+    """Return the wind in each file that scenarios take it from, by its path; of netCDF that at the
+    first place.
+    """
+    found: dict[str, TabledWind] = {}
+    for scenario in scenarios:
+        name = scenario.wind.table
+        if name is not None and name not in found:
+            place = place_of(scenario, vessel_of(scenario))
+            found[name] = wind_file(name, place, scenario.table.of("wind.table", name))
+    return found
 
 
 def config_hash(

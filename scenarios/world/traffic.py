@@ -115,6 +115,7 @@ def traffic_of(
             place=place,
             duration=_duration(scenario),
             margin=margin,
+            written=scenario.table.of("vessel.track", scenario.vessel.track),
         )
         ships += _of_file(scenario, found, vessel, None, "vessel.track")
     if len(ships) > TRAFFIC_MAX:

@@ -16,7 +16,7 @@ from aircraft.fdm import TIME_STEP
 from aircraft.weather import STEPS_BETWEEN_GUSTS, TURBULENCE, Gust, Weather
 from aircraft.wind import CALM, WindField, constant_wind, over_the_sea
 from common.physics import wind_velocity
-from common.tables import Table, TableError, read_table, unit_factor
+from common.tables import FOUND, MISTAKES, Table, TableError, TableFormat, read_table, unit_factor
 from common.text import install_words, other_units, utc_text
 from scenarios.errors import InputError
 from scenarios.scenario.scenario import Scenario
@@ -43,7 +43,8 @@ def wind_of(scenario: Scenario, place: Place) -> WindField:
     """
     wind = scenario.wind
     if wind.table is not None:
-        return tabled_wind(wind, place, scenario.flight.duration_max_s)
+        duration = scenario.flight.duration_max_s
+        return tabled_wind(wind, place, duration, scenario.table.of("wind.table", wind.table))
     if wind.roughness_m is None or not wind.blows:
         return constant_wind(*wind_ned(wind))
     return over_the_sea(
@@ -100,15 +101,39 @@ class TabledWind:
     heights : above the sea, shape (m,); empty where it does not change with height [m]
     velocity : where it blows to, north and east, shape (max(n, 1), max(m, 1), 2) [m/s]
     lines : of a table: the first and the last with a wind
+    read : how the file was read, in words
     """
 
     times: tuple[float, ...]
     heights: tuple[float, ...]
     velocity: Array
     lines: tuple[int, int] | None = None
+    read: str = ""
+
+    def record(self) -> dict[str, Any]:
+        """Return for JSON how the file was read, and what it has."""
+        return {"read": self.read, "times": len(self.times), "heights_m": list(self.heights)}
+
+    def described(self) -> str:
+        """Return what the file has and how it was read, in a line."""
+        words = []
+        if self.times:
+            first, last = utc_text(self.times[0]), utc_text(self.times[-1])
+            words.append(f"wind at {len(self.times)} times from {first} to {last}")
+        if self.heights:
+            heights = ", ".join(f"{height:g}" for height in self.heights[:_HEIGHTS_SHOWN])
+            more = ", ..." if len(self.heights) > _HEIGHTS_SHOWN else ""
+            words.append(f"{'at' if words else 'wind at'} heights of {heights}{more} m")
+        return f"{' '.join(words)}; {self.read}"
 
 
-def tabled_wind(config: WindConfig, place: Place, duration: float) -> WindField:
+_HEIGHTS_SHOWN = 8
+"""Heights that a line names at most."""
+
+
+def tabled_wind(
+    config: WindConfig, place: Place, duration: float, written: TableFormat = FOUND
+) -> WindField:
     """Return the wind of a scenario that has it from a file, timed from the flight's start.
 
     Parameters
@@ -116,12 +141,13 @@ def tabled_wind(config: WindConfig, place: Place, duration: float) -> WindField:
     config : the ``[wind]`` section, with a table
     place : where and when the flight begins
     duration : of the longest flight [s]
+    written : how the table is written, as far as it is given
 
     Raises
     ------
     InputError : the file cannot be read, or does not cover the flight
     """
-    found, name = _read(str(config.table), place), config.table
+    found, name = wind_file(str(config.table), place, written), config.table
     if found.times:
         first, last = found.times[0], found.times[-1]
         if not first <= place.utc <= place.utc + duration <= last:
@@ -171,18 +197,30 @@ def _where_it_blows(found: TabledWind, place: Place, duration: float, name: str)
     )
 
 
-def first_time(table: str, place: Place) -> float:
+def first_time(table: str, place: Place, written: TableFormat = FOUND) -> float:
     """Return the first time of a file of wind, since 1970 [s]; NaN where it has none.
 
     Raises
     ------
     InputError : the file cannot be read
     """
-    times = _read(table, place).times
+    times = wind_file(table, place, written).times
     return times[0] if times else math.nan
 
 
-def _read(table: str, place: Place) -> TabledWind:
+def wind_file(table: str, place: Place, written: TableFormat = FOUND) -> TabledWind:
+    """Return the wind of a file, of a netCDF that at a place.
+
+    Parameters
+    ----------
+    table : the file's name
+    place : where the flight begins
+    written : how a table is written, as far as it is given
+
+    Raises
+    ------
+    InputError : the file cannot be read
+    """
     path = Path(table)
     try:
         stamp = path.stat().st_mtime_ns, path.stat().st_size
@@ -191,7 +229,7 @@ def _read(table: str, place: Place) -> TabledWind:
             f"wind.table: {path}: cannot be read: {error.strerror}; check the path"
         ) from None
     if path.suffix.lower() != ".nc":
-        return _read_table(path, stamp)
+        return _read_table(path, stamp, written)
     if not math.isfinite(place.latitude):
         raise InputError(
             f"wind.table: {path} has winds of many places; say which: place.latitude_deg,"
@@ -205,13 +243,14 @@ def _read_netcdf(
     path: Path, _stamp: tuple[int, int], latitude_deg: float, longitude_deg: float
 ) -> TabledWind:
     times, heights, velocity = read_netcdf(path, latitude_deg, longitude_deg)
-    return TabledWind(times=times, heights=heights, velocity=velocity)
+    return TabledWind(times=times, heights=heights, velocity=velocity, read="netCDF")
 
 
 @lru_cache(maxsize=8)
-def _read_table(path: Path, _stamp: tuple[int, int]) -> TabledWind:
+def _read_table(path: Path, _stamp: tuple[int, int], written: TableFormat) -> TabledWind:
     try:
-        return _on_grid(path, list(_rows(path, read_table(path, head=COLUMNS))))
+        table = read_table(path, written, head=COLUMNS)
+        return replace(_on_grid(path, list(_rows(path, table))), read=table.described())
     except OSError as error:
         raise InputError(
             f"wind.table: {path}: cannot be read: {error.strerror}; check the path"
@@ -509,13 +548,15 @@ def _check_wind(path: Path, data: Any, time: str, names: list[str]) -> None:
 
 def _at_place(path: Path, data: Any, latitude_deg: float, longitude_deg: float) -> Any:
     """Return the data of one place, by bilinear interpolation."""
+    mistake = _mistake(data, latitude_deg, longitude_deg)
     data, longitude_deg = _round_the_earth(data, longitude_deg)
     for name, value in zip(_PLACES, (latitude_deg, longitude_deg), strict=True):
         low, high = float(data[name].min()), float(data[name].max())
         if not low <= value <= high:
+            fits = f"; with {mistake} it would be within it" if mistake else ""
             raise InputError(
                 f"wind.table: {path}: {name}s go from {low:g} to {high:g} deg, and the flight"
-                f" begins at {value:.3f}; give a file of that place"
+                f" begins at {value:.3f}{fits}; give a file of that place"
             )
         data = data.sel({name: low}) if low == high else data.sortby(name)
     left = [name for name in _PLACES if name in data.dims]
@@ -526,6 +567,19 @@ def _at_place(path: Path, data: Any, latitude_deg: float, longitude_deg: float) 
             if name in left
         }
     )
+
+
+def _mistake(data: Any, latitude_deg: float, longitude_deg: float) -> str:
+    """Return what brings a place into the area of a grid, empty if nothing does."""
+    for mistake, corrected in MISTAKES.items():
+        place = corrected(latitude_deg, longitude_deg)
+        within, east = _round_the_earth(data, place[1])
+        if all(
+            float(within[name].min()) <= value <= float(within[name].max())
+            for name, value in zip(_PLACES, (place[0], east), strict=True)
+        ):
+            return mistake
+    return ""
 
 
 def _round_the_earth(data: Any, longitude_deg: float) -> tuple[Any, float]:

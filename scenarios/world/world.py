@@ -105,6 +105,7 @@ def vessel_of(scenario: Scenario) -> VesselTruth:
             utc=scenario.place.utc,
             duration=duration,
             margin=TRACK_MARGIN,
+            written=scenario.table.of("vessel.track", config.track),
         )
     if config.track == "manoeuvres" and not config.manoeuvres:
         return SteadyVessel(scenario.vessel_speed, math.radians(config.course_deg))
@@ -131,7 +132,8 @@ def sized(scenario: Scenario) -> Scenario:
     """
     vessel = scenario.vessel
     if vessel.from_file:
-        vessel = with_size_of_file(vessel)
+        written = scenario.table.of("vessel.track", vessel.track)
+        vessel = with_size_of_file(vessel, written)
     if vessel.hull is None and (scenario.keepout.from_hull or vessel.stack_from_bow_m is not None):
         needs = "keepout.from 'hull'" if scenario.keepout.from_hull else "vessel.stack_from_bow_m"
         raise InputError(
@@ -185,7 +187,7 @@ def place_of(scenario: Scenario, vessel: VesselTruth) -> Place:
     place, table = given_place(scenario.place, scenario.source_height), scenario.wind.table
     if table is None or math.isfinite(place.utc):
         return place
-    return replace(place, utc=first_time(table, place))
+    return replace(place, utc=first_time(table, place, scenario.table.of("wind.table", table)))
 
 
 def mean_wind(scenario: Scenario, vessel: VesselTruth) -> WindField:

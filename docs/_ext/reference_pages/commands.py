@@ -15,7 +15,7 @@ _INTRODUCTION = """\
 Made from the program. `plume-flight` is installed with the project; in the repository it is `.venv/bin/plume-flight`. Where
 it is not installed `python -m scenarios.run`, `python -m innerloop.design`, `python -m measurement.estimate`,
 `python -m reports.build` and `python -m reports.compare` are the same commands. `plume-flight --version` prints the version,
-and `plume-flight --install-completion` lets the shell complete commands and options.
+and `plume-flight --install-completion` lets bash, zsh, fish or PowerShell complete commands and options.
 
 | exit status | |
 |---|---|

@@ -13,6 +13,7 @@ from pydantic import BeforeValidator, Field, create_model, field_validator, mode
 from common.files import is_data_file
 from common.hull import STACK_FROM_BOW, ShipHull
 from common.registry import is_file_part
+from common.tables import FOUND, TableFormat, table_format
 from measurement.emission import fuel_preset, ship_of, stack_height_of
 from measurement.gases import FUEL_SULPHUR_MOST
 from measurement.plume.spread import PlumeSettings
@@ -446,6 +447,69 @@ class WindConfig(Section):
     def blows(self) -> bool:
         """Whether there is any."""
         return self.speed_mps > 0.0 or self.table is not None
+
+
+_NO_TABLES = (".nmea", ".nc")
+"""Ends of the names of files that are no tables, but sentences or netCDF."""
+
+
+def _tables(s: Any) -> list[str]:
+    """Return the files of a scenario that may be tables, as far as their names say."""
+    files = [s.vessel.track if s.vessel.from_file else "", s.wind.table or ""]
+    return [name for name in files if name and not name.lower().endswith(_NO_TABLES)]
+
+
+_TABLE = Need(_tables, "a table: set vessel.track or wind.table to the file of one")
+_TWO_TABLES = Need(
+    lambda s: len(_tables(s)) > 1,
+    "two tables, of which it names one: set vessel.track and wind.table to files of tables",
+)
+
+TableKey = Literal["vessel.track", "wind.table"]
+"""Keys whose files may be tables."""
+
+
+class TableConfig(Section):
+    """How the tables of AIS reports and of wind are written. What is left out is found."""
+
+    NEEDS: ClassVar[tuple[Need, ...]] = (_TABLE,)
+
+    file: Annotated[TableKey | None, _TWO_TABLES] = None
+    """The table that the other keys are of, where there are two; both if not given."""
+    separator: str | None = None
+    """Separator of columns: one letter, or whitespace."""
+    decimal: str | None = None
+    """Mark of decimals: a point or a comma."""
+    encoding: str | None = None
+    """Encoding of the text, by a name that Python knows, as utf-8 or latin-1."""
+    time_format: str | None = None
+    """Format of dates and times, as of Python's strptime: '%d.%m.%Y %H:%M:%S'."""
+    time_unit: str | None = None
+    """Unit of times in numbers: s, ms or us."""
+
+    @model_validator(mode="after")
+    def _possible(self) -> "TableConfig":
+        try:
+            self._format()
+        except ValueError as error:
+            # The section's name comes before it anyway.
+            raise ValueError(str(error).removeprefix("table.")) from None
+        return self
+
+    def _format(self) -> TableFormat:
+        return table_format(self.model_dump(exclude={"file"}, exclude_none=True))
+
+    def of(self, key: TableKey, name: str) -> TableFormat:
+        """Return how a file is written, as far as that is given; nothing is of one that is no
+        table.
+
+        Parameters
+        ----------
+        key, name : the key that has the file, and the file's name
+        """
+        if self.file not in (None, key) or name.lower().endswith(_NO_TABLES):
+            return FOUND
+        return self._format()
 
 
 _VARIES = when("air.background", user="a background that varies")

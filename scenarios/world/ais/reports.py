@@ -6,6 +6,7 @@ import math
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from itertools import islice, pairwise
@@ -18,7 +19,17 @@ import numpy.typing as npt
 
 from common.geodesy import cartesian
 from common.physics import METRES_PER_SECOND_PER_KNOT
-from common.tables import Jump, Table, TableError, find_jumps, longitude_within, read_table
+from common.tables import (
+    FOUND,
+    Jump,
+    Table,
+    TableError,
+    TableFormat,
+    find_jumps,
+    longitude_within,
+    read_table,
+    table_format,
+)
 from common.text import install_words, other_units
 from scenarios.errors import InputError
 from scenarios.scenario.sections.world import GAP_MAX
@@ -93,6 +104,7 @@ class AisReports:
     Attributes
     ----------
     path, mmsi : the file, and the vessel's identity
+    read : how the file was read, in words
     line : of the file, from 1
     time : since 1970 in UTC [s]
     latitude, longitude : [rad]
@@ -106,6 +118,7 @@ class AisReports:
 
     path: Path
     mmsi: int
+    read: str
     line: Array
     time: Array
     latitude: Array
@@ -148,6 +161,7 @@ class AisReports:
     def record(self) -> dict[str, Any]:
         """Return for JSON how the file was used, and the ship's size where it says one."""
         return {
+            "read": self.read,
             "rows": self.rows,
             "used": len(self.time),
             "dropped": self.dropped,
@@ -157,21 +171,41 @@ class AisReports:
         }
 
     def described(self) -> str:
-        """Return how many rows were used and dropped, in a line."""
+        """Return how many rows were used and dropped, and how the file was read, in a line."""
         dropped = ", ".join(f"{count} {why}" for why, count in self.dropped.items())
         used = f"{self.path.name}: {len(self.time)} of {self.rows} rows of MMSI {self.mmsi} used"
         described = self.size.described() if self.size else ""
         size = "; ".join(filter(None, [described, self.size_remark]))
-        return "; ".join(filter(None, [used, size, dropped and f"dropped: {dropped}"]))
+        return "; ".join(filter(None, [used, size, dropped and f"dropped: {dropped}", self.read]))
 
 
-def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
+def read_ais(path: str | Path, mmsi: int | None = None, **table: str) -> AisReports:
     """Read the reports of one vessel.
 
     Parameters
     ----------
     path : of a table in one of the known layouts, or of NMEA sentences (docs/howto/ais_and_wind.md)
     mmsi : of the vessel; may be left out where the file has one vessel alone
+    table : how a table is written, where that is not found: ``separator``, ``decimal``,
+        ``encoding``, ``time_format``, ``time_unit``, as in a section ``[table]``
+
+    Raises
+    ------
+    InputError : as ``read_reports``, or ``table`` has an unknown key or a value of no use
+    """
+    try:
+        return read_reports(path, mmsi, table_format(table))
+    except TableError as error:
+        raise InputError(f"{path}: {error}") from None
+
+
+def read_reports(path: str | Path, mmsi: int | None, written: TableFormat) -> AisReports:
+    """Read the reports of one vessel.
+
+    Parameters
+    ----------
+    path, mmsi : as of ``read_ais``
+    written : how a table is written, as far as it is given
 
     Raises
     ------
@@ -181,7 +215,7 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
     path = Path(path)
     if mmsi is not None and (isinstance(mmsi, bool) or not isinstance(mmsi, Integral)):
         raise InputError(f"{path}: mmsi is {mmsi!r}; give a whole number, as in mmsi=219999001")
-    identity, rows, sizes = rows_of(path, mmsi)
+    identity, rows, sizes, read = rows_of(path, mmsi, written)
     found = _sorted_out(rows)
     kept, dropped = found.kept, found.dropped
     if len(kept) < 2:
@@ -196,7 +230,7 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
             f"{path}: {len(kept)} of {len(rows)} rows of MMSI {identity} used, two are needed;{f' dropped: {why};' if why else ''}"
             " correct the rows, or give another file"
         )
-    reports = _reports(path, identity, rows, found, sizes)
+    reports = _reports(path, identity, rows, found, sizes, read)
     mistaken = [jump for jump in reports.jumps() if jump.mistake]
     if mistaken:
         raise InputError(
@@ -216,6 +250,7 @@ def read_others(
     only: int | None,
     begin: float,
     end: float,
+    written: TableFormat = FOUND,
 ) -> list[AisReports]:
     """Read the reports of all vessels of a file but one, in some time.
 
@@ -227,6 +262,7 @@ def read_others(
     path : of the file, as of ``read_ais``
     without, only : MMSI of a vessel that is left out; or of the only one that is read
     begin, end : of the time, since 1970 [s]
+    written : how a table is written, as far as it is given
 
     Raises
     ------
@@ -235,34 +271,54 @@ def read_others(
     path = Path(path)
     rows: dict[int, list[AisRow]] = {}
     sizes: dict[int, list[tuple[ShipSize, str]]] = {}
-    for said in _all_said(path, only, hours=_hours(begin, end)):
-        if said.mmsi == without or (only is not None and said.mmsi != only):
-            continue
-        if said.size is not None:
-            sizes.setdefault(said.mmsi, []).append(said.size)
-        if said.row is not None and begin <= said.row.time <= end:
-            rows.setdefault(said.mmsi, []).append(said.row)
+    with _refusing(path):
+        contents = (
+            _contents(path, only, written, _may_be_within(begin, end))
+            if written.time_format is None
+            else _contents(path, only, written)
+        )
+        for said in contents.said:
+            if said.mmsi == without or (only is not None and said.mmsi != only):
+                continue
+            if said.size is not None:
+                sizes.setdefault(said.mmsi, []).append(said.size)
+            if said.row is not None and begin <= said.row.time <= end:
+                rows.setdefault(said.mmsi, []).append(said.row)
     others = []
     for mmsi, of_vessel in sorted(rows.items()):
         found = _sorted_out(of_vessel)
         if len(found.kept) > 1:
-            reports = _reports(path, mmsi, of_vessel, found, sizes.get(mmsi, []))
+            reports = _reports(path, mmsi, of_vessel, found, sizes.get(mmsi, []), contents.read)
             if not reports.jumps():
                 others.append(reports)
     return others
 
 
-def _hours(begin: float, end: float) -> "re.Pattern[str]":
-    """Return what lines of a table have in which a time is between two others [s], and few besides:
-    date and hour of the known layouts.
+_HOUR_OF_DAY = re.compile(
+    r"(?:(\d{4})-(\d\d)-(\d\d)[ T]|(\d\d)/(\d\d)/(\d{4}) )(\d\d):[\d:.]*\s*([+-]\d)?"
+)
+"""Date and hour of the known layouts; what follows where an offset to UTC is given."""
+
+
+def _may_be_within(begin: float, end: float) -> Callable[[str], bool]:
+    """Return a test that lets a line of a table pass unless its only time is in UTC, and in an hour
+    that is not between two times, since 1970 [s].
     """
-    hours = []
+    hours = set()
     hour = math.floor(begin / _HOUR)
     while hour * _HOUR <= end:
-        at = datetime.fromtimestamp(hour * _HOUR, UTC)
-        hours += [f"{at:%Y-%m-%d}[ T]{at:%H}:", f"{at:%d/%m/%Y} {at:%H}:"]
+        hours.add(f"{datetime.fromtimestamp(hour * _HOUR, UTC):%Y%m%d%H}")
         hour += 1
-    return re.compile("|".join(hours))
+
+    def test(line: str) -> bool:
+        found = _HOUR_OF_DAY.findall(line)
+        if len(found) != 1:
+            return True
+        year, month, day, day_first, month_second, year_last, hour_of_day, offset = found[0]
+        date = year + month + day or year_last + month_second + day_first
+        return bool(offset) or date + hour_of_day in hours
+
+    return test
 
 
 class _SortedOut(NamedTuple):
@@ -300,6 +356,7 @@ def _reports(
     rows: Sequence[AisRow],
     found: _SortedOut,
     sizes: Sequence[tuple[ShipSize, str]],
+    read: str,
 ) -> AisReports:
     """Return the reports of a vessel of a file from her rows, and from those of use."""
     size, size_remark = size_of_all(sizes)
@@ -308,6 +365,7 @@ def _reports(
     return AisReports(
         path=path,
         mmsi=mmsi,
+        read=read,
         line=columns[0],
         time=columns[1],
         latitude=np.radians(columns[2]),
@@ -499,46 +557,70 @@ class _Said(NamedTuple):
     size: tuple[ShipSize, str] | None = None
 
 
-def _all_said(
-    path: Path, mmsi: int | None, hours: "re.Pattern[str] | None" = None
-) -> Iterator[_Said]:
-    """Yield what a file says of vessels, in its order; of others than the given one not all.
+class _Contents(NamedTuple):
+    """What a file says of vessels.
 
-    Of a table, with ``hours`` only lines in which it finds something.
-
-    Raises
-    ------
-    InputError : the file cannot be read, or its layout is unknown
+    Attributes
+    ----------
+    read : how it was read, in words
+    said : in its order; of others than the vessel that is asked for not all
     """
+
+    read: str
+    said: Iterable[_Said]
+
+
+@contextmanager
+def _refusing(path: Path) -> Iterator[None]:
+    """Refuse a file that cannot be read as an InputError, with its name."""
     try:
-        with path.open("rb") as file:
-            begin = b"".join(islice(file, _LOOKED_AT))
-        if not begin.strip():
-            raise InputError(f"{path}: the file is empty; give a file of AIS reports")
-        # Whatever the file is called, and whatever other receivers write above the first report.
-        if _SENTENCE.search(begin.decode("latin-1")) or path.suffix.lower() == ".nmea":
-            with path.open(encoding="utf-8-sig", errors="replace") as lines:
-                yield from _from_sentences(lines, path)
-        else:
-            yield from _from_table(path, mmsi, hours)
+        yield
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}; check the path") from None
     except TableError as error:
         raise InputError(f"{path}: {error}") from None
 
 
+def _contents(
+    path: Path,
+    mmsi: int | None,
+    written: TableFormat,
+    of_use: Callable[[str], bool] = bool,
+) -> _Contents:
+    """Return what a file says; of a table, lines that are of no use may be left out.
+
+    Raises
+    ------
+    InputError, TableError : its layout is unknown, or it is no table as ``written`` says
+    OSError : it cannot be opened
+    """
+    with path.open("rb") as file:
+        begin = b"".join(islice(file, _LOOKED_AT))
+    if not begin.strip():
+        raise InputError(f"{path}: the file is empty; give a file of AIS reports")
+    # Whatever the file is called, and whatever other receivers write above the first report.
+    if _SENTENCE.search(begin.decode("latin-1")) or path.suffix.lower() == ".nmea":
+        if given := written.given():
+            raise InputError(
+                f"{path}: table.{given[0]} is given, and the file has NMEA sentences and no table;"
+                " leave it out, or name another table in table.file"
+            )
+        return _Contents("NMEA sentences", _from_sentences(path))
+    return _from_table(path, mmsi, written, of_use)
+
+
 def _from_table(
-    path: Path, mmsi: int | None, hours: "re.Pattern[str] | None" = None
-) -> Iterator[_Said]:
+    path: Path, mmsi: int | None, written: TableFormat, of_use: Callable[[str], bool]
+) -> _Contents:
     identifier = "" if mmsi is None else str(mmsi)
     names = [name for layout in LAYOUTS for name in layout.columns]
 
     def keep(line: str) -> bool:
-        return identifier in line and (hours is None or hours.search(line) is not None)
+        return identifier in line and of_use(line)
 
     # Files of a day have millions of lines: those of other vessels, or of another time, are passed
     # over as they are.
-    table = read_table(path, head=names, keep=keep)
+    table = read_table(path, written, head=names, keep=keep)
     heads = {name.lower(): name for name in reversed(table.names)}
     layout = next((layout for layout in LAYOUTS if set(layout.columns) <= set(heads)), None)
     if layout is None:
@@ -562,7 +644,19 @@ def _from_table(
         course = np.where(course < 0.0, course + _SIGNED_COURSE, course)
     seconds = table.times(time, usual=layout.time_format).seconds
     columns = seconds, latitude, longitude_within(longitude), speed, course
-    size_of = _sizes(table, heads)
+    said = _said_by_rows(table, identities, columns, _sizes(table, heads))
+    return _Contents(table.described(), said)
+
+
+def _said_by_rows(
+    table: Table,
+    identities: str,
+    columns: Sequence[Array],
+    size_of: Callable[[int], tuple[ShipSize, str] | None],
+) -> Iterator[_Said]:
+    """Yield what the rows of a table say, with the names of its columns of identities, and those of
+    a report as numbers.
+    """
     for number, (line, identity) in enumerate(
         zip(table.lines, table.column(identities), strict=True)
     ):
@@ -585,14 +679,31 @@ def _sizes(table: Table, heads: Mapping[str, str]) -> Callable[[int], tuple[Ship
     return lambda number: ship_size(**{key: float(of[number]) for key, of in known.items()})
 
 
-def rows_of(path: Path, mmsi: int | None) -> tuple[int, list[AisRow], list[tuple[ShipSize, str]]]:
-    """Return the vessel's identity, its rows in the order of the file, and its size as often as it
-    is said.
+class VesselRows(NamedTuple):
+    """The rows of one vessel in a file.
+
+    Attributes
+    ----------
+    identity : its MMSI
+    rows : in the order of the file
+    sizes : of the vessel, as often as they are said
+    read : how the file was read, in words
+    """
+
+    identity: int
+    rows: list[AisRow]
+    sizes: list[tuple[ShipSize, str]]
+    read: str
+
+
+def rows_of(path: Path, mmsi: int | None, written: TableFormat) -> VesselRows:
+    """Return the rows of a vessel.
 
     Parameters
     ----------
     path : of a table with one of ``LAYOUTS``, or of NMEA sentences
     mmsi : of the vessel; may be left out where the file has one vessel alone
+    written : how a table is written, as far as it is given
 
     Raises
     ------
@@ -601,31 +712,34 @@ def rows_of(path: Path, mmsi: int | None) -> tuple[int, list[AisRow], list[tuple
     found: list[AisRow] = []
     counts: Counter[int] = Counter()
     sizes: dict[int, list[tuple[ShipSize, str]]] = {}
-    for said in _all_said(path, mmsi):
-        if said.size is not None:
-            sizes.setdefault(said.mmsi, []).append(said.size)
-        if said.row is not None:
-            counts[said.mmsi] += 1
-            if mmsi is None or said.mmsi == mmsi:
-                found.append(said.row)
+    with _refusing(path):
+        contents = _contents(path, mmsi, written)
+        for said in contents.said:
+            if said.size is not None:
+                sizes.setdefault(said.mmsi, []).append(said.size)
+            if said.row is not None:
+                counts[said.mmsi] += 1
+                if mmsi is None or said.mmsi == mmsi:
+                    found.append(said.row)
     if mmsi is None and len(counts) > 1:
         raise InputError(
             f"{path}: it has {len(counts)} vessels, {_most(counts)}; name one of them by its MMSI"
-            " (vessel.mmsi)"
+            " (vessel.mmsi; --mmsi of an estimate)"
         )
     if not found:
-        raise _no_row(path, mmsi)
+        raise _no_row(path, mmsi, written)
     identity = mmsi if mmsi is not None else next(iter(counts))
-    return identity, found, sizes.get(identity, [])
+    return VesselRows(identity, found, sizes.get(identity, []), contents.read)
 
 
-def _no_row(path: Path, mmsi: int | None) -> InputError:
+def _no_row(path: Path, mmsi: int | None, written: TableFormat) -> InputError:
     """Return what says that the file has no row of the vessel, and whose rows it has."""
-    said = islice(_all_said(path, None), _COUNTED)
-    counts = Counter(of.mmsi for of in said if of.row is not None)
+    with _refusing(path):
+        said = islice(_contents(path, None, written).said, _COUNTED)
+        counts = Counter(of.mmsi for of in said if of.row is not None)
     if counts:
         return InputError(
-            f"{path}: no row of MMSI {mmsi}; it has {_most(counts)}: check the number (vessel.mmsi)"
+            f"{path}: no row of MMSI {mmsi}; it has {_most(counts)}: check the number (vessel.mmsi; --mmsi of an estimate)"
         )
     return InputError(
         f"{path}: no row below the header has an MMSI in digits, as 219999001, in the column of its"
@@ -659,7 +773,7 @@ which on they are no time, but a date without its marks, as 20260601100000, of m
 year 2286 on."""
 
 
-def _from_sentences(lines: Iterable[str], path: Path) -> Iterator[_Said]:
+def _from_sentences(path: Path) -> Iterator[_Said]:
     """Yield what each sentence says; lines that cannot be decoded are passed over.
 
     Raises
@@ -675,7 +789,7 @@ def _from_sentences(lines: Iterable[str], path: Path) -> Iterator[_Said]:
     others: set[int] = set()
     read = False
     parts: dict[tuple[str, str], list[str]] = {}
-    for number, line in enumerate(lines, start=1):
+    for number, line in _numbered_lines(path):
         found = _SENTENCE.search(line)
         if found is None:
             continue
@@ -717,6 +831,11 @@ def _from_sentences(lines: Iterable[str], path: Path) -> Iterator[_Said]:
             f" {', '.join(map(str, _POSITION_REPORTS))} are read, others have no"
             " speed and course, or none that is exact enough: give a file with these"
         )
+
+
+def _numbered_lines(path: Path) -> Iterator[tuple[int, str]]:
+    with path.open(encoding="utf-8-sig", errors="replace") as lines:
+        yield from enumerate(lines, start=1)
 
 
 def _value(said: dict[str, Any], name: str) -> float:

@@ -15,13 +15,14 @@ import numpy.typing as npt
 from pydantic import ValidationError
 
 from common.geodesy import LocalFrame
+from common.tables import FOUND, TableFormat
 from common.text import utc_text
 from gnc.estimation.antenna import AntennaReport, at_antenna, at_funnel, turned_offset
 from gnc.estimation.vessel import VesselReport
 from scenarios.errors import InputError
 from scenarios.scenario.sections.equipment import VesselReportsConfig
 from scenarios.scenario.sections.world import VesselConfig
-from scenarios.world.ais.reports import AisReports, read_ais, read_others
+from scenarios.world.ais.reports import AisReports, read_others, read_reports
 from scenarios.world.vessel import TRACK_STEP, Place, TabledVessel, VesselTruth, track_times
 
 if TYPE_CHECKING:
@@ -153,7 +154,13 @@ def _at_the_funnel(reports: list[VesselReport], antenna: tuple[float, float]) ->
 
 
 def ais_vessel(
-    config: VesselConfig, *, altitude: float, utc: datetime | None, duration: float, margin: float
+    config: VesselConfig,
+    *,
+    altitude: float,
+    utc: datetime | None,
+    duration: float,
+    margin: float,
+    written: TableFormat = FOUND,
 ) -> AisVessel:
     """Return the vessel of a scenario whose track is a file.
 
@@ -163,12 +170,13 @@ def ais_vessel(
     altitude : at which metres are counted [m]
     utc : of the start; the first report's if not given
     duration, margin : of the longest flight, and for how long the track goes on after it [s]
+    written : how the file is written if it is a table, as far as it is given
 
     Raises
     ------
     InputError : the file is not usable, or does not cover the flight
     """
-    reports = _read(*_file_of(config), config.mmsi)
+    reports = _read(*_file_of(config), config.mmsi, written)
     begin = float(reports.time[0]) if utc is None else utc.timestamp()
     _check_covered(reports, begin, begin + duration, config.gap_max_s)
     _check_jumps(reports, begin, begin + duration)
@@ -177,15 +185,15 @@ def ais_vessel(
     return _vessel(reports, altitude, begin, duration, margin, antenna)
 
 
-def with_size_of_file(config: VesselConfig) -> VesselConfig:
+def with_size_of_file(config: VesselConfig, written: TableFormat) -> VesselConfig:
     """Return the section with the size that the reports of its file say, and the place
-    of the antenna, where it does not give them.
+    of the antenna, where it does not give them. ``written`` is that of ``ais_vessel``.
 
     Raises
     ------
     InputError : the file is not usable, or its size and what is given do not go together
     """
-    said = _read(*_file_of(config), config.mmsi).size
+    said = _read(*_file_of(config), config.mmsi, written).size
     if said is None:
         return config
     found = {
@@ -278,8 +286,10 @@ def _vessel(
 
 
 @lru_cache(maxsize=_KEPT)
-def _read(path: Path, _stamp: tuple[int, int], mmsi: int | None) -> AisReports:
-    return read_ais(path, mmsi)
+def _read(
+    path: Path, _stamp: tuple[int, int], mmsi: int | None, written: TableFormat
+) -> AisReports:
+    return read_reports(path, mmsi, written)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -311,8 +321,11 @@ def _read_others(
     only: int | None,
     begin: float,
     end: float,
+    written: TableFormat,
 ) -> tuple[AisReports, ...]:
-    return tuple(read_others(path, without=without, only=only, begin=begin, end=end))
+    return tuple(
+        read_others(path, without=without, only=only, begin=begin, end=end, written=written)
+    )
 
 
 @lru_cache(maxsize=_KEPT * _OTHERS_KEPT)
@@ -351,6 +364,7 @@ def ships_of_file(
     duration: float,
     margin: float,
     key: str = "vessel",
+    written: TableFormat = FOUND,
 ) -> list[FileShip]:
     """Return the ships of a file of AIS reports but one that have reports during a flight.
 
@@ -361,6 +375,7 @@ def ships_of_file(
     place : where and when the flight begins
     duration, margin : of the longest flight, and for how long tracks go on after it [s]
     key : of the scenario that has the file
+    written : how the file is written if it is a table, as far as it is given
 
     Raises
     ------
@@ -374,7 +389,8 @@ def ships_of_file(
             f"{key}.track: {path}: cannot be read: {error.strerror}; check the path"
         ) from None
     begin, end = place.utc - _AROUND, place.utc + duration + _AROUND
-    read = _read_others(path, (stamp.st_mtime_ns, stamp.st_size), without, only, begin, end)
+    state = (stamp.st_mtime_ns, stamp.st_size)
+    read = _read_others(path, state, without, only, begin, end, written)
     ships = [
         _file_ship(reports, place, duration, margin)
         for reports in read

@@ -104,7 +104,10 @@ def test_a_row_of_no_use_is_dropped_and_counted(read, row, reason):
     first, second, third = rows()
     found = read(table(first, row, second, third))
     assert (len(found.time), found.rows, found.dropped) == (3, 4, {reason: 1})
-    assert found.described() == f"ais.csv: 3 of 4 rows of MMSI 219999001 used; dropped: 1 {reason}"
+    assert found.described() == (
+        f"ais.csv: 3 of 4 rows of MMSI 219999001 used; dropped: 1 {reason};"
+        " separated by commas, decimal point, utf-8"
+    )
 
 
 @pytest.mark.parametrize("order", [reversed, lambda lines: [*lines[::2], *lines[1::2]]])
@@ -293,8 +296,8 @@ def test_a_vessel_at_rest_needs_no_course(read):
         ("\n\n", None, ["the file is empty"]),
         ("a,b,c\n1,2,3\n", None, ["line 1", "the header is 'a,b,c'", PLAIN]),
         # 5 is in lines of the file, 366 in none: either way its vessels are named.
-        (table(*rows()), 5, ["no row of MMSI 5; it has 219999001 (3 rows): check the number (vessel.mmsi)"]),
-        (table(*rows()), 366, ["no row of MMSI 366; it has 219999001 (3 rows): check the number (vessel.mmsi)"]),
+        (table(*rows()), 5, ["no row of MMSI 5; it has 219999001 (3 rows): check the number (vessel.mmsi"]),
+        (table(*rows()), 366, ["no row of MMSI 366; it has 219999001 (3 rows): check the number (vessel.mmsi"]),
         (table(*rows()), "219999001", ["mmsi is '219999001'; give a whole number, as in mmsi=219999001"]),
         (
             table(*rows()).replace("sog_kn", "sog_mps"), None,

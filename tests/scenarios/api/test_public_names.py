@@ -16,7 +16,7 @@ SIGNATURES = {
     "fly": "(scenario, /, *, flight_id=None, out=None, progress=False, **keys)",
     "run": "(scenario, /, *, out=None, jobs=None, progress=False, **keys)",
     "load": "(scenario, /, *, name=None, **keys)",
-    "read_ais": "(path, mmsi=None)",
+    "read_ais": "(path, mmsi=None, **table)",
     "Scenario": "(*, name, source, changes=(), parts=())",
     "Scenario.set": "(self, **keys)",
     "Run": "(directory, *, lines)",

@@ -2,8 +2,11 @@
 
 import importlib.metadata
 import json
+import re
 from pathlib import Path
 
+import numpy as np
+import pandas as pd
 import pytest
 
 from measurement.log.command import main as estimate_logged
@@ -14,7 +17,7 @@ from scenarios.cli.template import template
 from scenarios.experiment.points import points_of
 from scenarios.scenario.documentation import documented_sections
 from scenarios.scenario.effect import unused
-from scenarios.scenario.files import catalog, load_study
+from scenarios.scenario.files import CATALOG, catalog, load_study
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.experiment import TrialList
 from tests.in_process import assert_refused, run_command
@@ -62,14 +65,25 @@ def test_the_commands_are_these():
         assert f"plume-flight {word}" in console(word, "--help").out
 
 
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 @pytest.mark.parametrize(
     ("words", "completed"), [("des", {"design", "describe"}), ("describe --he", {"--help"})]
 )
-def test_a_shell_completes_commands_and_options(words, completed, monkeypatch):
-    monkeypatch.setenv("_PLUME_FLIGHT_COMPLETE", "complete_bash")
+def test_a_shell_completes_commands_and_options(words, completed, shell, monkeypatch):
+    monkeypatch.setenv("_PLUME_FLIGHT_COMPLETE", f"complete_{shell}")
+    # Bash has the words and the number of the last one, the others a line.
     monkeypatch.setenv("COMP_WORDS", f"plume-flight {words}")
     monkeypatch.setenv("COMP_CWORD", str(len(words.split())))
-    assert {*console().out.split()} == completed
+    monkeypatch.setenv("_TYPER_COMPLETE_ARGS", f"plume-flight {words}")
+    monkeypatch.setenv("_TYPER_COMPLETE_FISH_ACTION", "get-args")
+    said = console().out
+    # Zsh has each word in quotation marks, fish before its help; bash has words alone.
+    found = {
+        "bash": said.split(),
+        "zsh": re.findall(r'"([\w-]+)":', said),
+        "fish": [line.partition("\t")[0] for line in said.splitlines()],
+    }[shell]
+    assert {*found} == completed
 
 
 @pytest.mark.usefixtures("sketched")
@@ -107,6 +121,36 @@ def test_a_log_is_estimated_as_by_the_program_that_stands_alone(tmp_path, capsys
     )
     assert ended.out.replace("one", "two") == capsys.readouterr().out
     assert_refused(console("estimate", tmp_path / "none.csv"), "none.csv")
+
+
+def test_a_log_has_to_lie_beside_its_ship_where_a_file_says_where_that_was(tmp_path):
+    plain = pd.read_csv(ROOT / "docs" / "examples" / "example_flight.csv")
+    # The ship of the file begins at 57.2 deg north, 11.3 deg east, when the log does.
+    degree = 111_195.0
+    log = plain.drop(columns=["north_m", "east_m"]).assign(
+        latitude_deg=57.2 + plain["north_m"] / degree,
+        longitude_deg=11.3 + plain["east_m"] / (degree * np.cos(np.radians(57.2))),
+    )
+    beside, exchanged = tmp_path / "beside.csv", tmp_path / "exchanged.csv"
+    log.to_csv(beside, index=False)
+    log.rename(columns={"latitude_deg": "longitude_deg", "longitude_deg": "latitude_deg"}).to_csv(
+        exchanged, index=False
+    )
+    words = (
+        *("--config", ROOT / "docs" / "examples" / "example_instrument.toml"),
+        *("--out", tmp_path / "out", "--no-report"),
+        *("--ais", CATALOG / "ais" / "synthetic_danish.csv"),
+    )
+    several = console("estimate", beside, *words)
+    assert_refused(several, "it has 2 vessels", "--mmsi")
+    found = console("estimate", beside, *words, "--mmsi", 219999001)
+    assert (found.status, "km from MMSI 219999001 (synthetic_danish.csv)" in found.out) == (0, True)
+    flight = json.loads((tmp_path / "out" / "estimate.json").read_text(encoding="utf-8"))["flight"]
+    assert f"ship: {flight['ships'][0]}\n" in found.out
+    mistaken = console("estimate", exchanged, *words, "--mmsi", 219999001)
+    assert_refused(mistaken, "with latitude and longitude exchanged it would be", "20.0 km")
+    assert_refused(console("estimate", beside, *words, "--mmsi", 5), "no row of MMSI 5", "--mmsi")
+    assert_refused(console("estimate", beside, *words[:5], "--mmsi", 5), "--mmsi", "--ais FILE")
 
 
 @pytest.mark.parametrize(

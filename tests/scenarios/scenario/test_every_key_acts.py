@@ -127,6 +127,8 @@ VALUES = {
     "flight.altitude_min_m": 80.0, "flight.altitude_max_m": 40.0,
     "keepout.radius_m": 180.0, "keepout.shape": "cylinder", "wind.speed_mps": 3.0, "wind.from_deg": 100.0,
     "wind.roughness_m": 2e-4, "wind.height_m": 20.0,
+    "table.file": "wind.table", "table.separator": ";", "table.decimal": ",", "table.encoding": "latin-1",
+    "table.time_format": "%d.%m.%Y %H:%M", "table.time_unit": "ms",
     "turbulence.level": "light", "turbulence.gusts": 2, "turbulence.gust_speed_mps": 3.0, "turbulence.gust_length_s": 3.0,
     "air.background": "haze", "air.background_ppm": 5.0, "air.background_s": 10.0,
     "reports.interval_s": [3.0, 6.0], "reports.position_sigma_m": 8.0, "reports.velocity_sigma_mps": 0.3,

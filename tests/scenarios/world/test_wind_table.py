@@ -383,6 +383,18 @@ def test_netcdf_without_a_longitude_is_refused_by_it(longitudes, tmp_path):
         read_netcdf(with_longitudes(tmp_path / "era5.nc", longitudes, -5.0), 57.2, -5.0)
 
 
+def test_a_place_whose_coordinates_are_exchanged_is_told_by_the_area_of_the_wind(tmp_path):
+    file = with_longitudes(tmp_path / "era5.nc", np.array([11.0, 12.0]), 11.5)
+    for latitude, longitude, mistake in (
+        (11.5, 57.2, "latitude and longitude exchanged"),
+        (57.2, -11.5, "the other sign of longitude"),
+    ):
+        with pytest.raises(InputError, match=f"with {mistake} it would be within it; give a file"):
+            read_netcdf(file, latitude, longitude)
+    with pytest.raises(InputError, match=r"begins at 7\.000; give a file of that place"):
+        read_netcdf(file, 7.0, 7.0)
+
+
 def test_a_table_in_another_dialect_blows_as_the_plain_one(tmp_path):
     # The clock goes back at 3:00 in Berlin; a direction of -90 deg is 270.
     text = (

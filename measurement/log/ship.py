@@ -1,0 +1,146 @@
+"""Where the ship was of which a log is said to be: a log that lies far from it is of another ship,
+another day, or has its places or times otherwise than it says.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from common.geodesy import cartesian
+from common.tables import MISTAKES
+from common.text import utc_text
+from measurement.errors import MeasurementError
+
+Array = npt.NDArray[np.float64]
+
+DISTANCE_MOST = 20_000.0
+"""Distance from which on no sniffer finds a ship's exhaust [m]: of 3.3 kg/s of CO2, from 20 MW, 0.6
+ppm are left there in 5 m/s (G. A. Briggs, ATDL 79 (1973), open country, neutral)."""
+
+_SUSPECT, _NEARER = 1000.0, 10.0
+"""Distance from which on, and how many times nearer a mistake has to bring the log, to be asked
+about [m, -]."""
+
+_HOURS = (*range(-14, 0), *range(1, 15))
+"""Hours that a clock of another zone may be off."""
+
+_COVERED = 60.0
+"""By how much the log may go beyond the ship's track [s]."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ShipTrack:
+    """Where a ship was.
+
+    Attributes
+    ----------
+    name : in words, as "MMSI 219999001 (ship.csv)"
+    latitude, longitude : shape (n,) [deg]
+    time : since 1970 in UTC, rising, shape (n,) [s]; empty for a place that it was at all the time
+    """
+
+    name: str
+    latitude: Array
+    longitude: Array
+    time: Array
+
+
+class LoggedPlaces(NamedTuple):
+    """Where an aircraft was.
+
+    Attributes
+    ----------
+    latitude, longitude : NaN where they are not known, shape (n,) [deg]
+    time : since 1970 in UTC, shape (n,) [s], or None where the log counts seconds of no date
+    lines : of the file, shape (n,)
+    """
+
+    latitude: Array
+    longitude: Array
+    time: Array | None
+    lines: npt.NDArray[np.intp]
+
+
+def distance_words(places: LoggedPlaces, ship: ShipTrack) -> str:
+    """Return how far a log lies from its ship, in words.
+
+    Raises
+    ------
+    MeasurementError : it has no places, or no time in common with the ship's track, or never comes
+        near; or would come ten times nearer with a mistake that is often made
+    """
+    if not np.isfinite(places.latitude + places.longitude).any():
+        raise MeasurementError(
+            f"there are no latitude and longitude to compare with {ship.name}; name their columns"
+            " in [columns], or leave the ship's track out"
+        )
+    distance = _distance(places, ship)
+    if np.isnan(distance).all():
+        raise MeasurementError(_no_common_time(places, ship))
+    nearest = int(np.nanargmin(distance))
+    least, most = float(distance[nearest]), float(np.nanmax(distance))
+    mistake, better = min(_mistaken(places, ship), key=lambda of: of[1])
+    explained = better < min(DISTANCE_MOST, least / _NEARER)
+    if least > DISTANCE_MOST or (least > _SUSPECT and explained):
+        fits = f"; with {mistake} it would be {_km(better)}" if explained else ""
+        raise MeasurementError(
+            f"the log comes no nearer than {_km(least)} to {ship.name} (row"
+            f" {places.lines[nearest]}){fits}; exhaust is measured within {_km(DISTANCE_MOST)} at"
+            " most: correct places, times or the ship"
+        )
+    when = "" if places.time is not None or not len(ship.time) else ", whenever it was there"
+    return f"{_km(least)} to {_km(most)} from {ship.name}{when}"
+
+
+def _distance(places: LoggedPlaces, ship: ShipTrack) -> Array:
+    """Return the distance from the ship at each row, NaN where either is not known, shape (n,) [m].
+
+    The ship goes straight from report to report. Without times it is the nearest place of its
+    track.
+    """
+    track = cartesian(np.radians(ship.latitude), np.radians(ship.longitude))
+    own = cartesian(np.radians(places.latitude), np.radians(places.longitude))
+    if places.time is None or not len(ship.time):
+        each = [np.linalg.norm(own - place, axis=-1) for place in track]
+        nearest: Array = np.minimum.reduce(each)
+        return nearest
+    at = np.column_stack([np.interp(places.time, ship.time, axis) for axis in track.T])
+    covered = (places.time >= ship.time[0] - _COVERED) & (places.time <= ship.time[-1] + _COVERED)
+    return np.where(covered, np.linalg.norm(own - at, axis=-1), np.nan)
+
+
+def _mistaken(places: LoggedPlaces, ship: ShipTrack) -> Iterator[tuple[str, float]]:
+    """Yield mistakes, and the least distance that the log would have without each [m]."""
+    for mistake, corrected in MISTAKES.items():
+        latitude, longitude = corrected(places.latitude, places.longitude)
+        if not np.nanmax(np.abs(latitude)) > 90.0:
+            yield mistake, _least(places._replace(latitude=latitude, longitude=longitude), ship)
+    if places.time is not None and len(ship.time):
+        for hours in _HOURS:
+            later = places._replace(time=places.time + 3600.0 * hours)
+            yield f"times {abs(hours)} h {'later' if hours > 0 else 'earlier'}", _least(later, ship)
+
+
+def _least(places: LoggedPlaces, ship: ShipTrack) -> float:
+    distance = _distance(places, ship)
+    return np.inf if np.isnan(distance).all() else float(np.nanmin(distance))
+
+
+def _no_common_time(places: LoggedPlaces, ship: ShipTrack) -> str:
+    assert places.time is not None  # else every row has a distance
+    (first, last), (begin, end) = (
+        (utc_text(float(time[0])), utc_text(float(time[-1]))) for time in (places.time, ship.time)
+    )
+    mistake, better = min(_mistaken(places, ship), key=lambda of: of[1])
+    fits = f"; with {mistake} it would come to {_km(better)}" if better < DISTANCE_MOST else ""
+    return (
+        f"the log goes from {first} to {last}, and the places of {ship.name} from {begin} to"
+        f" {end}{fits}: give the ship's places of that time"
+    )
+
+
+def _km(metres: float) -> str:
+    return f"{metres / 1000.0:,.1f} km" if metres >= 100.0 else f"{metres:.0f} m"
