@@ -185,7 +185,7 @@ def ais_vessel(
     return _vessel(reports, altitude, begin, duration, margin, antenna)
 
 
-def with_size_of_file(config: VesselConfig, written: TableFormat) -> VesselConfig:
+def with_size_of_file(config: VesselConfig, written: TableFormat = FOUND) -> VesselConfig:
     """Return the section with the size that the reports of its file say, and the place
     of the antenna, where it does not give them. ``written`` is that of ``ais_vessel``.
 
