@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from reports.document.scene import Estimate, Event, Gas, Scene
+from reports.document.scene import Estimate, Event, Gas, OtherTrack, Scene
 from reports.run.columns import Array, column
 from reports.run.flight_config import keepout_shape, source_height
 from reports.run.ship import hull_of
@@ -121,6 +121,28 @@ def flight_scene(trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame | No
         gas=gas,
         estimate=_estimate(trial.run.evaluation(flight_id), row),
         smoke=trial.run.smoke(flight_id),
+        others=[
+            other
+            for ship in trial.run.traffic(flight_id)
+            if (other := _other_track(ship, time)) is not None
+        ],
+    )
+
+
+def _other_track(ship: dict[str, Any], time: Array) -> OtherTrack | None:
+    """Return another ship at the samples' times [s]; None where her track is not known then."""
+    times, north, east = (np.asarray(ship[name], np.float64) for name in ("time", "north", "east"))
+    known = np.flatnonzero((time >= times[0]) & (time <= times[-1]))
+    if len(known) < 2 or len(times) < 2:
+        return None
+    heading = np.unwrap(np.arctan2(np.gradient(east, times), np.gradient(north, times)))
+    return OtherTrack(
+        str(ship["name"]),
+        float(ship["radius"]),
+        np.interp(time, times, north),
+        np.interp(time, times, east),
+        np.interp(time, times, heading),
+        (int(known[0]), int(known[-1])),
     )
 
 
