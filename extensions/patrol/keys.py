@@ -58,6 +58,7 @@ class PatrolKeys(StudyKeys):
 
     STUDY = "patrol"
     USED_BY = "several ships one after the other"
+    TRAFFIC = True
     ONE_POINT = "give each value a run of its own"
     UNUSED: ClassVar[Mapping[str, str]] = {
         "flight.duration_max_s": "flights of a patrol are as long as patrol.patience_s allows: set"

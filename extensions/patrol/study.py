@@ -263,7 +263,8 @@ class PatrolWork(FlightRunner):
             ]
             stretches = self._patrolled(patrol, ships).stretches
             row |= self._oracle(patrol, ships)
-            radius = self._scenario.keepout.radius_m
+            keepout = self._scenario.keepout
+            radius = keepout.other_radius_m or keepout.radius_m
             row |= patrol_figures(
                 ships, stretches, endurance=self._endurance, keepout_radius=radius
             )
@@ -363,7 +364,14 @@ class PatrolWork(FlightRunner):
         start = _start_beside(target, patrol.ships[ship].course, legs[-1], patrol.air)
         duration = min(PatrolKeys.of(self._scenario).patrol.patience_s, self._endurance - uav.time)
         flown = self._flown(
-            patrol, ship, row["flight_id"], start | {"flight.duration_max_s": duration}
+            patrol,
+            ship,
+            row["flight_id"],
+            start
+            | {
+                "flight.duration_max_s": duration,
+                "traffic": _traffic(patrol, ship, uav.time),
+            },
         )
         row |= _taken(flown.row)
         row["correct"] = row["verdict"] == row["truth"]
@@ -473,9 +481,34 @@ def _start_beside(ship: Mover, course: float, last: Leg, air: Air) -> dict[str, 
     }
 
 
+def _traffic(patrol: Patrol, ship: int, time: float) -> list[dict[str, object]]:
+    """Return the other ships of a patrol at a time [s], as ``traffic`` of a flight beside one of
+    them that begins then: the guard keeps off them as well.
+    """
+    target = patrol.ships[ship]
+    ahead = complex(math.cos(target.course), -math.sin(target.course))
+    others = []
+    for number, other in enumerate(patrol.ships):
+        if number != ship:
+            place = (other.mover.at(time) - target.mover.at(time)) * ahead
+            others.append(
+                {
+                    "name": f"ship_{number}",
+                    "place_m": [place.real, place.imag],
+                    "speed_mps": abs(other.mover.velocity),
+                    "course_deg": other.scenario.vessel.course_deg,
+                }
+            )
+    return others
+
+
 def _taken(row: Row) -> Row:
     """Return what a ship's row takes from that of the flight beside it."""
-    return {name: row[name] for name in _TAKEN if name in row} | {"verdict": verdict_of(row)}
+    taken = {name: row[name] for name in _TAKEN if name in row} | {"verdict": verdict_of(row)}
+    if "keepout_violations" in taken:
+        # Those of other ships are counted with the way to this one.
+        taken["keepout_violations"] -= row.get("others_violations", 0)
+    return taken
 
 
 def _phases(row: Row, history: pd.DataFrame) -> Iterator[tuple[str, int, int]]:

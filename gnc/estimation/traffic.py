@@ -108,10 +108,11 @@ class Traffic:
         self._due = math.inf
         for vessel in self.vessels:
             if vessel.last_report > -math.inf and (vessel.near or vessel.due <= time):
-                vessel.tubes = vessel.reach.tubes(time)
-                out_of_reach = self._out_of_reach(vessel, own)
+                disc = vessel.reach.newest(time)
+                out_of_reach = self._out_of_reach(vessel.radius, disc, own)
                 vessel.near = out_of_reach <= 0.0
                 if vessel.near:
+                    vessel.tubes = vessel.reach.tubes(time)
                     near.append(vessel)
                     continue
                 vessel.tubes = ()
@@ -120,9 +121,10 @@ class Traffic:
                 self._due = min(self._due, vessel.due)
         self.near = near
 
-    def _out_of_reach(self, vessel: KnownVessel, own: AirMotion) -> float:
-        """Return for how long a vessel stays out of reach [s]; below 0 where she does not."""
-        disc = vessel.tubes[0]
+    def _out_of_reach(self, radius: float, disc: Tube, own: AirMotion) -> float:
+        """Return for how long a vessel stays out of reach [s], by her radius to keep [m] and her
+        disc; below 0 where she does not.
+        """
         horizon = self._horizon
         closing = (
             self._speed_max
@@ -130,5 +132,5 @@ class Traffic:
             + math.hypot(disc.velocity_north, disc.velocity_east)
         )
         distance = math.hypot(own.ground_north - disc.north, own.ground_east - disc.east)
-        reach = vessel.radius + disc.reach(horizon + _LOOKED_AT_AFTER) + closing * horizon
+        reach = radius + disc.reach(horizon + _LOOKED_AT_AFTER) + closing * horizon
         return (distance - reach) / closing

@@ -440,6 +440,10 @@ class ReachableSet:
         """Take in a report, which may be older than others."""
         self._reports = sorted([*self._reports, report], key=lambda of: -of.time)[:KEPT]
 
+    def newest(self, time: float) -> Tube:
+        """Return the disc by acceleration of the newest report at ``time`` [s]."""
+        return tube(self._reports[0], self._limits, time)
+
     def tubes(self, time: float) -> Sequence[Tube]:
         """Return the discs of the newest reports at ``time`` [s], that of the newest first.
 

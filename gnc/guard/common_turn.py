@@ -22,6 +22,9 @@ _ANGLE = 0.25
 _ANGLES = 26
 """Number of these to a side [-]: once round."""
 
+_BEYOND_MIN = 1.0
+"""Least distance beyond a radius by which a vessel counts [m]."""
+
 _TURNS_BACK = 0.5 * math.pi
 """Course beyond the end of a common turn up to which the vehicle turns back [rad]."""
 
@@ -138,6 +141,21 @@ class CommonTurns:
         side, angle = remaining(side, starts[0].course, course)
         turns = self._followed(side, starts, motions, change, against)
         return self._ended(side, angle, course, turns, floor)
+
+    def away(self, motions: Sequence[RelativeMotion]) -> float:
+        """Return the course away from all vessels together [rad].
+
+        The nearer one is, the more she counts: by the inverse square of her distance beyond her
+        radius.
+        """
+        north = east = 0.0
+        for motion in motions:
+            distance = math.hypot(motion.x, motion.y)
+            beyond = max(distance - motion.radius, _BEYOND_MIN)
+            weight = 1.0 / (distance * beyond * beyond)
+            north += weight * motion.x
+            east += weight * motion.y
+        return math.atan2(east, north)
 
     def best(
         self,

@@ -87,13 +87,15 @@ omega_max [-]. A larger share keeps more slack for rolling; a smaller one brings
 sooner."""
 
 _COMMON_REACH = 2.0
-"""Turns away within which another vessel has to be out of reach, to be left out of a look [-]."""
+"""Turns away within which a vessel is within reach of a common turn, and for which it is looked
+ahead whether areas of vessels come near each other [-]."""
 
-_FAR_MOST = 1.0
+_LEFT_OUT_MOST = 1.0
 """Time for which other vessels are left out of looks at most [s]: speeds and wind change."""
 
-_FREE_ENOUGH = 0.5
-"""Time until the next look for which a common turn is kept without looking for another one [s]."""
+_FREE_ENOUGH, _FREE_LEAST = 0.5, 0.15
+"""Time until the next look from which on a common turn is taken without a look at the next
+candidate, and without a search over all courses [s]."""
 
 _PACE_DECAY = 2.0
 """Time constant with which former paces fade, over that of the airspeed [-]: an overshoot lasts
@@ -315,6 +317,33 @@ class Ship:
         self.discs = discs
 
 
+class _Surroundings:
+    """How far the vehicle is from a vessel.
+
+    Attributes
+    ----------
+    ship, motion : the vessel, and the motion relative to her disc
+    room : distance beyond her radius in which a turn away from her is done, whatever the course
+        before it [m]
+    free_for : for how long the vehicle stays farther off than that, whatever it does [s]
+    out_of_reach : for how long she stays out of reach of a common turn [s]
+    """
+
+    def __init__(
+        self,
+        ship: Ship,
+        motion: RelativeMotion,
+        room: float,
+        free_for: float,
+        out_of_reach: float,
+    ) -> None:
+        self.ship = ship
+        self.motion = motion
+        self.room = room
+        self.free_for = free_for
+        self.out_of_reach = out_of_reach
+
+
 class Several:
     """Several vessels that are near.
 
@@ -432,7 +461,7 @@ class HeadingRateFilter:
             turn_time=self._turn_time,
         )
         self._common: CommonTurn | None = None
-        # Until when other vessels are out of reach [s].
+        # Until when other vessels are left out of looks [s].
         self._far_until: dict[str, float] = {}
         self.status = GuardStatus.FREE
 
@@ -560,26 +589,110 @@ class HeadingRateFilter:
         if not others:
             self._common = None
             return self._look_at(measured, command, time, own, fastest, slowest)
-        ships, far_for = self._within_reach(others, time, own, fastest, slowest)
-        if ships:
-            disc = self._least_reaching(vessels, time, own)
-            motion = self.relative_motion(disc, time, own, fastest, slowest, 0.0)
-            free = self.time_until_near(motion)
-            if free > 0.0:
-                far_for = min(far_for, free)
-            else:
-                ships.append(measured)
-        else:
-            ships.append(measured)
+        ships, far_for = self._to_keep_off(measured, others, time, own, fastest, slowest)
         if len(ships) == 1:
             self._common = None
             found = self._look_at(ships[0], command, time, own, fastest, slowest)
         else:
             found = self._look_at_several(ships, command, time, own, fastest, slowest)
-        # No longer than until the next of the others comes within reach.
+        # No longer than until the next of the others has to be looked at.
         if far_for < self.budget.steps * self._time_step:
             self.budget.steps = int(far_for / self._time_step)
         return found
+
+    def _to_keep_off(
+        self,
+        measured: Ship,
+        others: Sequence[KnownVessel],
+        time: float,
+        own: AirMotion,
+        fastest: float,
+        slowest: float,
+    ) -> tuple[list[Ship], float]:
+        """Return the vessels that turns away have to keep off, and for how long the rest need not
+        be looked at [s].
+
+        A vessel is left out while a turn away from her is left to the vehicle whatever it does, and
+        no area of another one comes so near to hers that both might have to be kept off at once
+        (docs/keepout_guard.md, "Several vessels").
+        """
+        left_out = [self._far_until.get(other.name, -math.inf) for other in others]
+        far_for = min((until - time for until in left_out if until > time), default=math.inf)
+        due = [until <= time for until in left_out]
+        if True not in due:
+            return [measured], far_for
+        around = [self._surroundings(measured, time, own, fastest, slowest)]
+        for other in others:
+            radius = other.radius + self._p.errors.failed_part.size
+            ship = Ship(other.name, radius, other.tubes)
+            around.append(self._surroundings(ship, time, own, fastest, slowest))
+        of_due = [found for found, is_due in zip(around[1:], due, strict=True) if is_due]
+        ships: list[Ship] = []
+        for found in of_due:
+            free = min(found.free_for, _LEFT_OUT_MOST)
+            if free > 0.0 and any(self._meet(found, other) for other in around):
+                # In each other's way, though not yet within reach of a turn.
+                free = min(found.out_of_reach, _LEFT_OUT_MOST)
+            if free > 0.0:
+                self._far_until[found.ship.name] = time + free
+                far_for = min(far_for, free)
+            else:
+                ships.append(found.ship)
+        if not ships:
+            return [measured], far_for
+        first = around[0]
+        in_the_way = any(self._meet(first, found) for found in of_due if found.ship in ships)
+        if first.free_for <= 0.0 or (in_the_way and first.out_of_reach <= 0.0):
+            ships.append(measured)
+        else:
+            far_for = min(far_for, max(first.free_for, 0.0))
+        return ships, far_for
+
+    def _surroundings(
+        self, ship: Ship, time: float, own: AirMotion, fastest: float, slowest: float
+    ) -> "_Surroundings":
+        """Return how far the vehicle is from a vessel, by the disc that reaches least far."""
+        disc = self._least_reaching(ship.discs, time, own)
+        motion = self.relative_motion(disc, time, own, fastest, slowest, 0.0, ship.radius)
+        slower = max(1.0, fastest / self._turn_speed)
+        half_turn = (math.pi / self._rate) * slower + self._p.lag + self._p.delay + self._time_step
+        # Flown at her, a turn away comes nearer by its radius and by what comes before it. She
+        # comes nearer for as long as half a turn takes.
+        disc_speed = math.hypot(motion.disc_north, motion.disc_east)
+        closing = disc_speed + motion.growth + 0.5 * motion.acceleration * half_turn
+        room = (
+            fastest * (self._p.delay + self._p.lag + self._time_step + slower / self._rate)
+            + closing * half_turn
+            + self._p.errors.response.size
+            + self._displacement.after(2.0 * self._turn_time)
+        )
+        gap = math.hypot(motion.x, motion.y) - motion.radius
+        return _Surroundings(
+            ship,
+            motion,
+            room,
+            (gap - room) / (fastest + closing),
+            self.time_until_near(motion, _COMMON_REACH),
+        )
+
+    def _meet(self, one: "_Surroundings", other: "_Surroundings") -> bool:
+        """Return whether the areas of two vessels soon leave less between them than the vehicle
+        needs to turn away from either.
+        """
+        if one is other:
+            return False
+        duration = _COMMON_REACH * self._turn_time
+        a, b = one.motion, other.motion
+        x, y = a.x - b.x, a.y - b.y
+        # The vehicle's place relative to a vessel moves against her.
+        north, east = b.disc_north - a.disc_north, b.disc_east - a.disc_east
+        square = north * north + east * east
+        nearest_at = 0.0
+        if square > 0.0:
+            nearest_at = min(max(0.0, -(x * north + y * east) / square), duration)
+        apart = math.hypot(x + north * nearest_at, y + east * nearest_at)
+        radii = a.radius + b.radius + (a.growth + b.growth) * nearest_at
+        return apart - radii < one.room + other.room
 
     def _look_at(
         self,
@@ -634,33 +747,6 @@ class HeadingRateFilter:
             fastest=fastest + _SAME_SPEED,
         )
 
-    def _within_reach(
-        self,
-        others: Sequence[KnownVessel],
-        time: float,
-        own: AirMotion,
-        fastest: float,
-        slowest: float,
-    ) -> tuple[list[Ship], float]:
-        """Return the other vessels that may come near on a common turn, and for how long the rest
-        stay farther off [s].
-        """
-        ships: list[Ship] = []
-        far_for = math.inf
-        for other in others:
-            until = self._far_until.get(other.name, -math.inf)
-            if until <= time:
-                radius = other.radius + self._p.errors.failed_part.size
-                disc = self._least_reaching(other.tubes, time, own)
-                motion = self.relative_motion(disc, time, own, fastest, slowest, 0.0, radius)
-                free = min(self.time_until_near(motion, _COMMON_REACH), _FAR_MOST)
-                if free <= 0.0:
-                    ships.append(Ship(other.name, radius, other.tubes))
-                    continue
-                until = self._far_until[other.name] = time + free
-            far_for = min(far_for, until - time)
-        return ships, far_for
-
     def _look_at_several(
         self,
         ships: Sequence[Ship],
@@ -706,27 +792,34 @@ class HeadingRateFilter:
         self, command: float, several: Several, change: float, floor: float
     ) -> CommonTurn | None:
         """Return a common turn that keeps off all vessels after a command, or None."""
-        turn: CommonTurn | None = None
+        best: CommonTurn | None = None
         last = self._common
+        away = self.common_turns.away(several.motions)
+        to_away = math.remainder(away - several.motions[0].course, 2.0 * math.pi)
+        candidates = [(math.copysign(1.0, to_away), away)]
         if last is not None:
-            against = 0.5 - 0.5 * self.budget.least_of_turn(last.side, command) / self._rate
+            candidates.insert(0, (last.side, last.course))
+        for side, course in candidates:
+            against = 0.5 - 0.5 * self.budget.least_of_turn(side, command) / self._rate
             turn = self.common_turns.to_course(
-                last.side,
-                last.course,
+                side,
+                course,
                 command,
                 several.motions,
                 change=change,
                 against=against,
                 floor=floor,
             )
-            if turn.keeps_off(floor) and turn.free_time >= _FREE_ENOUGH:
-                return turn
-        best = self.common_turns.best(command, several.motions, change=change, floor=floor)
-        if best.keeps_off(floor) and (
-            turn is None or not turn.keeps_off(floor) or best.free_time > turn.free_time
-        ):
-            return best
-        return turn if turn is not None and turn.keeps_off(floor) else None
+            if turn.keeps_off(floor):
+                if turn.free_time >= _FREE_ENOUGH:
+                    return turn
+                if best is None or turn.free_time > best.free_time:
+                    best = turn
+        if best is None or best.free_time < _FREE_LEAST:
+            turn = self.common_turns.best(command, several.motions, change=change, floor=floor)
+            if turn.keeps_off(floor) and (best is None or turn.free_time > best.free_time):
+                best = turn
+        return best
 
     def _keep_to(self, turn: CommonTurn, several: Several) -> None:
         """Take note of a common turn that is safe, and from which discs."""

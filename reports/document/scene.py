@@ -22,6 +22,19 @@ class Event(NamedTuple):
     time: float
 
 
+class OtherTrack(NamedTuple):
+    """Another ship: her name, the radius that is kept from her [m], her place at each sample, north
+    and east, shape (n,) [m], her heading [rad], and the samples between which her track is known.
+    """
+
+    name: str
+    radius: float
+    north: Array
+    east: Array
+    heading: Array
+    known: tuple[int, int]
+
+
 class Gas(NamedTuple):
     """What the track is coloured by: a gas, its unit, the value of the strongest colour, and where
     it is from, in words.
@@ -74,6 +87,7 @@ class Scene:
     gas : what the track is coloured by, or None
     estimate : of the fuel's sulphur, or None
     smoke : parcels of the exhaust as the run has them, or None of a plume that is an axis alone
+    others : ships besides the vessel
     """
 
     start: float
@@ -94,3 +108,4 @@ class Scene:
     gas: Gas | None
     estimate: Estimate | None
     smoke: Mapping[str, Any] | None
+    others: Sequence[OtherTrack] = ()

@@ -16,6 +16,7 @@ from reports.document.map_marks import on_map
 from reports.document.palette import Meaning
 from reports.document.ship_map import seen, ship_lines, ship_panel, ship_words
 from reports.flights.flight_view import FlightView, Place, flight_view
+from reports.flights.other_ships import other_ship_lines, other_ship_words, other_ships
 from reports.flights.time_marks import marks_beside, marks_in_a_row
 from reports.run.columns import Array, column
 from reports.run.surroundings import Surroundings, surroundings
@@ -115,6 +116,7 @@ class _Tracks:
         self.about = (
             surroundings(view.config, view.row, view.whole, nearest) if view.vessel else None
         )
+        self._others = other_ships(view)
         self._step = next((s for s in _STEPS if view.ends[1] / s <= _MARKS_MAX), _STEPS[-1])
 
     def chart(self, aspect: float = _BESIDE) -> Chart:
@@ -123,7 +125,7 @@ class _Tracks:
         if about is None:
             return Chart(
                 name="tracks",
-                caption=_words([about], []),
+                caption=_words([about], []) + other_ship_words(self._others),
                 panels=[in_kilometres(self.ground())],
                 panel_height=0.42,
             )
@@ -134,7 +136,9 @@ class _Tracks:
         ]
         return Chart(
             name="tracks",
-            caption=_words([about], panels) + (_ground_words(ground) if ground else ""),
+            caption=_words([about], panels)
+            + (_ground_words(ground) if ground else "")
+            + other_ship_words(self._others),
             panels=[in_kilometres(panel) for panel in [*panels, *([ground] if ground else [])]],
             columns=len(panels),
             panel_height=0.35,
@@ -158,6 +162,9 @@ class _Tracks:
             *view.ends_of(about_the_plume),
         ]
         ship = ship_lines(about, about.axis)
+        lines += other_ship_lines(
+            self._others, lambda north, east: turned(north, east, about.axis), relative=True
+        )
         marked, notes = self._times(about_the_plume, [*ship, *lines], until=view.settled_at)
         lines += marked
         return ship_panel(
@@ -227,6 +234,9 @@ class _Tracks:
             *view.marks(place, far=self._goes_far()),
             *view.ends_of(place),
         ]
+        lines += other_ship_lines(
+            self._others, lambda north, east: turned(north, east, up), relative=False
+        )
         marked, notes = self._times(
             place, lines, until=float(view.ends[1]), in_a_row=way is not None
         )

@@ -3,7 +3,7 @@ as plain data.
 """
 
 import base64
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,11 +13,11 @@ import numpy.typing as npt
 from reports.document.blocks import FlightPicker, Section
 from reports.document.map_marks import SIZE_NOT_KNOWN
 from reports.document.palette import COLOURS, Meaning
-from reports.document.scene import Estimate, Gas, Scene
+from reports.document.scene import Estimate, Gas, OtherTrack, Scene
 from reports.document.ship_map import hull_words
 from reports.render.script_data import for_script
 from reports.run.columns import Array
-from reports.run.ship import Hull
+from reports.run.ship import ANY, Hull
 
 THREE = Path(__file__).parent / "bundle" / "three.min.js"
 """Library that draws in three dimensions; ``bundle/README.md`` says where it comes from."""
@@ -125,18 +125,21 @@ def draw_scene(scene: Scene) -> Data:
             "height": scene.source_height,
             "sides": list(scene.outline.sides) if scene.outline else None,
         },
-        "hull": _hull(scene.hull),
+        "hull": _hull(scene.hull, scene.others),
         "utc": scene.utc,
         "events": [event._asdict() for event in scene.events],
         "gas": _gas(scene.gas),
         "estimate": _estimate(scene.estimate),
         "smoke": _smoke(scene.smoke) if scene.smoke else None,
+        "others": [_other(ship) for ship in scene.others],
         "axis": {"length": scene.plume_length, "rise": scene.plume_rise},
     }
 
 
-def _hull(hull: Hull) -> Data:
-    """Return a hull's size, what the legend calls her, and what is said of her size."""
+def _hull(hull: Hull, others: Sequence[OtherTrack] = ()) -> Data:
+    """Return a hull's size, what the legend calls her, and what is said of her size and of other
+    ships.
+    """
     name = "ship" if hull.known else f"ship, {SIZE_NOT_KNOWN}"
     size = {
         "length": hull.length,
@@ -145,7 +148,24 @@ def _hull(hull: Hull) -> Data:
         "aside": hull.aside,
         "known": hull.known,
     }
-    return size | {"name": name, "words": f"Of the ship: {hull_words(hull)}."}
+    named = "; ".join(f"{other.name}, r = {other.radius:g} m" for other in others)
+    told = f" Other ships, pale, each in the area about her: {named}." if others else ""
+    return size | {"name": name, "words": f"Of the ship: {hull_words(hull)}.{told}"}
+
+
+def _other(ship: OtherTrack) -> Data:
+    """Return another ship as the replay reads her."""
+    return {
+        "name": ship.name,
+        "radius": ship.radius,
+        "known": list(ship.known),
+        "columns": {
+            "north": packed_column(ship.north, _PLACE),
+            "east": packed_column(ship.east, _PLACE),
+            "heading": packed_column(ship.heading, _ANGLE),
+        },
+        "hull": _hull(ANY),
+    }
 
 
 def _gas(gas: Gas | None) -> Data | None:

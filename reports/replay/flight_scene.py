@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from common.hull import HULL_SHAPES
-from reports.document.scene import Estimate, Event, Gas, Scene
+from reports.document.scene import Estimate, Event, Gas, OtherTrack, Scene
 from reports.run.columns import Array, column
 from reports.run.faults import fault_marks
 from reports.run.flight_config import is_level, keepout_shape, source_height
@@ -133,6 +133,28 @@ def flight_scene(trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame | No
         gas=gas,
         estimate=_estimate(trial.run.evaluation(flight_id), row),
         smoke=trial.run.smoke(flight_id),
+        others=[
+            other
+            for ship in trial.run.traffic(flight_id)
+            if (other := _other_track(ship, time)) is not None
+        ],
+    )
+
+
+def _other_track(ship: dict[str, Any], time: Array) -> OtherTrack | None:
+    """Return another ship at the samples' times [s]; None where her track is not known then."""
+    times, north, east = (np.asarray(ship[name], np.float64) for name in ("time", "north", "east"))
+    known = np.flatnonzero((time >= times[0]) & (time <= times[-1]))
+    if len(known) < 2 or len(times) < 2:
+        return None
+    heading = np.unwrap(np.arctan2(np.gradient(east, times), np.gradient(north, times)))
+    return OtherTrack(
+        str(ship["name"]),
+        float(ship["radius"]),
+        np.interp(time, times, north),
+        np.interp(time, times, east),
+        np.interp(time, times, heading),
+        (int(known[0]), int(known[-1])),
     )
 
 

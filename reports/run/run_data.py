@@ -31,6 +31,7 @@ from common.run_layout import (
     is_file_name,
     smoke_path,
     time_history_path,
+    traffic_path,
 )
 from common.text import from_json_cell
 from common.verdict import RunVerdict, read_verdict
@@ -132,6 +133,14 @@ class RunData:
             if is_file_name(flight_id)
             else None
         )
+
+    def traffic(self, flight_id: str) -> list[dict[str, Any]]:
+        """Return the tracks of the other ships of a flight that can be read."""
+        if not is_file_name(flight_id):
+            return []
+        found = _record(self.path / traffic_path(flight_id), self.unread)
+        ships: list[dict[str, Any]] = found.get("ships", []) if found else []
+        return ships
 
     @property
     def sulphur(self) -> dict[str, Any] | None:

@@ -416,7 +416,9 @@ def _crossing_figures(
         intervals = np.diff(times)
         if yielded.any():
             before = np.cumsum(yielded)[np.searchsorted(record.column("time_s"), times) - 1]
-            intervals = intervals[np.diff(before) == 0]
+            # Of whole periods, too: its halves may take different times.
+            period = np.arange(len(intervals)) // alike
+            intervals = intervals[~np.isin(period, period[np.diff(before) > 0])]
         if len(intervals):
             row |= {
                 "crossing_interval_mean_s": float(np.mean(intervals)),

@@ -106,7 +106,7 @@ def traffic_record(plan: FlightPlan, duration: float) -> bytes | None:
                 "east": np.round(places[:, 1], 2).tolist(),
             }
         )
-    return json.dumps(ships, separators=(",", ":")).encode()
+    return json.dumps({"ships": ships}, separators=(",", ":")).encode()
 
 
 def _approaches(plan: FlightPlan, record: FlightRecord) -> list[_Approach]:

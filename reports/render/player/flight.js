@@ -46,6 +46,9 @@ class Flight {
     this.gas = data.gas;
     this.estimate = data.estimate;
     this.columns = Object.fromEntries(Object.entries(data.columns).map(([name, c]) => [name, decodedColumn(c, data.samples)]));
+    this.others = data.others.map(({columns, ...other}) => ({
+      ...other, columns: Object.fromEntries(Object.entries(columns).map(([name, c]) => [name, decodedColumn(c, data.samples)])),
+    }));
     this.smoke = data.smoke ? new ParcelSmoke(data.smoke, this) : new AxisSmoke(data.axis, this);
   }
 
@@ -84,6 +87,14 @@ class Flight {
   vesselAt(time) {
     const early = Math.min(0, time - this.start);
     return ["vessel_north", "vessel_east"].map((name) => this.value(name, time) + (early ? early * this.rate(name, this.start) : 0));
+  }
+
+  // Where another ship is at a time: north, east [m] and heading [rad]; null while her track is not known.
+  otherAt({columns, known: [first, last]}, time) {
+    const place = (time - this.start) / this.interval;
+    if (place < first || place > last) return null;
+    const i = Math.min(Math.floor(place), this.samples - 2), s = place - i;
+    return Object.fromEntries(Object.entries(columns).map(([name, values]) => [name, values[i] + s * (values[i + 1] - values[i])]));
   }
 
   // Crossings of the plume until a time.

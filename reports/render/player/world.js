@@ -25,6 +25,12 @@ class World {
     this.vessel.add(this.ship);
     // About a hull it turns with the ship.
     (flight.keepout.sides ? this.ship : this.vessel).add(keepoutShape(flight.keepout, colours.limit));
+    this.others = flight.others.map((other) => {
+      const group = new THREE.Group(), ship = shipShape(other.hull, flight.keepout.height, colours.ship);
+      group.add(ship, keepoutShape({radius: other.radius, shape: "cylinder", height: flight.keepout.height}, colours.limit));
+      this.scene.add(group);
+      return {other, group, ship};
+    });
     this.smoke = new SmokeShape(flight.smoke, colours.plume);
     this.aircraft = aircraftShape(colours.aircraft);
     this.aircraft.rotation.order = "YXZ";
@@ -80,6 +86,13 @@ class World {
     this.plumb.scale.y = now.altitude;
     this.vessel.position.set(now.vessel_east, 0, -now.vessel_north);
     this.ship.rotation.y = -now.vessel_heading;
+    for (const {other, group, ship} of this.others) {
+      const place = this.flight.otherAt(other, time);
+      group.visible = place !== null;
+      if (place === null) continue;
+      group.position.set(place.east, 0, -place.north);
+      ship.rotation.y = -place.heading;
+    }
     this.smoke.show(time);
     this.wake.lay(this.flight, time, now);
     this.trails.vessel.visible = aboutVessel;
