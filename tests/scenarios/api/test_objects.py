@@ -195,7 +195,7 @@ def local_law():
         ),
         (
             {"aircraft": replace(X8, title="Mine")},
-            "aircraft 'x8' is known already, and is not the object that was given",
+            "aircraft 'x8' exists already and is another object",
         ),
         (
             {"aircraft": replace(X8, name="737")},
