@@ -84,8 +84,7 @@ def insert_before_flight_control(config: ET.Element, system: ET.Element) -> None
 
 
 def copy_model(files: ModelFiles, directory: Path, *, play: bool = True) -> Path:
-    """Copy a model, with everything that it refers to, into a new JSBSim root; return the model
-    file.
+    """Copy a model and every file that it refers to into a new JSBSim root; return the model file.
 
     Outputs, inputs (files, sockets) and autopilots are left out: ``<autopilot>`` elements, and
     systems named like an autopilot. The autopilots' properties stay, at 0, so that flight controls

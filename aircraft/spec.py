@@ -85,9 +85,7 @@ class ControlInput:
     effectiveness: tuple[tuple[float, float], ...] = ()
 
     def command(self, value: float) -> float:
-        """Command to JSBSim for a value of this input: for an effect if ``effectiveness`` is given
-        [-].
-        """
+        """Command to JSBSim for a value of this input, which may be a surface's effect [-]."""
         if not self.effectiveness:
             return value
         i = min(max(bisect.bisect(self.effectiveness, (value,)), 1), len(self.effectiveness) - 1)

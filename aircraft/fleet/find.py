@@ -36,8 +36,7 @@ def aircraft_names() -> list[str]:
 
 
 def find_spec(name: str) -> AircraftSpec:
-    """Spec of the aircraft ``name``: a known name, a file ``FILE.py:NAME``, or a folder
-    ``DIR/NAME``.
+    """Spec of an aircraft by its known name, its file ``FILE.py:NAME`` or its folder ``DIR/NAME``.
 
     Raises
     ------
