@@ -26,7 +26,7 @@ AXES = {"elevator": 1, "aileron": 0, "rudder": 2}
 """Index in p, q, r of the angular acceleration that a surface controls."""
 
 _STEPS = 8
-"""Number of steps in which the command goes from 0 to either end of its range."""
+"""Number of measured commands from 0 to either end of the range, without 0."""
 
 _NONLINEARITY_MAX = 0.05
 """Largest deviation of a moment from a straight line that is not corrected, over its span [-]."""

@@ -263,7 +263,7 @@ class Fdm:
             self.step(steps)
 
     def reset(self) -> None:
-        """Reset every model of JSBSim, such as turbulence and engines, as loaded; place it next."""
+        """Reset JSBSim's models, such as turbulence and engines; place the aircraft next."""
         self._exec.reset_to_initial_conditions(_RESET_ONLY)
         self._engines_started = False
 

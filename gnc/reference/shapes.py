@@ -340,7 +340,7 @@ class BankSwing:
         return -rate if angle > 0.0 else rate
 
     def slopes(self, eta: float, phase: float) -> tuple[float, float]:
-        """Return the slopes of the course offset: over eta, and over the phase per eta [-]."""
+        """Return the derivatives of the course offset by eta, and by phase over eta [-]."""
         if eta < _BANK_SWING_ETA_MIN and not self.holds_bank(eta):
             return math.cos(phase), -math.sin(phase)
         quarter, rate, held = self._held(eta)

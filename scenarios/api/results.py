@@ -125,7 +125,7 @@ class Run:
         Parameters
         ----------
         path : path of an HTML or PDF file, by its suffix; None to write nothing
-        all_flights : whether the PDF has every flight instead of the most informative ones
+        all_flights : whether a printed report has every flight instead of the most informative ones
 
         Raises
         ------

@@ -138,7 +138,7 @@ class DaskExecutor:
             self._cluster.close()
 
     def fly(self, tasks: Iterable[Task]) -> Iterator[Result]:
-        """Yield the result of every task as it arrives; a task that fails is tried once more."""
+        """Yield the result of every task as it arrives; a failed task is tried again."""
         waiting = iter(tasks)
         attempted: set[int] = set()
         running: dict[Any, Task] = {}

@@ -111,7 +111,7 @@ class Journal:
         self._database.close()
 
     def add(self, result: Result) -> None:
-        """Store a result, replacing an earlier one of its task; any program can read it later."""
+        """Store a result durably, replacing an earlier one of its task."""
         fields = (
             result.task.number,
             json.dumps(result.task.point),

@@ -132,7 +132,7 @@ class LocalExecutor:
         self._workers.clear()
 
     def fly(self, tasks: Iterable[Task]) -> Iterator[Result]:
-        """Yield every result as it arrives; a task whose process is lost is tried once more."""
+        """Yield every result as it arrives; a task whose process is lost is tried again."""
         waiting = iter(tasks)
         while self._dispatch(waiting):
             ready = wait(

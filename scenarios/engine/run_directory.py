@@ -56,7 +56,7 @@ _SUFFIXES = (".json", ".py", ".toml", ".xml")
 """Suffixes of source and of the data that it reads: aircraft models, presets and tables."""
 
 _CATALOG = "catalog"
-"""Name of folders without influence: a run has the contents of its scenario file."""
+"""Folders left out of the source's hash, because a run has its scenario in its configuration."""
 
 _KEYS_NAMED = 3
 """Largest number of differing keys in a message."""

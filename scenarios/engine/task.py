@@ -93,7 +93,7 @@ class Work(Protocol):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
-    """Limits of a task; if one is exceeded, the process is killed and the task is tried once more.
+    """Limits of a task; if one is exceeded, the process is killed and the task is tried again.
 
     Attributes
     ----------

@@ -143,7 +143,7 @@ class Level:
 
     @property
     def beginnings(self) -> int:
-        """Return the number of different initial states of the chains, some of which are copies."""
+        """Return the number of different initial states of the chains; copies count once."""
         _, first = np.unique(self.chains, return_index=True)
         return len(np.unique(np.column_stack([self.points[first], self.values[first]]), axis=0))
 
@@ -427,15 +427,15 @@ class SubsetSimulation:
             [new and not self.seeded(at) for new, at in zip(renewed, inputs, strict=True)]
         )
         renewed &= ~known
-        asked = np.flatnonzero(
+        evaluated = np.flatnonzero(
             renewed | blended | (moved & np.array([self.allowed(at) for at in inputs]))
         )
         values = np.where(known, states.values, math.inf)
-        if len(asked):
-            values[asked] = yield self._points(normal[asked], [noise[i] for i in asked])
+        if len(evaluated):
+            values[evaluated] = yield self._points(normal[evaluated], [noise[i] for i in evaluated])
         accepted = values <= threshold
-        counts.evaluated += len(asked)
-        counts.outside += count - len(asked) - int(np.count_nonzero(known))
+        counts.evaluated += len(evaluated)
+        counts.outside += count - len(evaluated) - int(np.count_nonzero(known))
         counts.moved += int(np.count_nonzero(moved))
         counts.accepted += int(np.count_nonzero(accepted & moved))
         counts.blended += int(np.count_nonzero(blended))
