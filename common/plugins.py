@@ -120,21 +120,21 @@ def number(what: str) -> Callable[[Any], float]:
     """Return a converter of a result to a finite float; ``what`` names it, with its unit."""
     words = f"a finite number, {what}"
 
-    def made(found: Any) -> float:
+    def converted(found: Any) -> float:
         try:
             (value,) = numbers(1, what)((found,))
         except ValueError:
             raise ValueError(words) from None
         return value
 
-    return made
+    return converted
 
 
 def numbers(count: int, what: str, *, finite: bool = True) -> Callable[[Any], tuple[float, ...]]:
     """Return a converter of a result to ``count`` numbers; ``what`` names them, with units."""
     words = f"{count} {'finite ' * finite}number{'s' * (count != 1)}, {what}"
 
-    def made(found: Any) -> tuple[float, ...]:
+    def converted(found: Any) -> tuple[float, ...]:
         try:
             # Text is iterable as well, and its characters may be digits.
             values = [float(value) for value in found if not isinstance(value, str)]
@@ -144,7 +144,7 @@ def numbers(count: int, what: str, *, finite: bool = True) -> Callable[[Any], tu
             raise ValueError(words)
         return tuple(values)
 
-    return made
+    return converted
 
 
 def _called(method: Callable[..., Any], given: tuple[Any, ...]) -> str:

@@ -37,7 +37,7 @@ _SPEED_RATIO_MIN = 0.1
 """Least speed ratio of a mean motion that may turn [-]."""
 
 
-class _Ahead(NamedTuple):
+class _OrbitMotion(NamedTuple):
     """Direction of an orbit's motion, speed that determines it, centre's speed along it [m/s]."""
 
     north: float
@@ -67,7 +67,7 @@ def mean_motion(
     off_north, off_east : offset from the orbit's centre to the centre of oscillation [m]
     speed, heading_rate_max : V_r and omega_max [m/s, rad/s]
     """
-    ahead = _ahead(centre, speed)
+    ahead = _orbit_motion(centre, speed)
     gain = _CENTRE_GAIN * heading_rate_max
     most = _ALONG_FRACTION * speed
     behind = off_north * ahead.north + off_east * ahead.east
@@ -81,7 +81,7 @@ def mean_motion(
     return course, along / math.cos(turned) / speed
 
 
-def _ahead(centre: MovingCentre, speed: float) -> _Ahead:
+def _orbit_motion(centre: MovingCentre, speed: float) -> _OrbitMotion:
     """Return the direction of the orbit's motion.
 
     A centre that recedes faster than its vessel moves reverses its motion. The orbit then keeps the
@@ -95,14 +95,14 @@ def _ahead(centre: MovingCentre, speed: float) -> _Ahead:
     if north * vessel_north + east * vessel_east >= 0.0:
         moving = math.hypot(north, east)
         if moving > _STILL * speed:
-            return _Ahead(north / moving, east / moving, moving, moving)
+            return _OrbitMotion(north / moving, east / moving, moving, moving)
     else:
         moving = math.hypot(vessel_north, vessel_east)
         if moving > _STILL * speed:
             cos_m = vessel_north / moving
             sin_m = vessel_east / moving
-            return _Ahead(cos_m, sin_m, moving, north * cos_m + east * sin_m)
-    return _Ahead(-cos_a, -sin_a, moving, -(north * cos_a + east * sin_a))
+            return _OrbitMotion(cos_m, sin_m, moving, north * cos_m + east * sin_m)
+    return _OrbitMotion(-cos_a, -sin_a, moving, -(north * cos_a + east * sin_a))
 
 
 def _followed_velocity(centre: MovingCentre, speed: float) -> tuple[float, float]:
