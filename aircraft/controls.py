@@ -1,13 +1,14 @@
-"""Control inputs as a linear design needs them: surfaces by their effect, and flight idle.
+"""Adapt control inputs to a linear design: linear surfaces, and a throttle limited to flight idle.
 
-Many aircraft's surfaces travel further one way than the other, and some stop before their command
-does; about such a kink no linear model holds. So the moment of each surface is measured over its
-command, and the autopilot then commands the effect, which is proportional to the moment.
+Many surfaces travel further one way than the other, and some reach their stop before the command
+reaches its limit. No linear model holds across such a kink. The moment of each surface is therefore
+measured over its command, and the autopilot commands the effect, which is proportional to the
+moment.
 
 Flight idle is the throttle at which an aircraft decelerates most. A propeller on an electric motor
-brakes most while it still turns: without voltage JSBSim's motor holds it still, and a stopped
-propeller has half the drag of a windmilling one. To slow down, an autopilot must not go below that
-throttle.
+brakes most while it still turns: JSBSim's motor stops it when it gets no voltage, and a stopped
+propeller has half the drag of a windmilling one. The autopilot never commands less throttle than
+flight idle.
 """
 
 from dataclasses import replace
@@ -25,10 +26,10 @@ AXES = {"elevator": 1, "aileron": 0, "rudder": 2}
 """Index in p, q, r of the angular acceleration that a surface controls."""
 
 _STEPS = 8
-"""Number of steps in which the command goes from 0 to either end of its range."""
+"""Number of measured commands from 0 to either end of the range, without 0."""
 
 _NONLINEARITY_MAX = 0.05
-"""Largest deviation of a moment from a straight line, over its span, that stays uncorrected [-]."""
+"""Largest deviation of a moment from a straight line that is not corrected, over its span [-]."""
 
 _STOP_SLOPE = 0.05
 """Slope below which a surface counts as having reached its stop, over its mean slope [-]."""
@@ -37,17 +38,17 @@ _IDLE_STEP = 0.05
 """Steps of throttle in the search for flight idle [-]."""
 
 _IDLE_GAIN_MIN = 0.05
-"""Least relative gain in deceleration for which flight idle is above closed throttle [-]."""
+"""Least relative gain in deceleration that justifies a flight idle above closed throttle [-]."""
 
 _IDLE_SETTLED = 1e-5
 """Change of acceleration in a step below which the propeller counts as settled [m/s^2]."""
 
 
 def with_linearised_controls(fdm: Fdm, level: Trim) -> AircraftSpec:
-    """Spec with surfaces commanded by their effect, measured in the level flight of ``level``.
+    """Spec whose surfaces are commanded by their effect, measured in the level flight ``level``.
 
-    The effect is 0 at the command 0, and spans 2 from stop to stop, within the range of the
-    command. Surfaces that have an effectiveness are left as they are.
+    The effect is 0 at the command 0 and spans 2 from stop to stop. Surfaces that already have an
+    ``effectiveness`` stay unchanged.
 
     Raises
     ------
@@ -110,9 +111,9 @@ def _travel(commands: Array, moments: Array) -> tuple[int, int]:
 
 
 def with_flight_idle(fdm: Fdm, level: Trim) -> AircraftSpec:
-    """Spec with a throttle that closes no further than where the aircraft decelerates most.
+    """Spec whose throttle closes only to flight idle, where the aircraft decelerates most.
 
-    It is sought up to the throttle of the level flight ``level``; the state of ``fdm`` is changed.
+    The search ends at the throttle of the level flight ``level``. The state of ``fdm`` is changed.
     """
     throttle = fdm.spec.input("throttle")
     throttles = np.arange(throttle.lower, level.inputs["throttle"], _IDLE_STEP)

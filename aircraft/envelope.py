@@ -1,4 +1,4 @@
-"""The envelope of an aircraft: airspeeds between stall and the engines' limit, banks for turns."""
+"""The flight envelope: airspeeds between stall and the engines' limit, and the bank in turns."""
 
 import math
 from collections.abc import Sequence
@@ -11,62 +11,62 @@ from aircraft.trim import Trim, TrimOutcome, search_trim, trim
 from common.physics import KG_PER_SLUG, METRES_PER_FOOT, NEWTONS_PER_POUND
 
 BANK_LIMITS = ((150.0, 45.0), (5_670.0, 30.0), (math.inf, 25.0))
-"""Largest mass [kg] of a class and the bank it turns with [deg].
+"""Largest mass of each class of aircraft [kg], and its bank in turns [deg].
 
-Aircraft too small to carry people, light aeroplanes (up to 12,500 lb, where CS-23 drew the line),
-and larger ones, which bank as airliners do.
+The classes are aircraft too small to carry people, light aeroplanes (up to 12,500 lb, the limit of
+CS-23), and larger ones, which bank like airliners.
 """
 
 TABLE_REACH = 1.1
 """Largest bank of the autopilot's tables, over its bank limit [-]: room for an overshoot."""
 
 _STALL_RESERVE = 1.3
-"""Least airspeed over stall in the same turn [-], CS-23's reference landing speed."""
+"""Least airspeed over the stall airspeed in the same turn [-]: CS-23's reference landing speed."""
 
 _AIRSPEED_RATIO = 1.6
-"""Largest airspeed over the least [-]: five airspeeds follow 2.6 times the dynamic pressure."""
+"""Largest airspeed over the least [-]: five design airspeeds cover a factor of 2.6 in pressure."""
 
 _AIRSPEED_RATIO_MIN = 1.12
-"""Narrowest range of airspeeds, largest over least [-], within which the guidance varies it."""
+"""Smallest usable ratio of the largest to the least airspeed [-]: the guidance varies airspeed."""
 
 _AIRSPEED_STEPS = 4
 """Steps from the least to the largest airspeed, of equal ratio, at which trims are tried."""
 
 _MACH_MAX = 0.6
-"""Largest Mach number [-]; above it compressibility matters, which an airspeed schedule ignores."""
+"""Largest Mach number [-]: gains scheduled over airspeed ignore compressibility."""
 
 _SPEED_OF_SOUND = 340.3
 _DENSITY = 1.225
 """Speed of sound [m/s] and density [kg/m^3] of the ISO standard atmosphere at sea level.
 
-They are taken at every altitude: at 5,000 m, the highest altitude of a design, the true Mach number
-is up to 6 % above the largest.
+They are used at every altitude: at 5,000 m, the highest altitude of a design, the true Mach number
+may exceed ``_MACH_MAX`` by 6 %.
 """
 
 _BANK_FRACTIONS = (1.0, 0.75, 0.5)
 """Fractions of the bank of the aircraft's class that are tried, one after the other [-]."""
 
 _THROTTLE_RANGE = (0.03, 0.95)
-"""Throttles of an equilibrium that leave a reserve to slow down and to climb [-]."""
+"""Range of an equilibrium's throttle that leaves a reserve to slow down and to climb [-]."""
 
 _SURFACE_FRACTION = 0.9
 """Fraction of a surface's travel that an equilibrium may take [-]; the rest is reserve."""
 
 _LIFT_STEP = math.radians(1.0)
 _ALPHA_MAX = 0.4
-"""Step and end of the search for the largest lift [rad]: wings without slots stall below 23 deg."""
+"""Step and end of the search for the stall [rad]: wings without slots stall below 23 deg."""
 
 _START_LIFT_COEFFICIENTS = (0.5, 0.35, 0.7, 0.25)
-"""Lift coefficients of cruising aircraft, at which a first equilibrium is sought in turn [-]."""
+"""Lift coefficients of cruising aircraft, tried in turn for the first equilibrium [-]."""
 
 
 def find_envelope(fdm: Fdm, altitude: float) -> Envelope:
-    """Envelope that the aircraft's spec states, or one found by trimming the aircraft.
+    """The envelope in the aircraft's spec, or else an envelope found by trimming the aircraft.
 
-    The range found begins 1.3 times above stall in the steepest turn of the autopilot's tables, and
-    ends where level flight or that turn takes more than 95 % of the throttle or 90 % of a surface,
-    at 1.6 times its beginning or at 204 m/s, which is Mach 0.6 at sea level. Where that leaves no
-    range, the bank is cut to three quarters and to a half.
+    The least airspeed is 1.3 times the stall airspeed in the steepest turn of the autopilot's
+    tables. The largest airspeed is 1.6 times the least, at most 204 m/s (Mach 0.6 at sea level),
+    and leaves level flight and that turn 5 % of the throttle and 10 % of each surface. Where no
+    range is left, the bank is reduced to three quarters, then to a half.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def find_envelope(fdm: Fdm, altitude: float) -> Envelope:
 
     Raises
     ------
-    AircraftError : there is no such range, with the reason
+    AircraftError : no range of airspeeds is left; the message says why
     """
     if fdm.spec.envelope is not None:
         return fdm.spec.envelope
@@ -104,28 +104,28 @@ def find_envelope(fdm: Fdm, altitude: float) -> Envelope:
 
 
 def with_reserve_note(envelope: Envelope, trims: Sequence[Trim], spec: AircraftSpec) -> Envelope:
-    """Envelope that a spec states, with a note if equilibria in it lack a found one's reserves."""
+    """The stated envelope, with a note if some of its equilibria lack the usual control reserve."""
     lacking = [reason for t in trims if (reason := _lacking_reserve(t, spec))]
     if not lacking:
         return envelope
     note = (
-        f"a reserve is lacking at {len(lacking)} of {len(trims)} equilibria in the envelope as"
-        f" stated: {lacking[0]}. Raise airspeed_min, or lower airspeed_max or bank, to have one"
+        f"no control reserve at {len(lacking)} of {len(trims)} equilibria in the stated envelope:"
+        f" {lacking[0]}. To gain one, raise airspeed_min, or lower airspeed_max or bank"
     )
     return replace(envelope, notes=(*envelope.notes, note))
 
 
 def bank_by_class(mass: float) -> float:
-    """Bank in turns [rad] of aircraft of a mass [kg]."""
+    """Bank in turns [rad] for an aircraft's mass [kg]."""
     return math.radians(next(bank for largest, bank in BANK_LIMITS if mass <= largest))
 
 
 def first_trim(fdm: Fdm, altitude: float) -> Trim:
-    """Level flight at the airspeed of the spec's envelope, or at an ordinary lift coefficient.
+    """Level flight at the airspeed of the spec's envelope, or else at a usual lift coefficient.
 
     Raises
     ------
-    AircraftError : the model has no weight or no wing area, or it does not trim
+    AircraftError : the model has no weight or no wing area, or does not trim
     """
     weight = fdm.read("inertia/weight-lbs") * NEWTONS_PER_POUND
     area = fdm.read("metrics/Sw-sqft") * METRES_PER_FOOT**2
@@ -159,9 +159,9 @@ def _outcome(t: Trim) -> str:
 
 
 def _stall_airspeed(fdm: Fdm, first: Trim) -> tuple[float, tuple[str, ...]]:
-    """Airspeed at which the largest lift carries the weight [m/s], and notes.
+    """Airspeed at which the largest lift equals the weight [m/s], and notes.
 
-    The held aircraft is pitched up until its lift decreases.
+    The body is held still and pitched up until its lift decreases.
     """
     weight = fdm.read("inertia/weight-lbs")
     lift = fdm.node("forces/fwz-aero-lbs")
@@ -190,9 +190,10 @@ def _stall_airspeed(fdm: Fdm, first: Trim) -> tuple[float, tuple[str, ...]]:
 
 
 def _flyable_airspeeds(fdm: Fdm, first: Trim, stall: float, bank: float) -> tuple[list[float], str]:
-    """Airspeeds at which level flight and steepest turns trim with reserve, and why they end.
+    """Airspeeds at which the aircraft has control reserve [m/s], and why the range ends.
 
-    They ascend [m/s]; the list is empty if the range is too narrow.
+    Level flight and the steepest turns both ways are tried. The airspeeds ascend; the list is empty
+    if their range is too narrow.
     """
     steepest = TABLE_REACH * (bank + BANK_RESERVE)
     slowest = _STALL_RESERVE * stall / math.sqrt(math.cos(steepest))
@@ -209,12 +210,12 @@ def _flyable_airspeeds(fdm: Fdm, first: Trim, stall: float, bank: float) -> tupl
         if flyable:
             break
     if not flyable or flyable[-1] / flyable[0] < _AIRSPEED_RATIO_MIN:
-        return [], why or "stall and its largest Mach number leave no range of airspeeds"
+        return [], why or "the stall and the largest Mach number leave no range of airspeeds"
     return flyable, why
 
 
 def _why_not_flyable(fdm: Fdm, first: Trim, airspeed: float, bank: float) -> str:
-    """Reserve that level flight or a turn either way lacks, in words; empty if none does."""
+    """Reserve that level flight or a turn lacks, in words; empty if nothing is lacking."""
     near = first
     for turn in (0.0, bank, -bank):
         found = search_trim(fdm, airspeed=airspeed, altitude=first.altitude, bank=turn, start=near)
@@ -227,7 +228,7 @@ def _why_not_flyable(fdm: Fdm, first: Trim, airspeed: float, bank: float) -> str
 
 
 def _lacking_reserve(t: Trim, spec: AircraftSpec) -> str:
-    """Reserve that an equilibrium lacks, in words; empty if it lacks none."""
+    """Reserve that an equilibrium lacks, in words; empty if nothing is lacking."""
     if t.outcome is not TrimOutcome.CONVERGED:
         return f"trim is {_outcome(t)}"
     where = f"{t.airspeed:.0f} m/s and {math.degrees(t.roll):.0f} deg of bank"

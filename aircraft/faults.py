@@ -1,11 +1,12 @@
 """Faults in flight: an actuator that sticks at its trim position, and the loss of the engines.
 
-An aircraft with faults flies from a copy of its JSBSim root in which a switch follows each
-actuator's command, after everything that writes it: behind the autopilot for the command of a
-control input, before the ``<actuator>`` that reads it for any other. Without a fault the switch
-passes the command on unchanged, so the copy flies exactly as the original does. JSBSim's own
-``malfunction/fail_stuck`` would stop an actuator where it is at that moment, and few of JSBSim's
-own models have an ``<actuator>``.
+An aircraft with faults flies from a copy of its JSBSim root. In the copy a switch overwrites each
+actuator's command after everything else has written it. The switch of a control input stands after
+the autopilot, any other switch before the ``<actuator>`` that reads the command. Without a fault
+the switch passes the command on unchanged, so the copy flies exactly like the original.
+
+JSBSim's own ``malfunction/fail_stuck`` is not used: it would stop an actuator at its present
+position, and few of JSBSim's models have an ``<actuator>``.
 """
 
 import shutil
@@ -17,10 +18,10 @@ from aircraft.model import insert_before_flight_control, read_xml, write_xml
 from aircraft.spec import AircraftError, AircraftSpec
 
 ENGINE = "engine"
-"""Name of the loss of all thrust: the throttle's command is 0, and engines are shut down."""
+"""Name of the fault in which all thrust is lost: throttle 0 and engines shut down."""
 
 OF_THRUST = frozenset({ENGINE, "throttle"})
-"""Parts by whose failure thrust is lost, or stays what it was."""
+"""Parts whose failure ends thrust or keeps it constant."""
 
 _FAILED = "fault/{}/failed"
 _HELD = "fault/{}/held"
@@ -35,12 +36,12 @@ def fault_names(spec: AircraftSpec) -> tuple[str, ...]:
 
 
 def failable_root(spec: AircraftSpec, root: Path, directory: Path) -> Path:
-    """Write a copy of a JSBSim root, whose aircraft can fail, to ``directory``; return that.
+    """Write a copy of a JSBSim root in which parts can fail to ``directory``, and return it.
 
     Raises
     ------
-    AircraftError : an actuator's command is neither that of a control input nor read by an
-        ``<actuator>`` of the model
+    AircraftError : an actuator's command belongs to no control input, and no ``<actuator>`` of the
+        model reads it
     """
     shutil.copytree(root, directory, dirs_exist_ok=True)
     model_file = directory / "aircraft" / spec.model / f"{spec.model}.xml"
@@ -68,7 +69,7 @@ def failable_root(spec: AircraftSpec, root: Path, directory: Path) -> Path:
 
 
 def _switch(command: str, faults: tuple[str, ...]) -> ET.Element:
-    """Component that overwrites a command where one of the faults has occurred."""
+    """JSBSim component that overwrites a command once one of the faults has occurred."""
     label = command.replace("/", "-").replace("[", "-").replace("]", "")
     switch = ET.Element("switch", name=f"fault/{label}")
     ET.SubElement(switch, "default", value=command)
@@ -107,12 +108,12 @@ class Faults:
         self.failed: list[str] = []
 
     def store_trim_positions(self) -> None:
-        """Store every actuator's command as its trim position; call it at the release from trim."""
+        """Store each actuator's command as its trim position, at the release from trim."""
         for actuator in self._fdm.spec.actuators:
             self._fdm.write(_HELD.format(actuator.name), self._fdm.read(actuator.commands[0]))
 
     def fail(self, name: str) -> None:
-        """Let a part fail from the next time step on.
+        """Make a part fail from the next time step on.
 
         Raises
         ------
@@ -131,7 +132,7 @@ class Faults:
                 self._fdm.write(property_name, value)
 
     def clear(self) -> None:
-        """Undo every fault before the aircraft is placed again, which starts its engines."""
+        """Undo every fault, before the next placing of the aircraft, which restarts its engines."""
         for name in self.failed:
             self._fdm.write(_FAILED.format(name), 0.0)
         self.failed.clear()

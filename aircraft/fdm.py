@@ -1,4 +1,4 @@
-"""One aircraft in JSBSim, seen in SI and radians, with typed and checked access to properties."""
+"""One aircraft in JSBSim, in SI and radians, with typed and checked access to properties."""
 
 import contextlib
 import ctypes
@@ -21,7 +21,7 @@ from aircraft.state import RigidBodyState, Vector, with_wind
 from common.physics import METRES_PER_FOOT
 
 TIME_STEP = 1.0 / 120.0
-"""Integration step of JSBSim [s]; the autopilot in it computes at every one to three of them."""
+"""Integration step of JSBSim [s]; the autopilot computes at every first, second or third step."""
 
 EARTH_RATE = 7.292115e-5
 """Rotation rate of the earth, as in JSBSim's default planet [rad/s]."""
@@ -34,18 +34,18 @@ INTEGRATORS = tuple(
     for kind in ("rate", "position")
     for motion in ("rotational", "translational")
 )
-"""Properties that choose how the rigid body is integrated; 0 in all four holds it still."""
+"""Properties that choose the integrators of the rigid body; 0 in all four holds the body still."""
 
 START_ENGINES = (("propulsion/set-running", -1.0),)
-"""Property that starts every engine at once, where JSBSim can."""
+"""Property that starts every engine at once, if JSBSim can do so for the engine's type."""
 
 CRANK = (("propulsion/magneto_cmd", 3.0), ("propulsion/starter_cmd", 1.0))
-"""Properties that start an engine as a pilot does: both magnetos, and the starter."""
+"""Properties that start an engine as a pilot does: both magnetos and the starter."""
 
 STOP_CRANKING = (("propulsion/starter_cmd", 0.0),)
 
 RUN_UP_STEPS = 1200
-"""Time steps in which engines run up before an aircraft is placed, and as many for cranking."""
+"""Time steps of an engine's run-up; cranking takes as many before it."""
 
 _INITIAL_STATE = (
     "ic/lat-geod-rad",
@@ -61,53 +61,53 @@ _INITIAL_STATE = (
     "ic/q-rad_sec",
     "ic/r-rad_sec",
 )
-"""JSBSim's initial conditions, in the order in which they must be set: each may change others."""
+"""JSBSim's initial conditions, in the order of setting them: each may change the others."""
 
 _ACCELERATIONS = (
     *(f"accelerations/{component}dot-ft_sec2" for component in "uvw"),
     *(f"accelerations/{component}dot-rad_sec2" for component in "pqr"),
 )
-"""Rates of the body's velocity and of its rates of rotation [ft/s^2, rad/s^2]."""
+"""Rates of change of the body's velocity and angular rates [ft/s^2, rad/s^2]."""
 
 _WIND = ("atmosphere/wind-north-fps", "atmosphere/wind-east-fps", "atmosphere/wind-down-fps")
 """Velocity of the air [ft/s]."""
 
 _NORTH_WIND_MIN = 1e-6
-"""Least wind northward [ft/s]: in none JSBSim does not turn its turbulence into the wind."""
+"""Least wind to the north [ft/s]: in still air JSBSim does not align turbulence with the wind."""
 
 _RESET_ONLY = 2
 """Mode of JSBSim's reset that does not run the initial conditions."""
 
 _SETTLE_STRIDE = 4
-"""Time steps between two looks whether accelerations still change."""
+"""Time steps between two checks whether accelerations still change."""
 
 _SLOW_AFTER = 120
 """Time steps after which engines that still change count as slow."""
 
 _SLOW_STEP_RATIO = 8
-"""Length of the steps in which slow engines settle, over the time step [-].
+"""Step length for slow engines over the time step [-].
 
-They are still short against the second that a piston engine takes to change its speed.
+It stays short against the second that a piston engine takes to change its speed.
 """
 
 _NAMED = re.compile(r'<\w+\s[^>]*?name\s*=\s*"([^"]+)"')
-"""Elements of a model's file that are named: functions and components of its controls."""
+"""Named elements of a model's file: its functions and the components of its controls."""
 
 _REASON_MOST = 300
-"""Letters of JSBSim's reason that a message quotes."""
+"""Largest number of characters of JSBSim's output that a message quotes."""
 
 
 class Fdm:
     """One aircraft in JSBSim.
 
-    Properties are read and written in JSBSim's own units; a name that JSBSim does not have is
-    refused. Everything else is in SI and radians.
+    Properties are read and written in JSBSim's own units; an unknown name is refused. Everything
+    else is in SI and radians.
 
     Parameters
     ----------
     spec : the aircraft
-    root : JSBSim root to load it from unchanged, e.g. one with an autopilot written into it; by
-        default a copy of the aircraft's own model without autopilot, outputs, servo play and ground
+    root : JSBSim root to load the aircraft from, unchanged, such as one with an autopilot; by
+        default a copy of the aircraft's model without autopilot, outputs, servo play and ground
         contacts
     time_step : integration step [s]
 
@@ -141,7 +141,7 @@ class Fdm:
         self._accelerations = [self.node(name).get_double_value for name in _ACCELERATIONS]
         self._engines_started = False
         self.cranked = False
-        # Bound directly to JSBSim: the innermost call of every flight.
+        # Bound to JSBSim's own method, because it is the innermost call of every flight.
         self.run: Callable[[], object] = self._exec.run
 
     def _load(self, root: Path) -> jsbsim.FGFDMExec:
@@ -173,7 +173,7 @@ class Fdm:
         return self._find(name) is not None
 
     def node(self, name: str) -> jsbsim.FGPropertyNode:
-        """Node of an existing property, for repeated access; JSBSim itself would create one."""
+        """Node of an existing property, for repeated access; JSBSim would create a missing one."""
         node = self._find(name)
         if node is None:
             raise AircraftError(
@@ -182,8 +182,9 @@ class Fdm:
         return node
 
     def not_finite(self) -> list[str]:
-        """Names of the properties whose value is not finite; those that the model computes itself
-        come first, in the order of its file, then those of engines.
+        """Names of properties whose value is not finite.
+
+        The model's own functions and components come first, in the order of its file, then engines.
         """
         names = [line.split(" ")[0] for line in self._exec.query_property_catalog("").splitlines()]
         nodes = {name: self._find(name) for name in names}
@@ -203,7 +204,7 @@ class Fdm:
     def _find(self, name: str) -> jsbsim.FGPropertyNode | None:
         if name in self._nodes:
             return self._nodes[name]
-        # An invalid name would end the whole process in JSBSim's property tree.
+        # JSBSim's property tree ends the whole process at an invalid name.
         if not PROPERTY.fullmatch(name):
             return None
         node = self._properties.get_node(name)
@@ -213,7 +214,7 @@ class Fdm:
         return node
 
     def writable_node(self, name: str) -> jsbsim.FGPropertyNode:
-        """Node of an existing property that takes writes."""
+        """Node of an existing property that can be written."""
         node = self.node(name)
         if not node.get_attribute(jsbsim.Attribute.WRITE):
             raise AircraftError(
@@ -222,23 +223,23 @@ class Fdm:
         return node
 
     def read(self, name: str) -> float:
-        """Value of a property, in JSBSim's unit."""
+        """Value of a property in JSBSim's unit."""
         return float(self.node(name).get_double_value())
 
     def write(self, name: str, value: float) -> None:
-        """Set a property, in JSBSim's unit."""
+        """Set a property in JSBSim's unit."""
         self.writable_node(name).set_double_value(value)
 
     # Placing
 
     def place(self, state: RigidBodyState, wind: tuple[float, float] | None = None) -> None:
-        """Put the aircraft into ``state``, configured as its spec says.
+        """Put the aircraft into ``state``, in the configuration of its spec.
 
-        Engines are started the first time, and keep running afterwards.
+        Engines are started at the first placing and keep running afterwards.
 
         Parameters
         ----------
-        state : against the air
+        state : relative to the air
         wind : velocity of the air, north and east [m/s]; None for still air
         """
         self._initialise(state, wind)
@@ -252,7 +253,7 @@ class Fdm:
 
         Parameters
         ----------
-        state : against the air
+        state : relative to the air
         steps : enough for servos and engines to come to rest
         wind : velocity of the air, north and east [m/s]; None for still air
         """
@@ -262,12 +263,12 @@ class Fdm:
             self.step(steps)
 
     def reset(self) -> None:
-        """Reset every model of JSBSim, such as turbulence and engines, as loaded; place it next."""
+        """Reset JSBSim's models, such as turbulence and engines; place the aircraft next."""
         self._exec.reset_to_initial_conditions(_RESET_ONLY)
         self._engines_started = False
 
     def allow_engine_restart(self) -> None:
-        """Start engines that have stopped, stalled by too little throttle, at the next placing."""
+        """Have the next placing start engines that stalled for lack of throttle."""
         self._engines_started = self._engines_started and self._engines_run()
 
     def _initialise(self, state: RigidBodyState, wind: tuple[float, float] | None) -> None:
@@ -275,7 +276,7 @@ class Fdm:
         for node, (_, value) in zip(self._initial, initial_conditions(over_ground), strict=True):
             node.set_double_value(value)
         try:
-            # JSBSim prints where engines are still to be started; a silence costs time.
+            # Silencing takes time, and JSBSim prints only while engines are still to be started.
             with contextlib.nullcontext() if self._engines_started else silenced():
                 placed = self._exec.run_ic()
         except jsbsim.BaseError as error:
@@ -290,14 +291,14 @@ class Fdm:
         for name, value in self.spec.configuration:
             self.write(name, value)
         if wind:
-            # JSBSim sets the wind of its initial conditions, 0, when it runs them.
+            # Running the initial conditions has set their wind, which is 0.
             self.set_wind(*wind)
 
     def _start_engines(self) -> bool:
-        """Start every engine and run it up, the body held; return whether that took any time.
+        """Start and run up every engine with the body held still; return whether time has passed.
 
-        Engines start at once where JSBSim can, otherwise as a pilot does it. They run up at full
-        throttle: a governed propeller that comes from idle can stay windmilling at its fine stop.
+        An engine that JSBSim cannot start at once is cranked as a pilot does. Engines run up at
+        full throttle: from idle, a governed propeller can stay windmilling at its fine stop.
         """
         self._engines_started = True
         for name, value in START_ENGINES:
@@ -322,7 +323,7 @@ class Fdm:
             seconds = RUN_UP_STEPS * self.time_step
             raise AircraftError(
                 f"aircraft '{self.spec.name}': an engine does not run after {seconds:g} s of"
-                " cranking and as much without"
+                f" cranking and {seconds:g} s more"
             )
         return True
 
@@ -332,7 +333,7 @@ class Fdm:
     # Flying
 
     def command(self, inputs: dict[str, float]) -> None:
-        """Set control inputs by name [-], unclipped."""
+        """Set control inputs by name, without limits [-]."""
         for name, value in inputs.items():
             control_input = self.spec.input(name)
             command = control_input.command(value)
@@ -340,7 +341,7 @@ class Fdm:
                 self.write(commanded, command)
 
     def set_wind(self, north: float, east: float) -> None:
-        """Set the velocity of the air [m/s]: north and east, where the wind blows to."""
+        """Set the velocity of the air, north and east [m/s]."""
         north, east = north / METRES_PER_FOOT, east / METRES_PER_FOOT
         values = (north if abs(north) > _NORTH_WIND_MIN else _NORTH_WIND_MIN, east, 0.0)
         for node, value in zip(self._wind, values, strict=True):
@@ -352,18 +353,18 @@ class Fdm:
             self.run()
 
     def stream(self, output: str) -> None:
-        """Send the aircraft to another program from now on, and run no faster than the clock.
+        """Stream the aircraft's motion to another program, and fly in real time from now on.
 
-        The flight stays the same to the last bit. Place the aircraft next: JSBSim's outputs begin
-        with its initial conditions.
+        The flight stays the same to the last bit. Place the aircraft next: JSBSim's outputs start
+        when it runs its initial conditions.
 
         Parameters
         ----------
-        output : JSBSim's XML element ``<output>``, which says where to and what
+        output : JSBSim's XML element ``<output>``, with the address and the contents
 
         Raises
         ------
-        AircraftError : JSBSim does not take it
+        AircraftError : JSBSim rejects the output
         """
         with tempfile.TemporaryDirectory() as folder, silenced():
             path = Path(folder) / "output.xml"
@@ -371,12 +372,12 @@ class Fdm:
             accepted = self._exec.set_output_directive(str(path))
             self._exec.enable_output()
         if not accepted:
-            raise AircraftError(f"JSBSim does not take the output {output}; check its address")
+            raise AircraftError(f"JSBSim rejects the output {output}; check its address")
         self.run = paced(self._exec.run, self.time_step)
 
     @contextlib.contextmanager
     def frozen(self) -> Iterator[None]:
-        """Hold the rigid body still while servos, propellers and forces go on."""
+        """Hold the rigid body still in this context; servos, propellers and forces go on."""
         before = {name: self.read(name) for name in INTEGRATORS}
         for name in INTEGRATORS:
             self.write(name, 0.0)
@@ -387,20 +388,19 @@ class Fdm:
                 self.write(name, value)
 
     def settle(self, tolerance: float = 1e-9, steps_max: int = 4800) -> bool:
-        """Step, inside ``frozen``, until all accelerations are steady; return whether they are.
+        """Step until all accelerations are steady, inside ``frozen``; return whether they are.
 
-        What takes longer than a second, such as the speed of a piston engine, is sped up by longer
-        steps.
+        After one second the steps get longer, because a piston engine's speed settles slowly.
 
         Parameters
         ----------
         tolerance : largest change of an acceleration in a step [m/s^2, rad/s^2]
-        steps_max : number of steps after which it gives up
+        steps_max : number of steps after which the accelerations count as unsteady
         """
         if self._comes_to_rest(tolerance, min(_SLOW_AFTER, steps_max)):
             return True
-        # Where a slow engine comes to rest does not depend on the length of the steps. Whether it
-        # has come to rest is judged at the steps of flight.
+        # The state of rest does not depend on the step length. Whether it has been reached is
+        # judged with the time step of the flight.
         long_steps = max(0, steps_max - _SLOW_AFTER) // _SLOW_STEP_RATIO
         self._exec.set_dt(_SLOW_STEP_RATIO * self.time_step)
         try:
@@ -426,20 +426,20 @@ class Fdm:
         return False
 
     def acceleration_body(self) -> Vector:
-        """Rates of the body velocity components after the last step [m/s^2]."""
+        """Rates of change of the body velocity components after the last step [m/s^2]."""
         u_dot, v_dot, w_dot = (read() * METRES_PER_FOOT for read in self._accelerations[:3])
         return u_dot, v_dot, w_dot
 
     def angular_acceleration(self) -> Vector:
-        """Rates of p, q and r after the last step [rad/s^2]."""
+        """Rates of change of p, q and r after the last step [rad/s^2]."""
         p_dot, q_dot, r_dot = (read() for read in self._accelerations[3:])
         return p_dot, q_dot, r_dot
 
 
 def initial_conditions(state: RigidBodyState) -> list[tuple[str, float]]:
-    """Properties, and their values in JSBSim's units, that set an initial state.
+    """JSBSim's properties of an initial state, with values in JSBSim's units.
 
-    The order matters to the last digit: JSBSim works each one into those before it.
+    The order matters to the last digit: JSBSim combines each value with the earlier ones.
     """
     u, v, w = (speed / METRES_PER_FOOT for speed in state.velocity_body)
     values = (
@@ -458,16 +458,16 @@ def initial_conditions(state: RigidBodyState) -> list[tuple[str, float]]:
 
 
 def before_hold(state: RigidBodyState, duration: float) -> RigidBodyState:
-    """State in which to place a body so that it is in ``state`` after ``duration`` [s] held still.
+    """State that becomes ``state`` after the body is held still for ``duration`` [s].
 
-    A held body stays fixed in inertial space while the earth turns under it, so it is placed as far
-    east as it will drift west.
+    A held body stays fixed in inertial space while the earth turns under it. It is therefore placed
+    further east by the distance that it will drift west.
     """
     return replace(state, longitude=state.longitude + EARTH_RATE * duration)
 
 
 def paced(run: Callable[[], object], time_step: float) -> Callable[[], object]:
-    """``run``, a simulation's step of ``time_step`` [s], followed by a wait for the clock.
+    """``run``, a simulation's step of ``time_step`` [s], slowed down to real time.
 
     A simulation that falls behind catches up as fast as it can.
     """
@@ -487,14 +487,14 @@ def paced(run: Callable[[], object], time_step: float) -> Callable[[], object]:
 
 @contextlib.contextmanager
 def silenced() -> Iterator[None]:
-    """Keep what JSBSim prints off standard output and error, also where these are files."""
+    """Discard what JSBSim prints to standard output and error, also if these are files."""
     with Path(os.devnull).open("w", encoding="utf-8") as sink, _printed_into(sink):
         yield
 
 
 @contextlib.contextmanager
 def captured() -> Iterator[list[str]]:
-    """Same as ``silenced``; the list has the lines that were printed, once the context is left."""
+    """Same as ``silenced``; the printed lines are in the list after the end of the context."""
     lines: list[str] = []
     with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as sink:
         try:
@@ -507,7 +507,7 @@ def captured() -> Iterator[list[str]]:
 
 @contextlib.contextmanager
 def _printed_into(sink: IO[str]) -> Iterator[None]:
-    """Have standard output and error, of Python and of the process, written into a file."""
+    """Redirect standard output and error, of Python and of the process, into a file."""
     _flush()
     saved = {stream: os.dup(stream) for stream in (1, 2)}
     try:
@@ -518,7 +518,8 @@ def _printed_into(sink: IO[str]) -> Iterator[None]:
                 yield
         finally:
             sink.flush()
-            # A file or a pipe is buffered: what is left in a buffer would be printed later.
+            # Files and pipes are buffered: text left in a buffer would be printed after the
+            # context.
             _flush()
     finally:
         for stream, copy in saved.items():
@@ -527,18 +528,19 @@ def _printed_into(sink: IO[str]) -> Iterator[None]:
 
 
 def _reason(lines: list[str], root: Path) -> str:
-    """Return in one line why JSBSim refuses a model, from what it said: without colours, and
-    without the folder, which may be a copy.
+    """One line that says why JSBSim refuses a model, made from its printed lines.
+
+    Colours are removed, and so is the folder, which may be that of a copy.
     """
     said = [re.sub(r"\x1b\[[0-9;]*m", "", line).strip() for line in lines]
     said = [line for line in said if line and not line.startswith("JSBSim Flight Dynamics Model")]
     text = " ".join(dict.fromkeys(" ".join(said).replace(f"{root}/", "").split("\n")))
     text = " ".join(text.split())
-    return text[:_REASON_MOST].rstrip(" .;") or "it says no more"
+    return text[:_REASON_MOST].rstrip(" .;") or "it gives no reason"
 
 
 def _flush() -> None:
-    """Write what Python and C have buffered."""
+    """Flush the output buffers of Python and C."""
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
     if os.name == "posix":

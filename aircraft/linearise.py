@@ -1,16 +1,16 @@
 """Linear model about an equilibrium, by central differences on JSBSim itself.
 
-JSBSim's own linearisation bypasses servo lags and leaves the simulation unusable, so the rigid body
-is held still (``Fdm.frozen``), one quantity at a time is moved both ways, and the accelerations are
-read once all else has settled. A servo or propeller cannot be set directly; it is moved by holding
-its input off trim, and its own pole is read from how it returns. The direct effect of an input,
-before servo or propeller has moved (a motor's torque on the airframe), is separated by reading
-after one step as well.
+JSBSim's own linearisation bypasses servo lags and leaves the simulation unusable. Here the rigid
+body is held still (``Fdm.frozen``), one quantity at a time is moved both ways, and the
+accelerations are read once everything else has settled. A servo or propeller cannot be set
+directly: its input is held off trim, and its pole follows from the return to trim. A second reading
+after one step separates the direct effect of an input, such as a motor's torque on the airframe,
+from the effect of the moved servo or propeller.
 
-Where the spec names no property that follows an input (for stock aircraft it is unknown), the
-input's lag is measured: the difference of the accelerations from their final value after a step has
-an area and a first moment in time, and those are the coefficients of a lag of first or second order
-(a piston engine's manifold pressure, then its speed).
+For an input without a driven state in the spec, as in stock aircraft, the lag is measured from a
+step response. The area and the first moment in time of the remaining change give the coefficients
+of a lag of first or second order, such as a piston engine's manifold pressure followed by its
+speed.
 """
 
 import math
@@ -31,56 +31,55 @@ Matrix = npt.NDArray[np.float64]
 BODY_STATES = ("airspeed", "alpha", "beta", "p", "q", "r", "roll", "pitch", "altitude")
 """Rigid-body states [m/s, rad, rad, rad/s, rad/s, rad/s, rad, rad, m].
 
-Position and yaw do not act back.
+Position and yaw do not influence them.
 """
 
 EXTRA_OUTPUTS = ("heading_rate", "climb_rate")
-"""Outputs beside the states: rate of the air-relative course [rad/s] and climb rate [m/s]."""
+"""Outputs besides the states: rate of the air-relative course [rad/s], and climb rate [m/s]."""
 
 _AIRSPEED_STEP = 0.0025
 _ALTITUDE_STEP = 5.0
 _STEP = 0.002
 _INPUT_STEP = 0.01
-"""Steps of airspeed over itself [-], altitude [m], angles and rates [rad, rad/s] and inputs [-].
+"""Steps of relative airspeed [-], altitude [m], angles and rates [rad, rad/s], and inputs [-].
 
-They are large against what is left of settling, ``_SETTLED``, and small against the curvature of a
-model's tables.
+Their effects are large against the error of settling, ``_SETTLED``, and the steps are small against
+the curvature of a model's tables.
 """
 
 _LAG_STEP = {"throttle": 0.05}
-"""Larger input steps for lags [-]: a turbine spools at a steady rate, so a small one shows none."""
+"""Larger input steps for lags [-]: a turbine spools at a constant rate and hides a small step."""
 
 _SETTLED = 3e-8
 """Change of acceleration in a step below which engines count as settled [m/s^2, rad/s^2].
 
-Behind an engine as slow as a second, 4e-6 is then left, where the differences are 5e-3 and more.
+With an engine lag of one second, an error of 4e-6 remains in differences of at least 5e-3.
 """
 
 _LAG_STEPS_MAX = 2400
 """Largest number of time steps in which a lag is measured: 20 s."""
 
 _LAG_SETTLED = 0.002
-"""Fraction of the effect that may be left when the measurement of a lag ends [-]."""
+"""Remaining fraction of the effect at which the measurement of a lag ends [-]."""
 
 _SECOND_ORDER = 0.05
-"""Product of two time constants over their sum squared above which a lag is of second order [-]."""
+"""Least product of two time constants over their squared sum in a second-order lag [-]."""
 
 _AT_ONCE = 1e-6
-"""Fraction of its way that a driven state may have left one step after its input moved [-].
+"""Least remaining fraction of a driven state's change one step after its input moved [-].
 
-With less it follows at once and is no state; rounding leaves less.
+A smaller remainder is rounding: the quantity follows its input at once and is not a state.
 """
 
 _NO_LAG = 0.6
-"""Time steps up to which a time constant is no lag but the hold of an input, half a step [-]."""
+"""Time constant below which there is no lag, in time steps [-]: holding an input takes half."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class LinearModel:
-    """A linear system x' = A x + B u, y = C x + D u, with python-control's names of attributes.
+    """A linear system x' = A x + B u, y = C x + D u, with python-control's attribute names.
 
-    python-control analyses such models. They need numpy alone, so that a flight whose autopilot is
-    already designed need not import python-control.
+    The class needs numpy alone, so a flight with a stored design does not import python-control.
 
     Attributes
     ----------
@@ -103,7 +102,7 @@ class LinearModel:
     def pick(
         self, states: Sequence[str], inputs: Sequence[str], outputs: Sequence[str]
     ) -> tuple[Matrix, Matrix, Matrix, Matrix]:
-        """A, B, C and D of the named states, inputs and outputs, all else at rest."""
+        """A, B, C and D for the named states, inputs and outputs, with all others at 0."""
         rows = [self.state_labels.index(name) for name in states]
         columns = [self.input_labels.index(name) for name in inputs]
         reads = [self.output_labels.index(name) for name in outputs]
@@ -126,14 +125,14 @@ def linearise(fdm: Fdm, trim: Trim) -> LinearModel:
     Returns
     -------
     LinearModel
-        States: ``BODY_STATES`` followed by the aircraft's driven states, then ``INPUT_effect`` for
-        each measured lag, followed by ``INPUT_effect_rate`` where it is of second order. Inputs:
-        the aircraft's control inputs [-]. Outputs: every state followed by ``EXTRA_OUTPUTS``. All
-        are deviations from trim, in SI and radians.
+        States: ``BODY_STATES``, then the aircraft's driven states, then ``INPUT_effect`` for each
+        measured lag, with ``INPUT_effect_rate`` if it is of second order. Inputs: the aircraft's
+        control inputs [-]. Outputs: every state, then ``EXTRA_OUTPUTS``. All are deviations from
+        trim, in SI and radians.
 
     Raises
     ------
-    AircraftError : a driven state does not follow its input, or follows it at once
+    AircraftError : a driven state does not follow its input, or follows it without delay
     """
     with fdm.frozen():
         differences = _Differences(fdm, trim)
@@ -146,7 +145,8 @@ def linearise(fdm: Fdm, trim: Trim) -> LinearModel:
             lag = differences.measured_lag(control_input)
             if lag.total <= _NO_LAG * fdm.time_step:
                 continue
-            # A smaller time constant of less than a step is how JSBSim holds and averages an input.
+            # A second time constant below a time step only shows how JSBSim holds and averages
+            # inputs.
             second_order = lag.product > max(_SECOND_ORDER * lag.total, fdm.time_step) * lag.total
             model = model.with_lag(j, lag if second_order else lag._replace(product=0.0))
             states.append(f"{control_input.name}_effect")
@@ -164,7 +164,7 @@ def linearise(fdm: Fdm, trim: Trim) -> LinearModel:
 
 
 class _Lag(NamedTuple):
-    """Sum [s] and product [s^2] of two time constants; the product is 0 for a single one."""
+    """Sum [s] and product [s^2] of a lag's two time constants; the product is 0 for first order."""
 
     total: float
     product: float
@@ -203,11 +203,11 @@ class _Matrices:
 
 
 class _Differences:
-    """Central differences about a trim, the rigid body held still.
+    """Central differences about a trim, with the rigid body held still.
 
-    A read vector holds the rates of the body states, the extra outputs and the driven states.
-    Everything is read settled, so a body state also moves a propeller that follows it; that part is
-    subtracted.
+    A reading has the rates of the body states, the extra outputs and the driven states. It is taken
+    after settling, so a change of a body state also moves a propeller that depends on it; that part
+    is subtracted.
     """
 
     def __init__(self, fdm: Fdm, trim: Trim) -> None:
@@ -234,7 +234,7 @@ class _Differences:
         self._inputs = np.array([trim.inputs[i.name] for i in self._spec.inputs])
 
     def with_driven_states(self) -> _Matrices:
-        """Matrices with body and driven states, every other input acting at once."""
+        """Matrices of body and driven states; inputs without a driven state act without lag."""
         n_body = len(BODY_STATES)
         n_read = n_body + len(EXTRA_OUTPUTS)
         n_driven = len(self._spec.driven_states)
@@ -262,7 +262,8 @@ class _Differences:
                     f"aircraft '{self._spec.name}': '{state.position}' does not follow input"
                     f" '{state.input}'; check its spec"
                 )
-            # Settled: driven * moved + direct. After one step: driven * moved by then + direct.
+            # Settled: driven * change + direct. After one step: driven * change until then +
+            # direct.
             left = by_input[:, j] - at_once[:, j]
             if abs(left[n_read + i]) <= _AT_ONCE * abs(driven_by_input[i, j]):
                 raise self._follows_at_once(i)
@@ -281,10 +282,10 @@ class _Differences:
         )
 
     def measured_lag(self, control_input: ControlInput) -> _Lag:
-        """Lag between an input and the accelerations.
+        """Lag between an input and the accelerations, from a step response.
 
-        Behind two lags, the difference from the final value has the area T1 + T2 and the first
-        moment T1^2 + T1 T2 + T2^2.
+        With two lags, the difference from the final value has the area T1 + T2 and the first moment
+        T1^2 + T1 T2 + T2^2.
         """
         name = control_input.name
         j = self._spec.inputs.index(control_input)
@@ -319,12 +320,12 @@ class _Differences:
     def _difference(
         self, *, body: int | None = None, control_input: int | None = None, step: float
     ) -> Matrix:
-        """Derivative of the read vector by one body state or input."""
+        """Derivative of the reading with respect to one body state or input."""
         high, low = (self._read(body, control_input, sign * step) for sign in (1.0, -1.0))
         return (high - low) / (2.0 * step)
 
     def _read(self, body: int | None, control_input: int | None, step: float) -> Matrix:
-        """Read vector with one quantity moved and all settled."""
+        """Reading with one quantity moved, after settling."""
         point, inputs = self._body.copy(), self._inputs.copy()
         if body is not None:
             point[body] += step
@@ -334,7 +335,7 @@ class _Differences:
         return np.concatenate([self._rates_and_extras(point), self._driven()])
 
     def _difference_after_one_step(self, j: int) -> Matrix:
-        """Derivative by input j of the read vector one step after the input is moved."""
+        """Derivative of the reading one step after input j is moved, with respect to that input."""
         reads = []
         for sign in (1.0, -1.0):
             self._hold(self._body, self._inputs)
@@ -348,7 +349,7 @@ class _Differences:
         return np.asarray((reads[0] - reads[1]) / (2.0 * _INPUT_STEP))
 
     def _hold(self, point: Matrix, inputs: Matrix) -> None:
-        """Hold the body at a point of ``BODY_STATES``, with some inputs, until all else settles."""
+        """Hold the body at a point of ``BODY_STATES`` with given inputs until all else settles."""
         v, alpha, beta, p, q, r, roll, pitch, altitude = (float(x) for x in point)
         self._fdm.command(
             {i.name: float(u) for i, u in zip(self._spec.inputs, inputs, strict=True)}
@@ -383,7 +384,7 @@ class _Differences:
         beta_dot = (side_dot - v_dot * math.sin(beta)) / (v * math.cos(beta))
         roll_dot, pitch_dot, _ = euler_rates((p, q, r), roll, pitch)
         climb_rate = -level(velocity, roll, pitch)[2]
-        # Against the earth the body's frame turns, which adds rates x velocity.
+        # The body frame rotates relative to the earth, which adds rates x velocity.
         acceleration = (
             u_dot + q * w - r * side,
             side_dot + r * u - p * w,
@@ -404,9 +405,9 @@ class _Differences:
         )
 
     def _pole(self, i: int, j: int) -> float:
-        """Pole [1/s] of driven state i, from its return to rest after a move of input j.
+        """Pole [1/s] of driven state i, from its return to rest after input j has moved.
 
-        The first step is left out: JSBSim averages inputs in it.
+        The first step is left out, because JSBSim averages the input over it.
         """
         self._hold(self._body, self._inputs)
         rest = self._driven()[i]
@@ -421,10 +422,10 @@ class _Differences:
         return math.log(second / first) / self._fdm.time_step
 
     def _follows_at_once(self, i: int) -> AircraftError:
-        """Error of a driven state that reaches its input, or passes it, within a step or two."""
+        """Error for a driven state that reaches or passes its input within one or two steps."""
         state = self._spec.driven_states[i]
         return AircraftError(
             f"aircraft '{self._spec.name}': '{state.position}' follows input '{state.input}' within"
-            f" a time step of {self._fdm.time_step:.4g} s, so that it is no state; leave"
+            f" a time step of {self._fdm.time_step:.4g} s, so it is not a state; leave"
             f" '{state.name}' out of the driven states of its spec"
         )

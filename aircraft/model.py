@@ -1,7 +1,7 @@
-"""The XML of a JSBSim model: read it, copy it without what a flight does not need, and change it.
+"""Read, copy and change the XML of a JSBSim model.
 
-JSBSim's own models write files, open sockets and fly under autopilots of their own. The copies that
-this project flies have none of these.
+JSBSim's own models write files, open sockets and have their own autopilots. The copies that this
+project flies have none of these.
 """
 
 import contextlib
@@ -19,7 +19,7 @@ from common.files import files_hash
 Document: TypeAlias = "ET.ElementTree[ET.Element]"
 
 _REPEATABLE_SECTIONS = ("system", "autopilot", "input", "output")
-"""Sections that a model can have several times; all others it has once."""
+"""Sections that a model may have several times; it has every other section once."""
 
 _AUTOPILOT_NAME = re.compile(r"(^|[^a-z])(ap|autopilot|autothrottle)([^a-z]|$)")
 _PLAY = ("hysteresis_width", "deadband_width")
@@ -33,23 +33,23 @@ def stock_root() -> Path:
 
 
 def read_xml(path: Path) -> Document:
-    """XML of a file.
+    """XML document in a file.
 
     Raises
     ------
-    AircraftError : it cannot be read, is not XML, or not in the encoding that it declares
+    AircraftError : the file cannot be read, is not XML, or has another encoding than it declares
     """
     try:
         return ET.parse(path)
     except OSError as error:
         raise AircraftError(f"{path}: cannot be read: {error.strerror}; check the file") from None
     except (ET.ParseError, LookupError, ValueError) as error:
-        # LookupError and ValueError: an encoding that the parser does not know.
+        # An encoding that the parser does not know raises LookupError or ValueError.
         raise AircraftError(f"{path}: not valid XML: {error}; correct it") from None
 
 
 def read_model(files: ModelFiles) -> Document:
-    """XML of a model, with each section that stands in another file put in its place.
+    """XML document of a model, with the sections from other files inserted.
 
     A section whose file is missing stays as it is.
 
@@ -77,24 +77,24 @@ def write_xml(document: Document, path: Path) -> None:
 
 
 def insert_before_flight_control(config: ET.Element, system: ET.Element) -> None:
-    """Add a system to a model, computed before its flight control."""
+    """Add a system to a model; JSBSim computes it before the flight control."""
     tags = [element.tag for element in config]
     place = tags.index("flight_control") if "flight_control" in tags else len(tags)
     config.insert(place, system)
 
 
 def copy_model(files: ModelFiles, directory: Path, *, play: bool = True) -> Path:
-    """Copy a model with all it refers to into a JSBSim root of its own; return the model file.
+    """Copy a model and every file that it refers to into a new JSBSim root; return the model file.
 
-    Outputs and inputs (files, sockets) are left out, and so is every autopilot: ``<autopilot>``
-    elements, and systems named like one. Their properties stay, at 0: flight controls that add an
-    autopilot's command to the pilot's then add 0.
+    Outputs, inputs (files, sockets) and autopilots are left out: ``<autopilot>`` elements, and
+    systems named like an autopilot. The autopilots' properties stay, at 0, so that flight controls
+    that add an autopilot's command to the pilot's add 0.
 
     Parameters
     ----------
-    files : of the model; they are not changed
+    files : the model's files, which stay unchanged
     directory : where to write the copy
-    play : whether servos keep their hysteresis and dead bands; a linear model has none
+    play : whether servos keep their hysteresis and dead bands, which a linear model has not
 
     Raises
     ------
@@ -122,7 +122,7 @@ def copy_model(files: ModelFiles, directory: Path, *, play: bool = True) -> Path
     if not play:
         for folder in (target, directory / "systems"):
             for path in folder.rglob("*.xml"):
-                # Files that are no XML may stand beside a model: JSBSim does not read them.
+                # The folder may hold files that are not XML; JSBSim does not read them.
                 with contextlib.suppress(AircraftError):
                     part = read_xml(path)
                     if _remove_play(part.getroot()):
@@ -134,7 +134,7 @@ def copy_model(files: ModelFiles, directory: Path, *, play: bool = True) -> Path
 
 
 def model_hash(files: ModelFiles) -> str:
-    """Hash of every file that the copy of a model has.
+    """Hash of all files in the copy of a model.
 
     Raises
     ------
@@ -148,7 +148,7 @@ def model_hash(files: ModelFiles) -> str:
 
 
 def _unread_files(folder: str, names: list[str]) -> list[str]:
-    """Names that JSBSim does not read: pictures and sounds can be large, and links lead nowhere."""
+    """Names that JSBSim does not read, such as large pictures and sounds, or broken links."""
 
     def is_read(path: Path) -> bool:
         return path.is_dir() or (path.name.endswith((".xml", ".toml")) and path.is_file())
@@ -176,7 +176,7 @@ def _is_autopilot(element: ET.Element) -> bool:
 
 
 def content_of(element: ET.Element, files: ModelFiles) -> ET.Element:
-    """Return the element itself, or the root of the file that it names."""
+    """The root element of the file that an element names, or else the element itself."""
     found = files.find(element)
     return read_xml(found).getroot() if found else element
 
@@ -196,7 +196,7 @@ def _autopilot_properties(autopilot: ET.Element) -> list[str]:
 
 
 def _flightgear_properties(config: ET.Element, files: ModelFiles) -> list[str]:
-    """FlightGear's properties that the model reads, as ``/sim/model/pushback``; JSBSim has none."""
+    """FlightGear's properties that the model reads, such as ``/sim/model/pushback``."""
     referenced = [content_of(element, files) for element in config.iter() if element.get("file")]
     texts = [element.text or "" for part in (config, *referenced) for element in part.iter()]
     words = [word.lstrip("-") for text in texts for word in text.split()]
@@ -205,10 +205,10 @@ def _flightgear_properties(config: ET.Element, files: ModelFiles) -> list[str]:
 
 
 def _copy_referenced(config: ET.Element, files: ModelFiles, directory: Path) -> None:
-    """Copy engines, thrusters and systems that stand outside the model's folder.
+    """Copy engines, thrusters and systems from outside of the model's folder.
 
-    Engines beside the model file are copied too, as JSBSim does not look for them there; the
-    folder's other files are copied already.
+    Engines beside the model file are copied as well, because JSBSim does not search there. The
+    other files of the folder are already in the copy.
     """
     for element in config.iter():
         found = files.find(element) if element.tag in SHARED_FOLDERS else None
@@ -237,9 +237,9 @@ def _remove_play(config: ET.Element) -> bool:
 
 
 def has_play(root: Path) -> bool:
-    """Return whether any servo of the aircraft in a JSBSim root has hysteresis or a dead band."""
+    """Whether any servo of the aircraft in a JSBSim root has hysteresis or a dead band."""
     for path in sorted(root.rglob("*.xml")):
-        # Files that are no XML may stand beside a model: JSBSim does not read them.
+        # The folder may hold files that are not XML; JSBSim does not read them.
         with contextlib.suppress(AircraftError):
             for actuator in read_xml(path).getroot().iter("actuator"):
                 if any(part.tag in _PLAY and _is_wide(part) for part in actuator):
@@ -248,7 +248,7 @@ def has_play(root: Path) -> bool:
 
 
 def _is_wide(play: ET.Element) -> bool:
-    """Return whether a width is not 0; that of a property may become any."""
+    """Whether the width of a hysteresis or dead band is not 0; a property's value is unknown."""
     try:
         return float(play.text or "0") != 0.0
     except ValueError:
@@ -256,17 +256,16 @@ def _is_wide(play: ET.Element) -> bool:
 
 
 _CONTACT_PROPERTIES = re.compile(r"(gear|contact)/(unit|num-units)|steer-pos-deg")
-"""Properties that JSBSim has only with contacts."""
+"""Properties that exist in JSBSim only with ground contacts."""
 
 
 def remove_ground_contacts(spec: AircraftSpec, root: Path) -> None:
-    """Remove an aircraft's ground contacts from a JSBSim root, unless their properties are used.
+    """Remove an aircraft's ground contacts from a JSBSim root if neither model nor spec uses them.
 
-    They may be named by the model or by the spec. In the air, forces and moments of contacts are
-    exactly 0: an aircraft flies the same without them, to the last bit, and wheels in the air cost
-    up to a quarter of each time step.
+    In the air the forces and moments of contacts are exactly 0, so the aircraft flies the same to
+    the last bit, and a time step takes up to a quarter less computing time.
     """
-    # Two-byte encodings have zeros between letters; any other encoding reads as latin-1 here.
+    # Latin-1 shows property names in every encoding; two-byte encodings put zeros between letters.
     paths = (path for path in root.rglob("*.xml") if path.is_file())
     texts = (path.read_bytes().replace(b"\0", b"").decode("latin-1") for path in paths)
     if any(_CONTACT_PROPERTIES.search(text) for text in (repr(spec), *texts)):
@@ -287,10 +286,10 @@ class Perturbation:
 
     Attributes
     ----------
-    mass : of the empty aircraft, its point masses and its fuel [-]
-    inertia : of every moment of the empty aircraft [-]
-    effectiveness : of every deflection that multiplies in the aerodynamics, not of one at which a
-        table is read [-]
+    mass : factor of the masses of the empty aircraft, point masses and fuel [-]
+    inertia : factor of every moment of inertia of the empty aircraft [-]
+    effectiveness : factor of every deflection that the aerodynamics multiply by; a deflection with
+        which a table is read stays unchanged [-]
     """
 
     mass: float = 1.0
@@ -306,21 +305,21 @@ PERTURBATIONS = {
     "inertia +20 %": Perturbation(inertia=1.2),
     "inertia -20 %": Perturbation(inertia=0.8),
 }
-"""Uncertainty of an aircraft that a design's margins and its search over reversals allow for."""
+"""Uncertainties for which a design's margins and turn reversals are computed."""
 
 _MASSES = ("emptywt", "pointmass/weight")
 _MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 _TANKS = ("tank/contents", "tank/capacity")
-"""Capacity scales too: a tank that holds more than its capacity is no valid model."""
+"""Scaled elements of a tank: JSBSim allows no contents above the capacity."""
 
 _DEFLECTION = re.compile(r"^-?fcs/.*pos")
-"""Properties of surfaces' deflections, JSBSim's own and those of models."""
+"""Properties of surface deflections, JSBSim's own and the models'."""
 
 
 def perturb(model_file: Path, by: Perturbation) -> None:
-    """Change the file of a JSBSim model that has all its sections, as a copy has.
+    """Apply a perturbation to the model file of a copy, which has all its sections in one file.
 
-    A model without perturbation is left as it is, to the last byte.
+    Without a perturbation the file stays unchanged, to the last byte.
     """
     if by == Perturbation():
         return

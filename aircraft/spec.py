@@ -1,7 +1,7 @@
-"""What the project has to know about a JSBSim aircraft beyond its model files.
+"""Description of a JSBSim aircraft beyond its model files.
 
-``AircraftSpec`` is what an aircraft of the project, of a package or of a user's Python file has to
-provide. ``check_spec`` refuses one for which no autopilot can be designed.
+Every aircraft, from the project, a package or a user's Python file, provides an ``AircraftSpec``.
+``check_spec`` refuses a spec for which no autopilot can be designed.
 """
 
 import bisect
@@ -29,7 +29,7 @@ NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.\-]*")
 """Names of aircraft and models: they become part of file names and of XML."""
 
 NAME_RULE = "use letters, digits, '_', '-' and '.'"
-"""``NAME`` in words, for messages."""
+"""The rule of ``NAME`` in words, for messages."""
 
 PROPERTY = re.compile(r"[A-Za-z_][\w.\-]*(\[\d+\])?(/[A-Za-z_][\w.\-]*(\[\d+\])?)*")
 """Names of JSBSim properties."""
@@ -38,7 +38,7 @@ SETTLE_TIMES = (0.1, 120.0)
 """Range of the time in which servos and engines come to rest [s]."""
 
 BANK_RESERVE = math.radians(5.0)
-"""Bank that the autopilot may use beyond the bank that the guidance plans with [rad]."""
+"""Difference between the autopilot's largest bank and the guidance's largest bank [rad]."""
 
 DESIGN_AIRSPEEDS = 5
 """Number of airspeeds at which an autopilot is designed."""
@@ -53,7 +53,7 @@ _ACTUATOR_NAME = re.compile(
     r"(?!(engine|none|vessel_data|satellite_navigation|sniffer_(dead|saturated))$)"
     r"[A-Za-z_][A-Za-z0-9_.\-]*"
 )
-"""Names of actuators: they become part of a JSBSim property and may not be those of other faults.
+"""Names of actuators: they become part of a JSBSim property, and differ from other faults' names.
 """
 
 _REQUIRED_INPUTS = ("elevator", "aileron", "throttle")
@@ -70,12 +70,12 @@ class ControlInput:
 
     Attributes
     ----------
-    name : in linear models, e.g. ``elevator``
+    name : name in linear models, such as ``elevator``
     commands : JSBSim properties that take the command [-], one for each engine or surface that
         shares it
     lower, upper : range of the command [-]
-    effectiveness : points (effect, command), ascending, of a surface that is commanded by its
-        effect; ``lower`` and ``upper`` are then the range of the effect
+    effectiveness : ascending points (effect, command) of a surface that is commanded by its effect;
+        ``lower`` and ``upper`` then limit the effect
     """
 
     name: str
@@ -85,7 +85,7 @@ class ControlInput:
     effectiveness: tuple[tuple[float, float], ...] = ()
 
     def command(self, value: float) -> float:
-        """Command to JSBSim [-] for a value of this input: an effect, if effectiveness is known."""
+        """Command to JSBSim for a value of this input, which may be a surface's effect [-]."""
         if not self.effectiveness:
             return value
         i = min(max(bisect.bisect(self.effectiveness, (value,)), 1), len(self.effectiveness) - 1)
@@ -99,7 +99,7 @@ class Feedback:
 
     Attributes
     ----------
-    commanded, position : JSBSim properties of its command [-] and of its position
+    commanded, position : JSBSim properties of the servo's command [-] and position
     travel : position at a command of 1
     """
 
@@ -114,10 +114,10 @@ class Actuator:
 
     Attributes
     ----------
-    name : as the user types it, e.g. ``left_elevon``; also the name of its fault
-    commands : JSBSim properties that command it: those of a control input, or one that an
+    name : as the user types it, such as ``left_elevon``; also the name of its fault
+    commands : JSBSim properties of its command: a control input's properties, or one that an
         ``<actuator>`` of the model reads
-    feedback : required if the commands are not those of a control input
+    feedback : required unless the commands are a control input's
     """
 
     name: str
@@ -127,12 +127,12 @@ class Actuator:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DrivenState:
-    """A state outside the rigid body that follows one input: a deflection, a propeller's speed.
+    """A state outside the rigid body that follows one input, such as a deflection.
 
     Attributes
     ----------
-    name : in linear models
-    position : JSBSim property that reads it
+    name : name in linear models
+    position : JSBSim property of its value
     input : name of the control input that drives it
     scale : SI value of one unit of the property
     """
@@ -151,7 +151,7 @@ class Envelope:
     ----------
     airspeed_min, airspeed_max : range of commanded true airspeed [m/s]
     airspeed : default airspeed of a study [m/s]
-    bank : of the steepest coordinated turn that the guidance may demand [rad]
+    bank : bank of the steepest coordinated turn that the guidance may demand [rad]
     stall : stall airspeed in level flight [m/s]; NaN if unknown
     notes : reasons for the limits
     """
@@ -165,7 +165,7 @@ class Envelope:
 
     @property
     def problem(self) -> str:
-        """Reason why no autopilot can be designed for these airspeeds or this bank, or ""."""
+        """Why no autopilot can be designed for these airspeeds or this bank; empty if one can."""
         if not 0.0 < self.airspeed_min < self.airspeed < self.airspeed_max <= _AIRSPEED_MAX:
             return (
                 f"airspeed is {self.airspeed:g} m/s; it must lie between airspeed_min,"
@@ -200,7 +200,7 @@ SHARED_FOLDERS = {
     "system": "systems",
     "autopilot": "systems",
 }
-"""Folder of a JSBSim root in which the files of an XML element stand."""
+"""Folder of a JSBSim root that holds the files of an XML element."""
 
 _MODEL_SUBFOLDERS = ("", "Engines", "Systems", "systems")
 """Folders of a model in which JSBSim looks for files, in order."""
@@ -213,8 +213,8 @@ class ModelFiles:
     Attributes
     ----------
     model : name of the model
-    folder : with the model file, ``MODEL.xml``
-    roots : JSBSim roots whose engines and systems the model may name, the first one first
+    folder : folder of the model file, ``MODEL.xml``
+    roots : JSBSim roots whose engines and systems the model may name, in order of search
     """
 
     model: str
@@ -227,7 +227,7 @@ class ModelFiles:
         return self.folder / f"{self.model}.xml"
 
     def find(self, element: ET.Element) -> Path | None:
-        """File that an element of the model names, searched as JSBSim does; None if none exists."""
+        """File that an element of the model names, found in JSBSim's order of search, or None."""
         file = element.get("file")
         if not file:
             return None
@@ -246,21 +246,21 @@ class AircraftSpec:
     ----------
     name : as the user types it, e.g. ``x8``
     title : as reports print it
-    root : JSBSim root directory that holds ``aircraft/`` and ``engine/``
+    root : JSBSim root directory with ``aircraft/`` and ``engine/``
     model : JSBSim model name
-    folder : of the model file, if it is not ``root/aircraft/model``
+    folder : folder of the model file, if it is not ``root/aircraft/model``
     other_roots : further JSBSim roots whose engines and systems the model may name
-    inputs : control inputs: ``elevator``, ``aileron``, ``throttle``, and ``rudder`` if there is one
-    own_actuators : if they are not one for each control input, such as a flying wing's elevons
+    inputs : control inputs ``elevator``, ``aileron``, ``throttle``, and ``rudder`` if there is one
+    own_actuators : actuators, such as a flying wing's elevons; empty for one per control input
     driven_states : servo and propeller states that have a JSBSim property, at most one for each
         input; the lags of other inputs are measured
-    envelope : as published by its maker or its model's author; None if it is to be found by
+    envelope : envelope published by the aircraft's maker or the model's author; None to find one by
         trimming
-    configuration : JSBSim properties and their values in every flight, such as a retracted gear
+    configuration : JSBSim properties set in every flight, such as a retracted gear
     engine_flags : JSBSim properties that are 1 while an engine runs
-    alpha_max : largest angle of attack up to which the model is right [rad]; NaN if unknown
-    settle_time : in which servos and engines come to rest while the aircraft is held [s]
-    source : of the model's numbers
+    alpha_max : largest angle of attack at which the model is valid [rad]; NaN if unknown
+    settle_time : time in which servos and engines come to rest while the aircraft is held [s]
+    source : source of the model's numbers
     """
 
     name: str
@@ -293,7 +293,7 @@ class AircraftSpec:
         )
 
     def input(self, name: str) -> ControlInput:
-        """Control input called ``name``; raises AircraftError if there is no such input."""
+        """Control input ``name``; raises AircraftError if there is no such input."""
         for control_input in self.inputs:
             if control_input.name == name:
                 return control_input
@@ -302,28 +302,28 @@ class AircraftSpec:
 
 
 def surface(name: str) -> ControlInput:
-    """Command of a control surface, by JSBSim's name for it: elevator, aileron or rudder."""
+    """Control input of a surface by JSBSim's name: elevator, aileron or rudder."""
     return ControlInput(name=name, commands=(f"fcs/{name}-cmd-norm",), lower=-1.0, upper=1.0)
 
 
 def throttle(engines: int) -> ControlInput:
-    """One throttle for a number of engines."""
+    """Control input of one throttle for all engines."""
     commands = tuple(f"fcs/throttle-cmd-norm{engine_suffix(i)}" for i in range(engines))
     return ControlInput(name="throttle", commands=commands, lower=0.0, upper=1.0)
 
 
 def engine_suffix(engine: int) -> str:
-    """Suffix of an engine's properties in JSBSim, such as ``[1]``; empty for the first engine."""
+    """Suffix of an engine's JSBSim properties, such as ``[1]``; empty for the first engine."""
     return f"[{engine}]" if engine else ""
 
 
 def servo_position(name: str) -> DrivenState:
-    """Deflection of the control surface ``name`` [rad], moved by a servo."""
+    """Driven state of a servo: deflection of the control surface ``name`` [rad]."""
     return DrivenState(name=f"{name}_position", position=f"fcs/{name}-pos-rad", input=name)
 
 
 def propeller_speed() -> DrivenState:
-    """Speed of the propeller of the only engine [rad/s]."""
+    """Driven state of the only engine's propeller: its speed [rad/s]."""
     return DrivenState(
         name="propeller_speed",
         position="propulsion/engine/propeller-rpm",
@@ -337,9 +337,9 @@ def check_spec(spec: AircraftSpec) -> None:
 
     Raises
     ------
-    AircraftError : a field has another type than declared; a name has letters outside ``NAME``; an
-        input is missing, unknown or there twice; a driven state follows no input, or one that has a
-        state already; a range, an actuator, the settle time or the envelope is impossible
+    AircraftError : a field has another type than declared; a name does not match ``NAME``; an input
+        is missing, unknown or repeated; a driven state follows no input, or one that already has a
+        state; a range, an actuator, the settle time or the envelope is impossible
     """
     problem = _type_problem(spec, AircraftSpec, "") or next(_problems(spec), "")
     if problem:
@@ -347,7 +347,7 @@ def check_spec(spec: AircraftSpec) -> None:
 
 
 def _problems(spec: AircraftSpec) -> Iterator[str]:
-    """What is wrong with the values of a spec, in words."""
+    """Errors in the values of a spec, in words."""
     if not NAME.fullmatch(spec.name):
         yield f"'{spec.name}' is not a valid name; {NAME_RULE}"
     names = [i.name for i in spec.inputs]
@@ -400,10 +400,10 @@ def _input_problems(control: ControlInput) -> Iterator[str]:
 
 
 def _type_problem(value: Any, declared: Any, name: str) -> str:
-    """First part of a value that has another type than declared, in words; empty if none has.
+    """Message about the first part of a value whose type differs from the declared one, or "".
 
-    Python itself does not check the types of dataclasses in a user's file. Any real number passes
-    for a float, and a list for a tuple of any length.
+    Python does not check the types of dataclass fields in a user's file. Any real number counts as
+    a float, and a list counts as a tuple of any length.
     """
     origin = typing.get_origin(declared)
     if origin in (typing.Union, types.UnionType):

@@ -1,4 +1,4 @@
-"""The rigid body's state, its kinematics and its place on the globe, in SI and radians."""
+"""State, kinematics and position of the rigid body, in SI and radians."""
 
 import math
 from dataclasses import dataclass, replace
@@ -16,7 +16,7 @@ class RigidBodyState:
     ----------
     latitude, longitude : geodetic [rad]
     altitude : above mean sea level [m]
-    roll, pitch, yaw : 3-2-1 Euler angles of the body frame against north-east-down [rad]
+    roll, pitch, yaw : 3-2-1 Euler angles of the body frame relative to north-east-down [rad]
     velocity_body : forward, right, down [m/s]
     rates_body : roll, pitch and yaw rate p, q, r [rad/s]
     """
@@ -32,7 +32,7 @@ class RigidBodyState:
 
 
 def body_velocity(airspeed: float, alpha: float, beta: float) -> Vector:
-    """Forward, right and down velocity [m/s] for airspeed [m/s] and angles of attack, sideslip."""
+    """Velocity forward, right and down [m/s] from airspeed [m/s], alpha and beta [rad]."""
     return (
         airspeed * math.cos(alpha) * math.cos(beta),
         airspeed * math.sin(beta),
@@ -41,7 +41,7 @@ def body_velocity(airspeed: float, alpha: float, beta: float) -> Vector:
 
 
 def level(vector: Vector, roll: float, pitch: float) -> Vector:
-    """A body vector in the level frame that shares the body's yaw: ahead, right, down."""
+    """A body vector in the level frame with the body's yaw: ahead, right, down."""
     x, y, z = vector
     sin_roll, cos_roll = math.sin(roll), math.cos(roll)
     sin_pitch, cos_pitch = math.sin(pitch), math.cos(pitch)
@@ -54,7 +54,7 @@ def level(vector: Vector, roll: float, pitch: float) -> Vector:
 
 
 def with_wind(state: RigidBodyState, wind: tuple[float, float]) -> RigidBodyState:
-    """State over the ground of a state against the air, whose velocity is north and east [m/s]."""
+    """State relative to the ground, from the state in the air and the wind north and east [m/s]."""
     north, east = wind
     sin_roll, cos_roll = math.sin(state.roll), math.cos(state.roll)
     sin_pitch, cos_pitch = math.sin(state.pitch), math.cos(state.pitch)
@@ -79,15 +79,15 @@ def course_rate(
     Parameters
     ----------
     velocity_body : velocity [m/s]
-    acceleration_body : acceleration against the earth, or specific force, which differs from it
-        downwards only [m/s^2]
+    acceleration_body : acceleration relative to the earth [m/s^2]; the specific force may stand for
+        it, because the two differ only in the vertical
     roll, pitch : Euler angles [rad]
 
     Notes
     -----
-    This is the rate of the direction of motion itself. psi + beta is often used in its place; at 45
-    degrees of bank and an angle of attack of 0.08 rad the two differ by 0.06 rad, and so do their
-    rates while the bank changes.
+    The course is the direction of the motion itself, not psi + beta, which is often used instead.
+    At 45 degrees of bank and an angle of attack of 0.08 rad the two angles differ by 0.06 rad, so
+    their rates differ while the bank changes.
     """
     v_ahead, v_right, _ = level(velocity_body, roll, pitch)
     a_ahead, a_right, _ = level(acceleration_body, roll, pitch)
@@ -95,14 +95,14 @@ def course_rate(
 
 
 def euler_rates(rates_body: Vector, roll: float, pitch: float) -> Vector:
-    """Rates of roll, pitch and yaw angle [rad/s] for body rates p, q, r [rad/s]."""
+    """Rates of the roll, pitch and yaw angles [rad/s] from the body rates p, q, r [rad/s]."""
     p, q, r = rates_body
     yaw_rate = (q * math.sin(roll) + r * math.cos(roll)) / math.cos(pitch)
     return p + yaw_rate * math.sin(pitch), q * math.cos(roll) - r * math.sin(roll), yaw_rate
 
 
 def turn_rates(yaw_rate: float, roll: float, pitch: float) -> Vector:
-    """Body rates p, q, r [rad/s] of a turn at ``yaw_rate`` [rad/s], roll and pitch constant."""
+    """Body rates p, q, r [rad/s] of a turn at ``yaw_rate`` [rad/s] with constant roll and pitch."""
     return (
         -yaw_rate * math.sin(pitch),
         yaw_rate * math.cos(pitch) * math.sin(roll),
@@ -116,24 +116,24 @@ _MERIDIAN_RADIUS = EQUATORIAL_RADIUS * (1.0 - ECCENTRICITY_SQUARED)
 _NORTH_BY_LATITUDE = 0.5 * ECCENTRICITY_SQUARED
 _NORTH_BY_LONGITUDE = 1.0 / (6.0 * (1.0 - ECCENTRICITY_SQUARED))
 _EAST_BY_LATITUDE = (1.0 - ECCENTRICITY_SQUARED) / 3.0
-"""Relative change of a degree's length per squared angle from the origin [1/rad^2]."""
+"""Coefficients of the third-order terms of ``EquatorFrame`` [1/rad^2]."""
 
 
 class EquatorFrame:
-    """North and east metres about latitude and longitude 0, at a fixed altitude.
+    """Frame with north and east in metres from latitude and longitude 0, at a fixed altitude.
 
-    All flights fly there: at the equator local north stays true north, and JSBSim's axes have no
-    pole. Where on earth a flight is meant to be (``common.physics.LocalFrame``) does not
-    change how it flies.
+    All flights take place there: at the equator local north is true north, and JSBSim's axes are
+    far from the poles. The real position of a scenario (``common.geodesy.LocalFrame``) does not
+    influence a flight.
 
-    The mapping is azimuthal equidistant, to third order. With s = M phi (1 + e^2 phi^2/2) the
-    length of the meridian, u = a lambda that of the equator, and K = 1/(a M) the curvature there,
-    north is s (1 + K u^2/6) and east u (1 - K s^2/3). That is ``LocalFrame`` at the origin, to
-    0.1 mm within 20 km.
+    The mapping is azimuthal equidistant, to third order. Let s = M phi (1 + e^2 phi^2/2) be the
+    length along the meridian, u = a lambda the length along the equator, and K = 1/(a M) the
+    curvature. Then north is s (1 + K u^2/6) and east is u (1 - K s^2/3). Within 20 km this agrees
+    with ``LocalFrame`` to 0.1 mm.
 
     Parameters
     ----------
-    altitude : [m]
+    altitude : altitude above the ellipsoid [m]
 
     Attributes
     ----------
@@ -155,10 +155,10 @@ class EquatorFrame:
         )
 
     def to_geodetic(self, north: float, east: float) -> tuple[float, float]:
-        """Latitude and longitude [rad] of a local place [m]."""
+        """Latitude and longitude [rad] of a local position [m]."""
         latitude, longitude = north / self.north_scale, east / self.east_scale
         for _ in range(3):
-            # Each time the error shrinks by the square of the angle, 1e-5 at 20 km.
+            # Each iteration multiplies the error by the square of the angle, 1e-5 at 20 km.
             off_north, off_east = self.to_local(latitude, longitude)
             latitude += (north - off_north) / self.north_scale
             longitude += (east - off_east) / self.east_scale

@@ -1,10 +1,10 @@
 """Equilibrium flight, straight or turning, level or climbing.
 
-JSBSim's own trim fails for small electric aircraft (its engine loop steps the propeller at 0.5 s),
-so equilibrium is sought here on the accelerations themselves: the rigid body is held still, servos
-and engines settle, and a solver drives the six accelerations to zero. Powell's hybrid method
-(MINPACK) finds the equilibrium within a dozen evaluations where there is one; where it does not, a
-bounded least-squares search gives the point of least acceleration, and the limits that it is at.
+JSBSim's own trim fails for small electric aircraft, because its engine loop steps the propeller at
+0.5 s. Here the rigid body is held still, servos and engines settle, and a solver drives the six
+accelerations to zero. Powell's hybrid method (MINPACK) finds an existing equilibrium within a dozen
+evaluations. If it fails, a bounded least-squares search gives the point of least acceleration and
+the limits reached there.
 """
 
 import math
@@ -28,37 +28,37 @@ TOLERANCE = 1e-5
 _SETTLED = 2e-9
 """Change of acceleration in a step below which engines count as settled [m/s^2, rad/s^2].
 
-With a lag of ten seconds, 2e-6 of the way is then left.
+With a lag of ten seconds, 2e-6 of the change remains.
 """
 
 _SETTLE_STEPS = 2400
 """Largest number of time steps in which engines may settle: 20 s."""
 
 _GOOD = 0.05
-"""Acceleration at which a search ends, over ``TOLERANCE`` [-]; the rest is left to settling."""
+"""Acceleration at which a search ends, over ``TOLERANCE`` [-]: settling leaves the rest."""
 
 _NEAR_LIMIT = 0.05
-"""Distance at which an unknown counts as at its limit, over its scale [-]: searches stop short."""
+"""Distance from a limit at which an unknown counts as limited, over its scale [-]."""
 
 _ALPHA_MAX = 0.5
 _BETA_MAX = 0.3
 _BANK_MAX = 1.2
-"""Limits of angle of attack, sideslip and the bank of straight flight [rad], beyond any flight."""
+"""Limits of angle of attack, sideslip and bank in straight flight [rad]; no flight reaches them."""
 
 _TURN_RATE_RATIO_MAX = 3.0
-"""Limit of the unknown yaw rate, over that of a coordinated turn [-]."""
+"""Limit of the unknown yaw rate over the yaw rate of a coordinated turn [-]."""
 
 _GUESSED_GRAVITY = 9.81
-"""Gravity in the first guess of a turn's yaw rate [m/s^2]; the true one varies by 0.5 %."""
+"""Gravity in the first guess of a turn's yaw rate [m/s^2]; true gravity varies by 0.5 %."""
 
 _SCALE = 0.1
-"""Size of the unknowns [rad, -]; that of a yaw rate is the rate of the coordinated turn."""
+"""Scale of the unknowns [rad, -]; a yaw rate is scaled with the coordinated turn's."""
 
 _CONVERGENCE = 1e-10
-"""Relative change of the unknowns at which a solver ends [-]; ``_GOOD`` mostly ends it before."""
+"""Relative change of the unknowns at which a solver ends [-]; usually ``_GOOD`` ends it earlier."""
 
 _COST_CONVERGENCE = 1e-12
-"""Change of cost and of gradient at which the least squares end: below ``TOLERANCE``**2, 1e-10."""
+"""Change of cost and of gradient at which the least squares end: below ``TOLERANCE**2``, 1e-10."""
 
 _EVALUATIONS_MAX = 80
 """Largest number of evaluations of Powell's method; it takes a dozen if there is an equilibrium."""
@@ -67,10 +67,10 @@ _ITERATIONS_MAX = 12
 """Largest number of iterations of the bounded least squares, each with a Jacobian."""
 
 _TURN_BACK = 1e3
-"""Acceleration from which a search turns back, a hundred times gravity [m/s^2, rad/s^2]."""
+"""Acceleration that stands for one that is not finite, to repel a search [m/s^2, rad/s^2]."""
 
 _DIFFERENCE = 1e-3
-"""Step of differences [rad, -]: large against what is left of an engine's settling."""
+"""Step of differences [rad, -]: large against the remainder of an engine's settling."""
 
 _START_ALPHA = 0.05
 """Angle of attack from which the search begins [rad]: 3 deg, as in cruise."""
@@ -78,7 +78,7 @@ _START_ALPHA = 0.05
 _START_THROTTLES = (0.75, 0.5, 0.95)
 """Throttles from which the search begins, one after the other [-].
 
-From too little throttle at high speed it can end where JSBSim's propeller barely turns.
+With too little throttle at high speed, a search can end where JSBSim's propeller barely turns.
 """
 
 
@@ -108,8 +108,8 @@ class Trim:
     driven : driven states by name [SI]
     outcome : whether it is an equilibrium
     residuals : remaining accelerations, forward, right, down, p, q, r [m/s^2, rad/s^2]
-    limits : control inputs and angles that are at their limit, each in words; where accelerations
-        are not finite, what in the model is not
+    limits : control inputs and angles at a limit, in words; if accelerations are not finite, the
+        property of the model that is not
     """
 
     airspeed: float
@@ -129,7 +129,7 @@ class Trim:
 
     @property
     def residual(self) -> float:
-        """Largest remaining acceleration [m/s^2, rad/s^2]; infinite where one is not finite."""
+        """Largest remaining acceleration [m/s^2, rad/s^2]; infinite if one is not finite."""
         if not all(math.isfinite(value) for value in self.residuals):
             return math.inf
         return max(abs(value) for value in self.residuals)
@@ -137,7 +137,7 @@ class Trim:
     def state(
         self, latitude: float = 0.0, longitude: float = 0.0, yaw: float = 0.0
     ) -> RigidBodyState:
-        """Rigid-body state of this equilibrium at a place and yaw [rad]."""
+        """Rigid-body state of this equilibrium at a latitude, longitude and yaw [rad]."""
         return RigidBodyState(
             latitude=latitude,
             longitude=longitude,
@@ -170,7 +170,7 @@ def trim(
 
     Raises
     ------
-    AircraftError : the search does not converge, with the reason
+    AircraftError : the search does not converge
     """
     found = search_trim(
         fdm, airspeed=airspeed, altitude=altitude, bank=bank, climb_angle=climb_angle, start=start
@@ -206,16 +206,15 @@ def search_trim(
     climb_angle: float = 0.0,
     start: Trim | None = None,
 ) -> Trim:
-    """Result of a search for an equilibrium; its ``outcome`` says whether it is one.
+    """Result of a search for an equilibrium; its ``outcome`` says whether it was found.
 
     Parameters
     ----------
     fdm : the aircraft; its state is changed
     airspeed : true airspeed [m/s], positive
     altitude : [m]
-    bank : 0 for straight flight (the small bank that balances the propeller's torque is then part
-        of the solution), otherwise the bank angle of a steady turn [rad], whose yaw rate is part of
-        the solution
+    bank : bank angle of a steady turn, whose yaw rate is solved for [rad]; 0 for straight flight,
+        where the small bank that balances the propeller's torque is solved for
     climb_angle : [rad]
     start : a known equilibrium nearby, from which the search begins
 
@@ -240,7 +239,7 @@ def search_trim(
     tried: list[Trim] = []
     with fdm.frozen():
         for i, guess in enumerate(problem.guesses(start)):
-            # Near a known equilibrium the engines already run as it needs them.
+            # Near a known equilibrium the engines already run at about the right speed.
             found = problem.solve(guess, run_up=start is None or i > 0)
             if found.outcome is TrimOutcome.CONVERGED:
                 return found
@@ -249,7 +248,7 @@ def search_trim(
 
 
 class _FoundError(Exception):
-    """Ends a search at a good point: MINPACK would seek digits that a settling engine lacks."""
+    """Ends a search at a good point, before MINPACK resolves the remainder of settling."""
 
     def __init__(self, unknowns: Array) -> None:
         super().__init__()
@@ -259,8 +258,8 @@ class _FoundError(Exception):
 class _TrimProblem:
     """Accelerations of the held aircraft as a function of unknowns, and the searches for zero.
 
-    Unknowns: angle of attack, sideslip, bank (straight flight) or yaw rate (turn), control inputs.
-    A rudder adds the condition of no sideslip.
+    The unknowns are angle of attack, sideslip, bank (straight flight) or yaw rate (turn), and the
+    control inputs. With a rudder, zero sideslip is a further condition.
     """
 
     def __init__(
@@ -298,11 +297,11 @@ class _TrimProblem:
         return [np.array(nearby), *defaults]
 
     def solve(self, guess: Array, *, run_up: bool) -> Trim:
-        """Result of Powell's method; a solution beyond a limit is not an equilibrium."""
+        """Result of Powell's method, which ignores limits; ``outcome`` says if one is exceeded."""
 
         def scaled_residual(z: Array) -> Array:
-            # MINPACK's steps are relative to an unknown, and sideslip is zero: so every scaled
-            # unknown is near one.
+            # MINPACK's steps are relative and sideslip is zero, so unknowns are scaled to be near
+            # 1.
             unknowns = guess + self._scale * (z - 1.0)
             residual = self._residual(unknowns)
             if np.max(np.abs(residual)) < _GOOD * TOLERANCE:
@@ -329,14 +328,14 @@ class _TrimProblem:
         return self._result(guess + self._scale * (np.asarray(solution) - 1.0))
 
     def _start_anew_if_not_finite(self) -> None:
-        """Reset JSBSim where a value is not finite: it would stay in every later state."""
+        """Reset JSBSim if an acceleration is not finite: later states would inherit the value."""
         if not all(
             map(math.isfinite, (*self._fdm.acceleration_body(), *self._fdm.angular_acceleration()))
         ):
             self._fdm.reset()
 
     def _run_up(self, guess: Array) -> None:
-        """Settle at full throttle: an earlier guess may have left a propeller windmilling."""
+        """Settle at full throttle, since an earlier guess may have left a propeller windmilling."""
         inputs = [
             self._upper[3 + k] if i.name == "throttle" else guess[3 + k]
             for k, i in enumerate(self._fdm.spec.inputs)
@@ -344,7 +343,7 @@ class _TrimProblem:
         self._residual(np.array([*guess[:3], *inputs]))
 
     def least_acceleration(self, best: Trim) -> Trim:
-        """Point of least acceleration within all limits, or ``best``, found without limits."""
+        """Point of least acceleration within the limits, or ``best`` if that one is better."""
         for guess in self.guesses(None):
             self._start_anew_if_not_finite()
             if not np.isfinite(self._accelerations(guess)).all():
@@ -368,7 +367,7 @@ class _TrimProblem:
         return best
 
     def _jacobian(self, unknowns: Array) -> Array:
-        """Differences over absolute steps, inward where a limit is near."""
+        """Jacobian by differences over absolute steps, taken inward near a limit."""
         at = self._residual(unknowns)
         columns = []
         for i in range(len(unknowns)):
@@ -379,7 +378,7 @@ class _TrimProblem:
         return np.column_stack(columns)
 
     def _residual(self, unknowns: Array) -> Array:
-        """Same as ``_accelerations``; where one is not finite so large that a search turns back."""
+        """Same as ``_accelerations``, but ``_TURN_BACK`` if one of them is not finite."""
         residual = self._accelerations(unknowns)
         if np.isfinite(residual).all():
             return residual
@@ -432,7 +431,7 @@ class _TrimProblem:
         )
 
     def _not_finite(self) -> str:
-        """What is not finite, in words."""
+        """Properties of the model that are not finite, in words."""
         names = self._fdm.not_finite()
         if not names:
             return "forces are not finite"
@@ -463,7 +462,7 @@ class _TrimProblem:
         }
 
     def _state(self, unknowns: Array) -> tuple[RigidBodyState, float]:
-        """State and yaw rate [rad/s]."""
+        """Rigid-body state, and yaw rate [rad/s]."""
         alpha, beta, turn = (float(value) for value in unknowns[:3])
         roll, yaw_rate = (turn, 0.0) if self._straight else (self._bank, turn)
         pitch = pitch_for_climb(alpha, beta, roll, self._climb_angle)
@@ -478,7 +477,7 @@ class _TrimProblem:
 
 
 def pitch_for_climb(alpha: float, beta: float, roll: float, climb_angle: float) -> float:
-    """Pitch angle [rad] that gives ``climb_angle`` at these angles [rad].
+    """Pitch angle for a climb angle, at given angle of attack, sideslip and roll [rad].
 
     Source: Stevens and Lewis, Aircraft Control and Simulation, the rate-of-climb constraint.
     """

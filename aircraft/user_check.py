@@ -1,4 +1,4 @@
-"""A first run of a user's aircraft in a separate process, as JSBSim can end its whole process."""
+"""Try a user's aircraft in a separate process, because JSBSim can end its process."""
 
 import os
 import pickle
@@ -12,23 +12,23 @@ from aircraft.model import copy_model, stock_root
 from aircraft.spec import MODELS, AircraftError, AircraftSpec
 
 _STEPS = 3
-"""Time steps in which every function of a model is computed."""
+"""Time steps of the run: enough to compute every function of a model."""
 
 _TIME_MAX = 120.0
-"""Longest time of the run [s]; it takes half a second."""
+"""Time limit of the run [s]; a run takes half a second."""
 
 _REFUSED = 3
-"""Exit status of the process that ends with one of our own messages."""
+"""Exit status of a process that has printed an error message of the project."""
 
 
 def check_user_aircraft(spec: AircraftSpec) -> None:
-    """See that JSBSim loads and runs an aircraft, and that it has the properties of its spec.
+    """Check that JSBSim loads and runs an aircraft, and that the properties of its spec exist.
 
-    Aircraft whose files are all the project's or JSBSim's are not run.
+    An aircraft is not run if all its files belong to the project or to JSBSim.
 
     Raises
     ------
-    AircraftError : JSBSim refuses the model, or a property does not exist or takes no writes
+    AircraftError : JSBSim refuses the model, or a property does not exist or is read-only
     """
     if all(_is_supplied(folder) for folder in (spec.files.folder, *spec.files.roots)):
         return
@@ -54,7 +54,7 @@ def check_user_aircraft(spec: AircraftSpec) -> None:
     printed = " ".join(done.stderr.decode(errors="replace").split())
     if done.returncode == _REFUSED:
         raise AircraftError(printed)
-    # C++ prints the uncaught exception that ends a process.
+    # C++ prints the uncaught exception that has ended the process.
     reason = printed.rpartition("what():")[2].strip() or f"exit status {done.returncode}"
     raise AircraftError(
         f"aircraft '{spec.name}': JSBSim ends the whole process with its model: {reason};"
@@ -63,12 +63,12 @@ def check_user_aircraft(spec: AircraftSpec) -> None:
 
 
 def _is_supplied(folder: Path) -> bool:
-    """Whether a folder is of the project's own models or of JSBSim's."""
+    """Whether a folder belongs to the project's own models or to JSBSim."""
     return any(folder.resolve().is_relative_to(root.resolve()) for root in (MODELS, stock_root()))
 
 
 def _run_model(spec: AircraftSpec) -> None:
-    # With its ground contacts, which designs leave out: a fault in them would show only in flight.
+    # The run includes the ground contacts, whose faults a design without them would not show.
     with tempfile.TemporaryDirectory() as folder:
         copy_model(spec.files, Path(folder))
         fdm = Fdm(spec, Path(folder))
@@ -86,7 +86,7 @@ def _main() -> int:
     except AircraftError as error:
         print(error, file=sys.stderr)
         return _REFUSED
-    except Exception as error:  # noqa: BLE001 - JSBSim's errors are of many kinds; each is reported
+    except Exception as error:  # noqa: BLE001 - JSBSim raises many kinds of errors
         what = f"{type(error).__name__}: {error}".rstrip(".;")
         print(
             f"aircraft '{spec.name}': its model does not run: {what}; correct {spec.files.file}",

@@ -1,17 +1,19 @@
 """The air that an aircraft flies in: mean wind, MIL-F-8785C turbulence and discrete gusts.
 
-Low-altitude turbulence, MIL-F-8785C, figures 10 and 11: between 10 and 1,000 ft, with the height h
-[ft] and the wind at 20 ft, sigma_w = 0.1 W20, sigma_u = sigma_v = sigma_w / (0.177 + 0.000823
-h)^0.4, L_w = h and L_u = L_v = h / (0.177 + 0.000823 h)^1.2.
+Low-altitude turbulence follows MIL-F-8785C, figures 10 and 11. Between 10 and 1,000 ft, with the
+height h [ft] and the wind W20 at 20 ft: sigma_w = 0.1 W20, sigma_u = sigma_v = sigma_w / (0.177 +
+0.000823 h)^0.4, L_w = h, and L_u = L_v = h / (0.177 + 0.000823 h)^1.2.
 
-JSBSim computes the same from the height above mean sea level, and shapes them with a filter that
-``atmosphere/turb-type`` chooses. Type 4 has the standard's Dryden spectra, across and vertical ones
-with their second-order denominators. Type 3 keeps the standard deviations and replaces those two
-spectra by first-order ones of half the time constant (MIL-STD-1797A as Yeager quotes it), which
-moves energy from slow waves to fast ones; so type 4 is used here. One thing differs from the
-standard in both: JSBSim turns the waves along and across the wind by the wind's direction the wrong
-way. As the two are equally strong and long, only the shapes of their spectra change places, and not
-at all in a wind along one of the four cardinal directions.
+JSBSim uses these formulas with the height above mean sea level. ``atmosphere/turb-type`` chooses
+the filter. Type 4, which is used here, has the standard's Dryden spectra, with second-order
+denominators across the wind and vertically. Type 3 keeps the standard deviations but replaces these
+two spectra by first-order ones of half the time constant (MIL-STD-1797A as quoted by Yeager), which
+moves energy from low to high frequencies.
+
+Both types differ from the standard in one point: JSBSim rotates the turbulence along and across the
+wind by the wind's direction with the wrong sign. The two components have equal standard deviations
+and scale lengths, so only the shapes of their spectra are mixed, and not even these in a wind along
+one of the four cardinal directions.
 """
 
 import itertools
@@ -47,10 +49,10 @@ _DURATIONS = ("startup-duration-sec", "steady-duration-sec", "end-duration-sec")
 _DIRECTION = ("X-velocity-ft_sec", "Y-velocity-ft_sec", "Z-velocity-ft_sec")
 
 _AT_ONCE = 1e-9
-"""A duration shorter than any step that JSBSim can still divide by [s]."""
+"""Duration of a gust that ends at once [s]: above 0, because JSBSim divides by it."""
 
 STEPS_BETWEEN_GUSTS = 2.0
-"""Time steps that JSBSim's cosine gust needs from the end of one gust to the next [-]."""
+"""Number of time steps that JSBSim needs between the end of one gust and the next [-]."""
 
 
 Array = npt.NDArray[np.float64]
@@ -62,10 +64,10 @@ class Turbulence:
 
     Attributes
     ----------
-    wind_at_20ft : mean wind 20 ft above the surface that stirs the air, W20 [m/s]; the aircraft may
-        drift with another wind
-    severity : curve of figure 7 of MIL-F-8785C, 1 to 7, which JSBSim goes by above 1,000 ft; below,
-        any of them switches it on
+    wind_at_20ft : mean wind 20 ft above the surface that causes the turbulence, W20 [m/s]; the wind
+        that carries the aircraft may differ
+    severity : curve of MIL-F-8785C, figure 7, 1 to 7, which JSBSim uses above 1,000 ft; below,
+        every severity gives the same turbulence
 
     Raises
     ------
@@ -97,7 +99,7 @@ TURBULENCE = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GustStatistics:
-    """Turbulence at one altitude: standard deviations of the wind [m/s], and scale lengths [m]."""
+    """Turbulence at one altitude: standard deviations [m/s] and scale lengths [m]."""
 
     horizontal: float
     vertical: float
@@ -106,10 +108,10 @@ class GustStatistics:
 
 
 def low_altitude_turbulence(altitude: float, wind_at_20ft: float) -> GustStatistics:
-    """Statistics of the turbulence at an altitude [m] by MIL-F-8785C, below 10 ft same as at 10 ft.
+    """Statistics of the turbulence at an altitude, by MIL-F-8785C; below 10 ft same as at 10 ft.
 
-    MIL-HDBK-1797 calls half of the scale lengths across and down by the same names and has its
-    spectra make up for it.
+    MIL-HDBK-1797 defines the scale lengths across and down as half of these, and its spectra
+    compensate for that.
 
     Parameters
     ----------
@@ -118,7 +120,7 @@ def low_altitude_turbulence(altitude: float, wind_at_20ft: float) -> GustStatist
 
     Raises
     ------
-    AircraftError : an altitude above 1,000 ft, where other laws hold
+    AircraftError : the altitude is above 1,000 ft, where other formulas hold
     """
     height = altitude / METRES_PER_FOOT
     if not height <= _ALTITUDE_MAX_FT:
@@ -139,19 +141,19 @@ def low_altitude_turbulence(altitude: float, wind_at_20ft: float) -> GustStatist
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Gust:
-    """A gust that rises as 1 - cosine, holds, and falls as it rose.
+    """A gust with a 1 - cosine rise, a constant part, and a 1 - cosine fall.
 
-    The discrete gust of MIL-F-8785C has the rise alone.
+    The discrete gust of MIL-F-8785C only rises.
 
     Attributes
     ----------
-    start : after the release [s]
+    start : time after the release [s]
     rise, hold, fall : durations [s]
-    velocity_ned : of the air at the gust's peak, added to the wind: north, east, down [m/s]
+    velocity_ned : velocity at the gust's peak, added to the wind: north, east, down [m/s]
 
     Raises
     ------
-    AircraftError : a duration that JSBSim would divide by, or a value that is not finite
+    AircraftError : a value is not finite, or rise or fall is 0, which JSBSim divides by
     """
 
     start: float
@@ -174,11 +176,11 @@ class Gust:
 
     @property
     def end(self) -> float:
-        """Time after the release at which it is over [s]."""
+        """Time after the release at which the gust ends [s]."""
         return self.start + self.rise + self.hold + self.fall
 
     def share(self, time: npt.ArrayLike) -> Array:
-        """Return the share of its peak that the air has at some times after the release [s, -]."""
+        """Velocity over the peak velocity at times after the release [s], shape of ``time`` [-]."""
         since = np.asarray(time) - self.start
         risen = np.clip(since / self.rise, 0.0, 1.0)
         fallen = np.clip((since - self.rise - self.hold) / self.fall, 0.0, 1.0)
@@ -190,8 +192,8 @@ def ordered_gusts(gusts: Sequence[Gust], time_step: float) -> list[Gust]:
 
     Raises
     ------
-    AircraftError : two of them blow at once, or within ``STEPS_BETWEEN_GUSTS`` steps of
-        ``time_step`` [s]: JSBSim has one cosine gust, which must be over first
+    AircraftError : two gusts overlap, or are less than ``STEPS_BETWEEN_GUSTS`` steps of
+        ``time_step`` [s] apart: JSBSim simulates one gust at a time
     """
     ordered = sorted(gusts, key=lambda gust: gust.start)
     for first, second in itertools.pairwise(ordered):
@@ -209,10 +211,10 @@ class Weather:
 
     Attributes
     ----------
-    wind : velocity of the air mass over time and height
-    turbulence : added to the wind from the release on; None for smooth air
+    wind : mean wind over time and height
+    turbulence : turbulence from the release on; None for smooth air
     gusts : discrete gusts, one at a time
-    seed : of the turbulence, 0 to 2^31 - 1, which is what JSBSim holds
+    seed : random seed of the turbulence, 0 to 2^31 - 1, the range of JSBSim
 
     Raises
     ------
@@ -232,14 +234,12 @@ class Weather:
 
 
 def begin_weather(fdm: Fdm, weather: Weather) -> Callable[[], object]:
-    """Function that advances the aircraft by a time step in this weather.
+    """Start the weather at the release, and return a function that flies one time step in it.
 
-    It is JSBSim's own ``run`` if the wind is constant and there are no gusts, so that they cost no
-    time. Turbulence rises from smooth air, and the same seed gives the same turbulence. It takes a
-    few times its horizontal scale length over the airspeed to reach its strength: some 30 s for
-    220 m at 20 m/s.
-
-    The aircraft is at its release, placed in the wind of that time; the weather is timed from then.
+    With a constant wind and no gusts the function is JSBSim's own ``run``, which costs no extra
+    time. The aircraft has to be placed in the wind of the release before. Turbulence starts from
+    smooth air and needs a few times its horizontal scale length over the airspeed to reach its
+    strength, some 30 s for 220 m at 20 m/s. Equal seeds give equal turbulence.
 
     Raises
     ------
@@ -253,14 +253,13 @@ def begin_weather(fdm: Fdm, weather: Weather) -> Callable[[], object]:
         fdm.write(f"{_MILSPEC}/severity", weather.turbulence.severity)
     run = fdm.run
     if weather.gusts:
-        # Resuming a generator costs less than calling a function; this is a flight's innermost
-        # call.
+        # Resuming a generator is cheaper than calling a function, and this is the innermost call.
         run = _steps_with_gusts(fdm, ordered_gusts(weather.gusts, fdm.time_step)).__next__
     return run if weather.wind.constant else _with_changing_wind(fdm, weather.wind, run)
 
 
 def _steps_with_gusts(fdm: Fdm, gusts: Sequence[Gust]) -> Iterator[None]:
-    """Advance the aircraft by a time step at each resumption, and begin each gust when due."""
+    """Fly one time step at each resumption, and start each gust when it is due."""
     fdm.write(f"{_COSINE_GUST}/frame", _NORTH_EAST_DOWN)
     names = (*_DURATIONS, "magnitude-ft_sec", *_DIRECTION)
     nodes = [fdm.writable_node(f"{_COSINE_GUST}/{name}") for name in names]
@@ -273,7 +272,7 @@ def _steps_with_gusts(fdm: Fdm, gusts: Sequence[Gust]) -> Iterator[None]:
             run()
             yield
         step = due
-        # JSBSim normalises the direction, so the magnitude is set separately.
+        # JSBSim normalises the direction, so the magnitude is set apart.
         magnitude = math.hypot(*gust.velocity_ned)
         direction = (component / magnitude for component in gust.velocity_ned)
         values = (gust.rise, gust.hold, gust.fall, magnitude / METRES_PER_FOOT, *direction)
@@ -288,7 +287,7 @@ def _steps_with_gusts(fdm: Fdm, gusts: Sequence[Gust]) -> Iterator[None]:
 def _with_changing_wind(
     fdm: Fdm, wind: WindField, run: Callable[[], object]
 ) -> Callable[[], object]:
-    """``run`` after the wind of the time and height is set."""
+    """``run``, with the wind set to its value at the time and height before each step."""
     height_ft = fdm.node("position/h-sl-ft").get_double_value
     step = 0
 
@@ -302,13 +301,12 @@ def _with_changing_wind(
 
 
 def end_weather(fdm: Fdm) -> None:
-    """End turbulence and gusts and reset their models; place the aircraft next.
+    """End turbulence and gusts and reset their models, before the next placing of the aircraft.
 
-    Turbulence has to end before: JSBSim places an aircraft with a time step of 0, by which its
-    turbulence divides.
+    JSBSim places an aircraft with a time step of 0, by which its turbulence would divide.
     """
     fdm.write(f"{_MILSPEC}/severity", 0)
-    # A gust ends by a step: JSBSim would give its direction to the next one.
+    # Flying a step ends the gust; otherwise JSBSim would use its direction for the next one.
     for name, duration in zip(_DURATIONS, (_AT_ONCE, 0.0, 0.0), strict=True):
         fdm.write(f"{_COSINE_GUST}/{name}", duration)
     fdm.step()

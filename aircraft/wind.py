@@ -1,4 +1,4 @@
-"""The mean wind over time and height, which turbulence and gusts are added to."""
+"""The mean wind over time and height, without turbulence and gusts."""
 
 import itertools
 import math
@@ -14,10 +14,10 @@ Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.intp]
 
 _LOWEST = 1e-9
-"""Height below which the wind no longer changes [m]: its logarithm goes to minus infinity."""
+"""Height below which the wind is constant [m]: the logarithm of 0 is not finite."""
 
 _ROUNDING = 1e-9
-"""Relative distance by which two points may be farther apart than allowed [-], for rounding."""
+"""Relative tolerance of the distance between two points, for rounding [-]."""
 
 _PROFILE_TOP = 1000.0
 """Height above which a logarithmic profile is constant [m]."""
@@ -26,24 +26,22 @@ _PROFILE_TOP = 1000.0
 class WindField:
     """Velocity of the air over time and height.
 
-    It is linear in time, and in the logarithm of height, between the points of a grid, and beyond
-    the grid that of the nearest point. A logarithmic profile is exact: it is a line between two
-    heights.
+    The velocity is interpolated on a grid, linearly in time and in the logarithm of height; outside
+    the grid it is the value at the edge. Two heights thus describe a logarithmic profile exactly.
 
     Parameters
     ----------
-    velocity : where the wind blows to, north and east, at each time and height, shape (n, m, 2)
-        [m/s]
-    times : of the grid, rising, shape (n,) [s]
-    heights : above the sea, rising, shape (m,) [m]
+    velocity : velocity of the air, north and east, at each time and height, shape (n, m, 2) [m/s]
+    times : times of the grid, ascending, shape (n,) [s]
+    heights : heights of the grid above the sea, ascending, shape (m,) [m]
 
     Attributes
     ----------
-    constant : whether it is the same at all times and heights
+    constant : whether the velocity is the same at all times and heights
 
     Raises
     ------
-    AircraftError : a value is not finite, or times or heights do not rise
+    AircraftError : a value is not finite, or times or heights do not ascend
     """
 
     def __init__(
@@ -58,10 +56,10 @@ class WindField:
         finite = np.isfinite(self._velocity)
         if not finite.all():
             wrong = self._velocity[~finite][0]
-            raise AircraftError(f"weather: a wind of {wrong} m/s; it must be finite")
+            raise AircraftError(f"weather: wind is {wrong} m/s; it must be finite")
         for name, values in (("times", self._times), ("heights", self._log_heights)):
             if any(after <= before for before, after in itertools.pairwise(values)):
-                raise AircraftError(f"weather: {name} of the wind do not rise")
+                raise AircraftError(f"weather: {name} of the wind do not ascend")
         self._rows: list[list[list[float]]] = self._velocity.tolist()
         self.constant = bool((self._velocity == self._velocity[0, 0]).all())
 
@@ -75,7 +73,7 @@ class WindField:
         return tuple(self._times), tuple(self._log_heights), self._velocity.tobytes()
 
     def now(self, time: float, height: float) -> tuple[float, float]:
-        """North and east velocity of the air [m/s] at one time [s] and height [m], fast."""
+        """North and east velocity of the air [m/s] at one time [s] and height [m]."""
         if self.constant:
             north, east = self._rows[0][0]
             return north, east
@@ -100,8 +98,8 @@ class WindField:
         Parameters
         ----------
         interval : [s]
-        duration : end of the times that are searched, which begin at 0 [s]
-        heights : that are searched, with those of the grid between the lowest and the highest [m]
+        duration : end of the searched times, which begin at 0 [s]
+        heights : searched heights, in addition to the grid's heights between them [m]
         """
         if len(self._times) == 1:
             return 0.0
@@ -116,9 +114,9 @@ class WindField:
 
         Parameters
         ----------
-        apart : largest distance of the two heights [m]
+        apart : largest distance between the two heights [m]
         lowest, highest : range of the heights [m]
-        duration : end of the times that are searched, which begin at 0 [s]
+        duration : end of the searched times, which begin at 0 [s]
         """
         if len(self._log_heights) == 1:
             return 0.0
@@ -130,7 +128,7 @@ class WindField:
     def displacement(self, time: npt.ArrayLike, height: npt.ArrayLike) -> tuple[Array, Array]:
         """Distance north and east [m] that the air moves from time 0 to ``time`` [s].
 
-        It is the exact integral of ``at`` over time, at a constant height [m]. Times and heights
+        This is the exact integral of ``at`` over time at a constant height [m]. Times and heights
         are broadcast.
         """
         north, east = (
@@ -142,7 +140,7 @@ class WindField:
         return north, east
 
     def _integral(self, time: npt.ArrayLike, height: npt.ArrayLike) -> tuple[Array, Array]:
-        """Integral of the velocity since the first time of the grid [m]."""
+        """Integral of the velocity from the first time of the grid [m]."""
         times, time = np.array(self._times), np.asarray(time, dtype=np.float64)
         mean = 0.5 * (self._velocity[1:] + self._velocity[:-1])
         moved = np.cumsum(np.diff(times)[:, None, None] * mean, axis=0)
@@ -171,7 +169,7 @@ class WindField:
 
 
 def constant_wind(north: float, east: float) -> WindField:
-    """Wind that is the same at all times and heights, by where it blows to [m/s]."""
+    """Wind that is the same at all times and heights, by its velocity north and east [m/s]."""
     return WindField([north, east])
 
 
@@ -186,11 +184,11 @@ def over_the_sea(
 
     Parameters
     ----------
-    wind : velocity at the height it is given for, north and east at each time, shape (n, 2) [m/s]
+    wind : velocity north and east at the reference height at each time, shape (n, 2) [m/s]
     times : [s]
-    roughness : length z_0: 2e-4 m over open sea (J. Wieringa, Boundary-Layer Meteorology 63:323,
-        1993), below the height [m]
-    height : h that the wind is given for [m]
+    roughness : roughness length z_0 [m]; 2e-4 m over open sea (J. Wieringa, Boundary-Layer
+        Meteorology 63:323, 1993)
+    height : reference height h [m]
 
     Raises
     ------
@@ -207,9 +205,9 @@ def over_the_sea(
 
 
 def _corners(nodes: Sequence[float], first: float, last: float, apart: float) -> Array:
-    """Points at which a largest change over the distance ``apart`` begins or ends.
+    """Points at which the largest change over the distance ``apart`` can begin or end.
 
-    Between the nodes of the grid a change is monotonic, so it is largest from or to a node.
+    Changes are monotonic between the nodes of the grid, so the largest begins or ends at a node.
     """
     inner = np.array([node for node in nodes if first < node < last])
     points = [first, last, *inner, *(inner - apart), *(inner + apart), first + apart, last - apart]
@@ -217,7 +215,7 @@ def _corners(nodes: Sequence[float], first: float, last: float, apart: float) ->
 
 
 def _largest_step(points: Array, north: Array, east: Array, apart: float) -> float:
-    """Largest change of velocities, shape (n, m), between points at most ``apart`` [m/s]."""
+    """Largest change of velocity between points at most ``apart`` from each other [m/s]."""
     largest = 0.0
     for step in range(1, len(points)):
         near = points[step:] - points[:-step] <= apart + _ROUNDING * abs(apart)
@@ -229,7 +227,7 @@ def _largest_step(points: Array, north: Array, east: Array, apart: float) -> flo
 
 
 def _bracket(points: list[float], value: float) -> tuple[int, int, float]:
-    """Indices of the points about a value, and its fraction of the way between them [-]."""
+    """Indices of the points around a value, and its fraction of the distance between them [-]."""
     i = bisect_right(points, value) - 1
     if i < 0 or i + 1 == len(points):
         i = max(i, 0)

@@ -1,1 +1,1 @@
-"""Shared by all rooms: text, files, registries, run directories, command lines, physics."""
+"""Code that all packages share: text, files, registries, run directories, physics."""

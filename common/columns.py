@@ -1,8 +1,7 @@
-"""What a column of a run's tables is: its name in tables and on axes, its unit, its meaning.
+"""Description of the columns of a run's tables: titles, units and meanings.
 
-Whoever fills a column declares it once, as a mapping from its name to a ``Column``; a user's
-instrument or study does it in the same way. A run keeps the columns of its tables in
-``columns.json``, and everything that shows a column reads that.
+The code that fills a column declares it once, by name, with a ``Column``. A user's instrument or
+study does the same. A run keeps its columns in ``columns.json``, which reports and exports read.
 """
 
 import math
@@ -35,41 +34,41 @@ _UNITS = {
     "_s": "s",
     "_utc": "UTC",
 }
-"""Units by the ends of names; the longest end that fits counts. What is in per cent is sulphur in
-fuel, by mass.
+"""Units by suffixes of names; the longest matching suffix counts.
+
+Per cent is used for sulphur in fuel, by mass.
 """
 
 _ENDS = sorted(_UNITS, key=len, reverse=True)
 
 DIMENSIONLESS = "1"
-"""Unit of a figure without one."""
+"""Unit of a dimensionless figure."""
 
 _WORSE, _KINDS = ("", "higher", "lower", "off zero"), ("number", "text", "truth", "any")
 
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A column of a table of a run.
+    """A column of a run's table.
 
     Attributes
     ----------
-    meaning : what it is, in a sentence without a full stop
-    title : its name in tables and on axes; that of the column in words, if none is given
-    symbol : its symbol in formulas, which stands for the title at the head of a table
-    unit : as shown; what the column's name ends in, if none is given, and ``DIMENSIONLESS`` where
-        that is no unit
-    digits : after the point
-    worse : "higher" or "lower", where that is to a flight's disadvantage; "off zero" of an error
-        with a sign
-    adds_up : whether the sum over flights means something, as of counts and times
-    scale : from the recorded value to ``unit``
-    missing : what a flight without it is
-    kind : "number", "text" or "truth"; "any" where it differs from run to run
-    part : the user's instrument or study that fills it, or "sniffer"; empty for the flight's own
+    meaning : what the column contains, in a sentence without a full stop
+    title : name in tables and on axes; by default the column's name in words
+    symbol : symbol in formulas, which replaces the title at the head of a table
+    unit : unit as shown; by default the suffix of the column's name, or ``DIMENSIONLESS``
+    digits : number of digits after the decimal point
+    worse : "higher" or "lower", whichever is to a flight's disadvantage; "off zero" for a signed
+        error
+    adds_up : whether the sum over flights has a meaning, such as a sum of counts or times
+    scale : factor from the recorded value to ``unit``
+    missing : description of a flight without a value
+    kind : "number", "text" or "truth"; "any" if it differs from run to run
+    part : user's instrument or study that fills the column, or "sniffer"; empty for the flight
 
     Raises
     ------
-    ValueError : one of them is of another type or value
+    ValueError : an attribute has a wrong type or value
     """
 
     meaning: str = ""
@@ -110,49 +109,49 @@ class Column:
 
     @property
     def head(self) -> str:
-        """What stands over it in a table: its symbol or else its title, and the unit if any."""
+        """Heading of the column in a table: symbol or title, and the unit if there is one."""
         return f"{self.symbol or self.title}{self.bracket}"
 
     @property
     def row(self) -> str:
-        """What stands before it in a table with a row for it: its title, and the unit if any."""
+        """Heading of the column's row in a table: title, and the unit if there is one."""
         return f"{self.title}{self.bracket}"
 
     @property
     def label(self) -> str:
-        """What an axis says: title and unit, "-" without one."""
+        """Label of an axis: title and unit, or "-" without a unit."""
         return f"{self.title}{self.bracket or ' [-]'}"
 
     def text(self, value: float | None) -> str:
-        """Return a recorded value in digits and in its unit, and a dash if there is none."""
+        """Return a recorded value as text in its unit, or a dash if there is no value."""
         if value is None or not math.isfinite(value):
             return "–"
         return f"{self.scale * value:.{self.digits}f}".replace("-", "−")
 
 
 Table = Mapping[str, Column]
-"""The columns of a table by their names, in order."""
+"""The columns of a table by name, in order."""
 
 Declared = Mapping[str, Column | str] | Iterable[str]
-"""Columns as they are declared: each by a ``Column`` or by its meaning, or all by names alone."""
+"""Declared columns: a ``Column`` or a meaning for each name, or names alone."""
 
 
 def unit_of(name: str) -> str:
-    """Return the unit that a name ends in, ``DIMENSIONLESS`` if it is none."""
+    """Return the unit in a name's suffix, or ``DIMENSIONLESS``."""
     return next((_UNITS[end] for end in _ENDS if name.endswith(end)), DIMENSIONLESS)
 
 
 def without_unit(name: str) -> str:
-    """Return a name without the unit that it ends in."""
+    """Return a name without the suffix of its unit."""
     return next((name.removesuffix(end) for end in _ENDS if name.endswith(end)), name)
 
 
 def described(declared: Declared, *, part: str = "") -> dict[str, Column]:
-    """Return columns, each with a title and a unit, and with the part that fills it.
+    """Return declared columns with their title, unit and part filled in.
 
     Raises
     ------
-    ValueError : a column is declared by something else than a ``Column`` or text
+    ValueError : a column is declared by something other than a ``Column`` or text
     """
     given = declared if isinstance(declared, Mapping) else dict.fromkeys(declared, "")
     return {name: _described(name, column, part) for name, column in given.items()}
@@ -165,7 +164,7 @@ def _described(name: str, column: Column | str, part: str) -> Column:
         raise ValueError(
             f"column '{name}' is declared by {column!r}; give a common.columns.Column, or text"
         )
-    # A key of a scenario, as in draws.csv, has the unit of its last word.
+    # In a dotted key of a scenario, as in draws.csv, the last word has the unit.
     last = name.rpartition(".")[2]
     words = without_unit(last).strip("_").replace("_", " ") or last
     return replace(
@@ -177,12 +176,12 @@ def _described(name: str, column: Column | str, part: str) -> Column:
 
 
 def column_of(tables: Mapping[str, Table], table: str, name: str) -> Column:
-    """Return a column of a table, with title and unit by its name where none are declared."""
+    """Return a column of a table; an undeclared column gets title and unit from its name."""
     return tables.get(table, {}).get(name) or _described(name, "", "")
 
 
 _ALWAYS = ("title", "symbol", "unit", "digits", "meaning", "worse")
-"""Fields that are written of every column; others where they differ from their default."""
+"""Fields that are always written; other fields only if they differ from their default."""
 
 _DEFAULTS = {field.name: field.default for field in fields(Column)}
 
@@ -203,11 +202,11 @@ def to_json(tables: Mapping[str, Table]) -> dict[str, dict[str, dict[str, Any]]]
 
 
 def from_json(document: Mapping[str, Any]) -> dict[str, dict[str, Column]]:
-    """Return the tables that ``columns.json`` holds; fields of later versions are left out.
+    """Return the tables in ``columns.json``; unknown fields of later versions are ignored.
 
     Raises
     ------
-    ValueError, TypeError, AttributeError : it holds something else
+    ValueError, TypeError, AttributeError : the document does not have this form
     """
     return {
         table: {

@@ -1,4 +1,4 @@
-"""Command lines of the project: typer for the options, one line for an error."""
+"""Run the project's command lines: options by typer, an error in one line."""
 
 import io
 import itertools
@@ -15,28 +15,29 @@ PROGRAM = "plume-flight"
 """Name of the console command."""
 
 BAD_INPUT, UNREAD = 2, 141
-"""Exit statuses: bad input; a gone reader, 128 and the signal's number as in a shell. Those of runs
-are in ``common.verdict``.
+"""Exit statuses of bad input and of a closed output pipe, which is 128 plus SIGPIPE's number.
+
+The exit statuses of runs are in ``common.verdict``.
 """
 
 _USAGE_ERROR: type[Exception] = typer.BadParameter.__bases__[0]
-"""Base class of typer's errors for bad options, which typer does not export."""
+"""Base class of typer's errors about options, which typer does not export."""
 
 
 def run_command(
     command: Callable[..., None] | Mapping[str, Callable[..., None]], name: str, version: str = ""
 ) -> None:
-    """Run a command line and exit with its status, which is 2 for bad options.
+    """Run a command line, and exit with its status; bad options give status 2.
 
     Parameters
     ----------
     command : the only command, or commands by name
-    name : of the command line
-    version : printed by ``--version`` if there are several commands
+    name : name of the command line
+    version : text that ``--version`` prints, if there are several commands
     """
     sys.stdout = _Output.instead_of(sys.stdout)
     sys.stderr = _Output.instead_of(sys.stderr)
-    # A shell completes the words of an installed command, which is the one with several commands.
+    # Only the installed command, which has several commands, has completion in a shell.
     several = isinstance(command, Mapping)
     app = typer.Typer(add_completion=several, pretty_exceptions_enable=False)
     if isinstance(command, Mapping):
@@ -54,16 +55,16 @@ def run_command(
         )
         called = getattr(getattr(error, "ctx", None), "command_path", name)
         status = refuse(f"{message}; see {called} --help")
-    # While the interpreter ends, a reader that is gone would be an exception.
+    # A closed pipe would raise an exception while the interpreter ends.
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
     sys.exit(status or 0)
 
 
 def _without_types(command: Any) -> Any:
-    """Return a command whose help shows no types of arguments and flags: their names say them."""
+    """Return a command whose help shows no types of arguments and flags."""
     for one in (command, *getattr(command, "commands", {}).values()):
-        # This creates --help as well, which a command does not have before.
+        # get_params also creates --help, which the command lacks before.
         for parameter in one.get_params(typer.Context(one)):
             if parameter.param_type_name == "argument":
                 hidden = parameter.metavar
@@ -75,7 +76,7 @@ def _without_types(command: Any) -> Any:
 
 
 def _with_value(error: Exception, message: str, given: Sequence[str]) -> str:
-    """Return a message with the option's value: "--jobs is 0; it must be ..."; others unchanged."""
+    """Return an error message with the option's value, as in "--jobs is 0; it must be ..."."""
     names = getattr(getattr(error, "param", None), "opts", [])
     _, said, demanded = message.partition("Input should be ")
     values = [
@@ -88,14 +89,14 @@ def _with_value(error: Exception, message: str, given: Sequence[str]) -> str:
 
 
 class _Output(io.TextIOWrapper):
-    """An output that ends the command silently when its reader is gone, as after ``| head``."""
+    """An output that ends the command silently when its pipe is closed, as by ``| head``."""
 
     @staticmethod
     def instead_of(stream: TextIO) -> TextIO:
-        """Return an output for a standard stream, or the stream itself if something replaced it."""
+        """Return an output that wraps a standard stream, or a replaced stream unchanged."""
         if not isinstance(stream, io.TextIOWrapper):
             return stream
-        # Names may have letters that the terminal cannot show.
+        # Names may have characters that the terminal cannot show.
         stream.reconfigure(errors="backslashreplace")
         if stream not in (sys.__stdout__, sys.__stderr__):
             return stream
@@ -116,14 +117,14 @@ class _Output(io.TextIOWrapper):
             self._end()
 
     def _end(self) -> NoReturn:
-        # Otherwise the interpreter would try once more to write what is left.
+        # Otherwise the interpreter would try again to write the rest of the buffer.
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, self.fileno())
         raise SystemExit(UNREAD)
 
 
 def _with_version(text: str) -> Callable[..., None]:
-    """Return a callback for the options before the command, which prints a version."""
+    """Return a typer callback with the option ``--version``."""
 
     def printed(given: bool) -> None:
         if given:

@@ -1,12 +1,12 @@
-"""Errors that are told to the user in one line."""
+"""Errors that the user sees as one line."""
 
 
 class RefusedError(ValueError):
     """The input cannot be used.
 
-    The message says in one line what is wrong with it: what, its value, the limit, the remedy.
+    The message is one line with the quantity, its value, the limit and the remedy.
     """
 
 
 class PluginError(RefusedError):
-    """A part of a user's own is unknown, does not load, or is not what it should be."""
+    """A user's part is unknown, does not load, or is invalid."""

@@ -1,4 +1,4 @@
-"""Files: written completely or not at all, recognised by their names, hashed."""
+"""Write files atomically, recognise them by name, and hash them."""
 
 import filecmp
 import hashlib
@@ -13,21 +13,21 @@ from typing import Any
 from common.run_layout import EXPORT, REPORT_HTML, REPORT_PDF
 
 DATA_SUFFIXES = (".csv", ".nmea", ".txt", ".nc")
-"""Suffixes of data files that a scenario may name: tables, AIS sentences, netCDF."""
+"""Suffixes of data files in a scenario: tables, AIS sentences, netCDF."""
 
 
 def is_data_file(name: str) -> bool:
-    """Return whether a name is that of a data file, by its suffix."""
+    """Return whether a name has the suffix of a data file."""
     return name.lower().endswith(DATA_SUFFIXES)
 
 
 def is_path(name: str) -> bool:
-    """Return whether a name contains a folder, as ``DIR/NAME`` does."""
+    """Return whether a name contains a folder, such as ``DIR/NAME``."""
     return any(separator and separator in name for separator in ("/", os.sep, os.altsep))
 
 
 def is_file(path: Path) -> bool:
-    """Return whether there is a file of this name; False for names that no file can have."""
+    """Return whether a file exists; False for names that are impossible for a file."""
     try:
         return path.is_file()
     except OSError:
@@ -35,9 +35,10 @@ def is_file(path: Path) -> bool:
 
 
 def write_whole(path: Path, write: Callable[[Path], object]) -> None:
-    """Write a file completely or not at all: ``write`` is given the path of a temporary one.
+    """Write a file completely or not at all.
 
-    A file that already has the content is left untouched.
+    ``write`` gets the path of a temporary file, which then replaces the file. A file that already
+    has the content is left untouched.
     """
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
@@ -49,25 +50,25 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
 
 
 def write_json(path: Path, value: Mapping[str, Any], *, indent: int | None = 1) -> None:
-    """Write a JSON file, completely or not at all; with an ``indent`` of None on one line.
+    """Write a JSON file, completely or not at all; an ``indent`` of None gives one line.
 
     Raises
     ------
-    ValueError : a number is not finite, which JSON cannot express
+    ValueError : a number is not finite
     """
     write_text(path, json_text(value, indent=indent))
 
 
 def json_text(value: Mapping[str, Any], *, indent: int | None) -> str:
-    """Return what ``write_json`` writes."""
+    """Return the text that ``write_json`` writes."""
     return json.dumps(value, indent=indent, allow_nan=False, default=plain_number) + "\n"
 
 
 def plain_number(value: object) -> object:
-    """Return a NumPy scalar as a Python number, for JSON; a user's part may return one."""
+    """Convert a NumPy scalar, which a user's part may return, to a Python number for JSON."""
     if callable(item := getattr(value, "item", None)):
         return item()
-    raise TypeError(f"JSON has nothing for {type(value).__name__}")
+    raise TypeError(f"JSON cannot express {type(value).__name__}")
 
 
 def write_text(path: Path, text: str) -> None:
@@ -76,7 +77,7 @@ def write_text(path: Path, text: str) -> None:
 
 
 def write_tree(source: Path, target: Path) -> None:
-    """Copy the files below a folder; files that already have the content are left untouched."""
+    """Copy all files below a folder; files that already have the content are left untouched."""
     for path in sorted(path for path in source.rglob("*") if path.is_file()):
         copy = target / path.relative_to(source)
         copy.parent.mkdir(parents=True, exist_ok=True)
@@ -84,7 +85,7 @@ def write_tree(source: Path, target: Path) -> None:
 
 
 def files_hash(root: Path, paths: Iterable[Path]) -> str:
-    """Return a SHA-256 of files below a folder: of their relative paths and contents, in order."""
+    """Return the SHA-256 of relative paths and contents of files below a folder, in order."""
     digest = hashlib.sha256()
     for path in paths:
         digest.update(path.relative_to(root).as_posix().encode())
@@ -93,7 +94,7 @@ def files_hash(root: Path, paths: Iterable[Path]) -> str:
 
 
 def remove_reports(directory: Path) -> None:
-    """Remove reports and exports, which are outdated when a run continues or a design is redone."""
+    """Remove reports and exports before a run continues or a design is repeated."""
     for name in (REPORT_HTML, REPORT_PDF):
         (directory / name).unlink(missing_ok=True)
     shutil.rmtree(directory / EXPORT, ignore_errors=True)

@@ -1,4 +1,4 @@
-"""Places on the WGS 84 ellipsoid, JSBSim's default, in metres north and east of an origin."""
+"""Convert positions on the WGS 84 ellipsoid to metres north and east of an origin."""
 
 import math
 
@@ -18,19 +18,22 @@ Array = npt.NDArray[np.float64]
 
 
 class LocalFrame:
-    """Metres north and east of an origin anywhere: an azimuthal equidistant projection.
+    """Azimuthal equidistant projection: metres north and east of an origin.
 
-    A place at a distance d on the ellipsoid, at an azimuth A from true north at the origin, is at
-    d cos A north and d sin A east. The line to it is taken as an arc with the ellipsoid's radius of
-    curvature at the origin in that direction. Within 20 km of the origin, poles and date line
-    included, places are true to 0.2 mm; within 100 km to 2 cm (against GeographicLib, C. F. F.
-    Karney, Algorithms for geodesics, J. Geodesy 87:43, 2013). Distances between two places that are
-    both d away from the origin are too long by up to d^2/(6 R^2): 2e-6 at 20 km.
+    A point at a distance d on the ellipsoid and an azimuth A from true north at the origin has the
+    coordinates d cos A north and d sin A east. The line to the point is taken as an arc with the
+    ellipsoid's radius of curvature at the origin in that direction. The origin may be anywhere,
+    also at a pole or the date line.
+
+    Positions are accurate to 0.2 mm within 20 km of the origin, and to 2 cm within 100 km (against
+    GeographicLib, C. F. F. Karney, Algorithms for geodesics, J. Geodesy 87:43, 2013). Distances
+    between two points at a distance d from the origin are too long by up to d^2/(6 R^2): 2e-6 at 20
+    km.
 
     Parameters
     ----------
-    latitude, longitude : geodetic, of the origin [rad]
-    altitude : above the ellipsoid at which metres count; higher up an angle spans more metres [m]
+    latitude, longitude : geodetic coordinates of the origin [rad]
+    altitude : altitude above the ellipsoid at which distances are measured [m]
     """
 
     def __init__(self, latitude: float, longitude: float, altitude: float = 0.0) -> None:
@@ -45,7 +48,7 @@ class LocalFrame:
         self._east_longer = 1.0 + altitude / self._transverse_radius
 
     def to_local(self, latitude: npt.ArrayLike, longitude: npt.ArrayLike) -> tuple[Array, Array]:
-        """Return north and east [m] of places [rad], in the shape of the places."""
+        """Return north and east [m] of latitudes and longitudes [rad], in their shape."""
         chord = (
             cartesian(
                 np.asarray(latitude, dtype=np.float64), np.asarray(longitude, dtype=np.float64)
@@ -60,7 +63,7 @@ class LocalFrame:
         return north * longer * self._north_longer, east * longer * self._east_longer
 
     def to_geodetic(self, north: npt.ArrayLike, east: npt.ArrayLike) -> tuple[Array, Array]:
-        """Return latitude, and longitude from -pi to pi, [rad] of local places [m]."""
+        """Return latitude and longitude (-pi to pi) [rad] of positions north and east [m]."""
         to_north = np.asarray(north, dtype=np.float64) / self._north_longer
         to_east = np.asarray(east, dtype=np.float64) / self._east_longer
         distance = np.hypot(to_north, to_east)
@@ -74,9 +77,9 @@ class LocalFrame:
         return _geodetic(self._origin + level - down[..., None] * self._up)
 
     def true_north(self, latitude: npt.ArrayLike, longitude: npt.ArrayLike) -> Array:
-        """Return the angle of true north at places [rad], clockwise from the frame's north [rad].
+        """Return the angle of true north at positions, clockwise from the frame's north [rad].
 
-        Meridians converge: a course in this frame is that from true north plus this angle.
+        Meridians converge: a course in this frame is the true course plus this angle.
         """
         _, north, _ = _axes(
             np.asarray(latitude, dtype=np.float64), np.asarray(longitude, dtype=np.float64)
@@ -86,7 +89,7 @@ class LocalFrame:
         return angle
 
     def _radius(self, north: Array, distance: Array) -> Array:
-        """Return the radius of curvature at the origin towards places [m] (Euler's theorem)."""
+        """Return the radius of curvature at the origin in the direction of points [m] (Euler)."""
         share = np.where(distance > 0.0, north / np.where(distance > 0.0, distance, 1.0), 1.0) ** 2
         radius: Array = 1.0 / (
             share / self._meridian_radius + (1.0 - share) / self._transverse_radius
@@ -95,7 +98,7 @@ class LocalFrame:
 
 
 def _axes(latitude: npt.ArrayLike, longitude: npt.ArrayLike) -> tuple[tuple[Array, ...], ...]:
-    """Return unit vectors up, north and east at places [rad], in Earth-fixed axes."""
+    """Return unit vectors up, north and east at positions [rad], in Earth-fixed axes."""
     sin_lat = np.sin(latitude)
     cos_lat = np.cos(latitude)
     sin_lon = np.sin(longitude)
@@ -108,7 +111,7 @@ def _axes(latitude: npt.ArrayLike, longitude: npt.ArrayLike) -> tuple[tuple[Arra
 
 
 def cartesian(latitude: Array | np.float64, longitude: Array | np.float64) -> Array:
-    """Return places [rad] on the ellipsoid in Earth-fixed axes [m], shape (..., 3)."""
+    """Return points of the ellipsoid [rad] in Earth-fixed axes [m], shape (..., 3)."""
     radius = EQUATORIAL_RADIUS / np.sqrt(1.0 - ECCENTRICITY_SQUARED * np.sin(latitude) ** 2)
     level = radius * np.cos(latitude)
     z = (1.0 - ECCENTRICITY_SQUARED) * radius * np.sin(latitude)
@@ -118,7 +121,7 @@ def cartesian(latitude: Array | np.float64, longitude: Array | np.float64) -> Ar
 
 
 def _geodetic(place: Array) -> tuple[Array, Array]:
-    """Return latitude and longitude [rad] of places near the ellipsoid.
+    """Return latitude and longitude [rad] of points near the ellipsoid.
 
     Source: B. R. Bowring, Survey Review 23:323 (1976).
     """

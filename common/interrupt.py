@@ -1,4 +1,4 @@
-"""The end of a command and of its processes."""
+"""End a command and its processes in an orderly way."""
 
 import contextlib
 import multiprocessing
@@ -13,8 +13,8 @@ from types import FrameType
 def terminated_like_interrupted() -> Iterator[None]:
     """Raise a KeyboardInterrupt at SIGTERM, as at Ctrl-C, within the context.
 
-    Schedulers and containers end a program by SIGTERM. A program that ignores it goes on doing so.
-    Only the main thread may handle signals: in any other one nothing changes.
+    Schedulers and containers end a program by SIGTERM. If the program ignores SIGTERM, or runs in
+    another thread than the main one, nothing changes.
     """
     before = signal.getsignal(signal.SIGTERM)
     alone = threading.current_thread() is threading.main_thread()
@@ -33,9 +33,10 @@ def _interrupt(_signal: int, _frame: FrameType | None) -> None:
 
 
 def follow_parent() -> None:
-    """End this process together with its parent, and ignore Ctrl-C, which the parent handles.
+    """Make this process end with its parent, and ignore Ctrl-C, which the parent handles.
 
-    SIGTERM ends it, and not the parent, whose handling of it a forked process has inherited.
+    SIGTERM ends this process at once; a forked process would otherwise have inherited the parent's
+    handler.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
@@ -45,6 +46,6 @@ def follow_parent() -> None:
 
 
 def _end_after(parent: multiprocessing.process.BaseProcess) -> None:
-    # join() waits until the parent's end of a pipe is closed, so that SIGKILL is noticed as well.
+    # join() waits until the parent closes its end of a pipe, which also happens at SIGKILL.
     parent.join()
     os._exit(1)

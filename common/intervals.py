@@ -9,13 +9,13 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 
 CONFIDENCE = 0.95
-"""Confidence of a bound unless another one is given [-]."""
+"""Default confidence of a bound [-]."""
 
 TELLING = 0.5
-"""Largest bound on a probability that is worth stating [-]: one flight bounds it by 0.95."""
+"""Largest bound on a probability that is stated [-]; a single flight gives a bound of 0.95."""
 
 TINY = 1e-5
-"""Probability below which powers of ten are written instead of many zeros [-]."""
+"""Probability below which text has a power of ten [-]."""
 
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -23,10 +23,11 @@ _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 def upper_bound(events: int, trials: int, confidence: float = CONFIDENCE) -> float:
     """Return the exact one-sided upper bound of a probability [-].
 
-    C. J. Clopper and E. S. Pearson, "The use of confidence or fiducial limits illustrated in the
-    case of the binomial", Biometrika 26 (1934). Where trials differ in their probability, as the
-    flights of a sweep do, it bounds their mean: W. Hoeffding, "On the distribution of the number of
-    successes in independent trials", Annals of Mathematical Statistics 27 (1956), theorem 4.
+    Source: C. J. Clopper and E. S. Pearson, "The use of confidence or fiducial limits illustrated
+    in the case of the binomial", Biometrika 26 (1934). If trials differ in their probability, as
+    the flights of a sweep do, the bound holds for the mean probability: W. Hoeffding, "On the
+    distribution of the number of successes in independent trials", Annals of Mathematical
+    Statistics 27 (1956), theorem 4.
 
     Parameters
     ----------
@@ -37,8 +38,8 @@ def upper_bound(events: int, trials: int, confidence: float = CONFIDENCE) -> flo
     ------
     ValueError : ``events`` is not within 0 to ``trials``, or ``confidence`` not between 0 and 1
     """
-    # The beta distribution's quantile; scipy.stats, which calls the same function, takes a third of
-    # a second to import.
+    # Quantile of the beta distribution. scipy.stats calls the same function, but its import takes a
+    # third of a second.
     from scipy.special import betaincinv
 
     _check(confidence)
@@ -49,21 +50,21 @@ def upper_bound(events: int, trials: int, confidence: float = CONFIDENCE) -> flo
 
 @dataclass(frozen=True, slots=True)
 class Interval:
-    """An interval in the unit of its quantity; a limit is NaN if the sample is too small for it."""
+    """An interval in the unit of its quantity; a limit is NaN if the sample is too small."""
 
     low: float
     high: float
 
     @property
     def width(self) -> float:
-        """Width of the interval; NaN if a limit is."""
+        """Width of the interval; NaN if a limit is NaN."""
         return self.high - self.low
 
 
 def clopper_pearson(events: int, trials: int, confidence: float) -> Interval:
     """Return the exact two-sided interval of a probability, from two one-sided bounds.
 
-    Each limit is wrong with a probability of (1 - confidence)/2 at most.
+    Each limit is wrong with a probability of at most (1 - confidence)/2.
 
     Parameters
     ----------
@@ -82,10 +83,10 @@ def clopper_pearson(events: int, trials: int, confidence: float) -> Interval:
 def shared_interval(
     events: npt.NDArray[np.bool_], samples: npt.ArrayLike, confidence: float
 ) -> Interval:
-    """Return the interval of a probability where trials that share a random sample count as one.
+    """Return the interval of a probability if trials with the same random sample count as one.
 
-    If such trials differ, their share with an event counts. The sum of events is then not whole,
-    and each limit is taken at the next whole number outwards.
+    A sample counts with the fraction of its trials that had an event. If the sum of events is not a
+    whole number, each limit is computed for the next whole number outwards.
 
     Parameters
     ----------
@@ -94,7 +95,7 @@ def shared_interval(
     confidence : of the two-sided interval, between 0 and 1
     """
     _, of, counts = np.unique(np.asarray(samples), return_inverse=True, return_counts=True)
-    # Three thirds are a whole number except for rounding.
+    # Rounding makes three thirds a whole number.
     total = round(float(np.sum(np.bincount(of, weights=events) / counts)), 6)
     low, high = (
         clopper_pearson(whole(total), len(counts), confidence) for whole in (math.floor, math.ceil)
@@ -105,10 +106,10 @@ def shared_interval(
 def quantile_interval(values: Array, probability: float, confidence: float) -> Interval:
     """Return the confidence interval of a quantile from order statistics, for any distribution.
 
-    The number of values below the quantile is binomial. The l-th and the u-th smallest value
-    enclose the quantile if the probabilities of at most l - 1 values below it, and of at least u,
-    are each (1 - confidence)/2 at most. H. A. David and H. N. Nagaraja, "Order Statistics", 3rd ed.
-    (2003), section 7.1.
+    The number of values below the quantile has a binomial distribution. The l-th and the u-th
+    smallest value enclose the quantile if "at most l - 1 values below it" and "at least u values
+    below it" each have a probability of at most (1 - confidence)/2. Source: H. A. David and H. N.
+    Nagaraja, "Order Statistics", 3rd ed. (2003), section 7.1.
 
     Parameters
     ----------
@@ -135,8 +136,8 @@ def quantile_interval(values: Array, probability: float, confidence: float) -> I
     if not len(values):
         return Interval(math.nan, math.nan)
     tail, count = 0.5 * (1.0 - confidence), len(values)
-    # ppf(p) is the smallest number with a cumulative probability of p or more: the largest l and
-    # the smallest u follow.
+    # ppf(p) is the smallest number with a cumulative probability of at least p, which gives the
+    # largest l and the smallest u.
     low = int(binom.ppf(tail, count, probability))
     high = int(binom.ppf(1.0 - tail, count, probability)) + 1
     ordered = np.sort(values)
@@ -154,9 +155,9 @@ def _check(confidence: float) -> None:
 
 
 def percent(fraction: float) -> str:
-    """Return a fraction in per cent with three digits, or as a power of ten below ``TINY``.
+    """Return a fraction as text in per cent with three digits, or as a power of ten below ``TINY``.
 
-    From 0.99 on there are four digits. The space before the sign does not break.
+    From 0.99 on the text has four digits. The space before the sign is non-breaking.
     """
     if 0.0 < fraction < TINY:
         mantissa, exponent = f"{fraction:.1e}".split("e")

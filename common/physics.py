@@ -1,4 +1,4 @@
-"""Physics that every room uses: units, wind and coordinated turns."""
+"""Units, wind and coordinated turns."""
 
 import math
 
@@ -33,12 +33,12 @@ STANDARD_GRAVITY = 9.80665
 
 
 def wind_towards(from_deg: float) -> float:
-    """Return the course of wind [rad] that comes ``from_deg`` clockwise from north."""
+    """Return the direction to which a wind from ``from_deg`` blows, clockwise from north [rad]."""
     return math.radians(from_deg) + math.pi
 
 
 def wind_velocity(speed: float, from_deg: float) -> tuple[float, float]:
-    """Return north and east velocity of air [m/s] that comes ``from_deg`` clockwise from north."""
+    """Return north and east velocity of a wind from ``from_deg``, clockwise from north [m/s]."""
     towards = wind_towards(from_deg)
     return speed * math.cos(towards), speed * math.sin(towards)
 

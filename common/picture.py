@@ -1,4 +1,4 @@
-"""Pictures that a user gives, such as the logo of a report."""
+"""Read a user's picture, such as the logo of a report."""
 
 import base64
 import hashlib
@@ -8,29 +8,29 @@ from dataclasses import dataclass
 from pathlib import Path
 
 BYTES_MAX = 1_000_000
-"""Largest file of a picture [bytes]: it is written into every report."""
+"""Largest size of a picture's file [bytes]: every report contains the picture."""
 
 _SVG = "{http://www.w3.org/2000/svg}svg"
-"""Root of an SVG document."""
+"""Root element of an SVG document."""
 
 _SUFFIXES = {"image/png": ".png", "image/jpeg": ".jpg", "image/svg+xml": ".svg"}
-"""Media types that reports can show, with the suffixes of their files."""
+"""Media types that reports can show, with file suffixes."""
 
 
 class PictureError(ValueError):
-    """A file that is not a picture. The message is one line."""
+    """A file is not a usable picture; the message is one line."""
 
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A picture: the content of its file, and its media type."""
+    """A picture: content of the file, and media type."""
 
     content: bytes
     media_type: str
 
     @property
     def suffix(self) -> str:
-        """Suffix of its file."""
+        """Suffix of a file with this picture."""
         return _SUFFIXES[self.media_type]
 
     @property
@@ -45,11 +45,11 @@ class Picture:
 
 
 def read_picture(path: Path) -> Picture:
-    """Read a picture, a PNG, JPEG or SVG file by its content.
+    """Read a PNG, JPEG or SVG file; the content, not the name, decides the type.
 
     Raises
     ------
-    PictureError : the file cannot be read, is too large, or holds no picture
+    PictureError : the file cannot be read, is too large, or is not a picture
     """
     try:
         content = path.read_bytes()
@@ -79,7 +79,7 @@ def _media_type(content: bytes) -> str | None:
             return f"image/{str(image.format).lower()}"
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
         pass
-    # Unknown encodings raise LookupError or ValueError.
+    # An unknown encoding raises LookupError or ValueError.
     try:
         is_svg = ET.fromstring(content).tag == _SVG and _can_be_printed(content)
     except (ET.ParseError, LookupError, ValueError):
@@ -88,7 +88,7 @@ def _media_type(content: bytes) -> str | None:
 
 
 def _can_be_printed(svg: bytes) -> bool:
-    """Return whether typst can draw an SVG; it cannot without a size or with links."""
+    """Return whether typst can draw an SVG, which needs a size and must not have links."""
     import typst
 
     try:

@@ -1,7 +1,7 @@
-"""What a user's part does wrong, in one line that names it: ``call_plugin()`` calls it.
+"""Call users' parts, and report their errors in one line that names the part.
 
-A part is a user's steering law, shape, track, plume, instrument, search method, exporter, study, or
-the file that it stands in. Where it fails in flight, the flight is a row with this line.
+A part is a user's steering law, shape, track, plume, instrument, search method, exporter or study.
+If a part fails in flight, the flight's row in the summary has this line.
 """
 
 import math
@@ -22,17 +22,17 @@ _LIBRARY = sysconfig.get_path("stdlib")
 """Folder of Python's own modules."""
 
 ROOMS = ("aircraft", "common", "gnc", "innerloop", "measurement", "reports", "scenarios")
-"""Packages whose classes are no user's, and whose lines are not where a part has failed."""
+"""The project's packages; a class or a failing line outside of them belongs to a user."""
 
 PASSED_ON = (RefusedError, MemoryError)
-"""Errors that say by themselves what is wrong, or do not come from the part."""
+"""Errors that are passed on: they explain themselves, or are not the part's fault."""
 
 _SHOWN = 80
-"""Letters of a result that a message shows at most."""
+"""Largest number of characters of a result in a message."""
 
 
 def passed(found: Any) -> Any:
-    """Return what it is given."""
+    """Return a result unchanged."""
     return found
 
 
@@ -43,41 +43,42 @@ def call_plugin(
     result: Callable[[Any], Result] = passed,
     **named: Any,
 ) -> Result:
-    """Return what a method of a part returns.
+    """Call a method of a part; return its converted result.
 
     Parameters
     ----------
-    part : its kind or key, and its name, as in ``vessel.track 'mytrack.py:Weaving'``
-    method : of the part, or its class; called with ``given`` and ``named``
-    result : returns what the method has returned, converted if need be; raises a ``ValueError`` or
-        ``TypeError`` that says in words what it has to be
+    part : kind or key of the part and its name, as in ``vessel.track 'mytrack.py:Weaving'``
+    method : method of the part, or its class; called with ``given`` and ``named``
+    result : function that converts and returns the method's result; for a wrong result it raises a
+        ``ValueError`` or ``TypeError`` that says what the result has to be
 
     Raises
     ------
-    PluginError : the method failed, or returned something else
-    RefusedError : the part refuses its input by itself
+    PluginError : the method failed or returned a wrong result
+    RefusedError : the part itself refuses its input
     """
     try:
         found = method(*given, **named)
     except PASSED_ON:
         raise
-    # A part that ends the process must not end the command without a word.
+    # A part that raises SystemExit must not end the command without a message.
     except (Exception, SystemExit) as error:
         raise explained(part, method, error, *given) from error
     return check_result(f"{part}: {_called(method, given)} returned", found, result)
 
 
 def check_result(what: str, found: Any, result: Callable[[Any], Result]) -> Result:
-    """Return what a part returned or declares, converted by ``result`` as in ``call_plugin``.
+    """Return a result or declaration of a part, converted by ``result`` as in ``call_plugin``.
 
     Parameters
     ----------
-    what : it is, with a verb, as in ``payload 'mymeter.py:Meter': COLUMNS is``
-    found, result : same as ``call_plugin``
+    what : beginning of the message, with a verb, as in ``payload 'mymeter.py:Meter': COLUMNS is``
+    found : the result or declaration
+    result : same as in ``call_plugin``
 
     Raises
     ------
-    PluginError : it is something else
+    PluginError : the result is wrong
     """
     try:
         return result(found)
@@ -88,14 +89,14 @@ def check_result(what: str, found: Any, result: Callable[[Any], Result]) -> Resu
 def explained(
     part: str, method: Callable[..., Any], error: BaseException, *given: Any
 ) -> PluginError:
-    """Return the error that says in one line what a method of a part has raised, and where."""
-    # The first frame is that of the call.
+    """Return a one-line error that says what a method of a part has raised, and where."""
+    # The first frame is the call itself.
     frames = [
         frame
         for frame in traceback.extract_tb(error.__traceback__)[1:]
         if not frame.filename.startswith(("<", _LIBRARY)) or "site-packages" in frame.filename
     ]
-    # The first file outside of the project is the part's; it may call other packages.
+    # The first file outside of the project belongs to the part; later ones may be other packages.
     own = [frame for frame in frames if not _is_of_project(frame.filename)]
     lines = [frame for frame in own if frame.filename == own[0].filename] or frames
     where = f" ({Path(lines[-1].filename).name}:{lines[-1].lineno})" if lines else ""
@@ -104,40 +105,38 @@ def explained(
 
 
 def rejected_result(what: str, found: object, must: str) -> PluginError:
-    """Return the error of a result that is of no use; ``must`` says in words what it has to be."""
+    """Return the error for a wrong result; ``must`` says in words what the result has to be."""
     shown = one_line(repr(found))
     shown = shown if len(shown) <= _SHOWN else f"{shown[:_SHOWN]}..."
     return PluginError(f"{what} {shown}; it has to be {must}")
 
 
 def is_users(part: object) -> bool:
-    """Return whether an object is of a class from outside the project's rooms."""
+    """Return whether an object's class belongs to a user, not to the project."""
     return type(part).__module__.partition(".")[0] not in ROOMS
 
 
 def number(what: str) -> Callable[[Any], float]:
-    """Return what makes a finite float of a part's result; ``what`` it is, with its unit."""
+    """Return a converter of a result to a finite float; ``what`` names it, with its unit."""
     words = f"a finite number, {what}"
 
-    def made(found: Any) -> float:
+    def converted(found: Any) -> float:
         try:
             (value,) = numbers(1, what)((found,))
         except ValueError:
             raise ValueError(words) from None
         return value
 
-    return made
+    return converted
 
 
 def numbers(count: int, what: str, *, finite: bool = True) -> Callable[[Any], tuple[float, ...]]:
-    """Return what makes a tuple of so many numbers of a part's result, finite if need be; ``what``
-    they are, in words, with their units.
-    """
+    """Return a converter of a result to ``count`` numbers; ``what`` names them, with units."""
     words = f"{count} {'finite ' * finite}number{'s' * (count != 1)}, {what}"
 
-    def made(found: Any) -> tuple[float, ...]:
+    def converted(found: Any) -> tuple[float, ...]:
         try:
-            # Text is a row of letters, and a letter may be a digit.
+            # Text is iterable as well, and its characters may be digits.
             values = [float(value) for value in found if not isinstance(value, str)]
         except (TypeError, ValueError):
             values = []
@@ -145,11 +144,11 @@ def numbers(count: int, what: str, *, finite: bool = True) -> Callable[[Any], tu
             raise ValueError(words)
         return tuple(values)
 
-    return made
+    return converted
 
 
 def _called(method: Callable[..., Any], given: tuple[Any, ...]) -> str:
-    """Return a call in words: the name of the method, with numbers that it is given."""
+    """Return a call as text: the method's name with its numerical arguments."""
     name = getattr(method, "__name__", type(method).__name__)
     times = () if isinstance(method, type) else given
     shown = ", ".join(f"{of:.6g}" for of in times if type(of) in (int, float))

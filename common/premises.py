@@ -1,6 +1,6 @@
-"""The premises of the keep-out guard's theorem as a run's tables have them: their names, columns,
-and what is said of a violation that none of them explains. ``scenarios.measures.premises`` measures
-them.
+"""Names and columns of the measured premises of the keep-out guard's theorem.
+
+``scenarios.measures.premises`` measures them.
 """
 
 from collections.abc import Mapping
@@ -16,7 +16,7 @@ TERMS: Mapping[str, str] = {
     "turning": "turns in turbulence",
     "drift": "drift of dead reckoning",
 }
-"""Terms of the error budget that are measured, and what each is called."""
+"""Measured terms of the error budget, and their titles."""
 
 TRAFFIC_TERM, TRAFFIC_TITLE = "traffic", "other ships within their discs"
 """The same of flights with ships besides the one that is measured."""
@@ -25,37 +25,37 @@ TITLES: Mapping[str, str] = {**TERMS, TRAFFIC_TERM: TRAFFIC_TITLE}
 """What all of them are called."""
 
 EXCEEDED = "premises_exceeded"
-"""Column that names the terms whose ratio is above 1, separated by commas, or says ``HELD``."""
+"""Column with the terms whose ratio is above 1, separated by commas, or ``HELD``."""
 
 HELD = "none"
-"""What it says where every premise held."""
+"""Value of ``EXCEEDED`` if every premise held."""
 
 UNEXPLAINED_VIOLATION = "unexplained_violation"
 """Outcome of a flight that entered the keep-out area although every premise held."""
 
 UNEXPLAINED = "every premise of the keep-out theorem held: an error of the theorem or of its code"
-"""What is said of such a flight."""
+"""Explanation of such a flight in messages."""
 
 
 def ratio_column(term: str) -> str:
-    """Return the column of a term's largest ratio."""
+    """Return the column with a term's largest ratio."""
     return f"premise_{term}_ratio_max"
 
 
 def time_column(term: str) -> str:
-    """Return the column of the time of that ratio."""
+    """Return the column with the time of a term's largest ratio."""
     return f"{ratio_column(term)}_s"
 
 
 def _columns_of(term: str, title: str) -> dict[str, Column]:
     return {
         ratio_column(term): Column(
-            f"largest error over what the guard reckons with: {title}",
-            title=f"Error over what the guard reckons with: {title}",
+            f"largest error over the guard's allowance: {title}",
+            title=f"Error over the guard's allowance: {title}",
             worse="higher",
         ),
         time_column(term): Column(
-            "time of that ratio; of turns, at which the turn began",
+            "time of that ratio; for turns, the time at which the turn began",
             title=f"Time of that ratio: {title}",
             digits=1,
         ),
@@ -76,7 +76,7 @@ PREMISE_COLUMNS = described(
         },
     }
 )
-"""Columns of a flight's row: how the premises of the guard's theorem held."""
+"""Columns of a flight's row about the premises of the guard's theorem."""
 
 
 TRAFFIC_PREMISE_COLUMNS = described(_columns_of(TRAFFIC_TERM, TRAFFIC_TITLE))
@@ -84,6 +84,6 @@ TRAFFIC_PREMISE_COLUMNS = described(_columns_of(TRAFFIC_TERM, TRAFFIC_TITLE))
 
 
 def exceeded_terms(row: Mapping[str, object]) -> list[str]:
-    """Return the terms whose premise did not hold in a flight, by its row."""
+    """Return the terms whose premise did not hold, from a flight's row."""
     said = row.get(EXCEEDED)
     return said.split(", ") if isinstance(said, str) and said != HELD else []

@@ -1,4 +1,4 @@
-"""Software and host of a run, for its manifest and report, without names or paths of a machine."""
+"""Software and host of a run for its manifest, without the machine's names and paths."""
 
 import functools
 import importlib.metadata
@@ -30,23 +30,23 @@ _PACKAGES = (
 
 
 _FOLDERS = re.compile(r"""(?<![^\s=,'"\[({])(?:~|[A-Za-z]:)?[/\\](?:[^,'"\])}]*[/\\])?""")
-"""The folders of an absolute path, up to its last name."""
+"""Matches the folders of an absolute path, up to its last name."""
 
 
 def without_folders(text: str) -> str:
-    """Return a text in which absolute paths are cut to their last name."""
+    """Return a text with absolute paths shortened to their last name."""
     return _FOLDERS.sub("", text)
 
 
 def command_line(module: str, given: Sequence[str]) -> str:
-    """Return a command line for a shell, without hosts, and absolute paths cut to their last name.
+    """Return a command line for a shell, without hosts and without folders of absolute paths.
 
     Parameters
     ----------
-    module : that was run, if it was not the console command
-    given : ``sys.argv``: the program, and its arguments
+    module : module that was run, unless it was the console command
+    given : ``sys.argv``, the program and its arguments
     """
-    # The address of a cluster, and of a program that shows a flight.
+    # Options with the address of a cluster, or of a program that shows a flight.
     hosts = ("--scheduler", *(f"--{name.replace('_', '-')}" for name in announced("viewer")))
     program = PROGRAM if Path(given[0]).stem == PROGRAM else f"python -m {module}"
     shown = []
@@ -65,7 +65,7 @@ def command_line(module: str, given: Sequence[str]) -> str:
 
 
 def provenance() -> dict[str, Any]:
-    """Return versions of Python, packages and source, and the kind of host."""
+    """Return versions of Python, packages and source, and the type of host."""
     return {
         "python": platform.python_version(),
         "platform": f"{platform.system()} {platform.machine()}",
@@ -77,7 +77,7 @@ def provenance() -> dict[str, Any]:
 
 @functools.cache
 def _versions() -> Mapping[str, str]:
-    """Return the version of each package; they do not change within a process."""
+    """Return the version of each package; the result is cached."""
     versions = {}
     for package in _PACKAGES:
         try:

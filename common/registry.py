@@ -1,4 +1,4 @@
-"""Extension points: parts by name, from the project, an installed package or a Python file."""
+"""Extension points: find parts by name in the project, in installed packages or in files."""
 
 import functools
 import hashlib
@@ -20,24 +20,23 @@ from common.text import did_you_mean
 Part = TypeVar("Part")
 
 ENTRY_POINTS = "plume_flight_study"
-"""Prefix of the groups of entry points, as in ``plume_flight_study.steering_law``."""
+"""Prefix of groups of entry points, as in ``plume_flight_study.steering_law``."""
 
 
 class Registry(Generic[Part]):
-    """The parts of one kind.
+    """The parts of one kind, such as steering laws.
 
-    A part has a name if a module of ``folder`` registers it, or if an installed package has an
-    entry point of that name in the group ``plume_flight_study.KIND``. A part can also be named by
-    its file, as in ``mylaw.py:MyLaw``.
+    A module of ``folder`` registers a part under a name, or an installed package announces a part
+    by an entry point in the group ``plume_flight_study.KIND``. A part can also be named by its
+    file, as in ``mylaw.py:MyLaw``.
 
     Parameters
     ----------
-    kind : of the parts, as in "steering_law"
-    folder : package whose modules register the project's parts when they are imported, or one
-        module that does
-    protocol : module of the Protocol, which may register parts as well; by default ``folder``
-    methods : of the Protocol, which a part has to have unless it is a function that makes one;
-        "this|that" where one of two is enough
+    kind : kind of the parts, as in "steering_law"
+    folder : package whose modules register the project's parts at import, or a single module
+    protocol : module of the Protocol, for messages; by default ``folder``
+    methods : methods of the Protocol that a part must have, unless it is a function that creates
+        one; "this|that" if one of two is enough
     """
 
     def __init__(
@@ -76,8 +75,7 @@ class Registry(Generic[Part]):
             return
         if name in self.names():
             raise PluginError(
-                f"{self.words} '{name}' is known already, and is not the object that was given; "
-                "rename yours"
+                f"{self.words} '{name}' exists already and is another object; rename yours"
             )
         self._parts[name] = part
         try:
@@ -86,7 +84,7 @@ class Registry(Generic[Part]):
             del self._parts[name]
 
     def name_of(self, part: object) -> str | None:
-        """Return the name of a part, or None if it is not registered."""
+        """Return the name of a part, or None for an unregistered part."""
         return next((name for name, known in self._parts.items() if known is part), None)
 
     def names(self) -> list[str]:
@@ -94,9 +92,7 @@ class Registry(Generic[Part]):
         return sorted({*self._known(), *announced(self.kind)})
 
     def installed_names(self) -> list[str]:
-        """Return the names that modules of ``folder`` register and those that installed packages
-        announce, in alphabetical order.
-        """
+        """Return the names of the project's and the installed packages' parts, sorted."""
         builtin = {
             name
             for name, part in self._known().items()
@@ -107,7 +103,7 @@ class Registry(Generic[Part]):
         return sorted({*builtin, *announced(self.kind)})
 
     def __contains__(self, name: str) -> bool:
-        """Return whether a name is known; installed packages come last, which takes longest."""
+        """Return whether a name is known; installed packages are searched last, because of time."""
         return name in self._known() or name in announced(self.kind)
 
     def get(self, name: str) -> Part:
@@ -115,8 +111,8 @@ class Registry(Generic[Part]):
 
         Raises
         ------
-        PluginError : there is none, it does not load, it lacks a method, or it is an object where
-            a class is needed, because each flight makes a part of its own
+        PluginError : the part does not exist, does not load or lacks a method, or is an object
+            instead of a class, from which each flight creates its own object
         """
         if name.endswith((".py", ".py:")):
             raise PluginError(
@@ -130,7 +126,7 @@ class Registry(Generic[Part]):
             and name.isidentifier()
             and any(of.name == name for of in self._modules())
         ):
-            # The module of that name first: the others may take long to import.
+            # Try the module of that name first: importing all modules may take long.
             importlib.import_module(f"{self._folder}.{name}")
         if name in self._parts or name in self._known():
             return self._parts[name]
@@ -154,21 +150,21 @@ class Registry(Generic[Part]):
         if not self._complete:
             for module in self._modules():
                 importlib.import_module(f"{self._folder}.{module.name}")
-            # Only now: a module that does not load has to fail at every call.
+            # Set last, so that a module that does not load fails at every call.
             self._complete = True
         return self._parts
 
     def _modules(self) -> Iterable[pkgutil.ModuleInfo]:
-        """Return the modules of ``folder``: none of a module, which registers its parts itself."""
+        """Return the modules of ``folder``; a single module has none."""
         package = importlib.import_module(self._folder)
         return pkgutil.iter_modules(getattr(package, "__path__", ()))
 
     def checked(self, name: str, part: Any) -> Part:
-        """Return a part, which has every method of its Protocol.
+        """Check that a part has every method of its Protocol; return the part.
 
         Raises
         ------
-        PluginError : it lacks one
+        PluginError : a method is missing
         """
         lacking = [
             method
@@ -185,7 +181,7 @@ class Registry(Generic[Part]):
 
 
 def announced(kind: str) -> dict[str, importlib.metadata.EntryPoint]:
-    """Return the entry points of installed packages for parts of a kind, by name."""
+    """Return the installed packages' entry points for parts of a kind, by name."""
     return {
         point.name: point
         for point in _points(f"{ENTRY_POINTS}.{kind}", importlib.metadata.entry_points, _places())
@@ -197,7 +193,7 @@ def load_announced(kind: str, name: str) -> Any:
 
     Raises
     ------
-    PluginError : it does not load
+    PluginError : the part does not load
     """
     point = announced(kind)[name]
     words = kind.replace("_", " ")
@@ -205,10 +201,7 @@ def load_announced(kind: str, name: str) -> Any:
 
 
 def announced_folders(kind: str) -> dict[str, Path]:
-    """Return the folders of the packages that installed packages announce for a kind, by name.
-
-    The packages are not imported.
-    """
+    """Return the folders of packages that entry points of a kind name, without importing them."""
     found = {}
     for name, point in announced(kind).items():
         spec = importlib.util.find_spec(point.module)
@@ -221,15 +214,15 @@ def announced_folders(kind: str) -> dict[str, Path]:
 def _points(
     group: str, find: Callable[..., importlib.metadata.EntryPoints], _: tuple[tuple[str, int], ...]
 ) -> importlib.metadata.EntryPoints:
-    """Return the entry points of a group, which takes a look into every installed package.
+    """Return the entry points of a group, cached because every installed package is searched.
 
-    The last argument is ``_places()``: the result is kept until a package is installed or removed.
+    The last argument is ``_places()``, so that installing or removing a package updates the result.
     """
     return find(group=group)
 
 
 def _places() -> tuple[tuple[str, int], ...]:
-    """Return the folders of packages, and when each last changed [ns], or 0."""
+    """Return the folders of packages with their times of change [ns]; 0 if unknown."""
     return tuple((place, _changed(place)) for place in sys.path)
 
 
@@ -241,17 +234,17 @@ def _changed(place: str) -> int:
 
 
 def is_file_part(name: str) -> bool:
-    """Return whether a part is named by its file, ``FILE.py:NAME``."""
+    """Return whether a name has the form ``FILE.py:NAME``."""
     return ".py:" in name
 
 
 def file_of(name: str) -> Path:
-    """Return the file of a part that is named by its file, or the file of data itself."""
+    """Return the file in ``FILE.py:NAME``, or a data file itself."""
     return Path(name.rpartition(":")[0] if is_file_part(name) else name)
 
 
 def file_hash(name: str) -> str:
-    """Return a hash of the file of a part that is named by its file, or of a file of data.
+    """Return the hash of the file in ``FILE.py:NAME``, or of a data file.
 
     Raises
     ------
@@ -268,11 +261,11 @@ def file_hash(name: str) -> str:
 
 
 def part_in_file(name: str) -> Any:
-    """Return the part NAME of a Python file, by ``FILE.py:NAME``.
+    """Return the part NAME from ``FILE.py:NAME``.
 
     Raises
     ------
-    PluginError : the file cannot be read or does not load, or has nothing of that name
+    PluginError : the file cannot be read or does not load, or the name is missing in it
     """
     path, _, attribute = name.rpartition(":")
     module = _module_in(Path(path), file_hash(name))
@@ -283,7 +276,7 @@ def part_in_file(name: str) -> Any:
 
 @functools.lru_cache(maxsize=64)
 def _module_in(path: Path, digest: str) -> Any:
-    """Return the module in a file, loaded once while its hash stays the same."""
+    """Return the module in a file; it is loaded again only if its hash changes."""
     name = f"plume_flight_study_{path.stem}_{digest}"
 
     def load() -> ModuleType:
@@ -291,7 +284,7 @@ def _module_in(path: Path, digest: str) -> Any:
         assert spec is not None
         assert spec.loader is not None
         module = importlib.util.module_from_spec(spec)
-        # Dataclasses look their module up.
+        # Dataclasses look up their module in sys.modules.
         sys.modules[name] = module
         spec.loader.exec_module(module)
         return module

@@ -1,72 +1,72 @@
-"""File names of a run directory, for the rooms that write it and the rooms that read it."""
+"""Names of the files in a run directory."""
 
 from pathlib import Path
 
 MANIFEST = "manifest.json"
-"""Configuration, software, and how the run ended."""
+"""Configuration, software, and the end of the run."""
 
 FORMAT = 1
-"""Version of a run directory, the manifest's ``format``; it increases when a meaning changes."""
+"""Version of the run directory's format, in the manifest; it increases if a meaning changes."""
 
 FILES = "files"
-"""Entry of the manifest with the files that a run had when it ended."""
+"""Entry of the manifest with the files at the end of the run."""
 
 JOURNAL = "journal.sqlite"
-"""Results as they arrived; the tables are written from it."""
+"""Database of results; the tables are written from it."""
 
 SUMMARY = "summary.csv"
-"""A row per flight of the study, or per trajectory and law."""
+"""Table with a row per flight of the study, or per trajectory and law."""
 
 COMPARISON = "comparison.csv"
-"""A row per flight of the comparisons."""
+"""Table with a row per flight of the comparisons."""
 
 CROSSINGS = "crossings.csv"
-"""A row per crossing of the plume."""
+"""Table with a row per crossing of the plume."""
 
 INTERVENTIONS = "interventions.csv"
-"""A row per intervention of the keep-out guard."""
+"""Table with a row per intervention of the keep-out guard."""
 
 TRAFFIC = "traffic.csv"
 """A row per flight and ship besides the one that is measured."""
 
 DRAWS = "draws.csv"
-"""The values of the random variables of each flight."""
+"""Table of the random variables of each flight."""
 
 OVERRIDES = "overrides.csv"
-"""The keys that each flight has otherwise than the configuration of its trial in the manifest."""
+"""Table of each flight's keys that differ from the trial's configuration in the manifest."""
 
 ESTIMATE = "estimate.json"
-"""The fuel sulphur content that a measured flight shows."""
+"""Fuel sulphur content estimated from a measured flight."""
 
 SAMPLES = "samples.csv"
 """Readings and signals of a measured flight."""
 
 COLUMNS = "columns.json"
-"""What the columns of its tables are: titles, units, meanings (``common.columns``)."""
+"""Titles, units and meanings of the tables' columns (``common.columns``)."""
 
 DERIVED = "derived"
-"""Entry of ``columns.json`` with figures that follow from the summary and are in no table."""
+"""Entry of ``columns.json`` with figures that are derived from the summary."""
 
 VERDICT = "verdict.json"
-"""What the run has shown (``common.verdict``): the only judge of it."""
+"""Verdict of the run (``common.verdict``)."""
 
 DESIGN_RECORD = "innerloop.json"
 """The design record of the autopilot."""
 
 BOUNDS = "bounds.json"
-"""Bounds of the commands of the paper's flights."""
+"""Bounds on the commands in the paper's flights."""
 
 STATISTICS = "statistics.json"
 """Estimates of a Monte Carlo study."""
 
 SULPHUR_TABLE = "sulphur.csv"
-"""A row per flight with a sniffer, method and time after settling: the estimate at that time."""
+"""Table of fuel sulphur estimates: a row per flight, method and time after settling."""
 
 SULPHUR = "sulphur.json"
 """Statistics of the flights with a sniffer."""
 
 PREMISES = "premises.csv"
-"""A row per case and term of the error budget: how near errors came to what is reckoned with."""
+"""Table with a row per case and term of the error budget: largest error over the allowance."""
 
 TABLES = (
     SUMMARY,
@@ -78,25 +78,25 @@ TABLES = (
     SAMPLES,
     PREMISES,
 )
-"""Tables of a run; the sniffer writes that of the sulphur content."""
+"""Tables of a run, without the sniffer's table of sulphur content."""
 
 MODEL = "model"
-"""Directory of the aircraft's model with the autopilot."""
+"""Directory with the aircraft's model and the autopilot."""
 
 FLIGHTS = "flights"
-"""Directory of the time histories of flights, and entry of ``columns.json`` on their columns."""
+"""Directory of flights' time histories, and entry of ``columns.json`` for their columns."""
 
 WORST = "worst"
-"""Directory of the scenario files of the worst flights of a search."""
+"""Directory with scenario files of a search's worst flights."""
 
 REPORT_HTML, REPORT_PDF = "report.html", "report.pdf"
-"""The reports."""
+"""Files of the reports."""
 
 REPORT_SETTINGS = ("title", "author", "organisation", "logo")
-"""Keys of a scenario's section ``report`` and of the manifest's entry of that name."""
+"""Keys of the section ``report`` of a scenario and of a manifest."""
 
 LOGO = "logo"
-"""Name of the file of the reports' logo, without the suffix of its kind."""
+"""Name of the logo's file without its suffix."""
 
 EXPORT = "export"
 """Directory of exported files."""
@@ -105,22 +105,22 @@ HISTORY_SUFFIX = ".parquet"
 """Suffix of time histories."""
 
 EVALUATION_SUFFIX = ".json"
-"""Suffix of instruments' evaluations of flights."""
+"""Suffix of an instrument's evaluation of a flight."""
 
 TRAFFIC_SUFFIX = ".traffic.json"
 """Suffix of the tracks of other ships, as maps and replays draw them."""
 
 SMOKE_SUFFIX = ".smoke.json"
-"""Suffix of the parcels of exhausts, as replays draw them."""
+"""Suffix of the exhaust parcels that replays draw."""
 
 NAME_BYTES_MAX = 200
 """Longest name of a trial or a flight [bytes]: file systems take 255, and suffixes are added."""
 
 
 def is_file_name(name: object) -> bool:
-    """Return whether a name can be part of a file's name, and leads to no other directory.
+    """Return whether a name is valid in a file's name and does not lead to another directory.
 
-    Names that are read from a run are checked, because the run may come from somebody else.
+    Names in a run are checked, because the run may come from somebody else.
     """
     return (
         isinstance(name, str)
@@ -142,7 +142,7 @@ def evaluation_path(flight_id: str) -> str:
 
 
 def smoke_path(flight_id: str) -> str:
-    """Return the path of the parcels of a flight's exhaust, relative to the run directory."""
+    """Return the path of a flight's exhaust parcels, relative to the run directory."""
     return f"{FLIGHTS}/{flight_id}{SMOKE_SUFFIX}"
 
 
@@ -152,7 +152,7 @@ def traffic_path(flight_id: str) -> str:
 
 
 def flight_of(path: str) -> str:
-    """Return the ID of a flight by a path ``RUN_DIR/flights/ID``, with or without a suffix."""
+    """Return the flight ID from a path ``RUN_DIR/flights/ID``, with or without a suffix."""
     name = Path(path).name
     for suffix in (HISTORY_SUFFIX, SMOKE_SUFFIX, TRAFFIC_SUFFIX, EVALUATION_SUFFIX):
         name = name.removesuffix(suffix)

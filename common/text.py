@@ -1,4 +1,4 @@
-"""Text for people and tables: names that are nearly right, lines, times, cells of CSV tables."""
+"""Text for messages and tables: similar names, lines, times, cells of CSV tables."""
 
 import difflib
 import json
@@ -8,10 +8,10 @@ from collections.abc import Iterable
 from datetime import UTC, datetime
 
 _SHORT = 3
-"""Letters up to which a name is short: one wrong letter is then a large share of it."""
+"""Largest length of a short name, in which one wrong letter counts more."""
 
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
-"""First letters of a text that a spreadsheet computes."""
+"""First characters of a text that a spreadsheet takes for a formula."""
 
 _HOST_AND_PORT = re.compile(r"([A-Za-z0-9.\-]+):(\d{1,5})")
 
@@ -19,16 +19,16 @@ _PORT_MAX = 65535
 """Largest port of UDP and TCP."""
 
 MARK = "'"
-"""Put before such a text in a cell, so that it is shown and not computed (OWASP, CSV injection)."""
+"""Put before such a text in a cell, so that a spreadsheet shows it (OWASP, CSV injection)."""
 
 
 def at_or_below(key: str, above: str) -> bool:
-    """Return whether a dotted key is another one, or below it, as wind.speed_mps is below wind."""
+    """Return whether a dotted key equals another or lies below it, like wind.speed_mps in wind."""
     return key == above or key.startswith(f"{above}.")
 
 
 def host_and_port(text: str) -> tuple[str, int] | None:
-    """Return host and port of HOST:PORT, or None where the text is not of that form."""
+    """Return host and port from HOST:PORT, or None if the text has another form."""
     found = _HOST_AND_PORT.fullmatch(text)
     if found is None:
         return None
@@ -37,7 +37,7 @@ def host_and_port(text: str) -> tuple[str, int] | None:
 
 
 def one_line(words: str) -> str:
-    """Return words in one line, with control characters escaped."""
+    """Return a text in one line, with control characters escaped."""
     joined = " ".join(part for line in words.splitlines() if (part := line.strip()))
     return "".join(
         letter if letter.isprintable() else letter.encode("unicode_escape").decode()
@@ -46,14 +46,14 @@ def one_line(words: str) -> str:
 
 
 def install_words(extra: str) -> str:
-    """Return how an optional extra of the project is installed, for messages."""
+    """Return the command that installs an optional extra of the project, for messages."""
     return f"in the clone, pip install -c constraints.txt -e '.[{extra}]'"
 
 
 def nearest(name: str, known: Iterable[str]) -> str | None:
-    """Return the known name that is spelt most like a name, in any case, or None.
+    """Return the known name with the most similar spelling, ignoring case, or None.
 
-    A known name that has only one letter more at its end comes first.
+    A known name with one additional letter at its end comes first.
     """
     by_lower_case = {each.lower(): each for each in known}
     lower = name.lower()
@@ -68,18 +68,18 @@ def nearest(name: str, known: Iterable[str]) -> str | None:
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """Return ``; did you mean 'x'?`` for the nearest known name, or nothing if none is similar."""
+    """Return ``; did you mean 'x'?`` for the nearest known name, or "" if none is similar."""
     found = nearest(name, known)
     return f"; did you mean '{found}'?" if found else ""
 
 
 def other_units(heads: Iterable[str], columns: Iterable[str]) -> str:
-    """Return, as a remedy, which heads differ from missing columns only by the unit at their end.
+    """Return a remedy for headings that differ from missing columns only by their unit.
 
     Parameters
     ----------
-    heads : of the table that is read
-    columns : that it should have, such as ``speed_mps``
+    heads : headings of the table
+    columns : missing columns, such as ``speed_mps``
     """
     heads = list(heads)
     missing = {
@@ -99,12 +99,12 @@ def other_units(heads: Iterable[str], columns: Iterable[str]) -> str:
 
 
 def utc_text(seconds: float, *, milliseconds: bool = False) -> str:
-    """Return a time since 1970 [s] in ISO 8601, rounded to a millisecond.
+    """Return a time in ISO 8601, rounded to a millisecond.
 
     Parameters
     ----------
-    seconds : since 1970-01-01 in UTC [s]
-    milliseconds : whether whole seconds are printed with them as well
+    seconds : time since 1970-01-01 in UTC [s]
+    milliseconds : whether whole seconds are printed with milliseconds as well
     """
     time = datetime.fromtimestamp(round(seconds, 3), UTC)
     timespec = "milliseconds" if milliseconds or time.microsecond else "seconds"
@@ -112,7 +112,7 @@ def utc_text(seconds: float, *, milliseconds: bool = False) -> str:
 
 
 def span_words(first: datetime, last: datetime) -> str:
-    """Return two times in UTC, as in ``2026-06-01 10:00:00 to 10:05:00 UTC``."""
+    """Return a span of time as text, as in ``2026-06-01 10:00:00 to 10:05:00 UTC``."""
     begin, end = (time.astimezone(UTC).strftime("%Y-%m-%d %H:%M:%S") for time in (first, last))
     if begin == end:
         return f"{begin} UTC"
@@ -122,7 +122,7 @@ def span_words(first: datetime, last: datetime) -> str:
 
 
 def moment(recorded: object) -> datetime | None:
-    """Return a time that was recorded in ISO 8601, or None if it is not one."""
+    """Return the time in an ISO 8601 text, or None for anything else."""
     try:
         return datetime.fromisoformat(str(recorded))
     except ValueError:
@@ -130,7 +130,7 @@ def moment(recorded: object) -> datetime | None:
 
 
 def cell(value: object) -> object:
-    """Return a value for a cell of a CSV table: missing is empty, and no text is a formula."""
+    """Return a value for a cell of a CSV table: "" if missing, and no text that is a formula."""
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return ""
     return f"{MARK}{value}" if _looks_like_formula(value) else value
@@ -143,8 +143,9 @@ def from_cell(value: object) -> object:
 
 
 def as_json_cell(value: object) -> object:
-    """Return a value of JSON for a cell from which ``from_json_cell`` reads it back: numbers and
-    plain words as they are, all else as JSON.
+    """Return a JSON value for a CSV cell that ``from_json_cell`` can read back.
+
+    Numbers and plain words stay unchanged; anything else becomes JSON text.
     """
     if isinstance(value, int | float) and not isinstance(value, bool):
         return value
@@ -154,7 +155,7 @@ def as_json_cell(value: object) -> object:
 
 
 def from_json_cell(text: str) -> object:
-    """Return the value that ``as_json_cell`` and ``cell`` made a text of."""
+    """Return the value that ``as_json_cell`` and ``cell`` wrote."""
     word = from_cell(text)
     try:
         return json.loads(str(word))

@@ -1,7 +1,7 @@
-"""What a run has shown: judged once, by its study, and written as ``verdict.json``.
+"""The verdict of a run, which its study reaches once and writes as ``verdict.json``.
 
-Console, exit status, reports, comparisons and Python read it; nothing else judges a run. Of a
-single flight ``KeepOut.of`` says from its row whether it kept out.
+Console, exit status, reports, comparisons and Python read this verdict. ``KeepOut.of`` classifies a
+single flight from its row.
 """
 
 import json
@@ -13,23 +13,25 @@ from pathlib import Path
 from typing import Any, Self
 
 MET, NOT_MET, UNEXPLAINED, INTERRUPTED = 0, 1, 3, 130
-"""Exit status of a run: every flight did what is required of it; one did not; one entered the
-keep-out area although every premise of its guard held; the run was interrupted.
+"""Exit statuses of a run.
+
+``MET``: every flight met its requirement. ``NOT_MET``: a flight did not. ``UNEXPLAINED``: a flight
+entered the keep-out area although every premise of its guard held. ``INTERRUPTED``: the run was
+interrupted.
 """
 
 COMPLETED, LOST, DIVERGED, FAILED = "completed", "aircraft_lost", "diverged", "failed"
-"""Outcomes of flights that decide a verdict; ``scenarios.flight.outcome`` has all of them."""
+"""Outcomes of flights that influence a verdict; ``scenarios.flight.outcome`` has all of them."""
 
 GONE = (LOST, DIVERGED)
-"""Outcomes of flights whose aircraft does not come back."""
+"""Outcomes of flights whose aircraft is lost."""
 
 
 class KeepOut(StrEnum):
-    """How a flight kept out of the keep-out area.
+    """Whether a flight kept out of the keep-out area.
 
-    Only ``KEPT_OUT`` is said to have kept out. ``OUTSIDE`` was outside of the area to its end as
-    well, but lost its aircraft or failed. Of ``UNKNOWN`` nobody knows: it was not flown, or went
-    out of control.
+    ``KEPT_OUT`` flights stayed outside and came back. ``OUTSIDE`` flights stayed outside but lost
+    their aircraft or failed. ``UNKNOWN`` flights were not flown, or went out of control.
     """
 
     KEPT_OUT = "kept_out"
@@ -40,27 +42,27 @@ class KeepOut(StrEnum):
 
     @classmethod
     def of(cls, row: Mapping[Any, Any]) -> "KeepOut":
-        """Return it of a flight, by its row in the summary or the journal."""
+        """Classify a flight by its row in the summary or the journal."""
         violations, outcome = row.get("keepout_violations", math.nan), row.get("outcome")
         if violations > 0:
             return cls.VIOLATED
         if violations == 0 and outcome != DIVERGED:
             return cls.OUTSIDE if outcome in (LOST, FAILED) else cls.KEPT_OUT
-        # What was planned without a vessel has no area; what was never planned may have had one.
+        # A flight planned without a vessel has no area; an unplanned one may have one.
         planned, area = (_known(row.get(name)) for name in ("required", "keepout_radius_m"))
         return cls.NO_AREA if planned and not area else cls.UNKNOWN
 
     @property
     def is_known_outside(self) -> bool:
-        """Whether the flight was outside of the area to its end, come back or not."""
+        """Whether the flight stayed outside of the area, even if it lost its aircraft."""
         return self in (KeepOut.KEPT_OUT, KeepOut.OUTSIDE)
 
 
 def did_what_is_required(row: Mapping[Any, Any]) -> bool:
-    """Return whether a flight did what exit status 0 requires of it.
+    """Return whether a flight met its requirement for exit status 0.
 
-    Where it is required to keep out, and no more, it may lose its aircraft outside of the area.
-    What failed after its flight, as an instrument may, does not count as done.
+    A flight that is only required to keep out may lose its aircraft outside of the area. A flight
+    with a failure after its end, such as an instrument's, has not met its requirement.
     """
     if row.get("required") == "keep_out":
         return KeepOut.of(row).is_known_outside and row["outcome"] != FAILED
@@ -73,20 +75,21 @@ def _known(value: object) -> bool:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Counts:
-    """Numbers of flights, or of whatever a study counts.
+    """Numbers of flights, or of a study's other items.
 
     Attributes
     ----------
-    planned, done, flown : planned; done; and of these flown for any time
-    completed, met, passed : completed their mission; met every criterion; did what exit status 0
-        requires of them
-    kept_out, outside, violated, unknown, no_area : by ``KeepOut``; they add up to ``done``
-    lost, diverged, failed : whose aircraft was lost, those that diverged among them; by outcome
+    planned, done, flown : flights planned, flights done, and done flights that flew for any time
+    completed, met, passed : flights that completed their mission, met every criterion, or met their
+        requirement for exit status 0
+    kept_out, outside, violated, unknown, no_area : flights by ``KeepOut``; their sum is ``done``
+    lost, diverged, failed : flights whose aircraft was lost (diverged ones included), flights that
+        diverged, and flights that failed
     keepout_violations : keep-out violations of all flights
-    unexplained : violations although every premise of the guard held
-    hours : simulated [h]
-    outcomes : number of each outcome
-    required : number of those of which exit status 0 requires each
+    unexplained : flights with a violation although every premise of the guard held
+    hours : simulated flight time [h]
+    outcomes : number of flights with each outcome
+    required : number of flights with each requirement for exit status 0
     """
 
     planned: int
@@ -111,29 +114,29 @@ class Counts:
 
     @property
     def left(self) -> int:
-        """Number of those that are still to be flown."""
+        """Number of flights that are still to be flown."""
         return self.planned - self.done
 
     @property
     def not_flown(self) -> int:
-        """Number of those that are done and could not be flown."""
+        """Number of done flights that could not be flown."""
         return self.done - self.flown
 
     @property
     def beside(self) -> int:
-        """Number of flights with an area to keep out of, flown or not."""
+        """Number of done flights beside a vessel: flights with a keep-out area."""
         return self.done - self.no_area
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Worst:
-    """The worst of a figure, and whose it is.
+    """The worst value of a figure, and its flight.
 
     Attributes
     ----------
-    value : in the unit of the column; a word where the criterion is about one
+    value : value in the unit of the column; text if the criterion is about text
     flight : name of the flight
-    limit : of the criterion in that flight; None where it has none
+    limit : limit of the criterion in that flight, or None
     """
 
     value: float | str
@@ -143,18 +146,17 @@ class Worst:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Criterion:
-    """What is required of a figure, and what came of it.
+    """A criterion on a figure, and its result.
 
     Attributes
     ----------
-    key : of the scenario's section ``criteria``; or ``keep_out``, ``mission``,
+    key : key of the scenario's section ``criteria``, or ``keep_out``, ``mission``,
         ``crossing_clearance``, ``heading_rate``
-    column : of the summary, or figure that follows from it; empty if it is in neither
-    limits : of the flights that it judges: one, unless cases or a sweep set others
-    worst_of_all : over all flights that have the figure, judged by it or not
-    worst : over those that it judges
-    judged, failed : number of flights that it judges, and of those that failed it, or lack the
-        figure
+    column : column of the summary, or figure derived from it; empty if there is none
+    limits : limits in the judged flights: one, unless cases or a sweep set others
+    worst_of_all : worst value of all flights that have the figure
+    worst : worst value of the judged flights
+    judged, failed : number of judged flights, and of those that failed or lack the figure
     """
 
     key: str
@@ -167,19 +169,19 @@ class Criterion:
 
     @property
     def met(self) -> bool | None:
-        """Whether every flight that it judges meets it; None if it judges none."""
+        """Whether every judged flight meets the criterion; None if no flight is judged."""
         return self.failed == 0 if self.judged else None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Closest:
-    """The flight that stayed the least off its keep-out area.
+    """The flight that came closest to its keep-out area.
 
     Attributes
     ----------
-    flight : its name
-    distance_m, radius_m : its closest approach, and its r_min
-    shape : of its area
+    flight : name of the flight
+    distance_m, radius_m : closest approach, and r_min
+    shape : shape of the area
     """
 
     flight: str
@@ -190,15 +192,14 @@ class Closest:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Bound:
-    """The bound on the probability of a keep-out violation that follows from flights.
+    """Upper bound on the probability of a keep-out violation, from a number of flights.
 
     Attributes
     ----------
-    upper, confidence : a flight sampled as these were violates the area with a probability of at
-        most ``upper`` [-]
-    flights, violated, unknown : these flights; those with a violation; and those of which nobody
-        knows, which count as violations
-    samples : number of those that differ in what is random: of others each counts as one
+    upper, confidence : bound for a flight from the same distribution, and its confidence [-]
+    flights, violated, unknown : number of flights, of those with a violation, and of those with an
+        unknown result, which count as violations
+    samples : number of different random samples; flights with the same sample count as one
     """
 
     upper: float
@@ -211,12 +212,12 @@ class Bound:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Premises:
-    """How the premises of the keep-out guard held.
+    """Results of the keep-out guard's premises.
 
     Attributes
     ----------
-    measured, exceeded : number of flights of which they are known, and in which one did not hold
-    terms : number of flights by the premise that did not hold
+    measured, exceeded : number of flights with measured premises, and of those in which one failed
+    terms : number of flights by the premise that failed
     """
 
     measured: int = 0
@@ -226,7 +227,7 @@ class Premises:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrialVerdict:
-    """What the flights of one trial, or of all of them, have shown."""
+    """Verdict on the flights of one trial, or of all trials."""
 
     counts: Counts
     criteria: Sequence[Criterion] = ()
@@ -234,23 +235,23 @@ class TrialVerdict:
     bound: Bound | None = None
 
     def criterion(self, key: str) -> Criterion:
-        """Return a criterion by its key; one that judges nothing where there is none."""
+        """Return a criterion by its key; an unknown key gives a criterion that judges no flight."""
         return next((of for of in self.criteria if of.key == key), Criterion(key=key))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunVerdict:
-    """What a run has shown.
+    """Verdict on a run.
 
     Attributes
     ----------
-    what : name of the items that are counted, in the plural
-    required_met : whether every planned item is done, and all of them are as required
-    whole : of all items of the study; those of comparisons do not count
-    trials : the same of each trial
-    flights : names of the flights that are ``violated``, ``unknown``, ``lost``, ``diverged``,
-        ``failed``, and of those that did not do what is required of them (``not_passed``)
-    premises : of the guard
+    what : name of the counted items, in the plural
+    required_met : whether every planned item is done and met its requirement
+    whole : verdict on all items of the study, without comparisons
+    trials : verdict on each trial
+    flights : names of flights by ``violated``, ``unknown``, ``lost``, ``diverged``, ``failed``, and
+        ``not_passed`` if they did not meet their requirement
+    premises : results of the guard's premises
     comparisons : counts of the flights of each comparison
     comparisons_left : number of flights of comparisons that are still to be flown
     interrupted : whether the run ended before everything was done
@@ -270,13 +271,13 @@ class RunVerdict:
     def of_items(
         cls, what: str, *, planned: int, done: int, met: int, required_met: bool | None = None
     ) -> Self:
-        """Return the verdict of a study of items that are no flights, by their numbers.
+        """Return the verdict on a study whose items are not flights, from their numbers.
 
         Parameters
         ----------
         what : name of the items, in the plural
-        planned, done, met : their numbers
-        required_met : whether they are as required; all of them have to be met if not given
+        planned, done, met : numbers of items
+        required_met : whether the requirement is met; by default every item has to be met
         """
         counts = Counts(planned=planned, done=done, flown=done, met=met, passed=met)
         as_required = met == planned if required_met is None else required_met
@@ -303,18 +304,16 @@ class RunVerdict:
 
     @property
     def all_kept_out(self) -> bool:
-        """Whether everything that was planned is done, and each flight that has an area to keep out
-        of is known to have kept out, and came back: only then there was no violation.
-        """
+        """Whether the run is complete and every flight with a keep-out area has ``KEPT_OUT``."""
         return self.is_done and self.counts.kept_out == self.counts.beside
 
     @property
     def lost_against_requirement(self) -> int:
-        """Number of flights that lost their aircraft, and did not do what is required of them."""
+        """Number of flights that lost their aircraft and did not meet their requirement."""
         return len({*self.flights.get("lost", ())} & {*self.flights.get("not_passed", ())})
 
     def once_interrupted(self, *, interrupted: bool) -> Self:
-        """Return the verdict of a run that was interrupted, or was not."""
+        """Return the verdict with ``interrupted`` set."""
         return replace(self, interrupted=interrupted)
 
     def to_json(self) -> dict[str, Any]:
@@ -327,12 +326,12 @@ class RunVerdict:
 
 
 def read_verdict(path: Path) -> RunVerdict:
-    """Return the verdict that a run has written.
+    """Return the verdict from a file.
 
     Raises
     ------
-    OSError : there is no such file
-    ValueError, TypeError, LookupError, AttributeError : it is no verdict of this version
+    OSError : the file cannot be read
+    ValueError, TypeError, LookupError, AttributeError : the file has no verdict of this version
     """
     said = json.loads(path.read_text(encoding="utf-8"))
     return RunVerdict(

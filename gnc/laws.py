@@ -1,8 +1,8 @@
-"""Steering laws: which there are, and those of the paper.
+"""Registry of steering laws, and the laws of the paper.
 
-``gnc.steering`` has what a law gets and returns. The laws of the paper are (24) and (30) on the
-relative state, and the line of sight, which its Sim. 2 compares with. Installed packages
-announce others, as ``extensions/arena`` does those of autopilots and of the literature.
+``gnc.steering`` has the Protocol of a law. The paper has the laws (24) and (30) on the relative
+state, and compares them in Simulation 2 with the line of sight. Installed packages announce other
+laws; ``extensions/arena`` has those of autopilots and of the literature.
 """
 
 import math
@@ -17,40 +17,40 @@ from gnc.reference.reference import Reference
 from gnc.steering import Air, Motion, SteeringLaw, relative_motion
 
 ON_OSCILLATION = "oscillation"
-"""The task of tracking a point that oscillates."""
+"""Task of tracking an oscillating reference."""
 
 ON_CIRCLE = "standoff"
-"""The task of flying a circle about the vessel."""
+"""Task of flying a circle about the vessel."""
 
 ONLY_CIRCLES = {
-    ON_OSCILLATION: "it flies a circle about a centre, and the oscillating reference is on none;"
+    ON_OSCILLATION: "it flies a circle about a centre, and the oscillating reference has none;"
     " set guidance.mission to 'standoff'"
 }
-"""``unsupported_tasks`` of a law for circles."""
+"""``unsupported_tasks`` of a law that flies circles."""
 
 ONLY_MOVING_POINTS = {
-    ON_CIRCLE: "it steers at a point that moves on, and the nearest point of a circle does not;"
+    ON_CIRCLE: "it steers at a moving point, and the nearest point of a circle does not move ahead;"
     " set guidance.mission to 'follow'"
 }
-"""``unsupported_tasks`` of a law of pursuit."""
+"""``unsupported_tasks`` of a pursuit law."""
 
 
 STEERING_LAWS: Registry[Callable[..., SteeringLaw]] = Registry(
     "steering_law", folder="gnc.laws", methods=("heading_rate",)
 )
-"""Steering laws by name; calling one with its parameters makes it."""
+"""Steering laws by name: classes that are called with the law's parameters."""
 
 steering_law = STEERING_LAWS.register
-"""Decorator that registers a steering law by a name."""
+"""Decorator that registers a steering law under a name."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CheckedLaw:
-    """Base of a law whose parameters are all finite and above 0.
+    """Base of a law whose parameters must all be finite and above 0.
 
     Raises
     ------
-    ValueError : one is not
+    ValueError : a parameter is not
     """
 
     def __post_init__(self) -> None:
@@ -79,7 +79,7 @@ class DeltaLaw(CheckedLaw):
 
     Raises
     ------
-    ValueError : same as ``CheckedLaw``, or R is too short
+    ValueError : as in ``CheckedLaw``, or R is too short
     """
 
     inputs: ClassVar[str] = "the reference itself, and its turn rate"
@@ -95,11 +95,11 @@ class DeltaLaw(CheckedLaw):
 @steering_law("cascade")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CascadeLaw(DeltaLaw):
-    """The cascade law, equation (30): course error and geometry one after the other.
+    """The cascade law, equation (30).
 
     Attributes
     ----------
-    epsilon_per_m, look_ahead_m : same as ``DeltaLaw``
+    epsilon_per_m, look_ahead_m : as in ``DeltaLaw``
     gain_per_s : slope of h(phi) at 0 [1/s]
     steering_max_rad_s : largest |h(phi)| [rad/s]
     """
@@ -108,7 +108,7 @@ class CascadeLaw(DeltaLaw):
     steering_max_rad_s: float = 0.4
 
     def heading_rate(self, reference: Reference, own: Motion, _air: Air, /) -> float:
-        """Return omega [rad/s]; parameters are those of ``SteeringLaw``."""
+        """Return omega [rad/s]; parameters are as in ``SteeringLaw``."""
         state, omega_rho = relative_motion(self._look_ahead, reference, own)
         return cascade_law(state.phi, omega_rho, self.gain_per_s, self.steering_max_rad_s)
 
@@ -116,18 +116,18 @@ class CascadeLaw(DeltaLaw):
 @steering_law("lyapunov")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LyapunovLaw(DeltaLaw):
-    """The Lyapunov-based law, equation (24). Its demand is unbounded.
+    """The Lyapunov-based law, equation (24), whose command is unbounded.
 
     Attributes
     ----------
-    epsilon_per_m, look_ahead_m : same as ``DeltaLaw``
+    epsilon_per_m, look_ahead_m : as in ``DeltaLaw``
     lyapunov_gain_per_m2 : k_1 [1/m^2]
     """
 
     lyapunov_gain_per_m2: float = 0.001
 
     def heading_rate(self, reference: Reference, own: Motion, _air: Air, /) -> float:
-        """Return omega [rad/s]; parameters are those of ``SteeringLaw``."""
+        """Return omega [rad/s]; parameters are as in ``SteeringLaw``."""
         state, omega_rho = relative_motion(self._look_ahead, reference, own)
         return lyapunov_law(state, own.speed, omega_rho, self.lyapunov_gain_per_m2)
 
@@ -137,14 +137,14 @@ def line_of_sight_law(
 ) -> float:
     """Return omega [rad/s], proportional to the angle from the course to the line of sight.
 
-    The line of sight turns arbitrarily fast close to the reference. It is undefined on the
-    reference, where the command is 0.
+    Close to the reference the line of sight turns arbitrarily fast. On the reference it is
+    undefined, and the command is 0.
 
     Parameters
     ----------
-    to_reference_north, to_reference_east : from the vehicle to the reference [m]
+    to_reference_north, to_reference_east : d, from the vehicle to the reference [m]
     course : chi of the vehicle [rad]
-    gain : [1/s]
+    gain : heading rate per angle [1/s]
     """
     if to_reference_north == 0.0 and to_reference_east == 0.0:
         return 0.0
@@ -156,11 +156,11 @@ def line_of_sight_law(
 class LineOfSightLaw(CheckedLaw):
     """Heading rate proportional to the angle from the course to the line of sight.
 
-    Its demand has no useful bound.
+    The command has no useful bound.
 
     Attributes
     ----------
-    gain_per_s : [1/s]
+    gain_per_s : heading rate per angle [1/s]
     """
 
     inputs: ClassVar[str] = "the reference's place (M3); elsewhere called proportional pursuit"
@@ -168,7 +168,7 @@ class LineOfSightLaw(CheckedLaw):
     gain_per_s: float = 1.5
 
     def heading_rate(self, reference: Reference, own: Motion, _air: Air, /) -> float:
-        """Return the demanded heading rate [rad/s]; parameters are those of ``SteeringLaw``."""
+        """Return omega [rad/s]; parameters are as in ``SteeringLaw``."""
         return line_of_sight_law(
             reference.north - own.north, reference.east - own.east, own.course, self.gain_per_s
         )

@@ -1,18 +1,18 @@
-"""The guidance and control of the paper, equation by equation, in its order.
+"""The guidance and control of the paper, equation by equation, in the paper's order.
 
 D. Escudeiro, "UAV-based Measurement of Marine Vessels Smoke Plumes - Guidance and Control System".
-``# (24)`` stands at the line that computes equation (24). The plane is north-east, in metres;
+``# (24)`` marks the line that computes equation (24). Positions are north and east, in metres;
 courses are clockwise from north, in radians. The paper's symbols are::
 
     V_r, V_V         speeds of vehicle and reference, and of the vessel
-    chi, omega       course and heading rate; with the index r those of the reference
+    chi, omega       course and heading rate of the vehicle; with the index r of the reference
     nu               speed ratio, V_V/V_r
     eta, omega_0     course amplitude A/omega_0 and frequency of the reference's oscillation
     CO, r_CO         centre of oscillation, and its distance from the vessel
     d, delta, z      from vehicle to reference, look-ahead along the reference's course, d + delta
-    rho, phi, phi_r  length of z, and courses of vehicle and reference against that of z
+    rho, phi, phi_r  length of z, and courses of vehicle and reference relative to the course of z
 
-``EQUATIONS.md`` lists where the code differs from the paper, and the errors in its print.
+``EQUATIONS.md`` lists where the code differs from the paper, and misprints of the paper.
 """
 
 import functools
@@ -28,7 +28,7 @@ from gnc.errors import InfeasibleError
 from gnc.numeric import limited, wrap
 from gnc.reference.reference import Array, Orbit
 
-# SciPy is imported where it is used: the steering laws are needed without it, by `describe`.
+# SciPy is imported where it is used, because `describe` needs the steering laws only.
 
 # --- II.B Vehicle dynamics
 
@@ -45,7 +45,7 @@ def unicycle_rates(speed: float, course: float, heading_rate: float) -> tuple[fl
 
 
 def mean_speed_ratio(eta: float) -> float:
-    """Return F(eta), the reference's mean speed over its speed, by equation (5): J_0(eta) [-]."""
+    """Return F(eta) = J_0(eta), the ratio of the reference's mean speed to its speed, (5) [-]."""
     from scipy.special import j0
 
     return float(j0(eta))  # (5)
@@ -54,7 +54,7 @@ def mean_speed_ratio(eta: float) -> float:
 def eta_for_speed_ratio(nu: float) -> float:
     """Return the course amplitude eta = J_0^-1(nu) [rad], equation (6).
 
-    With it the reference's mean speed is that of the vessel.
+    With this amplitude the reference's mean speed equals the vessel's speed.
 
     Raises
     ------
@@ -65,7 +65,7 @@ def eta_for_speed_ratio(nu: float) -> float:
     if not (math.isfinite(nu) and 0.0 <= nu <= 1.0):
         raise InfeasibleError(
             f"speed ratio nu is {nu:g}; it must lie within 0 and 1: give the vessel a speed from 0"
-            " up to that of the UAV"
+            " up to the speed of the UAV"
         )
     if nu == 1.0:
         return 0.0
@@ -75,7 +75,7 @@ def eta_for_speed_ratio(nu: float) -> float:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Oscillation:
-    """The paper's orbit: the reference's course oscillates about the vessel's as a sinusoid.
+    """The paper's orbit: a sinusoidal oscillation of the course about the vessel's course.
 
     Attributes
     ----------
@@ -83,7 +83,7 @@ class Oscillation:
     speed : V_r [m/s]
     eta : course amplitude [rad]
     omega_0 : frequency [rad/s]
-    limit : what set the frequency, ``heading rate`` or ``roll rate``
+    limit : what limits the frequency, ``heading rate`` or ``roll rate``
     """
 
     nu: float
@@ -99,7 +99,7 @@ class Oscillation:
 
     @property
     def symmetric(self) -> bool:
-        """Return that the second half of the orbit is the mirror image of the first."""
+        """True: the second half of the orbit is the mirror image of the first."""
         return True
 
     @property
@@ -113,7 +113,7 @@ class Oscillation:
         return math.pi / self.omega_0
 
     def course(self, phase: float) -> float:
-        """Return the course at a phase omega_0 t + phi_0, off the vessel's [rad].
+        """Return the course relative to the vessel's course, at a phase omega_0 t + phi_0 [rad].
 
         Equation (3), and (7) at the start, where the phase is phi_0.
         """
@@ -125,9 +125,9 @@ class Oscillation:
         return self.speed * math.cos(course), self.speed * math.sin(course)  # (4)
 
     def heading_rate(self, phase: float) -> float:
-        """Return omega_r [rad/s] at a phase omega_0 t + phi_0, beside a vessel that does not turn.
+        """Return omega_r at a phase omega_0 t + phi_0, for a vessel that does not turn [rad/s].
 
-        Third line of equation (2) with omega_V = 0; the first two are those of (1).
+        This is the third line of equation (2) with omega_V = 0; the first two are as in (1).
         """
         return -self.amplitude * math.sin(phase)  # (2)
 
@@ -140,7 +140,7 @@ class Oscillation:
         return half_widths(self)
 
     def sidebands(self, orders: npt.NDArray[np.int64]) -> Array:
-        """Return the power of the orbit's harmonics, J_n(eta)^2 by Jacobi and Anger [-]."""
+        """Return the power of the orbit's harmonics, J_n(eta)^2 (Jacobi-Anger) [-]."""
         from scipy.special import jv
 
         return np.asarray(jv(orders, self.eta) ** 2)
@@ -155,21 +155,21 @@ def available_heading_rate(
     vessel_heading_rate: float,
     roll_rate_max: float,
 ) -> float:
-    """Return the heading rate that an oscillation may take, numerator of equation (8) [rad/s].
+    """Return the heading rate available to the oscillation, the numerator of equation (8) [rad/s].
 
     Parameters
     ----------
     nu : speed ratio [-]
     speed : V_r [m/s]
     heading_rate_max : omega_max [rad/s]
-    reserve : share of omega_max that is left to the feedback; 0 in the paper [-]
+    reserve : fraction of omega_max that is left to the feedback; 0 in the paper [-]
     vessel_heading_rate : omega_V [rad/s]
-    roll_rate_max : of the vehicle [rad/s]
+    roll_rate_max : largest roll rate of the vehicle [rad/s]
 
     Raises
     ------
-    InfeasibleError : nu below 0, or of 1 or more, a limit that is not above 0, or nothing left of
-        omega_max
+    InfeasibleError : nu is not within 0 and 1, a limit is not above 0, or nothing of omega_max is
+        left
     """
     for name, value, unit in (
         ("speed", speed, "m/s"),
@@ -183,7 +183,7 @@ def available_heading_rate(
     if not 0.0 <= reserve < 1.0:
         raise InfeasibleError(
             f"reserve is {reserve:g} of omega_max; it must be at least 0 and below 1: a tenth is"
-            " plenty"
+            " enough"
         )
     if nu >= 1.0:
         raise InfeasibleError(
@@ -193,7 +193,7 @@ def available_heading_rate(
     if not nu >= 0.0:
         raise InfeasibleError(
             f"speed ratio nu is {nu:g}; it must lie within 0 and 1: give the vessel a speed up to"
-            " that of the UAV"
+            " the speed of the UAV"
         )
     available = (1.0 - reserve) * heading_rate_max - abs(vessel_heading_rate)
     if not available > 0.0:
@@ -216,9 +216,9 @@ def design_oscillation(
 ) -> Oscillation:
     """Return the fastest oscillation that the vehicle can follow, by equation (8).
 
-    As nu approaches 1 that bound grows without limit, so omega_0 also respects the roll rate: near
-    level flight g/V times the roll rate is the heading acceleration, whose amplitude is eta
-    omega_0^2. Parameters and errors are those of ``available_heading_rate``.
+    As nu approaches 1, equation (8) allows any frequency, so omega_0 is also limited by the roll
+    rate. Near level flight the heading acceleration, whose amplitude is eta omega_0^2, is g/V times
+    the roll rate. Parameters and errors are as in ``available_heading_rate``.
     """
     available = available_heading_rate(
         nu=nu,
@@ -246,7 +246,7 @@ _ORBIT_POINTS = 7201
 
 @functools.lru_cache(maxsize=8)
 def _series(eta: float, omega_0: float) -> tuple[Array, Array]:
-    """Return the Jacobi-Anger coefficients of F_x and F_y [s]: both converge in a dozen terms."""
+    """Return the Jacobi-Anger coefficients of F_x and F_y [s]; a dozen terms are enough."""
     from scipy.special import jv
 
     along = (-1.0) ** _TERMS * jv(2 * _TERMS, eta) / (_TERMS * omega_0)
@@ -255,7 +255,7 @@ def _series(eta: float, omega_0: float) -> tuple[Array, Array]:
 
 
 def f_x(oscillation: Orbit, time: npt.ArrayLike) -> Array:
-    """Return F_x of equation (12), the integral of cos[eta cos(omega_0 t)] from 0 [s]."""
+    """Return F_x of (12), the integral of cos[eta cos(omega_0 t)] from 0 to ``time`` [s]."""
     t = np.asarray(time, dtype=np.float64)[..., None]
     series, _ = _series(oscillation.eta, oscillation.omega_0)
     return np.asarray(
@@ -265,16 +265,16 @@ def f_x(oscillation: Orbit, time: npt.ArrayLike) -> Array:
 
 
 def f_y(oscillation: Orbit, time: npt.ArrayLike) -> Array:
-    """Return F_y of equation (12), the integral of sin[eta cos(omega_0 t)] from 0 [s]."""
+    """Return F_y of (12), the integral of sin[eta cos(omega_0 t)] from 0 to ``time`` [s]."""
     t = np.asarray(time, dtype=np.float64)[..., None]
     _, series = _series(oscillation.eta, oscillation.omega_0)
     return np.asarray(np.sum(series * np.sin(_ODD * oscillation.omega_0 * t), axis=-1))
 
 
 def offset(oscillation: Orbit, time: npt.ArrayLike) -> tuple[Array, Array]:
-    """Return d_x and d_y, the reference's offset from the CO, for a phase phi_0 of 0 [m].
+    """Return d_x and d_y, the reference's offset from the CO for phi_0 = 0 [m].
 
-    d_x is along the vessel's course and d_y right of it, each in the shape of ``time`` [s].
+    d_x is along the vessel's course and d_y to its right, each in the shape of ``time`` [s].
     """
     t = np.asarray(time, dtype=np.float64)
     along = oscillation.speed * (f_x(oscillation, t) - oscillation.nu * t)
@@ -293,12 +293,12 @@ def half_widths(oscillation: Orbit) -> tuple[float, float]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlumeAxis:
-    """Direction of the plume, seen from the vessel.
+    """Direction of the plume as seen from the vessel.
 
     Attributes
     ----------
     heading : chi_P, clockwise from the vessel's bow [rad]; pi is straight astern
-    elevation : alpha_P, above the horizon [rad]
+    elevation : alpha_P, angle above the horizon [rad]
     """
 
     heading: float
@@ -306,12 +306,12 @@ class PlumeAxis:
 
 
 def centre_of_oscillation(distance: float, axis: PlumeAxis) -> tuple[float, float, float]:
-    """Return the CO by equation (9): ahead of, right of and above the plume's origin [m].
+    """Return the position of the CO ahead, right and above the plume's origin, (9) [m].
 
     Parameters
     ----------
     distance : r_CO, along the axis [m]
-    axis : of the plume
+    axis : axis of the plume
     """
     horizontal = distance * math.cos(axis.elevation)
     return (
@@ -326,8 +326,8 @@ def distance_by_paper(orbit: Orbit, axis: PlumeAxis, distance_min: float) -> flo
 
     Parameters
     ----------
-    orbit : of the reference
-    axis : of the plume
+    orbit : orbit of the reference
+    axis : axis of the plume
     distance_min : r_min, radius of the keep-out sphere [m]
 
     Raises
@@ -339,10 +339,10 @@ def distance_by_paper(orbit: Orbit, axis: PlumeAxis, distance_min: float) -> flo
 
 
 def reach(orbit: Orbit, axis: PlumeAxis) -> float:
-    """Return d_max, the paper's estimate of the orbit's reach towards the vessel, (11) [m].
+    """Return d_max, the paper's estimate of the orbit's extent towards the vessel, (11) [m].
 
-    It is at least the true reach of a figure of eight, which has equal halves and is wider than
-    long. Other orbits may reach farther.
+    For a figure of eight, which has equal halves and is wider than long, d_max is not below the
+    true extent. Other orbits may extend farther.
     """
     along, across = orbit.half_widths()
     return along + (across - along) * abs(math.sin(axis.heading))  # (11)
@@ -351,10 +351,10 @@ def reach(orbit: Orbit, axis: PlumeAxis) -> float:
 def distance_exact(orbit: Orbit, axis: PlumeAxis, distance_min: float) -> float:
     """Return the smallest r_CO at which the whole orbit keeps r_min from the plume's origin [m].
 
-    For every point o of the orbit, |r_CO u + o| >= r_min bounds r_CO from below by the larger root
-    of a quadratic; the result is the largest bound. Differs from equation (10) because (11)
-    overestimates the reach of all but an abeam plume: by up to 10 m for a level plume and r_min =
-    200 m.
+    For every point o of the orbit, |r_CO u + o| >= r_min gives a lower bound of r_CO, the larger
+    root of a quadratic; the result is the largest bound. Differs from equation (10) because (11)
+    overestimates the orbit's extent except for a plume abeam: by up to 10 m for a level plume and
+    r_min = 200 m.
 
     Raises
     ------
@@ -370,7 +370,7 @@ def distance_exact(orbit: Orbit, axis: PlumeAxis, distance_min: float) -> float:
             along * math.cos(axis.heading) + across * math.sin(axis.heading)
         )
         inside = towards**2 - along**2 - across**2 + distance_min**2
-        # Where the root is imaginary, the line through that point never enters the sphere.
+        # If the root is imaginary, the line through the point never enters the sphere.
         return np.where(inside >= 0.0, -towards + np.sqrt(np.maximum(inside, 0.0)), 0.0)
 
     times = np.linspace(0.0, orbit.period, _ORBIT_POINTS)
@@ -419,8 +419,8 @@ class RelativeState(NamedTuple):
     ----------
     delta : length of the look-ahead vector [m]
     rho : length of z, from the vehicle to the end of the look-ahead vector [m]
-    phi_r : reference course against that of z [rad]
-    phi : vehicle course against that of z [rad]
+    phi_r : reference's course relative to the course of z [rad]
+    phi : vehicle's course relative to the course of z [rad]
     """
 
     delta: float
@@ -430,11 +430,11 @@ class RelativeState(NamedTuple):
 
 
 def look_ahead(epsilon: float, radius: float) -> LookAhead:
-    """Return checked parameters.
+    """Return the parameters of the look-ahead after a check.
 
     Raises
     ------
-    InfeasibleError : R <= 1/(4 epsilon), where delta may be shorter than d and z may vanish
+    InfeasibleError : R <= 1/(4 epsilon), so that delta may be shorter than d, and z may vanish
     """
     if not (math.isfinite(epsilon) and epsilon > 0.0):
         raise InfeasibleError(
@@ -449,7 +449,7 @@ def look_ahead(epsilon: float, radius: float) -> LookAhead:
 
 
 def delta_length(parameters: LookAhead, distance_squared: float) -> float:
-    """Return delta for a squared distance d^2 [m^2], equation (15) [m]."""
+    """Return delta [m] for a squared distance d^2 [m^2], equation (15)."""
     return parameters.epsilon * distance_squared + parameters.radius  # (15)
 
 
@@ -464,7 +464,7 @@ def relative_state(
 
     Parameters
     ----------
-    parameters : of the look-ahead
+    parameters : parameters of the look-ahead
     to_reference_north, to_reference_east : d, from the vehicle to the reference [m]
     reference_course, course : chi_r and chi [rad]
     """
@@ -484,10 +484,10 @@ def distance_squared(state: RelativeState) -> float:
 
 
 def distance_squared_rate(state: RelativeState, reference_speed: float, speed: float) -> float:
-    """Return the rate of d^2, equation (20) where both speeds are V_r [m^2/s].
+    """Return the rate of d^2, which is equation (20) if both speeds are V_r [m^2/s].
 
     Differs from the paper because a real aircraft's speed is V_r only on average: d . d-dot = d .
-    (v_r - v), resolved along z.
+    (v_r - v), resolved along and across z.
     """
     delta, rho, phi_r, phi = state
     cos_r, sin_r = math.cos(phi_r), math.sin(phi_r)
@@ -505,20 +505,20 @@ def relative_velocity(
 ) -> tuple[float, float]:
     """Return the rates of rho [m/s] and of the course of z, omega_rho [rad/s]: equation (18).
 
-    (17) is the rate of z in the inertial frame; (18) is that rate along z and across it.
+    (17) is the rate of z in the inertial frame; (18) has its components along and across z.
 
     Parameters
     ----------
     parameters, state : look-ahead and relative state
-    reference_speed, speed : V_r for both in the paper [m/s]
+    reference_speed, speed : speeds of reference and vehicle; both V_r in the paper [m/s]
     reference_heading_rate : omega_r [rad/s]
     """
     delta, rho, phi_r, phi = state
     cos_r, sin_r = math.cos(phi_r), math.sin(phi_r)
     along = reference_speed * cos_r - speed * math.cos(phi)
     across = reference_speed * sin_r - speed * math.sin(phi)
-    # This is epsilon times (20), written once more: the function runs at each step of the guidance,
-    # and a call would compute each sine and cosine twice.
+    # This repeats epsilon times (20): the function runs at each step of the guidance, and a call
+    # would compute each sine and cosine twice.
     delta_rate = parameters.epsilon * (
         2.0 * ((rho - delta * cos_r) * along - delta * sin_r * across)
     )
@@ -554,14 +554,14 @@ def state_rates(
 
 
 def equilibrium(parameters: LookAhead) -> RelativeState:
-    """Return x_d = [R, R, 0, 0], on the reference."""
+    """Return the equilibrium on the reference, x_d = [R, R, 0, 0]."""
     return RelativeState(parameters.radius, parameters.radius, 0.0, 0.0)
 
 
 def v_1(state: RelativeState) -> float:
     """Return V_1 = d^2/2, equation (22) [m^2].
 
-    It is positive definite about the equilibrium, among states that satisfy (15), and not about 0.
+    V_1 is positive definite about the equilibrium, not about 0, among states that satisfy (15).
     """
     return 0.5 * distance_squared(state)  # (22)
 
@@ -577,9 +577,9 @@ def v_1_rate(state: RelativeState, speed: float) -> float:
 
 
 def lyapunov_law(state: RelativeState, speed: float, omega_rho: float, k_1: float) -> float:
-    """Return omega by the Lyapunov-based law, equation (24) [rad/s]. It is singular at phi = pi.
+    """Return omega by the Lyapunov-based law, equation (24), which is singular at phi = pi [rad/s].
 
-    The print has sin(phi)/(1 + cos(phi)), which is tan(phi/2).
+    The paper has sin(phi)/(1 + cos(phi)), which equals tan(phi/2).
 
     Parameters
     ----------
@@ -599,8 +599,8 @@ def v_2(state: RelativeState, k_2: float) -> float:
 def v_2_rate(state: RelativeState, speed: float) -> float:
     """Return the rate of V_2 under law (24) with k_1 k_2 = 1, equation (26) [m^2/s].
 
-    It is never positive. Any other product adds (1 - k_1 k_2) rho V_r (1 - cos phi), so V_2 never
-    rises for larger ones either.
+    The rate is never positive. Other gains add (1 - k_1 k_2) rho V_r (1 - cos phi), so V_2 does not
+    rise for k_1 k_2 > 1 either.
     """
     delta, rho, phi_r, phi = state
     return -speed * (rho * (1.0 - math.cos(phi_r)) + delta * (1.0 - math.cos(phi_r - phi)))  # (26)
@@ -609,8 +609,8 @@ def v_2_rate(state: RelativeState, speed: float) -> float:
 def v_2_second_rate(state: RelativeState, rates: RelativeState, speed: float) -> float:
     """Return the second rate of V_2 under law (24), equation (27) [m^2/s^2].
 
-    It is bounded, so the rate of V_2 goes to zero. Two limits follow, which tests verify by
-    convergence.
+    This rate is bounded, so the first rate goes to zero. The two limits below follow; tests verify
+    them by convergence.
     """
     delta, rho, phi_r, phi = state
     return -speed * (
@@ -619,28 +619,28 @@ def v_2_second_rate(state: RelativeState, rates: RelativeState, speed: float) ->
         + (rates.phi_r - rates.phi) * delta * math.sin(phi_r - phi)
         + rates.delta * (1.0 - math.cos(phi_r - phi))
     )  # (27)
-    # (28): the rate (26) goes to zero, and it is zero only where phi_r and phi are; so both do.
-    # (29): with phi_r its rate goes to zero, by Barbalat, if omega_r and its rate are bounded.
+    # (28): the rate (26) goes to zero, and is zero only at phi_r = phi = 0: both go to zero.
+    # (29): the rate of phi_r goes to zero, too (Barbalat), if omega_r and its rate are bounded.
 
 
 # --- IV.D Nonlinear cascade system approach
 
 
 def h(phi: float, gain: float, rate_max: float) -> float:
-    """Return h(phi) of equation (30): gain phi [1/s, rad], kept within ``rate_max`` [rad/s].
+    """Return h(phi) of equation (30): gain times phi, limited to ``rate_max`` [rad/s].
 
-    It is 0 at 0 and has the sign of phi elsewhere, as (30) asks.
+    h is 0 at 0 and has the sign of phi elsewhere, as (30) requires.
     """
     return limited(gain * phi, rate_max)
 
 
 def cascade_law(phi: float, omega_rho: float, gain: float, rate_max: float) -> float:
-    """Return omega by the cascade law, equation (30) [rad/s]; gain and rate_max as in ``h``."""
+    """Return omega by the cascade law, equation (30) [rad/s]; parameters are as in ``h``."""
     return -h(phi, gain, rate_max) + omega_rho  # (30)
 
 
 class DrivenState(NamedTuple):
-    """x_1 of equations (22) and (31a): the relative state (19) but for phi.
+    """The driven state x_1 of (22) and (31a): the relative state (19) without phi.
 
     Attributes
     ----------
@@ -659,7 +659,7 @@ def driven_rates(
     speed: float,
     reference_heading_rate: float,
 ) -> DrivenState:
-    """Return the rates of the driven subsystem, whose input is phi, equation (31a).
+    """Return the rates of the driven subsystem with the input phi, equation (31a).
 
     They are the first three lines of (21).
     """
@@ -677,8 +677,8 @@ def unforced_rates(
 ) -> DrivenState:
     """Return the rates of the driven subsystem at phi = 0, equation (32).
 
-    Differs from the paper because its first line lacks the factor V_r that (21) has, and without
-    which it is no speed.
+    Differs from the paper because the paper's first line lacks the factor V_r of (21), without
+    which it is not a speed.
     """
     delta, rho, phi_r = driven
     cos_r, sin_r = math.cos(phi_r), math.sin(phi_r)
@@ -693,14 +693,14 @@ def unforced_rates(
 
 
 def v_1_unforced_rate(driven: DrivenState, speed: float) -> float:
-    """Return the rate of V_1 along the unforced system, (33); it is never positive [m^2/s]."""
+    """Return the rate of V_1 along the unforced system, (33), which is never positive [m^2/s]."""
     return -speed * (driven.rho + driven.delta) * (1.0 - math.cos(driven.phi_r))  # (33)
 
 
 def v_1_unforced_second_rate(driven: DrivenState, rates: DrivenState, speed: float) -> float:
     """Return the second rate of V_1 along (32), equation (34) [m^2/s^2].
 
-    It is bounded, so the rate of V_1 goes to zero.
+    This rate is bounded, so the rate of V_1 goes to zero.
     """
     delta, rho, phi_r = driven
     return -speed * (
@@ -710,9 +710,9 @@ def v_1_unforced_second_rate(driven: DrivenState, rates: DrivenState, speed: flo
 
 
 def v_1_rate_split(state: RelativeState, speed: float) -> float:
-    """Return the rate of V_1 along (21) as equation (35) has it [m^2/s].
+    """Return the rate of V_1 along (21) in the form of equation (35) [m^2/s].
 
-    It is (23), gathered so that no term is positive where |phi| <= |phi_r|.
+    This is (23) rearranged, so that no term is positive for |phi| <= |phi_r|.
     """
     delta, rho, phi_r, phi = state
     return -speed * (
@@ -726,13 +726,13 @@ def v_1_rate_split(state: RelativeState, speed: float) -> float:
 def excursion_time(phi: float, gain: float, rate_max: float) -> float:
     """Return the integral of 1 - cos(phi) over time along (31b), from ``phi`` to rest [s].
 
-    Parameters are those of ``h``. Time is -dphi/h, so that h = gain phi leaves the entire cosine
-    integral of the angle where h stops being held, and h = rate_max an elementary one of the angle
-    above that.
+    Parameters are as in ``h``. With dt = -dphi/h, the part with h = gain phi gives the entire
+    cosine integral at the angle where h begins to saturate, and the part with h = rate_max an
+    elementary integral.
     """
     size = abs(phi)
     free = min(size, rate_max / gain)
-    # Fourteen terms are exact to rounding up to pi.
+    # Up to pi, fourteen terms are exact except for rounding.
     entire_cosine = sum(
         (-1.0) ** (k + 1) * free ** (2 * k) / (2 * k * math.factorial(2 * k)) for k in range(1, 15)
     )
@@ -742,10 +742,10 @@ def excursion_time(phi: float, gain: float, rate_max: float) -> float:
 def delta_bound(
     parameters: LookAhead, state: RelativeState, speed: float, gain: float, rate_max: float
 ) -> float:
-    """Return the bound that delta never exceeds under law (30), for any reference [m].
+    """Return a bound that delta never exceeds under law (30), for any reference [m].
 
-    It bounds d through (15). Differs from the paper's argument after equation (35), that d no
-    longer rises from some time on, which does not hold.
+    By (15) it is also a bound of d. Differs from the paper's argument after equation (35), that d
+    no longer rises after some time, which does not hold.
     """
     rho_to_delta = 1.0 + 0.5 / math.sqrt(parameters.epsilon * parameters.radius)
     exponent = (

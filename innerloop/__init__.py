@@ -1,1 +1,1 @@
-"""The autopilot: designed from the linearised aircraft, and flown as a JSBSim ``<system>``."""
+"""The autopilot: its design from the linearised aircraft, and its flight as a JSBSim system."""

@@ -19,10 +19,10 @@ if TYPE_CHECKING:
     from innerloop.store import Record
 
 _RUNS = Path("runs")
-"""Directory of designs if none is given."""
+"""Default directory of designs."""
 
 _FLIES = {True: "flies", False: "-", None: "?"}
-"""Marks in the list: the aircraft flies, cannot fly, was not designed before."""
+"""Marks in the list: the aircraft flies, cannot fly, or has not been designed yet."""
 
 
 def command(
@@ -85,7 +85,7 @@ def command(
         ),
     ] = False,
 ) -> None:
-    """Design the autopilot of an aircraft: a report, and a JSBSim root that flies it.
+    """Design the autopilot of an aircraft; write a report and a JSBSim root that flies it.
 
     The report shows trim, poles, margins and step responses.
     """
@@ -118,7 +118,7 @@ def command(
 
 
 def _file_refusal(error: OSError, out: Path) -> str:
-    """Return why a file cannot be used, and the remedy; ``out`` is the directory to write."""
+    """Return why a file cannot be used, and the remedy; ``out`` is the output directory."""
     if error.filename is None:
         return f"a file cannot be written: {error.strerror}; check the space on disk"
     path, written = Path(str(error.filename)).absolute(), out.absolute()
@@ -130,7 +130,7 @@ def _file_refusal(error: OSError, out: Path) -> str:
 
 
 def _list(altitude: float, directory: Path | None, *, check: bool) -> None:
-    """Print a line for every aircraft, as soon as it is known whether it flies."""
+    """Print one line per aircraft, as soon as it is known whether the aircraft can be flown."""
     from aircraft.fleet.find import aircraft_names, folder_names, folder_path
     from innerloop.listing import discover, look_up
 
@@ -164,7 +164,7 @@ def _list(altitude: float, directory: Path | None, *, check: bool) -> None:
     if waiting:
         summary += (
             f"; {waiting} {'was' if waiting == 1 else 'were'} not designed for it before:"
-            " --list --check does so, which takes minutes, and says which can be flown"
+            " --list --check designs them, which takes minutes, and shows which can be flown"
         )
     print(summary, file=sys.stderr)
 
@@ -200,8 +200,8 @@ def _design(
     out.mkdir(parents=True, exist_ok=True)
     found = designed(spec, altitude)
     record = found.record
-    # An older design in the directory may be of another aircraft. The manifest is removed first and
-    # written last: it stands only for a complete design.
+    # The directory may hold the design of another aircraft. The manifest is removed first and
+    # written last, so that it always belongs to a complete design.
     remove_reports(out)
     if (out / MANIFEST).exists():
         shutil.rmtree(out / MODEL, ignore_errors=True)
@@ -230,9 +230,9 @@ def _design(
 
 
 def _manifest(record: "Record", command_line: str, wall_time: float) -> dict[str, Any]:
-    """Return the manifest of a design that took ``wall_time`` [s] until now.
+    """Return the manifest of a design, with title, description and provenance for its report.
 
-    Its report takes title, description and provenance from it.
+    ``wall_time`` is the duration of the design [s].
     """
     from common.provenance import provenance
 
@@ -262,7 +262,7 @@ def _manifest(record: "Record", command_line: str, wall_time: float) -> dict[str
 
 
 def _refuse_another_run(out: Path) -> None:
-    """Refuse a directory with flights, whose manifest would be lost; a design may be replaced."""
+    """Refuse an output directory that holds a run with flights; a design may be overwritten."""
     from aircraft.spec import AircraftError
 
     try:

@@ -1,4 +1,4 @@
-"""From an aircraft to its autopilot: trim, linearise, design, check; slow loops down, or refuse."""
+"""Design an aircraft's autopilot: trim, linearise, compute gains, check margins, slow loops."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -30,16 +30,16 @@ from innerloop.store import Design, DesignError
 from innerloop.synthesis import control_weights, design_gains, design_weights, reachable_bandwidths
 
 _SLOWER = 0.8
-"""Factor on the bandwidths of an axis with too little margin [-]."""
+"""Factor that reduces the bandwidths of an axis with too little margin [-]."""
 
 _ATTEMPTS = 10
-"""Designs after which an aircraft is refused: the last has 13 % of the first bandwidths."""
+"""Number of designs before an aircraft is refused: the last has 13 % of the first bandwidths."""
 
 _PHASE_LOSS_MAX = 5.0
-"""Phase margin that a loop may lose to a period of more than one time step [deg]."""
+"""Phase margin that a loop may lose if the autopilot computes less often [deg]."""
 
 _NO_CROSSOVER = 180.0
-"""Phase margin of a loop whose gain never crosses 1, in comparisons [deg]."""
+"""Phase margin that a loop counts with if its gain never crosses 1 [deg]."""
 
 _LATERAL_LOOPS = ("aileron", "rudder", "heading_rate", "sideslip")
 _AIRSPEED_LOOPS = ("throttle", "airspeed")
@@ -47,7 +47,7 @@ _AIRSPEED_LOOPS = ("throttle", "airspeed")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Grid:
-    """Equilibria and linear models that a design starts from, with the names of ``Schedule``."""
+    """Equilibria and linear models from which gains are designed; fields as in ``Schedule``."""
 
     spec: AircraftSpec
     envelope: Envelope
@@ -60,13 +60,14 @@ class Grid:
 def design_autopilot(spec: AircraftSpec, altitude: float = 100.0) -> Design:
     """Return the autopilot of an aircraft at ``altitude`` [m] and its margins.
 
-    Loops start as fast as the aircraft can follow and are slowed, one axis at a time, until every
-    margin holds. The autopilot then has the longest period that the margins allow.
+    The first design has the highest bandwidths that the aircraft can follow. Axes with too little
+    margin are slowed until every margin is as required. The autopilot then gets the longest period
+    that the margins allow.
 
     Raises
     ------
-    AircraftError : the aircraft cannot fly the study, or one of its design conditions
-    DesignError : no design has the margins
+    AircraftError : the aircraft has no usable envelope, or no equilibrium in part of the envelope
+    DesignError : no design has the required margins
     """
     grid = linear_grid(spec, altitude)
     bandwidths = reachable_bandwidths([row[LEVEL_GAINS] for row in grid.models], grid.envelope.bank)
@@ -99,7 +100,7 @@ def linear_grid(spec: AircraftSpec, altitude: float) -> Grid:
 
     Raises
     ------
-    AircraftError : there is no envelope, or no equilibrium at one of its design conditions
+    AircraftError : the aircraft has no usable envelope, or no equilibrium in part of the envelope
     """
     fdm = Fdm(spec)
     spec = with_linearised_controls(fdm, first_trim(fdm, altitude))
@@ -108,8 +109,8 @@ def linear_grid(spec: AircraftSpec, altitude: float) -> Grid:
     banks = table_banks(envelope, TRIM_BANKS)
     trims: list[tuple[Trim, ...]] = []
     models, edges = [], []
-    # A second simulation for the edges: the last state that a simulation flew shows in the last
-    # bits of its next equilibrium, and so in gains and flights.
+    # A second simulation computes the edges. A simulation's last state influences the last bits of
+    # its next equilibrium, and so the gains and flights.
     beyond = Fdm(spec)
     near: Trim | None = None
     for airspeed in envelope.design_airspeeds:
@@ -136,7 +137,7 @@ def linear_grid(spec: AircraftSpec, altitude: float) -> Grid:
 
 
 def schedule_at(grid: Grid, bandwidths: LoopBandwidths) -> Schedule:
-    """Return the autopilot with these bandwidths that computes at every time step."""
+    """Return the autopilot's tables for given bandwidths, with a period of one time step."""
     airspeeds = tuple(row[LEVEL].airspeed for row in grid.trims)
     weights = design_weights(bandwidths, airspeeds[len(airspeeds) // 2])
     gains = []
@@ -162,11 +163,12 @@ def schedule_at(grid: Grid, bandwidths: LoopBandwidths) -> Schedule:
 
 
 def _longest_period(points: Sequence[OperatingPointMargins]) -> tuple[int, list[Check]]:
-    """Return the longest of ``PERIODS`` that the margins allow, and the margins with it.
+    """Return the longest of ``PERIODS`` that the margins allow, and the margins with this period.
 
-    They allow it if each is as required, perturbed or not, and no loop has lost more than
-    ``_PHASE_LOSS_MAX``. If they allow none, the shortest is returned. Most designs have the
-    longest, so perturbed aircraft, which are most of the work, are checked with that first.
+    A period is allowed if every margin is as required, also for the perturbed aircraft, and no loop
+    loses more phase than ``_PHASE_LOSS_MAX``. If no period is allowed, the shortest is returned.
+    The longest is tried first, because most designs allow it and perturbed aircraft take most of
+    the computing time.
     """
     shortest = PERIODS[0]
     nominal = check_design(shortest, points, perturbed=False)
@@ -181,7 +183,7 @@ def _longest_period(points: Sequence[OperatingPointMargins]) -> tuple[int, list[
 
 
 def phase_loss(before: Sequence[Check], after: Sequence[Check]) -> float:
-    """Return the largest loss of a loop's phase margin between two checks of one design [deg]."""
+    """Return the largest loss of phase margin of any loop between two checks of a design [deg]."""
     return max(
         min(was.phase_deg, _NO_CROSSOVER) - min(now.phase_deg, _NO_CROSSOVER)
         for first, second in zip(before, after, strict=True)
@@ -191,7 +193,7 @@ def phase_loss(before: Sequence[Check], after: Sequence[Check]) -> float:
 
 
 def _slowed(bandwidths: LoopBandwidths, short: Sequence[Check]) -> LoopBandwidths:
-    """Return the bandwidths, lower in the axes whose loops have too little margin."""
+    """Return bandwidths that are reduced in the axes with too little margin."""
     loops = {name for check in short for name in check.short_loops}
     lateral = not loops.isdisjoint(_LATERAL_LOOPS)
     longitudinal = bool(loops.difference(_LATERAL_LOOPS, _AIRSPEED_LOOPS))

@@ -1,17 +1,17 @@
 """Turbulence as filtered white noise, and the linear aircraft in moving air.
 
-Low-altitude turbulence is that of MIL-F-8785C (``aircraft.weather``). The filters are the factors
-of its Dryden spectra, section 3.7.1.2, with the rotations of JSBSim (Yeager, NASA CR-1998-206937):
-p is independent, q and r are the slopes of w and v along the path, seen by a wing of some span.
-JSBSim's ``atmosphere/turb-type`` 4 is the same, in Tustin's steps.
+Low-altitude turbulence follows MIL-F-8785C (``aircraft.weather``). The filters are the factors of
+the Dryden spectra, section 3.7.1.2, with rotations as in JSBSim (Yeager, NASA CR-1998-206937): p is
+independent, and q and r are the slopes of w and v along the path, averaged over the span. JSBSim's
+``atmosphere/turb-type`` 4 has the same filters in Tustin's discretisation.
 
-Moving air acts through the velocity of the body against it: on the forces and moments of the air,
-and on the propeller. The linear model was made in still air, where that velocity is the body's own,
-so its columns contain more: how velocity components turn with the body (-omega x v), how they add
-up to climb, and how angles follow rates. Those are known in closed form and subtracted; the rest,
-times minus the air's velocity, is the effect of a gust.
+A gust acts through the velocity of the body relative to the air, on aerodynamic forces and moments
+and on the propeller. The columns of a linear model for still air also contain kinematic terms: the
+rotation of the velocity components with the body (-omega x v), the climb rate, and the rates of
+angles. These terms are known in closed form and subtracted. The remainder, times minus the air's
+velocity, is the effect of a gust.
 
-python-control is imported where it computes.
+python-control is imported only where it is used.
 """
 
 import math
@@ -35,10 +35,10 @@ GUSTS = ("gust_along", "gust_right", "gust_down", "gust_p", "gust_q", "gust_r")
 """Velocity of the air along the trimmed course, right and down [m/s], and its rotation [rad/s]."""
 
 MOTION = ("speed", "course_rate")
-"""Motion against the mean air: horizontal speed [m/s] and rate of the course [rad/s].
+"""Motion relative to the mean air: horizontal speed [m/s] and rate of the course [rad/s].
 
-``airspeed``, ``alpha``, ``beta`` and ``heading_rate`` are against the gusty air, as the autopilot
-measures them.
+``airspeed``, ``alpha``, ``beta`` and ``heading_rate`` are relative to the gusty air, as the
+autopilot measures them.
 """
 
 _AIR = ("airspeed", "alpha", "beta", "p", "q", "r")
@@ -52,14 +52,13 @@ def dryden_filters(
 ) -> "control.StateSpace":
     """Return the filters from four white noises of intensity 1 (of u, v, w and p) to ``GUSTS``.
 
-    The standard deviation of each output is that of the gust, so that the covariance is the
-    Lyapunov equation's solution.
+    The solution of the Lyapunov equation is the covariance of the gusts.
 
     Parameters
     ----------
-    turbulence : its intensities and scale lengths
-    airspeed : of the aircraft [m/s]
-    span : of the wing, which averages rotations [m]
+    turbulence : standard deviations and scale lengths
+    airspeed : airspeed of the aircraft [m/s]
+    span : wing span, over which rotations are averaged [m]
     """
     import control
 
@@ -73,7 +72,7 @@ def dryden_filters(
         return control.tf([gain * math.sqrt(3.0) * time, gain], denominator)
 
     def slope(share: float) -> control.TransferFunction:
-        """Return the slope of a velocity along the path, averaged over a share of the span."""
+        """Return the slope of a velocity along the path, averaged over a fraction of the span."""
         return control.tf([1.0 / airspeed, 0.0], [share * span / (math.pi * airspeed), 1.0])
 
     def block(system: control.TransferFunction, source: str, name: str) -> control.StateSpace:
@@ -106,10 +105,10 @@ def dryden_filters(
 
 
 def gust_loop(schedule: Schedule, index: int, bank_index: int) -> "control.StateSpace":
-    """Return aircraft and autopilot at an airspeed and a gain bank, from commands and gusts.
+    """Return the closed loop of aircraft and autopilot, with commands and gusts as inputs.
 
-    Inputs are ``COMMANDS`` and ``GUSTS``. Outputs are those of ``aircraft_in_gusts`` and the
-    command of each control. The indices are those of ``Schedule.gain_trim``.
+    Inputs are ``COMMANDS`` and ``GUSTS``. Outputs are the outputs of ``aircraft_in_gusts`` and the
+    command of each control. Indices of airspeed and bank are as in ``Schedule.gain_trim``.
     """
     models = schedule.models[index]
     trim = schedule.gain_trim(index, bank_index)
@@ -118,24 +117,24 @@ def gust_loop(schedule: Schedule, index: int, bank_index: int) -> "control.State
 
 
 def aircraft_in_gusts(model: LinearModel, trim: Trim, level_model: LinearModel) -> LinearModel:
-    """Return a linear model with inputs for gusts, and outputs for the motion against the mean air.
+    """Return a linear model with gusts as inputs and motion relative to the mean air as outputs.
 
     Parameters
     ----------
     model, trim : linear model from ``aircraft.linearise``, and its equilibrium
-    level_model : at the same airspeed in level flight
+    level_model : linear model of level flight at the same airspeed
 
     Returns
     -------
     LinearModel
-        States are those of ``model``; the body's velocity is that against the mean air. Inputs are
-        those of ``model``, then ``GUSTS``. Outputs are those of ``model``, then ``MOTION``;
-        ``airspeed``, ``alpha``, ``beta`` and ``heading_rate`` are against the gusty air.
+        The states are those of ``model``, with the velocity relative to the mean air. ``GUSTS``
+        follow the inputs of ``model``, and ``MOTION`` follows its outputs. The outputs
+        ``airspeed``, ``alpha``, ``beta`` and ``heading_rate`` are relative to the gusty air.
 
     Notes
     -----
-    In a turn the rates' columns of moments contain the body's gyroscopic moments, which cannot be
-    separated without its inertia. Moments by rates are taken from level flight instead, where
+    In a turn, the derivatives of moments by angular rates contain gyroscopic moments, which cannot
+    be separated without the body's inertia. The derivatives are taken from level flight, where
     gyroscopic moments vanish; they hardly depend on the angle of attack.
     """
     states, outputs = model.state_labels, model.output_labels
@@ -143,7 +142,7 @@ def aircraft_in_gusts(model: LinearModel, trim: Trim, level_model: LinearModel) 
     moments = [states.index(name) for name in _RATES]
     at = velocity_by_polar(trim.airspeed, trim.alpha, trim.beta)
     by_air = model.A[:, air].copy()
-    # The derivatives of -omega x v by the components of ``_AIR``.
+    # Derivatives of -omega x v with respect to the components of ``_AIR``.
     velocity = body_velocity(trim.airspeed, trim.alpha, trim.beta)
     turning = np.hstack([-_cross(trim.rates_body) @ at, _cross(velocity)])
     by_air[:3] -= np.linalg.solve(at, turning)
@@ -162,8 +161,8 @@ def aircraft_in_gusts(model: LinearModel, trim: Trim, level_model: LinearModel) 
     reads[rate] = model.C[rate, air] @ against
     speed = np.zeros(len(states))
     speed[states.index("airspeed")] = 1.0
-    # The same acceleration turns a faster motion less: against the mean air the aircraft is faster
-    # by the gust along its course.
+    # Relative to the mean air the aircraft is faster by the gust along its course, so the same
+    # acceleration turns its course less.
     course_rate = reads[rate] - np.eye(len(GUSTS))[0] * trim.yaw_rate / trim.airspeed
     return LinearModel(
         A=model.A,
@@ -183,7 +182,7 @@ def aircraft_in_gusts(model: LinearModel, trim: Trim, level_model: LinearModel) 
 
 
 def velocity_by_polar(airspeed: float, alpha: float, beta: float) -> Array:
-    """Return the derivatives of body velocity by airspeed, alpha, beta [m/s, rad], shape (3, 3)."""
+    """Return the derivatives of body velocity by airspeed, alpha and beta, shape (3, 3)."""
     ca, sa = math.cos(alpha), math.sin(alpha)
     cb, sb = math.cos(beta), math.sin(beta)
     return np.array(

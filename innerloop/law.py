@@ -1,8 +1,7 @@
 """The control law in Python, term by term as ``innerloop.jsbsim.system`` writes it for JSBSim.
 
-It exists to be linearised: margins and predicted responses are computed from its linear model.
-Limits and saturations are left out, because they belong to the autopilot in JSBSim and not to its
-linear model.
+Margins and predicted responses are computed from the linearised law. Limits and saturations exist
+only in JSBSim, because the linear model has none.
 """
 
 import bisect
@@ -30,34 +29,34 @@ STATES = (
     "model_rate",
     "model_acceleration",
 )
-"""States of the autopilot: integrals, and the heading-rate model's rate and acceleration [SI]."""
+"""States of the autopilot: integrals, and rate and acceleration of the heading-rate model [SI]."""
 
 _STEP = 1e-4
 """Step of the differences that linearise the law [SI].
 
-The law consists of products and piecewise linear tables, so rounding alone limits the step.
+The law consists of products and piecewise linear tables, so only rounding limits the step.
 """
 
 _LEVEL_TURN = 0.2
-"""Dimensionless turn up to which a bank per turn counts as that of level flight [-]."""
+"""Turn V omega/g to either side that gives the slope near level flight [-]."""
 
 Array = npt.NDArray[np.float64]
 
 
 def measurements(schedule: Schedule) -> tuple[str, ...]:
-    """Return the names of the measured quantities; sideslip only where a rudder acts on it."""
+    """Return the names of the measured quantities; sideslip is measured only with a rudder."""
     lateral = LATERAL if "rudder" in schedule.controls else LATERAL[:-1]
     return (*LONGITUDINAL, *lateral, "heading_rate")
 
 
 class ControlLaw:
-    """The autopilot without its limits: a function of commands, measurements and its states."""
+    """The autopilot without limits, as a function of commands, measurements and states."""
 
     def __init__(self, schedule: Schedule) -> None:
         self.schedule = schedule
         self._airspeeds = np.array(schedule.airspeeds)
-        # One table for all trim quantities and one for all gains: calling an interpolator costs
-        # more than interpolating one more value.
+        # All trim quantities share a table, and so do all gains, because a call of an interpolator
+        # costs more than an additional value.
         self._quantities = ["pitch", "q", "r", *schedule.controls]
         tables = np.stack([schedule.over_bank(name) for name in self._quantities], axis=-1)
         self._over_bank = _table(schedule.banks, self._airspeeds, tables)
@@ -81,12 +80,12 @@ class ControlLaw:
         return self._gains(min(max(bank, low), high), airspeed)
 
     def model_bank(self, heading_rate: float, measured_airspeed: float, airspeed: float) -> float:
-        """Return the bank [rad] for a heading rate [rad/s] at two airspeeds [m/s]."""
+        """Return the bank [rad] for a heading rate [rad/s], by measured and commanded airspeed."""
         turn = heading_rate * measured_airspeed / STANDARD_GRAVITY
         return self._bank_for_turn(turn, airspeed)
 
     def bank_slope(self, bank: float, measured_airspeed: float, airspeed: float) -> float:
-        """Return the bank per heading rate near a bank [s]: cos^2(bank) V/g, more in a slip."""
+        """Return the change of bank per heading rate [s]: cos^2(bank) V/g, or more in a slip."""
         slope = float(np.interp(airspeed, self._airspeeds, self._slopes))
         return math.cos(bank) ** 2 * slope * measured_airspeed / STANDARD_GRAVITY
 
@@ -98,7 +97,8 @@ class ControlLaw:
     ) -> tuple[dict[str, float], dict[str, float]]:
         """Return the rates of ``STATES`` and the controls [-].
 
-        Arguments are absolute values by the names of ``COMMANDS``, ``measurements`` and ``STATES``.
+        Arguments are absolute values (not deviations) by the names of ``COMMANDS``,
+        ``measurements`` and ``STATES``.
         """
         airspeed = commands["airspeed_command"]
         at_bank = self.trim_tables(measured["roll"], airspeed)
@@ -161,18 +161,18 @@ class ControlLaw:
 
 
 def linear_controller(law: ControlLaw, trim: Trim) -> LinearModel:
-    """Return the autopilot, linear about an equilibrium of the aircraft.
+    """Return the autopilot, linearised about an equilibrium of the aircraft.
 
-    Inputs are ``COMMANDS`` and the measurements, outputs are the control inputs, all as deviations
-    from trim. States are ``STATES``. At an edge between two pieces of a table the slope is the mean
-    of both.
+    Inputs are ``COMMANDS`` and the measurements, outputs are the control inputs, and states are
+    ``STATES``, all as deviations from trim. At a node of a table the slope is the mean of both
+    sides.
     """
     point = operating_point(law, trim)
     inputs = (*COMMANDS, *measurements(law.schedule))
     controls = law.schedule.controls
 
     def column(name: str) -> Array:
-        """Return the central difference of rates and controls by one entry of the point."""
+        """Return the derivatives of rates and controls by one entry of the operating point."""
         sides = []
         for sign in (1.0, -1.0):
             moved = {**point, name: point[name] + sign * _STEP}
@@ -198,8 +198,8 @@ def linear_controller(law: ControlLaw, trim: Trim) -> LinearModel:
 def operating_point(law: ControlLaw, trim: Trim) -> dict[str, float]:
     """Return commands, measurements and states of the autopilot in an equilibrium, by name.
 
-    Straight flight counts as level. Propeller and ailerons bank the aircraft by a tenth of a degree
-    or so, which is past the edge of the tables at 0, and it turns to both sides from there.
+    Straight flight is taken at zero bank, the node between turns to the left and to the right,
+    although propeller and ailerons bank the aircraft by about a tenth of a degree.
     """
     roll = trim.roll if trim.yaw_rate else 0.0
     model_bank = law.model_bank(trim.yaw_rate, trim.airspeed, trim.airspeed)
@@ -224,7 +224,7 @@ def operating_point(law: ControlLaw, trim: Trim) -> dict[str, float]:
 def bank_slopes(schedule: Schedule) -> list[float]:
     """Return tan(bank) per dimensionless turn V omega/g near level flight, by airspeed [-].
 
-    It is 1 in coordinated turns.
+    The slope is 1 in coordinated turns.
     """
     low, high = schedule.bank_for_turn(np.array([-_LEVEL_TURN, _LEVEL_TURN]))
     return [
@@ -233,12 +233,12 @@ def bank_slopes(schedule: Schedule) -> list[float]:
 
 
 def gain_vector(gains: Gains) -> Array:
-    """Return all gains in one vector in the order of their fields, shape (28,)."""
+    """Return all gains as a vector in the order of their fields, shape (28,)."""
     return np.concatenate([np.ravel(getattr(gains, field.name)) for field in fields(Gains)])
 
 
 def _split(vector: Array) -> Gains:
-    """Return the gains of a vector that ``gain_vector`` ordered."""
+    """Return the gains from a vector of ``gain_vector``."""
     return Gains(
         longitudinal=vector[:10].reshape(2, 5),
         longitudinal_integral=vector[10:14].reshape(2, 2),
@@ -253,9 +253,9 @@ def _split(vector: Array) -> Gains:
 def _table(
     rows: Sequence[float] | Array, columns: Array, values: Array
 ) -> Callable[[float, float], Array]:
-    """Return the bilinear look-up of a table of vectors, extended past its edges.
+    """Return the bilinear interpolation of a table of vectors, extended past its edges.
 
-    It is cached: linearising looks up the same point many times, and moves it in few directions.
+    Values are cached, because linearisation looks up the same few points many times.
     """
     at_row, at_column = _cells(rows), _cells(columns)
 
@@ -274,7 +274,7 @@ def _table(
 def _scalar_table(
     rows: Sequence[float] | Array, columns: Array, values: Array
 ) -> Callable[[float, float], float]:
-    """Return the bilinear look-up of a table of numbers, extended past its edges."""
+    """Return the bilinear interpolation of a table of numbers, extended past its edges."""
     at_row, at_column, table = _cells(rows), _cells(columns), values.tolist()
 
     def value(row: float, column: float) -> float:
@@ -292,9 +292,9 @@ def _scalar_table(
 
 
 def _cells(points: Sequence[float] | Array) -> Callable[[float], tuple[int, float]]:
-    """Return a function from a coordinate to its cell among ``points``: index, and fraction in it.
+    """Return a function that finds a coordinate's cell among ascending points: index and fraction.
 
-    The fraction lies below 0 or above 1 for a coordinate past the ends of the ascending points.
+    Past the ends of the points the fraction is below 0 or above 1.
     """
     at = [float(point) for point in points]
     last = len(at) - 2

@@ -1,4 +1,4 @@
-"""Which of the known aircraft can be flown, and why the others cannot."""
+"""List which aircraft can be flown, and why the others cannot."""
 
 import math
 import multiprocessing
@@ -17,11 +17,11 @@ from innerloop.store import designed, is_cached
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Discovered:
-    """An aircraft by the user's name for it, and whether it can be flown.
+    """An aircraft by its name on the command line, and whether it can be flown.
 
     Attributes
     ----------
-    flies : whether an autopilot could be designed; None if it was not tried before
+    flies : whether an autopilot can be designed; None if that has not been tried
     text : envelope and margins, or the reason why it cannot be flown
     """
 
@@ -31,11 +31,11 @@ class Discovered:
 
 
 def look_up(name: str, altitude: float) -> Discovered:
-    """Return whether one aircraft flies at ``altitude`` [m], if that is known without a design."""
+    """Return what is known about an aircraft at ``altitude`` [m] without a new design."""
     try:
         known = is_cached(find_spec(name), altitude)
     except AircraftError:
-        # ``examine`` finds the same error, and says it.
+        # ``examine`` reports the same error.
         known = True
     if known:
         return examine(name, altitude)
@@ -43,10 +43,10 @@ def look_up(name: str, altitude: float) -> Discovered:
 
 
 def discover(names: Sequence[str], altitude: float, jobs: int) -> Iterator[Discovered]:
-    """Yield aircraft in the order of ``names``, each as soon as it is known whether it flies.
+    """Yield aircraft in the order of ``names``, each as soon as its design is known.
 
-    They are designed at ``altitude`` [m] in ``jobs`` processes: an aircraft that JSBSim cannot
-    survive costs its process, not the list.
+    Autopilots are designed at ``altitude`` [m] in ``jobs`` processes, so that an aircraft that ends
+    JSBSim does not end the list.
     """
     context = multiprocessing.get_context("spawn")
     pool = ProcessPoolExecutor(max_workers=jobs, mp_context=context, initializer=follow_parent)
@@ -58,31 +58,30 @@ def discover(names: Sequence[str], altitude: float, jobs: int) -> Iterator[Disco
             except BrokenProcessPool:
                 yield _alone(name, altitude)
     finally:
-        # An interrupted list does not wait for the designs that run: an aircraft that does not trim
-        # can take a minute.
+        # An interrupted list does not wait for running designs, which can take a minute each.
         pool.shutdown(wait=False, cancel_futures=True)
         for process in multiprocessing.active_children():
             process.terminate()
 
 
 def _alone(name: str, altitude: float) -> Discovered:
-    """Examine an aircraft in a new process, after the pool broke."""
+    """Examine an aircraft in a new process, after a process of the pool has died."""
     with ProcessPoolExecutor(
         max_workers=1, mp_context=multiprocessing.get_context("spawn"), initializer=follow_parent
     ) as pool:
         try:
             return pool.submit(examine, name, altitude).result()
         except BrokenProcessPool:
-            return Discovered(name=name, flies=False, text="JSBSim ends the whole process with it")
+            return Discovered(name=name, flies=False, text="JSBSim ends its whole process")
 
 
 def examine(name: str, altitude: float) -> Discovered:
-    """Return whether one aircraft flies, from the design of its autopilot at ``altitude`` [m]."""
+    """Design an aircraft's autopilot at ``altitude`` [m]; return whether it can be flown."""
     try:
         design = designed(find_spec(name), altitude).design
     except AircraftError as error:
         return Discovered(name=name, flies=False, text=_reason(name, str(error)))
-    except Exception as error:  # noqa: BLE001 - one aircraft's failure does not end the list
+    except Exception as error:  # noqa: BLE001 - one aircraft's failure must not end the list
         return Discovered(name=name, flies=False, text=f"{type(error).__name__}: {error}")
     envelope = design.schedule.envelope
     nominal = [check for check in design.checks if check.case == NOMINAL]
@@ -97,7 +96,7 @@ def examine(name: str, altitude: float) -> Discovered:
 
 
 def _reason(name: str, message: str) -> str:
-    """Return the message without the aircraft, which stands next to it in the list."""
+    """Return the message without the aircraft's name, which the list shows in front of it."""
     aircraft = f"aircraft '{Path(name).name}'"
     for prefix in (" cannot be flown: ", " cannot fly the study: ", " ", ": "):
         message = message.removeprefix(aircraft + prefix)

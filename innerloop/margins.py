@@ -1,14 +1,15 @@
-"""Loop margins of the autopilot on the full linear aircraft, and what is required of them.
+"""Loop margins of the autopilot on the full linear aircraft, and the required margins.
 
-Margins are classical at each loop break, and disk margins. They come from two frequency responses:
-of the aircraft (with its servos, its engine and the computing delay as the exact exponential) and
-of the autopilot. The delay allows for a computer on board (``innerloop.schedule.loop_delay``): in
-JSBSim the fast loops have more margin. With every loop closed, the sensitivity at a break is
-S = 1/(1 + L), where L is the loop opened there and closed elsewhere. So L = 1/S - 1 follows for all
-breaks from one inverse.
+Gain, phase and disk margins are computed at each loop break. They follow from the frequency
+responses of the autopilot and of the aircraft with servos, engine and computing delay (an exact
+exponential). The delay allows for an on-board computer (``innerloop.schedule.loop_delay``); in
+JSBSim the fast loops have more margin.
 
-python-control and slycot are imported where they compute: a flight reads the margins of a cached
-design without them.
+With every loop closed, the sensitivity at a break is S = 1/(1 + L), where L is the loop opened
+there and closed elsewhere. One matrix inverse thus gives L = 1/S - 1 at all breaks.
+
+python-control and slycot are imported only where they are used: a flight with a cached design does
+not need them.
 """
 
 import copy
@@ -31,28 +32,29 @@ NOMINAL = "as modelled"
 """Name of the aircraft without any perturbation."""
 
 ALL_CONTROLS = "all controls"
-"""Name of the margins for simultaneous changes in every control."""
+"""Name of the loop break at all controls at once."""
 
 SENSOR_BREAKS = ("airspeed", "altitude", "heading_rate", "beta")
 """Measurements at which the loop is opened, in addition to the controls."""
 
 BREAK_NAMES = {"beta": "sideslip"}
-"""Names of breaks in reports, where they differ from the model's."""
+"""Names of breaks in reports, if they differ from the model's."""
 
 FREQUENCIES = np.logspace(-3.0, 2.4, 300)
-"""Frequencies at which loops are evaluated [rad/s]: below integral action to beyond any servo."""
+"""Frequencies at which loops are evaluated [rad/s], from integral action to beyond any servo."""
 
 _MU_STRIDE = 4
-"""Stride over the frequencies of the structured singular value [-].
+"""Stride over the frequencies for the structured singular value [-].
 
-The value takes a hundred times as long as a gain. All frequencies about its peak are evaluated.
+The value takes a hundred times as long to compute as a gain. Around its peak all frequencies are
+evaluated.
 """
 
 _MU_ACCURACY = 1.01
-"""Factor by which a structured singular value, found by iteration, may exceed its bound [-]."""
+"""Factor that allows for the iteration error of structured singular values [-]."""
 
 _WELL_CONDITIONED = 1e7
-"""Condition number of eigenvectors that give frequency responses to nine digits [-]."""
+"""Condition number of eigenvectors up to which frequency responses have nine digits [-]."""
 
 Array = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
@@ -64,12 +66,11 @@ class Margin:
 
     Attributes
     ----------
-    loop : where the loop is opened
-    gain_db : smallest change of gain, up or down, that makes the loop unstable [dB]; infinite if
-        none does
-    phase_deg : smallest change of phase that does [deg]; infinite if none does
+    loop : name of the loop break
+    gain_db : smallest change of gain, up or down, that makes the loop unstable [dB], or infinity
+    phase_deg : smallest change of phase that makes the loop unstable [deg], or infinity
     crossover : highest gain crossover [rad/s]; NaN if the gain never crosses 1
-    disk_gain_db, disk_phase_deg : guaranteed for simultaneous changes of gain and phase [dB, deg]
+    disk_gain_db, disk_phase_deg : margins for simultaneous changes of gain and phase [dB, deg]
     """
 
     loop: str
@@ -82,12 +83,12 @@ class Margin:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Requirement:
-    """The least margins.
+    """The required margins.
 
     Attributes
     ----------
-    gain_db, phase_deg : of the aircraft as modelled, each loop opened alone
-    perturbed_gain_db, perturbed_phase_deg : of the perturbed aircraft
+    gain_db, phase_deg : margins of the aircraft as modelled, at each loop break
+    perturbed_gain_db, perturbed_phase_deg : margins of the perturbed aircraft
     """
 
     gain_db: float = 6.0
@@ -97,7 +98,7 @@ class Requirement:
 
 
 REQUIRED = Requirement()
-"""MIL-F-9490D as modelled; a fifth of effectiveness is 1.6 to 1.9 dB, so 4 dB must remain."""
+"""MIL-F-9490D as modelled; a change of effectiveness by a fifth takes up to 1.9 dB, 4 dB remain."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -108,9 +109,9 @@ class Check:
     ----------
     case : name of the perturbation
     airspeed, bank : [m/s, rad]
-    between : whether the point lies between those of the design's grid
+    between : whether the point lies between points of the design's grid
     stable : whether the closed loop is stable
-    margins : of every loop
+    margins : margins of every loop
     """
 
     case: str
@@ -129,7 +130,7 @@ class Check:
 
     @property
     def short_loops(self) -> tuple[str, ...]:
-        """Return the loops with too little margin; all of them if the closed loop is unstable."""
+        """Return the loops with too little margin; all loops if the closed loop is unstable."""
         gain, phase = self.required
         return tuple(
             m.loop
@@ -155,7 +156,7 @@ class Check:
 
     @property
     def shortfall(self) -> float:
-        """Return the smallest margin over the required one [-]; -1 if the loop is unstable."""
+        """Return the smallest ratio of a margin to the required one [-]; -1 if unstable."""
         if not self.stable:
             return -1.0
         gain, phase = self.required
@@ -181,7 +182,7 @@ class Loops:
     ----------
     aircraft : linear model from ``aircraft.linearise``
     autopilot : linear model from ``innerloop.law.linear_controller``
-    delay : between measurement and servo [s]
+    delay : delay between measurement and servo [s]
     frequencies : [rad/s]
     """
 
@@ -205,7 +206,7 @@ class Loops:
         self._law = -_response(autopilot, frequencies)[:, :, self._reads]
 
     def with_aircraft(self, aircraft: LinearModel) -> "Loops":
-        """Return the loops of a changed aircraft; the autopilot's response is reused."""
+        """Return the loops with a changed aircraft; the autopilot's response is reused."""
         loops = self.with_delay(self._delay)
         loops._aircraft = aircraft
         loops._plant = self._response_of(aircraft)
@@ -224,7 +225,7 @@ class Loops:
 
     @functools.cached_property
     def _closed(self) -> tuple[Complex, Complex]:
-        """The sensitivity matrix at the controls, and the sensitivity at each measurement."""
+        """Sensitivity matrix at the controls, and sensitivity at each measurement."""
         plant = self._plant * np.exp(-1j * self.frequencies * self._delay)[:, None, None]
         sensitivity = np.linalg.inv(np.eye(len(self.controls)) + self._law @ plant)
         # At the measurements S = 1 - P (1 + K P)^-1 K; only its diagonal is needed.
@@ -232,9 +233,9 @@ class Loops:
         return sensitivity, at_measurements
 
     def opened(self, name: str) -> Complex:
-        """Return the loop opened at a control or measurement, closed elsewhere.
+        """Return the loop opened at a control or measurement and closed elsewhere.
 
-        The sign is that of negative feedback; shape (frequencies,).
+        The sign is for negative feedback; shape (frequencies,).
         """
         if name in self.controls:
             i = self.controls.index(name)
@@ -245,7 +246,7 @@ class Loops:
 
     @property
     def breaks(self) -> tuple[str, ...]:
-        """Return where loops are opened: at each control and at each regulated measurement."""
+        """Return the loop breaks: each control and each regulated measurement."""
         return (*self.controls, *(name for name in SENSOR_BREAKS if name in self.measurements))
 
     def margins(self) -> list[Margin]:
@@ -277,9 +278,9 @@ class Loops:
         n = len(self.controls)
         one, complex_block = np.ones(n, dtype=int), np.full(n, 2)
         balanced = self._closed[0] - 0.5 * np.eye(n)
-        # The largest singular value bounds the structured one from above in any units of the
-        # controls: where it lies below the largest structured value found, none need be computed.
-        # Units that are good at one frequency are good at most.
+        # The largest singular value is an upper bound of the structured one for any scaling of the
+        # controls. Frequencies with a bound below the largest structured value found so far are
+        # skipped. A scaling that gives tight bounds at one frequency does so at most frequencies.
         bounds = np.linalg.norm(balanced, 2, axis=(1, 2))
         largest, peak = 0.0, 0
         coarse = np.arange(0, len(bounds), _MU_STRIDE)
@@ -298,13 +299,13 @@ class Loops:
 
     @property
     def stable(self) -> bool:
-        """Whether every pole of the closed loop lies to the left of the imaginary axis."""
+        """Whether every pole of the closed loop has a negative real part."""
         return bool(np.all(self.poles().real < 0.0))
 
     def poles(self) -> Complex:
         """Return the poles of the closed loop [1/s], with the Pade approximation of the delay."""
         plant, law = self._aircraft, self._autopilot
-        # Law, delays and aircraft in series; the aircraft's outputs feed back to the law.
+        # Law, delays and aircraft are in series, and the aircraft's outputs feed back to the law.
         aircraft = _Matrices(
             plant.A,
             plant.B[:, self._columns],
@@ -328,13 +329,13 @@ class _Matrices(NamedTuple):
 
 @functools.cache
 def _delays(delay: float, channels: int) -> _Matrices:
-    """Return the system of the same delay [s] in each of some channels."""
+    """Return a system with the same delay [s] in each of ``channels`` channels."""
     one = pade(delay)
     return _Matrices(*(np.kron(np.eye(channels), m) for m in (one.A, one.B, one.C, one.D)))
 
 
 def _series(first: _Matrices, then: _Matrices) -> _Matrices:
-    """Return the system of one system behind another."""
+    """Return the series connection of two systems."""
     n = len(first.a)
     size = n + len(then.a)
     a = np.zeros((size, size))
@@ -351,7 +352,7 @@ def _series(first: _Matrices, then: _Matrices) -> _Matrices:
 
 
 def _disk_margin(size: float) -> tuple[float, float]:
-    """Return the gain [dB] and phase [deg] margins of a balanced disk of a size [-]."""
+    """Return the gain [dB] and phase [deg] margins of a balanced disk of given size [-]."""
     gain_db = 20.0 * math.log10((2.0 + size) / (2.0 - size)) if size < 2.0 else math.inf
     return gain_db, math.degrees(2.0 * math.atan(0.5 * size))
 
@@ -359,7 +360,7 @@ def _disk_margin(size: float) -> tuple[float, float]:
 def _response(system: LinearModel, frequencies: Array) -> Complex:
     """Return C (jw - A)^-1 B + D over frequency, shape (frequencies, outputs, inputs).
 
-    It is computed along the eigenvectors of A where they are well conditioned.
+    If the eigenvectors of A are well conditioned, A is diagonalised first.
     """
     values, vectors = np.linalg.eig(system.A)
     if np.linalg.cond(vectors) < _WELL_CONDITIONED:
@@ -377,7 +378,7 @@ def loop_margins(names: Sequence[str], loops: Complex, frequencies: Array) -> li
 
     Parameters
     ----------
-    names : of the loops
+    names : names of the loops
     loops : negative feedback, shape (loops, frequencies)
     frequencies : [rad/s]
     """
@@ -395,7 +396,7 @@ def loop_margins(names: Sequence[str], loops: Complex, frequencies: Array) -> li
 def _loop_margin(
     name: str, gains: list[float], crossovers: list[tuple[float, float]], disk_size: float
 ) -> Margin:
-    """Return the margins of a loop, by its logarithmic gains at half turns and its crossovers."""
+    """Return the margins of a loop from its log gains at phase crossings and its crossovers."""
     from_half_turn = [
         abs(math.remainder(phase - math.pi, 2.0 * math.pi)) for _, phase in crossovers
     ]
@@ -411,7 +412,7 @@ def _loop_margin(
 
 
 def _gains_at_half_turns(logs: Array, phases: Array) -> list[list[float]]:
-    """Return each loop's logarithmic gains where its phase passes an odd multiple of pi."""
+    """Return each loop's log gains where its phase crosses an odd multiple of pi."""
     turns = np.floor((phases - math.pi) / (2.0 * math.pi))
     before, after = turns[:, :-1], turns[:, 1:]
     at = np.nonzero(before != after)
@@ -429,7 +430,7 @@ def _gains_at_half_turns(logs: Array, phases: Array) -> list[list[float]]:
 
 
 def _at_zero(x0: float, y0: float, x1: float, y1: float) -> float:
-    """Return y at x = 0 on the line between two points on either side of it."""
+    """Return y at x = 0 on the line through two points."""
     if x1 < x0:
         x0, y0, x1, y1 = x1, y1, x0, y0
     if x0 >= 0.0:
@@ -440,12 +441,12 @@ def _at_zero(x0: float, y0: float, x1: float, y1: float) -> float:
 
 
 def _crossovers(logs: Array, phases: Array, frequencies: Array) -> list[list[tuple[float, float]]]:
-    """Return where each loop's gain is 1: frequencies [rad/s], and its phases there [rad]."""
+    """Return each loop's gain crossovers: frequencies [rad/s] and phases [rad]."""
     signs = np.sign(logs)
     loops, i = np.nonzero(signs[:, :-1] != signs[:, 1:])
     shares = logs[loops, i] / (logs[loops, i] - logs[loops, i + 1])
     at = phases[loops, i] + shares * (phases[loops, i + 1] - phases[loops, i])
-    # Powers of arrays can differ from those of numbers in the last bit.
+    # Python's powers are used, because NumPy's can differ in the last bit.
     ratios = (frequencies[i + 1] / frequencies[i]).tolist()
     found: list[list[tuple[float, float]]] = [[] for _ in logs]
     for loop, frequency, ratio, share, phase in zip(
@@ -466,10 +467,10 @@ def pade(delay: float) -> "control.StateSpace":
 def closed_loop(
     aircraft: LinearModel, autopilot: LinearModel, delay: float
 ) -> "control.StateSpace":
-    """Return the closed loop, from commands to the aircraft's outputs and the controls' commands.
+    """Return the closed loop of aircraft and autopilot.
 
-    Inputs are ``COMMANDS`` and then the aircraft's other inputs, such as gusts. Outputs are those
-    of the aircraft, then ``CONTROL_command`` of each control. The ``delay`` is that between
+    Inputs are ``COMMANDS``, then the aircraft's other inputs, such as gusts. Outputs are the
+    aircraft's outputs, then ``CONTROL_command`` of each control. ``delay`` is the delay between
     measurement and servo [s].
     """
     import control

@@ -1,4 +1,4 @@
-"""The record of an autopilot's design for its report, as plain data."""
+"""Record of an autopilot's design, as plain data for the report."""
 
 import math
 from dataclasses import asdict, fields
@@ -35,32 +35,32 @@ from innerloop.schedule import LEVEL_GAINS, Schedule
 from innerloop.store import Design, Record
 
 _STEP_DURATION = 36.0
-"""Duration of the flown steps, times the frequency of the heading-rate response [rad]."""
+"""Duration of a step response times the frequency of the heading-rate response [rad]."""
 
 _SAMPLES = 360
-"""Samples of a recorded response, about [-]."""
+"""Approximate number of samples of a recorded response [-]."""
 
 _FREQUENCIES = np.logspace(-2.5, 2.2, 220)
-"""Frequencies of the recorded loop shapes [rad/s]."""
+"""Frequencies of the recorded loop gains [rad/s]."""
 
 _CLIMB_ANGLES_DEG = (-3.0, -1.5, 1.5, 3.0)
-"""Climbs and descents of the recorded equilibria [deg]."""
+"""Climb angles of the recorded equilibria [deg]."""
 
 _UPSET = {"altitude": "m", "airspeed": "mps"}
-"""Quantities that a step of another one should not move, and their units."""
+"""Quantities that a step of another command should not move, and their units."""
 
 _CHANNEL_NAMES = {
     "beta": "sideslip",
     **{f"{name}_command": name for name in ("elevator", "aileron", "throttle")},
 }
-"""Names of channels in reports, where they differ from those in the closed loop."""
+"""Names of channels in reports, if they differ from the closed loop's."""
 
 
 def design_record(design: Design, root: Path) -> Record:
-    """Return trims, poles, margins, loop shapes and responses of a design, as plain data.
+    """Return trims, poles, margins, loop gains and responses of a design, as plain data.
 
-    The responses are predicted, and flown in JSBSim from the ``root`` of ``write_root``. An
-    aircraft whose servos have play has its limit cycle in the record as well.
+    Responses are predicted, and flown in JSBSim from the ``root`` of ``write_root``. For servos
+    with play the record also has the limit cycle.
     """
     schedule = design.schedule
     spec, envelope = schedule.spec, schedule.envelope
@@ -106,17 +106,18 @@ def design_record(design: Design, root: Path) -> Record:
         "turn_reversal": reversal_record(spec, root, level, envelope.bank, slow_lag),
     }
     if has_play(root):
-        # Another simulation and the last flight: those before it stay as they are to the last bit.
+        # A new simulation flies this last, so that the other flights stay the same to the last bit.
         alone = perturbed_aircraft(spec, root, Perturbation())
         record["limit_cycle"] = _limit_cycle_record(measure_limit_cycle(alone, level))
     return record
 
 
 def step_sizes(schedule: Schedule) -> dict[str, float]:
-    """Return the steps that are predicted and flown [rad/s, m/s, m], to two digits.
+    """Return the sizes of the command steps, to two digits [rad/s, m/s, m].
 
-    The heading rate steps by half a study's turn. Airspeed and altitude step by half the error at
-    which they are clipped, and the airspeed by no more than a quarter of the envelope.
+    The heading rate steps by half its value in the steepest turn of the guidance. Airspeed and
+    altitude step by half their largest unclipped error, the airspeed by at most a quarter of the
+    envelope.
     """
     turn = heading_rate_for_bank(schedule.envelope.bank, schedule.level(schedule.middle).airspeed)
     room = 0.25 * (schedule.envelope.airspeed_max - schedule.envelope.airspeed_min)
@@ -151,7 +152,7 @@ def _limit_cycle_record(found: LimitCycle) -> Record:
 
 
 def _trim_record(t: Trim, bank: float) -> Record:
-    """Return an equilibrium; the grid's ``bank`` [rad] is 0 even if a roll balances a propeller."""
+    """Return the record of an equilibrium; in straight flight the grid's ``bank`` is 0 [rad]."""
     return {
         "airspeed_mps": t.airspeed,
         "bank_rad": bank,
@@ -169,7 +170,7 @@ def _trim_record(t: Trim, bank: float) -> Record:
 
 
 def _climbs(schedule: Schedule) -> list[Record]:
-    """Return the climbs and descents at the middle airspeed that have an equilibrium."""
+    """Return the equilibria in climbs and descents at the middle airspeed."""
     fdm, level = Fdm(schedule.spec), schedule.level(schedule.middle)
     found = [
         search_trim(
@@ -214,7 +215,7 @@ def _robustness_record(check: Check) -> Record:
 
 
 def _finite(value: float | str) -> float | str | None:
-    """Return a value for JSON, which has no infinity and no NaN: a missing margin is null."""
+    """Return a value for JSON, with None for infinity and NaN."""
     return value if isinstance(value, str) or np.isfinite(value) else None
 
 
@@ -237,7 +238,7 @@ def _poles(schedule: Schedule) -> list[Record]:
 
 
 def _pairs(poles: Any) -> list[list[float]]:
-    """Return real and imaginary parts, in ascending order."""
+    """Return real and imaginary parts of poles, in ascending order."""
     return [[float(p.real), float(p.imag)] for p in sorted(poles, key=lambda p: (p.real, p.imag))]
 
 

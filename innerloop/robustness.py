@@ -1,4 +1,4 @@
-"""Margins at every operating point of a design, between them, and with a perturbed aircraft."""
+"""Margins of a design at and between its operating points, also with a perturbed aircraft."""
 
 import math
 from collections.abc import Sequence
@@ -17,14 +17,14 @@ from innerloop.margins import NOMINAL, Check, Loops
 from innerloop.schedule import GAIN_BANKS, TRIM_BANKS, Schedule, loop_delay
 
 _AVERAGED = ("airspeed", "altitude", "climb_angle", "alpha", "beta", "roll", "pitch", "yaw_rate")
-"""Numbers of an equilibrium whose means are those of the point midway."""
+"""Fields of an equilibrium that are averaged for the point midway between two of them."""
 
 _DIFFERENCE = 1e-5
 """Step of the differences of the rigid body's equations [SI]."""
 
 
 class Case(NamedTuple):
-    """Factors by which an aircraft differs from its model, and its autopilot's delay [periods]."""
+    """A perturbation of the aircraft, and an additional delay of the autopilot [periods]."""
 
     by: Perturbation
     periods_late: int
@@ -40,15 +40,15 @@ CASES = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OperatingPoint:
-    """Where margins are computed.
+    """A point of the flight envelope at which margins are computed.
 
     Attributes
     ----------
     trim : the equilibrium
-    bank : of the grid [rad]; straight flight has 0, even if a small bank balances the propeller's
-        torque
-    model : the aircraft, linear about the equilibrium
-    between : whether the point lies between those of the grid
+    bank : bank of the grid [rad]; 0 in straight flight, even if a small bank balances the
+        propeller's torque
+    model : linear model of the aircraft about the equilibrium
+    between : whether the point lies between points of the grid
     """
 
     trim: Trim
@@ -58,10 +58,9 @@ class OperatingPoint:
 
 
 class OperatingPointMargins:
-    """The margins at one operating point, in every case and with every period of the autopilot.
+    """Margins at one operating point, in every case and with every period of the autopilot.
 
-    The changed aircraft and its response do not depend on the period. Each is computed once, and so
-    is each check.
+    Results are cached. The perturbed aircraft's response does not depend on the period.
     """
 
     def __init__(self, point: OperatingPoint, as_modelled: Loops) -> None:
@@ -96,7 +95,7 @@ class OperatingPointMargins:
 
 
 def operating_point_margins(schedule: Schedule) -> list[OperatingPointMargins]:
-    """Return the operating points of a schedule, ready for checks with any period."""
+    """Return the margins at every operating point of a schedule, for checks with any period."""
     law = ControlLaw(schedule)
     return [
         OperatingPointMargins(
@@ -109,9 +108,9 @@ def operating_point_margins(schedule: Schedule) -> list[OperatingPointMargins]:
 def check_design(
     period: int, points: Sequence[OperatingPointMargins], *, perturbed: bool = True
 ) -> list[Check]:
-    """Return the margins at every operating point, as modelled and, if ``perturbed``, in all cases.
+    """Return the margins at every operating point, as modelled or, if ``perturbed``, in all cases.
 
-    The period is one of ``PERIODS``; the points are those of ``operating_point_margins``.
+    ``period`` is one of ``PERIODS``; ``points`` come from ``operating_point_margins``.
     """
     cases = tuple(CASES) if perturbed else (NOMINAL,)
     return [point.check(case, period) for point in points for case in cases]
@@ -120,9 +119,10 @@ def check_design(
 def with_all_controls(
     period: int, points: Sequence[OperatingPointMargins], checks: Sequence[Check]
 ) -> list[Check]:
-    """Return the checks of ``check_design``, with disk margins at all controls of the grid at once.
+    """Return the checks of ``check_design`` with disk margins at all controls at once added.
 
-    Nothing is required of those, and they take as long as all other margins.
+    They are added at the points of the grid. They have no required value, and they take as long to
+    compute as all other margins.
     """
     found = []
     for point, check in zip((point for point in points for _ in CASES), checks, strict=True):
@@ -135,12 +135,12 @@ def with_all_controls(
 
 
 def operating_points(schedule: Schedule) -> list[OperatingPoint]:
-    """Return the points of the grid, those midway along airspeed and bank, and the largest bank.
+    """Return the points of the grid, the midway points of airspeed and bank, and the largest bank.
 
-    The largest bank that the autopilot commands lies beyond those of the gains, midway between the
-    last of them and the end of the tables, to a tenth of a degree. Midway points have the mean of
-    two linear models and of two equilibria, which are smooth there. Where the measured lags of two
-    neighbours differ in order, their models have no mean, and the point is checked with each.
+    A midway point has the mean of two equilibria and of two linear models. If the measured lags of
+    two neighbours differ in order, their models have no mean, and the point is checked with both.
+    The largest commanded bank lies midway between the last bank of the gains and the end of the
+    tables, to a tenth of a degree.
     """
     columns = [TRIM_BANKS.index(share) for share in GAIN_BANKS]
     grid = {
@@ -192,7 +192,7 @@ def _midway(first: OperatingPoint, second: OperatingPoint) -> list[OperatingPoin
 
 
 def perturbed_model(model: LinearModel, trim: Trim, by: Perturbation) -> LinearModel:
-    """Return the linear model of a perturbed aircraft; ``model`` itself if nothing changes."""
+    """Return the linear model of a perturbed aircraft, or ``model`` itself without perturbation."""
     if by.effectiveness != 1.0:
         model = _with_effectiveness(model, by.effectiveness)
     if by.mass != 1.0:
@@ -203,11 +203,11 @@ def perturbed_model(model: LinearModel, trim: Trim, by: Perturbation) -> LinearM
 
 
 def _with_effectiveness(model: LinearModel, factor: float) -> LinearModel:
-    """Return the model with the effectiveness of every control multiplied by a factor.
+    """Return the model with the effectiveness of every control, also the throttle's, scaled.
 
-    The throttle is one of them. In the perturbed models that fly reversals only surfaces change
-    (``aircraft.model``): less effectiveness leaves the throttle's loop less margin there than here,
-    where it also lowers the loop's gain.
+    The perturbed aircraft that fly reversals (``aircraft.model``) have scaled surfaces only. With
+    less effectiveness the throttle's loop has less margin there than here, where its own gain is
+    lower as well.
     """
     rows = [i for i, name in enumerate(model.state_labels) if name in BODY_STATES]
     driven = [i for i, name in enumerate(model.state_labels) if name not in BODY_STATES]
@@ -222,15 +222,15 @@ def _with_effectiveness(model: LinearModel, factor: float) -> LinearModel:
 def _with_mass(model: LinearModel, trim: Trim, factor: float) -> LinearModel:
     """Return the model with mass multiplied by a factor.
 
-    Accelerations by air and engine divide by it, those by gravity and turning do not.
+    The factor divides accelerations from air and engine, but not those from gravity and rotation.
     """
     a, b, c, d = (m.copy() for m in (model.A, model.B, model.C, model.D))
     rows = [model.state_labels.index(name) for name in ("airspeed", "alpha", "beta")]
     kinematic = gravity_and_turning(trim, model.state_labels)
     a[rows] = kinematic + (a[rows] - kinematic) / factor
     b[rows] /= factor
-    # The rate of the course is side force over mass and speed. Attitude is left out: in equilibrium
-    # an aircraft carries its weight at any mass, so bank turns it by g/V as before.
+    # The rate of the course is side force over mass and speed. The attitude's part stays: an
+    # aircraft in equilibrium carries its weight at any mass, so bank turns it by g/V as before.
     row = model.output_labels.index("heading_rate")
     columns = [i for i, name in enumerate(model.state_labels) if name not in ("roll", "pitch")]
     c[row, columns] /= factor
@@ -241,7 +241,7 @@ def _with_mass(model: LinearModel, trim: Trim, factor: float) -> LinearModel:
 def _with_inertia(model: LinearModel, factor: float) -> LinearModel:
     """Return the model with all moments of inertia multiplied by a factor.
 
-    Angular accelerations by air and engine divide by it.
+    The factor divides angular accelerations.
     """
     a, b = model.A.copy(), model.B.copy()
     rows = [model.state_labels.index(name) for name in "pqr"]
@@ -251,10 +251,9 @@ def _with_inertia(model: LinearModel, factor: float) -> LinearModel:
 
 
 def gravity_and_turning(trim: Trim, states: Sequence[str]) -> npt.NDArray[np.float64]:
-    """Return the rows of A for airspeed, alpha and beta without air and engine, (3, states).
+    """Return the part of A for airspeed, alpha and beta from gravity and rotation, (3, states).
 
-    They are differences of the rigid body's equations: gravity along the body's axes, and the
-    turning of these axes.
+    It is computed by differences of the rigid body's equations without air and engine.
     """
     names = ("airspeed", "alpha", "beta", "p", "q", "r", "roll", "pitch")
     point = np.array(

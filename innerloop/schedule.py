@@ -1,6 +1,6 @@
 """The autopilot's tables over airspeed and bank: equilibria, linear models, weights and gains.
 
-Nothing here designs. A flight whose design is cached reads these tables without python-control.
+This module does not need python-control, which is imported only to design an autopilot.
 """
 
 import math
@@ -18,17 +18,17 @@ from aircraft.trim import Trim
 from common.physics import STANDARD_GRAVITY
 
 PERIODS = (1, 2, 3)
-"""Periods at which the autopilot may compute [JSBSim time steps].
+"""Possible periods of the autopilot [JSBSim time steps].
 
-A design takes the longest that its margins allow. Each divides the number of steps that JSBSim
-runs while it starts engines, so starting engines does not shift the autopilot's phase.
+A design takes the longest period that its margins allow. Each period divides the number of steps in
+which engines are started, so starting engines does not shift the autopilot's phase.
 """
 
 TRIM_BANKS = (-1.0, -0.82, -0.64, -0.4, 0.0, 0.4, 0.64, 0.82, 1.0)
-"""Banks of the equilibria, over the largest bank of the tables [-]."""
+"""Banks of the equilibria over the largest bank of the tables [-]."""
 
 GAIN_BANKS = (-0.82, -0.4, 0.0, 0.4, 0.82)
-"""Banks of the linear models and gains, a subset of ``TRIM_BANKS`` [-]."""
+"""Banks of the linear models and gains over the largest bank; a subset of ``TRIM_BANKS`` [-]."""
 
 LEVEL = TRIM_BANKS.index(0.0)
 LEVEL_GAINS = GAIN_BANKS.index(0.0)
@@ -36,14 +36,14 @@ LEVEL_GAINS = GAIN_BANKS.index(0.0)
 LONGITUDINAL = ("airspeed", "climb_rate", "q", "pitch", "altitude")
 """Measured longitudinal states.
 
-Climb rate replaces angle of attack, which small aircraft do not measure.
+Climb rate replaces the angle of attack, which small aircraft do not measure.
 """
 
 LATERAL = ("p", "r", "roll", "beta")
 """Measured lateral states.
 
-Sideslip is fed back only where a rudder acts on it. Without a rudder it is not measured, and it
-appears in the Riccati equation alone.
+Sideslip is measured and fed back only with a rudder; without one it is only in the Riccati
+equation.
 """
 
 Array = npt.NDArray[np.float64]
@@ -65,14 +65,14 @@ class DesignWeights:
     Attributes
     ----------
     airspeed, pitch, pitch_rate, altitude : longitudinal deviations [m/s, rad, rad/s, m]
-    airspeed_integral, altitude_integral : of their time integrals [m, m s]
+    airspeed_integral, altitude_integral : deviations of the time integrals [m, m s]
     roll, roll_rate, sideslip : lateral deviations [rad, rad/s, rad]
-    heading_integral, sideslip_integral : of the time integrals of heading-rate error and sideslip
-        [rad, rad s]
-    model_frequency, model_damping : of the second-order response to a heading-rate command that
-        the lateral loop follows [rad/s, -]
-    altitude_error_max : altitude error up to which the elevator's command grows [m]
-    airspeed_error_max : airspeed error up to which the throttle's command grows [m/s]
+    heading_integral, sideslip_integral : deviations of the time integrals of heading-rate error and
+        sideslip [rad, rad s]
+    model_frequency, model_damping : frequency and damping of the second-order response to a
+        heading-rate command that the lateral loop follows [rad/s, -]
+    altitude_error_max : altitude error at which the feedback is clipped [m]
+    airspeed_error_max : airspeed error at which the feedback is clipped [m/s]
     anti_windup_rate : rate at which an integrator follows its saturated command [1/s]
     """
 
@@ -100,15 +100,16 @@ class Gains:
 
     Attributes
     ----------
-    longitudinal : shape (2, 5), from deviations of ``LONGITUDINAL`` to elevator and throttle [-]
-    longitudinal_integral : shape (2, 2), from the integrals of airspeed and altitude error to
-        elevator and throttle [-]
-    lateral : shape (2, 4), from deviations of ``LATERAL`` to aileron and rudder [-]; the rudder's
-        row is 0 without a rudder
-    heading_integral : from the integral of heading-rate error to bank command [rad/rad]
-    sideslip_integral : from the integral of sideslip to rudder [1/(rad s)]
-    roll_rate_feedforward, roll_acceleration_feedforward : shape (2,), aileron and rudder for the
-        model's roll rate and roll acceleration [s, s^2]
+    longitudinal : gains from deviations of ``LONGITUDINAL`` to elevator and throttle [-], shape (2,
+        5)
+    longitudinal_integral : gains from the integrals of airspeed and altitude error to elevator and
+        throttle [-], shape (2, 2)
+    lateral : gains from deviations of ``LATERAL`` to aileron and rudder [-], shape (2, 4); the
+        rudder's row is 0 without a rudder
+    heading_integral : gain from the integral of heading-rate error to bank command [rad/rad]
+    sideslip_integral : gain from the integral of sideslip to rudder [1/(rad s)]
+    roll_rate_feedforward, roll_acceleration_feedforward : aileron and rudder for the model's roll
+        rate and roll acceleration [s, s^2], shape (2,)
     """
 
     longitudinal: Matrix
@@ -122,21 +123,21 @@ class Gains:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Schedule:
-    """The tables of an autopilot, and what they were made from.
+    """The tables of an autopilot, and the inputs of its design.
 
     Attributes
     ----------
     spec : the aircraft
-    envelope : the airspeeds and banks that it may fly
-    weights : of the design
-    altitude : at which it was designed [m]
+    envelope : airspeeds and banks at which the autopilot may fly
+    weights : weights of the design
+    altitude : altitude of the design [m]
     airspeeds : shape (n,) [m/s], ascending
     trims : equilibria by airspeed, then by bank in the order of ``TRIM_BANKS``
     models : linear models by airspeed, then by bank in the order of ``GAIN_BANKS``
-    edges : linear models by airspeed at the first and the last bank of ``TRIM_BANKS``, for which
-        no gains are designed
-    gains : in the order of ``models``
-    period : of the autopilot, one of ``PERIODS`` [JSBSim time steps]
+    edges : linear models by airspeed at the first and the last bank of ``TRIM_BANKS``, which have
+        no gains
+    gains : gains in the order of ``models``
+    period : period of the autopilot, one of ``PERIODS`` [JSBSim time steps]
     """
 
     spec: AircraftSpec
@@ -192,9 +193,10 @@ class Schedule:
         return np.array([[_trim_quantity(t, quantity) for t in row] for row in self.trims]).T
 
     def bank_for_turn(self, turns: Array) -> Array:
-        """Return the bank that gives the dimensionless turns V omega/g [rad], (turns, airspeeds).
+        """Return the bank for dimensionless turns V omega/g [rad], shape (turns, airspeeds).
 
-        In a coordinated turn this is atan(turns). An aircraft without rudder slips, and needs more.
+        In a coordinated turn the bank is atan(turns). An aircraft without rudder slips and needs
+        more.
         """
         columns = []
         for airspeed, row in zip(self.airspeeds, self.trims, strict=True):
@@ -207,34 +209,34 @@ class Schedule:
     def turns(self) -> Array:
         """Return the dimensionless turns at which ``bank_for_turn`` is tabulated, shape (29,).
 
-        They reach 5 % beyond the coordinated turn of the largest bank.
+        They extend 5 % beyond the coordinated turn at the largest bank.
         """
         largest = 1.05 * math.tan(self.banks[-1])
         return np.linspace(-largest, largest, 29)
 
 
 def loop_delay(period: int, late: int = 0) -> float:
-    """Return the delay between measurement and servo [s]: one step of computing, half a hold.
+    """Return the delay between measurement and servo [s]: one time step plus half a period.
 
-    The step is an allowance for a computer on board. In JSBSim airspeed, sideslip and heading rate
-    are one step old, but body rates, attitude, altitude and climb rate are read in the step in
-    which servos and forces act. Loops on these have more margin in JSBSim than this delay says.
+    The time step allows for an on-board computer. In JSBSim airspeed, sideslip and heading rate are
+    one step old, but body rates, attitude, altitude and climb rate are read in the step in which
+    servos and forces act. Loops with the latter measurements have more margin in JSBSim.
 
     Parameters
     ----------
-    period : of the autopilot, one of ``PERIODS`` [JSBSim time steps]
-    late : additional delay of its commands [periods]
+    period : period of the autopilot, one of ``PERIODS`` [JSBSim time steps]
+    late : additional delay of the commands [periods]
     """
     return (1.0 + (0.5 + late) * period) * TIME_STEP
 
 
 def table_banks(envelope: Envelope, fractions: Sequence[float]) -> tuple[float, ...]:
-    """Return fractions of the tables' largest bank [rad]."""
+    """Return banks from fractions of the tables' largest bank [rad]."""
     return tuple(fraction * TABLE_REACH * envelope.bank_max for fraction in fractions)
 
 
 def _interpolate(x: Array, at: Array, angles: Array) -> Array:
-    """Interpolate the tangent of ``angles``, extended in proportion to ``x`` past the ends."""
+    """Interpolate the tangent of ``angles`` linearly; past the ends it is proportional to ``x``."""
     tangents = np.tan(angles)
     inside = np.interp(x, at, tangents)
     inside = np.where(x > at[-1], tangents[-1] * x / at[-1], inside)

@@ -1,10 +1,10 @@
-"""Designs and the cache that keeps them, under the hash of everything they depend on.
+"""Designs and their cache; its key is a hash of everything that a design depends on.
 
-Nothing here designs: a flight whose design is cached starts without python-control.
+A flight with a cached design does not import python-control.
 
-A design is stored as JSON. Every number comes back to the last bit, and nothing in a stored text is
-executed. A dataclass is written as an object of its fields and read back by their declared types;
-anything else is rejected.
+A design is stored as JSON. Numbers are restored to the last bit, and stored text is never executed.
+A dataclass is written as an object of its fields and read back by their declared types; anything
+else is rejected.
 """
 
 import contextlib
@@ -37,7 +37,7 @@ from innerloop.margins import Check
 from innerloop.schedule import LoopBandwidths, Schedule
 
 SUFFIX = ".design.json"
-"""End of the file names of cached designs."""
+"""Suffix of files with cached designs."""
 
 Record = dict[str, Any]
 """The record of a design for its report, as plain data."""
@@ -50,7 +50,7 @@ _JSON_TYPES = (float, str, bool, int)
 
 
 class DesignError(AircraftError):
-    """No design of an aircraft has the margins that are required."""
+    """No design of an aircraft has the required margins."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,8 +60,8 @@ class Design:
     Attributes
     ----------
     schedule : the autopilot's tables
-    bandwidths : of its loops
-    checks : margins at every grid point, between them, and with the perturbed aircraft
+    bandwidths : bandwidths of the loops
+    checks : margins at and between the points of the grid, also with the perturbed aircraft
     """
 
     schedule: Schedule
@@ -78,13 +78,13 @@ class Designed:
 
     @functools.cached_property
     def record_text(self) -> str:
-        """The record on one line of JSON, as every run with the design has it: half a megabyte."""
+        """The record as one line of JSON, about half a megabyte, for run directories."""
         return json_text(self.record, indent=None)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Entry:
-    """An entry of the cache: a design; or why there is none, and whether it lacks margins."""
+    """An entry of the cache: a design, or the refusal and whether margins are its reason."""
 
     made: Designed | None = None
     refusal: str
@@ -94,21 +94,20 @@ class _Entry:
 def designed(spec: AircraftSpec, altitude: float = 100.0) -> Designed:
     """Return the design of an aircraft at ``altitude`` [m] and its record.
 
-    It comes from the cache if nothing it depends on has changed (``design_key``). A failed design
-    is cached as well.
+    The design is taken from the cache if nothing that it depends on has changed (``design_key``).
+    Refusals are cached as well.
 
     Raises
     ------
-    AircraftError : the aircraft cannot fly the study, or one of its design conditions
-    DesignError : no design has the margins
+    AircraftError : the aircraft has no usable envelope, or no equilibrium in part of the envelope
+    DesignError : no design has the required margins
     """
     key = design_key(spec, altitude)
     entry = _cached(key)
     if entry is None:
         text = as_text(_design(spec, altitude))
         _store(key, text)
-        # The text is read back even if it could not be written, so that this run uses the same
-        # design as the next one.
+        # The text is always read back, so that this run has the same design as later ones.
         entry = _entry(text)
     if entry.made is None:
         raise (DesignError if entry.lacks_margins else AircraftError)(entry.refusal)
@@ -116,14 +115,14 @@ def designed(spec: AircraftSpec, altitude: float = 100.0) -> Designed:
 
 
 def is_cached(spec: AircraftSpec, altitude: float) -> bool:
-    """Return whether ``designed`` finds a design or a refusal in the cache."""
+    """Return whether the cache has a design or a refusal."""
     return _cached(design_key(spec, altitude)) is not None
 
 
 def design_key(spec: AircraftSpec, altitude: float) -> str:
     """Return the hash of everything that a design depends on.
 
-    That is the aircraft's spec and files but not their place on disk, the altitude [m], and
+    It covers the aircraft's spec and files (not their place on disk), the altitude [m] and
     ``program_hash``.
     """
     wherever = repr(replace(spec, root=Path(), folder=None, other_roots=()))
@@ -132,7 +131,7 @@ def design_key(spec: AircraftSpec, altitude: float) -> str:
 
 @functools.cache
 def program_hash() -> str:
-    """Return the hash of the program that designs; it is computed once in a process.
+    """Return the hash of the design program; it is computed once per process.
 
     It covers the source of ``aircraft``, ``common`` and ``innerloop``, and the versions of Python,
     JSBSim and the numerical packages.
@@ -147,7 +146,7 @@ def program_hash() -> str:
 
 
 def cache_directory() -> Path | None:
-    """Return the cache of designs in the user's cache directory; None for a user without a home."""
+    """Return the directory of cached designs; None if the user has no home directory."""
     base = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA")
     if not base:
         try:
@@ -158,7 +157,7 @@ def cache_directory() -> Path | None:
 
 
 def _design(spec: AircraftSpec, altitude: float) -> _Entry:
-    # These import python-control, which a flight with a cached design does not need.
+    # These modules import python-control, which a flight with a cached design does not need.
     from innerloop.designer import design_autopilot
     from innerloop.record import design_record
 
@@ -172,7 +171,7 @@ def _design(spec: AircraftSpec, altitude: float) -> _Entry:
 
 
 def _with_model_of(spec: AircraftSpec, found: Designed) -> Designed:
-    """Return a design that reads the model files of ``spec``.
+    """Return a design with the ``spec``'s paths of the model files.
 
     The same files may have been elsewhere on disk when the design was made.
     """
@@ -192,8 +191,7 @@ def _cached(key: str) -> _Entry | None:
     if directory is None:
         return None
     try:
-        # The first line is the hash of the rest: numbers of a damaged file could pass as another
-        # autopilot.
+        # The first line is the hash of the rest, because a damaged number would not be noticed.
         content = (directory / f"{key}{SUFFIX}").read_text(encoding="utf-8")
         digest, _, text = content.partition("\n")
         return _entry(text) if digest == _digest(text) else None
@@ -203,12 +201,12 @@ def _cached(key: str) -> _Entry | None:
 
 @functools.lru_cache(maxsize=4)
 def _entry(text: str) -> _Entry:
-    """Return the entry that a text holds, parsed once for all studies of a process."""
+    """Return the entry in a text; parsed entries are cached."""
     return from_text(text, _Entry)
 
 
 def _store(key: str, text: str) -> None:
-    """Cache an entry; if it cannot be written, the design is made again the next time."""
+    """Cache an entry; if writing fails, the next run designs again."""
     directory = cache_directory()
     if directory is None:
         return
@@ -225,16 +223,16 @@ def _digest(text: str) -> str:
 
 
 def as_text(value: object) -> str:
-    """Return a dataclass as JSON text, with NaN and infinity as Python's JSON writes them."""
+    """Return a dataclass as JSON text; NaN and infinity are written as Python's json does."""
     return json.dumps(value, default=_plain, separators=(",", ":"))
 
 
 def from_text(text: str, kind: type[Kind]) -> Kind:
-    """Return the dataclass ``kind`` that ``as_text`` wrote.
+    """Return the object of dataclass ``kind`` that ``as_text`` wrote.
 
     Raises
     ------
-    ValueError : the text is not that of such an object
+    ValueError : the text does not hold such an object
     """
     try:
         found: Kind = _value(json.loads(text), kind)
@@ -244,11 +242,11 @@ def from_text(text: str, kind: type[Kind]) -> Kind:
 
 
 def _plain(value: Any) -> Any:
-    """Return a value for which JSON has no notation in terms of values for which it has one."""
+    """Convert a dataclass, array or mapping to values that JSON can express."""
     if dataclasses.is_dataclass(value):
         return {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
     if isinstance(value, np.ndarray):
-        # The order of numbers in memory decides how products of matrices are rounded.
+        # The memory order of an array influences the rounding of matrix products.
         order: Literal["C", "F"] = (
             "F" if value.flags.f_contiguous and not value.flags.c_contiguous else "C"
         )
@@ -263,7 +261,7 @@ def _plain(value: Any) -> Any:
 
 
 def _value(found: Any, kind: Any) -> Any:
-    """Return a value of a type from its JSON."""
+    """Return a value of type ``kind`` from its JSON."""
     if (
         kind is Any
         or (type(found) is kind and kind in _JSON_TYPES)

@@ -1,19 +1,20 @@
-"""From a linear model to feedback gains: reachable bandwidths, weights by Bryson's rule, servo LQR.
+"""Feedback gains from a linear model: reachable bandwidths, Bryson's rule, servo LQR.
 
-Bryson's rule makes each weight one over the square of an acceptable deviation. The acceptable
-deviation follows from a frequency: the fastest that the aircraft's control authority, its servos
-and its lift can follow. So one set of numbers, none of which contains a length or a time, designs a
-3 kg flying wing and an airliner.
+In Bryson's rule each weight is one over the square of an acceptable deviation. The acceptable
+deviations follow from the bandwidth that the aircraft's control authority, servos and lift allow.
+One set of dimensionless numbers thus designs a 3 kg flying wing and an airliner.
 
-A servo LQR suits the plant. It is multivariable (elevator and throttle both move airspeed and
-altitude, aileron and rudder both roll and yaw), an autopilot measures every state that is fed back,
-integral action comes with the design, and weights that follow from an aircraft's own frequencies
-carry over to the next aircraft.
+A servo LQR suits the plant for four reasons. The plant is multivariable: elevator and throttle both
+move airspeed and altitude, aileron and rudder both roll and yaw. Every state that is fed back is
+measured. The design includes integral action. Weights in units of the aircraft's own frequencies
+carry over to other aircraft.
 
-Servo and engine states are left out of the feedback (a hobby servo's position is not measured) and
-out of the Riccati equation, where their static gain replaces them. The margins are then computed
-with them and with the computing delay. In a bank, longitudinal and lateral motion couple: the gains
-of each are computed as if the other were at rest, and the margins with both.
+Servo and engine states are not fed back, because a hobby servo's position is not measured. In the
+Riccati equation their static gain replaces them. The margins are computed with these states and
+with the computing delay.
+
+In a bank, longitudinal and lateral motion couple. The gains of each are computed as if the other
+were at rest, and the margins with both.
 """
 
 import math
@@ -36,42 +37,41 @@ from innerloop.schedule import (
 )
 
 _STATIC_GAIN_MIN = 1e-9
-"""Final value of a unit step below which a state does not follow an input: a rate ends at 0."""
+"""Least final value of the step response of a state that follows an input [-]: rates end at 0."""
 
 _LAG_PHASE = 0.18
-"""Phase that a loop may lose to servo and computing delay, with the shortest period [rad]."""
+"""Phase that a loop may lose to servo and computing delay at the shortest period [rad]."""
 
 _AUTHORITY_FRACTION = 0.5
-"""Share of the control authority for a step of a command [-]; gusts and feedback take the rest."""
+"""Fraction of the control authority for a command step [-]; gusts and feedback get the rest."""
 
 _BANK_STEP_FRACTION = 0.5
-"""Step of bank that takes this authority, over the bank limit [-]."""
+"""Step of bank that uses this authority, over the bank limit [-]."""
 
 _PITCH_STEP = 0.15
-"""Step of pitch that takes this authority [rad]: half the acceptable deviation."""
+"""Step of pitch that uses this authority [rad]: half the acceptable deviation."""
 
 _MODEL_DAMPING = 0.9
 """Damping of the heading-rate response [-]: exp(-pi 0.9 / sqrt(1 - 0.9^2)) = 0.15 % overshoot."""
 
 _PEAK_RATE = 0.42
-"""Largest rate of a step response over its frequency [-]: 0.39, or 0.42 with a damping of 0.8."""
+"""Largest rate of a step response over its frequency [-]: 0.39, or 0.42 at a damping of 0.8."""
 
 _LIFT_FRACTION = 0.75
-"""Fastest altitude loop, over -Z_alpha, at which lift turns the path towards the nose [-]."""
+"""Fastest altitude loop over -Z_alpha, the rate at which lift aligns the path with the nose [-]."""
 
 _ENGINE_FRACTION = 0.3
-"""Fastest airspeed loop times the lag of engine and delay [-]: the phase that they take [rad]."""
+"""Fastest airspeed loop times the lag of engine and delay: the phase lost to them [rad]."""
 
 _AIRSPEED_TO_ALTITUDE = 0.27
-"""Fastest airspeed loop, over the altitude loop [-].
+"""Fastest airspeed loop over the altitude loop [-].
 
-Elevator and throttle both move airspeed and altitude, so a factor near 4 separates the frequencies.
+Elevator and throttle both move airspeed and altitude, so a factor near 4 separates the loops.
 """
 
-# The deviations of Bryson's rule, in an aircraft's own units: one over a loop's bandwidth for time,
-# V for climbing, g for changes of airspeed, g/V for turning. They are the weights of the X8's first
-# design, divided by its units, and serve every aircraft: the margins and step responses of each
-# design are computed, and a design without the required margins is slowed down or refused.
+# Deviations of Bryson's rule in the aircraft's own units: one over a loop's bandwidth for time, V
+# for climb rate, g for acceleration, g/V for turn rate. The numbers were found for the X8 and serve
+# every aircraft, because a design without the required margins is slowed down or refused.
 _PITCH = 0.3
 _ROLL = 0.1
 _SIDESLIP = 0.05
@@ -79,26 +79,26 @@ _SIDESLIP = 0.05
 
 _PITCH_RATE = 0.5
 _ROLL_RATE = 3.3
-"""Acceptable rates of pitch and, hardly penalised, of roll, over angle per unit of time [-]."""
+"""Acceptable rates of pitch and of roll, over acceptable angle per unit of time [-]."""
 
 _CLIMB_TIME = 0.5
 _SLOWDOWN_TIME = 2.0
-"""Time in which the acceptable pitch makes acceptable altitude and airspeed [units of time]."""
+"""Time for acceptable pitch to cause acceptable altitude and airspeed errors [units of time]."""
 
 _AIRSPEED_HELD = 2.4
 _ALTITUDE_HELD = 12.0
 _HEADING_RATE_HELD = 14.0
 _SIDESLIP_HELD = 6.0
-"""How long an acceptable deviation may last [units of time]: it gives the acceptable integral.
+"""Durations of acceptable deviations, which give the acceptable integrals [units of time].
 
-The deviation of the heading rate is the rate at which the acceptable roll turns.
+The acceptable heading-rate error is the heading rate of the acceptable roll.
 """
 
 _ERROR_MAX = 2.0
-"""Clipping of altitude and airspeed errors, over acceptable ones [-]: beyond, a steady climb."""
+"""Clipping of altitude and airspeed errors over acceptable errors [-]: it limits the climb."""
 
 _ANTI_WINDUP = 0.33
-"""Rate at which integrators follow a saturated control, over the longitudinal bandwidth [-]."""
+"""Rate at which integrators follow a saturated control over the longitudinal bandwidth [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -132,9 +132,10 @@ def quasi_static(model: LinearModel) -> LinearModel:
 
 
 def state_lag(model: LinearModel, control_input: str) -> float:
-    """Return the lag of a control input [s]: that of the slowest servo or engine state behind it.
+    """Return the lag of the slowest servo or engine state that follows a control input [s].
 
-    The lag of a state is the area between its step response and its final value, over that value.
+    The lag of a state is the area between its step response and its final value, over the final
+    value.
     """
     driven = [i for i, name in enumerate(model.state_labels) if name not in BODY_STATES]
     if not driven:
@@ -149,8 +150,8 @@ def state_lag(model: LinearModel, control_input: str) -> float:
 def reachable_bandwidths(models: Sequence[LinearModel], bank: float) -> LoopBandwidths:
     """Return the bandwidths that an aircraft can follow at every airspeed.
 
-    The models are linear about level flight, one for each airspeed; its turns bank by ``bank``
-    [rad] at most.
+    ``models`` are linear models about level flight, one per airspeed; ``bank`` is the largest bank
+    [rad].
     """
     each = [_reachable(model, bank) for model in models]
     longitudinal = min(bandwidths.longitudinal for bandwidths in each)
@@ -195,11 +196,11 @@ def _authority(plant: LinearModel, rate_of: str, control_input: str) -> float:
 
 
 def design_weights(bandwidths: LoopBandwidths, airspeed: float) -> DesignWeights:
-    """Return the weights for loops of these bandwidths near ``airspeed`` [m/s].
+    """Return the weights for loops of given bandwidths near ``airspeed`` [m/s].
 
-    Altitude follows pitch, and airspeed follows gravity along it. So with a time unit of one over
-    the frequency, deviations of altitude go with V, of airspeed with g, and integrals with the unit
-    itself.
+    Pitch changes altitude at a rate proportional to V, and airspeed at a rate proportional to g.
+    With one over the bandwidth as the unit of time, acceptable deviations of altitude scale with V,
+    of airspeed with g, and of integrals with the unit of time.
     """
     unit = 1.0 / bandwidths.longitudinal
     turn = 1.0 / bandwidths.lateral
@@ -228,7 +229,7 @@ def design_weights(bandwidths: LoopBandwidths, airspeed: float) -> DesignWeights
 def control_weights(
     model: LinearModel, bandwidths: LoopBandwidths, weights: DesignWeights
 ) -> ControlWeights:
-    """Return the control deflections that move each axis at its bandwidth, against its damping."""
+    """Return the control deflections that move each axis at its bandwidth, including damping."""
     plant = quasi_static(model)
 
     def effort(row: str, frequency: float) -> float:
@@ -255,9 +256,9 @@ def control_weights(
 def design_gains(
     model: LinearModel, trim: Trim, weights: DesignWeights, controls: ControlWeights
 ) -> Gains:
-    """Return the feedback gains for a model from ``aircraft.linearise`` about ``trim``.
+    """Return the feedback gains for a linear model about ``trim``.
 
-    The acceptable deviations of states and controls are those at its airspeed.
+    ``weights`` and ``controls`` are the acceptable deviations at the model's airspeed.
     """
     plant = quasi_static(model)
     longitudinal, longitudinal_integral = _longitudinal(plant, weights, controls)
@@ -279,12 +280,12 @@ def _has_rudder(plant: LinearModel) -> bool:
 
 
 def _bryson(*deviations: float) -> Matrix:
-    """Return the weights of Bryson's rule; a deviation of 0 stands for no weight."""
+    """Return the weight matrix of Bryson's rule; a deviation of 0 means no weight."""
     return np.diag([0.0 if d == 0.0 else 1.0 / d**2 for d in deviations])
 
 
 def _servo(a: Matrix, b: Matrix, c: Matrix, d: Matrix, q: Matrix, r: Matrix) -> Matrix:
-    """Return the LQR gain on the plant with the integral of -y appended."""
+    """Return the LQR gain of the plant extended by the integral of -y."""
     n, m = c.shape[1], c.shape[0]
     a_servo = np.block([[a, np.zeros((n, m))], [-c, np.zeros((m, m))]])
     gain, _, _ = control.lqr(a_servo, np.vstack([b, -d]), q, r)
@@ -294,7 +295,7 @@ def _servo(a: Matrix, b: Matrix, c: Matrix, d: Matrix, q: Matrix, r: Matrix) -> 
 def _longitudinal(
     plant: LinearModel, w: DesignWeights, controls: ControlWeights
 ) -> tuple[Matrix, Matrix]:
-    """Return the gains from ``LONGITUDINAL``, and from the integrals of airspeed and altitude."""
+    """Return the longitudinal gains: on ``LONGITUDINAL``, and on the integrals of the errors."""
     states = ("airspeed", "alpha", "q", "pitch", "altitude")
     a, b, c, d = plant.pick(states, ("elevator", "throttle"), ("airspeed", "altitude"))
     q = _bryson(
@@ -308,7 +309,7 @@ def _longitudinal(
 def _lateral(
     plant: LinearModel, w: DesignWeights, controls: ControlWeights
 ) -> tuple[Matrix, float, float]:
-    """Return the gains from ``LATERAL``, and from the integrals of heading rate and sideslip."""
+    """Return lateral gains: on ``LATERAL``, and on the integrals of heading rate and sideslip."""
     states = ("beta", "p", "r", "roll")
     if not _has_rudder(plant):
         a, b, c, d = plant.pick(states, ("aileron",), ("heading_rate",))
@@ -325,8 +326,8 @@ def _lateral(
 def _feedforward(plant: LinearModel, trim: Trim) -> tuple[Matrix, Matrix]:
     """Return aileron and rudder for a roll rate and for a roll acceleration, shape (2,) each.
 
-    The rudder cancels the yaw that rolling and aileron cause, and turns the nose with the turn: r
-    grows by g cos(bank)/V times p.
+    The rudder cancels the yaw caused by rolling and by the aileron, and yaws the nose with the
+    turn: r grows by g cos(bank)/V times p.
     """
     axes: tuple[str, ...] = ("p",)
     inputs: tuple[str, ...] = ("aileron",)

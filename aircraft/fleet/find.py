@@ -1,6 +1,6 @@
 """Find an aircraft: a registered one, one that comes with JSBSim, or one in a user's folder.
 
-A user's folder, ``DIR/NAME``, holds a JSBSim model and perhaps a file of settings beside it.
+A user's folder, ``DIR/NAME``, holds a JSBSim model and, if needed, a settings file.
 """
 
 from pathlib import Path, PurePosixPath, PureWindowsPath
@@ -26,22 +26,21 @@ _MODEL_TAG = "fdm_config"
 """Root element of a JSBSim model."""
 
 _NOT_COPIED = ("input", "output")
-"""Sections of a model that no copy of it has."""
+"""Sections of a model that are left out of its copies."""
 
 
 def aircraft_names() -> list[str]:
-    """Name of every known aircraft, registered ones first. Not all of them can be flown."""
+    """Names of all known aircraft, registered ones first; some of them cannot be flown."""
     registered = AIRCRAFT.names()
     return [*registered, *(name for name in stock_names() if name not in registered)]
 
 
 def find_spec(name: str) -> AircraftSpec:
-    """Spec of the aircraft ``name``, which may also be a file, ``FILE.py:NAME``, or a folder.
+    """Spec of an aircraft by its known name, its file ``FILE.py:NAME`` or its folder ``DIR/NAME``.
 
     Raises
     ------
-    AircraftError : the name is unknown, the aircraft does not load, or an autopilot cannot fly it,
-        with the reason
+    AircraftError : the name is unknown, the aircraft does not load, or an autopilot cannot fly it
     """
     if is_file_part(name) or name in AIRCRAFT:
         return _registered(name)
@@ -84,7 +83,7 @@ def stock_spec(name: str) -> AircraftSpec:
 
     Raises
     ------
-    AircraftError : it is not an aeroplane with engines and the usual controls, with the reason
+    AircraftError : the aircraft is not an aeroplane with engines and the usual controls
     """
     files = ModelFiles(model=name, folder=stock_root() / "aircraft" / name, roots=(stock_root(),))
     source = f"JSBSim's own model '{name}', gear up, fuel held, its own autopilot off"
@@ -92,7 +91,7 @@ def stock_spec(name: str) -> AircraftSpec:
 
 
 def folder_names(directory: Path) -> list[str]:
-    """Name of every folder in ``directory`` that holds a model.
+    """Names of the folders in ``directory`` that hold a model.
 
     Raises
     ------
@@ -138,14 +137,14 @@ def folder_path(directory: Path, name: str | None) -> str:
 def folder_spec(path: str) -> AircraftSpec:
     """Spec of the aircraft in a folder, ``DIR/NAME``.
 
-    Its model is ``NAME.xml``, or the only JSBSim model in the folder. Engines and systems that it
-    names are looked for in the folder, then in ``DIR/../engine`` and ``DIR/../systems``, then in
-    JSBSim's own. A file with the model's name, ``NAME.toml``, may give settings.
+    The model is ``NAME.xml``, or the only JSBSim model in the folder. Its engines and systems are
+    searched for in the folder, then in ``DIR/../engine`` and ``DIR/../systems``, then in JSBSim's
+    own folders. Settings may stand in a file with the model's name, ``NAME.toml``.
 
     Raises
     ------
-    AircraftError : no such folder, no model in it, or several; a file is not as it should be; an
-        autopilot cannot fly it
+    AircraftError : the folder does not exist, or holds no model or several; a file is invalid; an
+        autopilot cannot fly the aircraft
     """
     folder = Path(path).absolute()
     if not folder.is_dir():
@@ -169,7 +168,7 @@ def folder_spec(path: str) -> AircraftSpec:
 
 
 def _models(folder: Path) -> list[str]:
-    """Names of the models in a folder: only the one with the folder's name, if there is one."""
+    """Names of the models in a folder; only the one with the folder's name, if there is one."""
     if (folder / f"{folder.name}.xml").is_file():
         return [folder.name]
     return sorted(path.stem for path in folder.glob("*.xml") if path.is_file() and _is_model(path))
@@ -198,12 +197,11 @@ def _only_model(folder: Path) -> str:
 
 
 def _check_files(files: ModelFiles) -> None:
-    """Refuse a model with a file that is not XML, is missing, or leads out of its folders."""
+    """Refuse a model if a file of it is not XML, is missing, or leads out of its folders."""
     root = read_xml(files.file).getroot()
     if root.tag != _MODEL_TAG:
         raise AircraftError(
-            f"{files.file}: its root element is <{root.tag}>; that of a JSBSim model is"
-            f" <{_MODEL_TAG}>"
+            f"{files.file}: its root element is <{root.tag}>; a JSBSim model has <{_MODEL_TAG}>"
         )
     checked: set[Path] = set()
     waiting = [files.file]
@@ -235,10 +233,10 @@ def _check_files(files: ModelFiles) -> None:
 
 
 def _refuse_outside(path: Path, tag: str, file: str) -> None:
-    """Refuse a file name that is absolute or has '..' in it."""
+    """Refuse a file name that is absolute or contains '..'."""
     for pure in (PurePosixPath(file), PureWindowsPath(file)):
         if pure.anchor or ".." in pure.parts:
             raise AircraftError(
-                f"{path}: {tag} file '{file}' leads out of the aircraft's folders; put it beside"
-                " the model"
+                f"{path}: {tag} file '{file}' leads out of the aircraft's folders; put it into"
+                " the model's folder"
             )

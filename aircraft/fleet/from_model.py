@@ -1,7 +1,7 @@
-"""The spec of an aircraft, read from its JSBSim model and a user's settings file beside it.
+"""Read an aircraft's spec from its JSBSim model and the user's settings file.
 
-The model gives engines and controls, and whether it is an aeroplane at all. What neither it nor the
-settings say is found by trimming (``aircraft.envelope``).
+The model gives engines and controls, and shows whether the aircraft is an aeroplane. An envelope
+that the settings do not give is found by trimming (``aircraft.envelope``).
 """
 
 import json
@@ -40,13 +40,13 @@ from common.text import did_you_mean
 
 _SURFACES = ("elevator", "aileron", "rudder")
 _STARTED_ENGINES = ("piston_engine", "turbine_engine", "turboprop_engine")
-"""Kinds of engine that have to be started and then run."""
+"""Types of engine that have to be started."""
 
 _ELECTRIC_ENGINES = ("electric_engine", "brushless_dc_motor")
-"""Kinds of engine that turn when they get current."""
+"""Types of engine that run without being started."""
 
 _SETTLE_TIME = 20.0
-"""Time in which piston engines and their propellers settle behind a held aircraft [s]."""
+"""Time in which piston engines and their propellers settle while the aircraft is held [s]."""
 
 
 def _property(name: str) -> str:
@@ -64,7 +64,7 @@ class _Table(BaseModel):
 
 
 class EnvelopeSettings(_Table):
-    """Where the autopilot may fly the aircraft."""
+    """Airspeeds and bank at which the autopilot may fly the aircraft."""
 
     airspeed_min_mps: float
     """Slowest commanded true airspeed [m/s]."""
@@ -77,7 +77,7 @@ class EnvelopeSettings(_Table):
 
     @property
     def envelope(self) -> Envelope:
-        """Envelope of an aircraft's spec, in its units."""
+        """The same envelope in the units of an aircraft's spec."""
         return Envelope(
             airspeed_min=self.airspeed_min_mps,
             airspeed_max=self.airspeed_max_mps,
@@ -93,24 +93,24 @@ class EnvelopeSettings(_Table):
 
 
 class ModelSettings(_Table):
-    """The settings file, ``NAME.toml`` beside a model. Each key may be left out."""
+    """The settings file ``NAME.toml`` in a model's folder. Each key may be left out."""
 
     title: Annotated[str, Field(min_length=1, max_length=80)] | None = None
     """Name in reports; the model's own name by default."""
     elevator: Annotated[_Commands, Field(min_length=1)] | None = None
     """JSBSim properties that take the elevator command, -1 to 1; default fcs/elevator-cmd-norm."""
     aileron: Annotated[_Commands, Field(min_length=1)] | None = None
-    """The same of the ailerons; default fcs/aileron-cmd-norm."""
+    """Same for the ailerons; default fcs/aileron-cmd-norm."""
     rudder: _Commands | None = None
-    """The same of the rudder; default fcs/rudder-cmd-norm, and false if there is no rudder."""
+    """Same for the rudder; default fcs/rudder-cmd-norm; false if the aircraft has no rudder."""
     throttle: Annotated[_Commands, Field(min_length=1)] | None = None
-    """JSBSim properties that take the throttle command, 0 to 1; by default that of each engine."""
+    """JSBSim properties that take the throttle command, 0 to 1; by default one for each engine."""
     settle_time_s: Annotated[float, Field(ge=SETTLE_TIMES[0], le=SETTLE_TIMES[1])] | None = None
     """Time in which servos and engines come to rest while the aircraft is held [s]; default 20."""
     envelope: EnvelopeSettings | None = None
-    """Airspeeds and bank; found by trimming by default."""
+    """Airspeeds and bank; by default found by trimming."""
     properties: dict[_Property, float] = {}
-    """JSBSim properties and their values in every flight, beside gear up and fuel held."""
+    """JSBSim properties set in every flight, in addition to gear up and constant fuel."""
 
     @field_validator("elevator", "aileron", "rudder", "throttle", mode="before")
     @classmethod
@@ -125,11 +125,11 @@ class ModelSettings(_Table):
 
 
 def read_settings(path: Path) -> ModelSettings:
-    """Settings that a file contains.
+    """Settings from a file.
 
     Raises
     ------
-    AircraftError : it cannot be read or is not TOML, or a key is unknown or out of range
+    AircraftError : the file cannot be read or is not TOML, or a key is unknown or out of range
     """
     try:
         return ModelSettings.model_validate(tomllib.loads(path.read_text(encoding="utf-8-sig")))
@@ -146,7 +146,7 @@ def read_settings(path: Path) -> ModelSettings:
 
 
 def _first_problem(error: ValidationError) -> str:
-    """First thing that is wrong with the settings, in a line."""
+    """First error in the settings, in one line."""
     first = error.errors()[0]
     name = ".".join(str(part) for part in first["loc"])
     *tables, key = name.split(".")
@@ -168,14 +168,14 @@ def spec_of_model(
 
     Parameters
     ----------
-    files : of its model; the first root is that of the spec
-    name : of the aircraft
-    source : of the model's numbers
-    settings : of a user's model; None for a model of others, which a user cannot correct
+    files : the model's files; the first root becomes the root of the spec
+    name : name of the aircraft
+    source : source of the model's numbers
+    settings : settings of a user's model; None for a model that the user cannot correct
 
     Raises
     ------
-    AircraftError : a file is not XML, or an autopilot cannot fly the aircraft, with the reason
+    AircraftError : a file is not XML, or an autopilot cannot fly the aircraft
     """
     given = settings or ModelSettings()
     try:
@@ -218,19 +218,19 @@ def spec_of_model(
 
 
 def _model_title(config: ET.Element, name: str) -> str:
-    """The model's own name with that of the aircraft, if the two differ."""
+    """Title for reports: the model's name, followed by the aircraft's name if the two differ."""
     title = " ".join((config.get("name") or "").replace("_", " ").split())
     return f"{title} ({name})" if title and title.lower() != name.lower() else name
 
 
 def _kind(element: ET.Element, files: ModelFiles) -> str:
-    """Tag of the file that an engine or a thruster names."""
+    """Type of an engine or thruster: the root tag of the file that it names."""
     found = files.find(element)
     return read_xml(found).getroot().tag if found else f"missing ({element.get('file')})"
 
 
 def _inputs(engines: int, given: ModelSettings) -> tuple[ControlInput, ...]:
-    """Control inputs, with the command properties that are given or else usual."""
+    """Control inputs, with the command properties from the settings or the usual ones."""
     inputs = []
     for control, commands in (
         (surface("elevator"), given.elevator),
@@ -246,7 +246,7 @@ def _inputs(engines: int, given: ModelSettings) -> tuple[ControlInput, ...]:
 
 
 def _why_no_aeroplane(config: ET.Element, engines: list[str], files: ModelFiles) -> str:
-    """Why a model is no aeroplane with engines; empty if it is one."""
+    """Why a model is not an aeroplane with engines; empty if it is one."""
     thrusters = list(config.iterfind("propulsion/engine/thruster"))
     if config.find("buoyant_forces") is not None:
         return "it is lighter than air"
@@ -259,19 +259,20 @@ def _why_no_aeroplane(config: ET.Element, engines: list[str], files: ModelFiles)
     if "rocket_engine" in engines:
         return "it flies on rocket engines, for minutes"
     odd = [kind for kind in engines if kind not in (*_STARTED_ENGINES, *_ELECTRIC_ENGINES)]
-    return f"its engine's file is {', '.join(odd)}" if odd else ""
+    return f"its engine is of type {', '.join(odd)}" if odd else ""
 
 
 _NEEDED = {
     "metrics": ("wingarea", "wingspan", "chord"),
     "mass_balance": ("ixx", "iyy", "izz", "emptywt"),
 }
-"""Elements of a model by their section, each of which it has once, and above 0."""
+"""Required elements by section: a model has each of them exactly once, with a value above 0."""
 
 
 def _wrong_element(config: ET.Element, files: ModelFiles) -> str:
-    """What is wrong with a needed element; empty if nothing: JSBSim takes a missing one for 0, and
-    of two the first.
+    """Error in a required element of the model, in words; empty if there is none.
+
+    JSBSim itself takes a missing element as 0, and the first one of two.
     """
     for section, names in _NEEDED.items():
         given = config.find(section)
@@ -294,7 +295,7 @@ def _wrong_element(config: ET.Element, files: ModelFiles) -> str:
 
 
 def _lifts(thruster: ET.Element) -> bool:
-    """Whether a thruster points more up than ahead."""
+    """Whether a thruster points more than 45 deg up or down."""
     try:
         pitch = float(thruster.findtext("orient/pitch", "0"))
     except ValueError:
@@ -306,7 +307,10 @@ def _lifts(thruster: ET.Element) -> bool:
 def _missing_commands(
     inputs: tuple[ControlInput, ...], config: ET.Element, files: ModelFiles, *, of_user: bool
 ) -> str:
-    """Which surfaces' commands the model does not read, with the user's remedy; empty if none."""
+    """Message about surfaces whose commands the model does not read; empty if there are none.
+
+    For a user's model the message has a remedy.
+    """
     text = _text(config, files)
     missing = [
         control.name
@@ -324,7 +328,7 @@ def _missing_commands(
 
 
 def _text(config: ET.Element, files: ModelFiles) -> str:
-    """Text of the model's folder and of the systems that it shares."""
+    """Text of all files in the model's folder, and of the systems outside of it."""
     shared = [found for system in config.iterfind("system[@file]") if (found := files.find(system))]
     beside = sorted(files.folder.rglob("*.xml"))
     paths = [path for path in dict.fromkeys([*beside, *shared]) if path.is_file()]

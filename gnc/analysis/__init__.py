@@ -1,1 +1,1 @@
-"""Bounds on the commands of the steering laws, and ensembles of trajectories."""
+"""Bounds on the commands of the cascade law."""

@@ -1,6 +1,6 @@
-"""The largest command of the cascade law over all states, and the fastest law within a limit.
+"""Bound on the commands of the cascade law, and the fastest law within a limit of commands.
 
-The paper's abstract announces such conditions, and its text omits them. The formulas are derived in
+The paper's abstract announces such conditions, but its text has none. The formulas are derived in
 ``docs/actuation_bounds.md``.
 """
 
@@ -20,13 +20,13 @@ from gnc.paper import LookAhead, look_ahead
 _Array = npt.NDArray[np.float64]
 
 _TOLERANCE = 1e-4
-"""Largest relative excess of the bound over the largest command [-]; half of it is for rounding."""
+"""Largest relative excess of the bound over the largest command [-]; half is for rounding."""
 
 _SIGMA_MAX = 1.0 - 1e-9
-"""Largest sigma [-]: above it rounding, 1e-15/(1 - sigma), is not small beside the tolerance."""
+"""Largest sigma [-]: above it the rounding error 1e-15/(1 - sigma) approaches the tolerance."""
 
 _SETTLED = 0.1
-"""|phi| below which the distance decays as if phi were 0 [rad]: cos(0.1) is 0.995."""
+"""|phi| below which the distance is taken to decay as with phi = 0 [rad]: cos(0.1) is 0.995."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,8 +38,8 @@ class BoundedSteering:
     look_ahead : epsilon and R
     gain : slope of h(phi) [1/s]
     steering_max : largest |h| [rad/s]
-    bound : no command exceeds it in any state [rad/s]
-    convergence_time : estimated [s]
+    bound : bound on the command in every state [rad/s]
+    convergence_time : estimated time of convergence [s]
     """
 
     look_ahead: LookAhead
@@ -58,15 +58,15 @@ def heading_rate_bound(
     steering_max: float,
     tolerance: float = _TOLERANCE,
 ) -> float:
-    """Return a heading rate that no command of the cascade law (30) exceeds in any state [rad/s].
+    """Return a bound on the command of the cascade law (30) in every state [rad/s].
 
-    It covers both signs of omega_r, and the law at predicted states. Where h saturates well before
-    phi is pi/2, it is the largest command itself, within ``tolerance``.
+    The bound holds for both signs of omega_r, and for the law at predicted states. If h saturates
+    well below phi = pi/2, the bound equals the largest command within ``tolerance``.
 
     Parameters
     ----------
     parameters : of the look-ahead
-    speed : V, of vehicle and reference, or the larger of both [m/s]
+    speed : V of vehicle and reference, or the larger one [m/s]
     reference_heading_rate_max : largest |omega_r| [rad/s]
     steering_max : largest |h(phi)| [rad/s]
     tolerance : largest relative excess of the bound on omega_rho [-]
@@ -105,15 +105,16 @@ def convergence_time(
 ) -> float:
     """Return the estimated time of convergence between two distances, from the worst course [s].
 
-    First h brings phi from pi to 0.1 rad; the change of the distance meanwhile is neglected. Then
-    d^2 shrinks at the rate V d^2/delta, the average for a reference that circles faster than
-    V/(2 R). A slower one takes longer: beside a straight one, along-track errors do not decay.
+    First h reduces phi from pi to 0.1 rad; the change of the distance meanwhile is neglected. Then
+    d^2 decays at the rate V d^2/delta, the average for a reference that circles faster than V/(2
+    R). With a slower reference convergence takes longer: along-track errors to a straight reference
+    do not decay.
 
     Parameters
     ----------
     parameters : of the look-ahead
     speed : V [m/s]
-    distance_from, distance_to : [m]
+    distance_from, distance_to : distances between which the time is estimated [m]
     gain : slope of h(phi) [1/s]
     steering_max : largest |h(phi)| [rad/s]
 
@@ -140,25 +141,25 @@ def fastest_within(
     distance_to: float,
     gain: float,
 ) -> BoundedSteering:
-    """Return the parameters that converge fastest while no command exceeds omega_max in any state.
+    """Return the parameters with the fastest convergence and no command above omega_max.
 
-    The time is that of ``convergence_time``. Sigma = 1/(2 sqrt(epsilon R)) and steering_max are
-    searched with the closed form of R for states head on to the reference, which costs 0.2 % of the
-    time; the final R respects every state. R is at least V/(2 omega_r), because a shorter one
-    converges no faster.
+    ``convergence_time`` is minimised over sigma = 1/(2 sqrt(epsilon R)) and steering_max. The
+    search uses the closed form of R for states head on to the reference, which makes the time
+    longer by 0.2 %; the final R takes every state into account. R is at least V/(2 omega_r),
+    because a shorter R does not converge faster.
 
     Parameters
     ----------
-    speed : V, of vehicle and reference [m/s]
+    speed : V of vehicle and reference [m/s]
     heading_rate_max : omega_max [rad/s]
     reference_heading_rate_max : largest |omega_r|, above 0 [rad/s]
-    distance_from, distance_to : between which the time counts [m]
-    gain : slope of h(phi), as steep as the autopilot follows [1/s]
+    distance_from, distance_to : distances between which the time is minimised [m]
+    gain : slope of h(phi), the steepest that the autopilot follows [1/s]
 
     Raises
     ------
-    InfeasibleError : omega_r takes all of omega_max, a quantity is out of range, or the search did
-        not converge
+    InfeasibleError : omega_r leaves nothing of omega_max, a quantity is out of range, or the search
+        did not converge
     """
     _check_positive(
         speed=(speed, "m/s"),
@@ -171,12 +172,12 @@ def fastest_within(
     if not reference_heading_rate_max < limit:
         raise InfeasibleError(
             f"reference heading rate is {reference_heading_rate_max:g} rad/s; it must stay below"
-            f" omega_max, {limit:g} rad/s but for tolerances, or no look-ahead bounds the command:"
+            f" omega_max, about {limit:g} rad/s, or no look-ahead bounds the command:"
             " lower it, to leave more of omega_max in reserve"
         )
     turning = reference_heading_rate_max
-    # With epsilon = 1/(4 sigma^2 R) the time has a minimum over R, which is this over sigma: a
-    # shorter R would only raise epsilon.
+    # With epsilon = 1/(4 sigma^2 R) the time has its minimum at R = quickest/sigma: a shorter R
+    # would only increase epsilon.
     quickest = math.sqrt(
         (distance_from**2 - distance_to**2) / (8.0 * math.log(distance_from / distance_to))
     )
@@ -192,7 +193,7 @@ def fastest_within(
         )
 
     def design(fractions: _Array, least_radius: _LeastRadius) -> tuple[LookAhead, float]:
-        """Return look-ahead and steering_max at fractions of the largest sigma and steering_max."""
+        """Return look-ahead and steering_max from fractions of their largest values."""
         sigma_fraction, steering_fraction = fractions.tolist()
         steering_max = steering_fraction * min(limit - turning, gain * math.pi)
         room = limit - steering_max
@@ -228,16 +229,16 @@ def fastest_within(
 
 
 _FRACTIONS = np.linspace(0.05, 0.95, 19)
-"""Fractions of the largest sigma and of the largest steering_max where the search may start [-]."""
+"""Grid of possible start points, as fractions of the largest sigma and steering_max [-]."""
 
 _LeastRadius = Callable[[float, float, float, float], float]
-"""From sigma, V, omega_r and the limit of omega_rho to the least R."""
+"""Function from sigma, V, omega_r and the limit of omega_rho to the least R."""
 
 
 def _least_radius(
     sigma: float, speed: float, reference_heading_rate_max: float, room: float
 ) -> float:
-    """Return the least R by which |omega_rho| stays within ``room`` [rad/s], in every state [m]."""
+    """Return the least R that keeps |omega_rho| within ``room`` [rad/s] in every state [m]."""
 
     def radius(speed_factor: _Array, turn_factor: _Array) -> _Array:
         left = room - reference_heading_rate_max * turn_factor
@@ -251,7 +252,7 @@ def _least_radius(
 def _least_radius_head_on(
     sigma: float, speed: float, reference_heading_rate_max: float, room: float
 ) -> float:
-    """Return the least R by which |omega_rho| stays within ``room`` [rad/s], head on [m]."""
+    """Return the least R that keeps |omega_rho| within ``room`` [rad/s] in states head on [m]."""
     left = room - reference_heading_rate_max
     return speed * left / (left**2 - (sigma * room) ** 2)
 
@@ -259,23 +260,23 @@ def _least_radius_head_on(
 # ---------------------------------------------------------------- The worst position
 
 _CELLS = 24
-"""Cells a side at the start."""
+"""Number of cells per side of the initial grid."""
 
 
 def worst_case_over_positions(
     value: Callable[[_Array, _Array], _Array], sigma: float, tolerance: float
 ) -> float:
-    """Return an upper bound over all positions, at most ``tolerance`` too high, of a value.
+    """Return an upper bound of a value over all positions, at most ``tolerance`` too high.
 
-    Branch and bound: cells are quartered until, within the tolerance, none can hold a value above
-    the largest one found in the middle of a cell. This ends because the bounds of
+    Branch and bound: cells are quartered until no cell can hold a value above the largest value
+    found at the centre of a cell, within the tolerance. The search ends because the bounds of
     ``factors_at_most`` converge to ``factors`` as cells shrink.
 
     Parameters
     ----------
-    value : of the two ``factors``, increasing in both
-    sigma : the largest d/delta, below 1 [-]
-    tolerance : [-]
+    value : function of the two ``factors`` that increases in both
+    sigma : largest d/delta, below 1 [-]
+    tolerance : relative tolerance [-]
     """
     edges = np.linspace(0.0, math.pi, _CELLS + 1)
     low, high = (
@@ -302,14 +303,14 @@ def worst_case_over_positions(
 def factors(sigma: float, alpha: _Array, beta: _Array) -> tuple[_Array, _Array]:
     """Return the factors of V/R and of omega_r in the largest |omega_rho| at a position.
 
-    It is the largest over all courses. The factors are (R/rho)(|w_x| + |w|) and (delta/rho)
-    cos(phi_r) of ``docs/actuation_bounds.md``.
+    |omega_rho| is the largest over all courses. The factors are (R/rho)(|w_x| + |w|) and
+    (delta/rho) cos(phi_r) of ``docs/actuation_bounds.md``.
 
     Parameters
     ----------
     sigma : 1/(2 sqrt(epsilon R)), the largest d/delta, below 1 [-]
     alpha : 2 atan(d sqrt(epsilon/R)), so that d/delta = sigma sin(alpha), from 0 to pi [rad]
-    beta : between -d and the reference's course, from 0 to pi [rad]
+    beta : angle between -d and the reference's course, from 0 to pi [rad]
     """
     sin_a, cos_a, sin_b = np.sin(alpha), np.cos(alpha), np.sin(beta)
     x, k = sigma * sin_a, 1.0 - np.cos(beta)
@@ -320,7 +321,7 @@ def factors(sigma: float, alpha: _Array, beta: _Array) -> tuple[_Array, _Array]:
 
 
 def factors_at_most(sigma: float, low: _Array, high: _Array) -> tuple[_Array, _Array]:
-    """Return upper bounds of both ``factors`` over cells, each term at its worst end of the cell.
+    """Return upper bounds of both ``factors`` over cells, with each term at its worst in the cell.
 
     Parameters
     ----------
@@ -334,14 +335,14 @@ def factors_at_most(sigma: float, low: _Array, high: _Array) -> tuple[_Array, _A
     c_1, c_2 = 1.0 + np.cos(a_2), 1.0 + np.cos(a_1)
     k_1, k_2 = 1.0 - np.cos(b_1), 1.0 - np.cos(b_2)
     x_1, x_2 = sigma * s_1, sigma * s_2
-    # (1 - x)^2 + 2 x k rises with k and is a parabola in x whose vertex is 1 - k.
+    # (1 - x)^2 + 2 x k increases with k and is a parabola in x with the vertex 1 - k.
     nearest = np.clip(1.0 - k_1, x_1, x_2)
     rho_squared_1 = (1.0 - nearest) ** 2 + 2.0 * nearest * k_1
     rho_squared_2 = np.maximum(
         (1.0 - x_1) ** 2 + 2.0 * x_1 * k_2, (1.0 - x_2) ** 2 + 2.0 * x_2 * k_2
     )
-    # sqrt(rho^2 - p)/rho^2 is the root of y - p y^2, y = 1/rho^2, a parabola whose vertex is 1/(2
-    # p).
+    # With y = 1/rho^2, sqrt(rho^2 - p)/rho^2 is the square root of y - p y^2, a parabola with the
+    # vertex 1/(2 p).
     p = (s_1 * sin_b_1) ** 2
     y = np.clip(1.0 / np.maximum(2.0 * p, 1e-300), 1.0 / rho_squared_2, 1.0 / rho_squared_1)
     across = np.sqrt(np.maximum(y - p * y * y, 0.0))

@@ -1,4 +1,4 @@
-"""The largest command of the cascade law found by search, to compare the bound with."""
+"""Search for the largest command of the cascade law, for comparison with the bound."""
 
 import math
 
@@ -11,24 +11,24 @@ from gnc.paper import LookAhead
 _Array = npt.NDArray[np.float64]
 
 _REFINED = 4
-"""Number of worst samples from which a refinement starts."""
+"""Number of largest samples that are refined."""
 
 _GATHERED = 0.5
-"""Fraction of samples gathered where commands are largest; the others cover all geometries [-]."""
+"""Fraction of samples near the geometry of the largest commands; the others cover all [-]."""
 
 _GATHERED_SIGMA = 0.3
-"""Standard deviation of the gathered samples' log of distance [-] and course [rad]."""
+"""Standard deviation of these samples in the log of distance [-] and in course [rad]."""
 
 _LOG_DISTANCES = (-7.0, 5.0)
-"""Range of the other samples' log of distance over sqrt(R/epsilon) [-].
+"""Range of the other samples in the log of distance over sqrt(R/epsilon) [-].
 
-From 0.001, near the reference, to 150, where delta is much longer than d.
+The distance ratio goes from 0.001, near the reference, to 150, where delta is much longer than d.
 """
 
 _LOG10_ANGLES = (-3.0, 0.0)
-"""Range of the gathered samples' decimal log of the angle from head on [rad].
+"""Range of the decimal log of the gathered samples' angle from head on [rad].
 
-Smaller angles than 0.001 rad are left to the refinement.
+The refinement finds angles below 0.001 rad.
 """
 
 
@@ -42,21 +42,21 @@ def largest_heading_rate(
     samples: int,
     generator: np.random.Generator,
 ) -> float:
-    """Return the largest |omega| of the cascade law that a search finds [rad/s].
+    """Return the largest |omega| of the cascade law that a random search finds [rad/s].
 
-    The search starts from random states. Half of them spread over all geometries, half gather where
-    commands are largest: at d = sqrt(R/epsilon), nearly head on to the reference, and across z. The
-    supremum may be larger.
+    Half of the random states cover all geometries. The other half lie where commands are largest:
+    at d = sqrt(R/epsilon), nearly head on to the reference, and across z. The worst states are
+    refined. The supremum may be larger than the result.
 
     Parameters
     ----------
     parameters : of the look-ahead
-    speed : V, of vehicle and reference [m/s]
-    reference_heading_rate_max : |omega_r| of all states [rad/s]
+    speed : V of vehicle and reference [m/s]
+    reference_heading_rate_max : |omega_r| in all states [rad/s]
     gain : slope of h(phi) [1/s]
     steering_max : largest |h(phi)| [rad/s]
     samples : number of random states, at least 1
-    generator : of the states
+    generator : random generator of the states
     """
     states = _random_states(parameters, samples, generator)
     turns = generator.choice([-reference_heading_rate_max, reference_heading_rate_max], samples)
@@ -92,8 +92,8 @@ def largest_heading_rate(
             method="Nelder-Mead",
             options={"xatol": 1e-9, "fatol": 1e-10, "maxiter": 2000},
         )
-        # A refinement that has not converged still counts: the command of any state is a lower
-        # bound of the largest.
+        # A refinement counts even if it has not converged: every state's command is a lower bound
+        # of the largest command.
         largest = max(largest, -float(refined.fun))
     return largest
 
@@ -112,15 +112,15 @@ def heading_rates(
 ) -> _Array:
     """Return commands of the cascade law for arrays of states [rad/s]: (14), (15), (17) and (30).
 
-    It is independent of ``gnc.paper``: omega_rho is the cross product of z with its rate, over
-    rho^2, and not (18) in the frame of z.
+    The computation is independent of ``gnc.paper``: omega_rho is the cross product of z and its
+    rate over rho^2, not (18) in the frame of z.
 
     Parameters
     ----------
     parameters : of the look-ahead
     north, east : d, from vehicle to reference [m]
     reference_course, course : chi_r and chi [rad]
-    speed : V, of vehicle and reference [m/s]
+    speed : V of vehicle and reference [m/s]
     reference_heading_rate : omega_r [rad/s]
     gain : slope of h(phi) [1/s]
     steering_max : largest |h(phi)| [rad/s]
@@ -147,15 +147,15 @@ def heading_rates(
 def _random_states(parameters: LookAhead, samples: int, generator: np.random.Generator) -> _Array:
     """Return random states, shape (3, samples).
 
-    The rows are the log of the distance, and the direction of d and the vehicle's course, both
-    relative to the reference's course [rad].
+    The rows are the log of the distance, the direction of d, and the vehicle's course; both angles
+    are relative to the reference's course [rad].
     """
     critical = 0.5 * math.log(parameters.radius / parameters.epsilon)
     gathered = generator.random(samples) < _GATHERED
     near = generator.normal(0.0, _GATHERED_SIGMA, samples)
     anywhere = generator.uniform(*_LOG_DISTANCES, samples)
     log_distance = critical + np.where(gathered, near, anywhere)
-    # Directions gather about half a turn, at every scale.
+    # Directions gather around half a turn, at every scale.
     angle = 10.0 ** generator.uniform(*_LOG10_ANGLES, samples)
     nearly = angle * generator.choice([-1.0, 1.0], samples)
     direction = math.pi + np.where(gathered, nearly, generator.uniform(-math.pi, math.pi, samples))

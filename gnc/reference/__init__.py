@@ -1,1 +1,1 @@
-"""The point to be tracked: the shapes of its orbit, where that lies in the plume, its motion."""
+"""The reference, the point to be tracked: shape, position and motion of its orbit."""

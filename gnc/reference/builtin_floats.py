@@ -1,6 +1,6 @@
-"""Results of a user's shape as Python's own numbers, which compiled guidance needs.
+"""Convert results of a user's shape to Python's numbers, which compiled guidance needs.
 
-From a number of NumPy's single precision, all that follows would be computed in it.
+A single-precision number of NumPy would make all later results single precision.
 """
 
 import functools
@@ -10,23 +10,23 @@ import numpy as np
 
 
 class BuiltinFloats:
-    """A user's shape, orbit or courses, whose results are converted to Python's own numbers.
+    """Wraps a user's shape, orbit or courses, and converts its results to Python's numbers.
 
-    It has the same attributes and methods. A number becomes a float, a sequence a tuple of floats,
-    an array one of double precision; any other object is wrapped like this one.
+    The wrapper has the part's attributes and methods. A number becomes a float, a sequence a tuple
+    of floats, an array becomes double precision; any other object is wrapped in the same way.
 
     Parameters
     ----------
-    part : shape, orbit, or courses
+    part : a shape, an orbit or courses
     """
 
     def __init__(self, part: Any) -> None:
         self._part = part
 
     def __getattr__(self, name: str) -> Any:
-        """Return the part's attribute of this name; a method is looked up once."""
+        """Return an attribute of the part; methods are cached."""
         if name.startswith("_"):
-            # A copy is asked for its special methods before it has its part.
+            # Copying looks up special methods before the copy has its part.
             raise AttributeError(name)
         found = getattr(self._part, name)
         if not callable(found):
@@ -41,7 +41,7 @@ class BuiltinFloats:
 
 
 def with_builtin_floats(shape: Any) -> Any:
-    """Return a shape, wrapped in ``BuiltinFloats`` if it is a user's."""
+    """Return a shape; a user's shape is wrapped in ``BuiltinFloats``."""
     return shape if type(shape).__module__.startswith("gnc.") else BuiltinFloats(shape)
 
 

@@ -1,9 +1,9 @@
-"""The mean motion that takes a reference's orbit to its place.
+"""The mean motion that keeps a reference's orbit centred on the centre of oscillation.
 
-It is that of the centre of oscillation, plus a drift towards it. Along the centre's motion a drift
-changes the amplitude alone; across, it turns the mean course, which moves the orbit's centre by
-itself, the more the slower the orbit. So a slow orbit does not turn with each small swing of a
-plume whose direction is not known well, but with a swing that goes on.
+It is the motion of the centre of oscillation plus a drift towards it. A drift along the centre's
+motion only changes the amplitude. A drift across it turns the mean course, which by itself moves
+the orbit's centre; the slower the orbit, the farther. A slow orbit therefore follows lasting swings
+of the plume, but not each small swing of an uncertain plume direction.
 """
 
 import math
@@ -13,32 +13,32 @@ from gnc.numeric import limited
 from gnc.reference.moving_centre import MovingCentre
 
 _CENTRE_GAIN = 0.1
-"""Demanded drift of the orbit's centre per distance from its place over omega_max [-]."""
+"""Demanded drift of the orbit's centre over its offset times omega_max [-]."""
 
 _ALONG_FRACTION = 0.3
-"""Largest fraction of V_r that a drift takes along the centre's motion [-]."""
+"""Largest drift along the centre's motion, over V_r [-]."""
 
 _ACROSS_FRACTION = 0.4
-"""Largest fraction of the centre's speed that it takes across [-]: more would turn the orbit."""
+"""Largest drift across, over the centre's speed [-]: more would turn the orbit."""
 
 _STILL = 0.05
-"""Speed ratio of a centre below which its orbit lies across the plume [-]."""
+"""Speed ratio of a centre below which the orbit lies across the plume [-]."""
 
 _SLOW = 0.25
-"""Speed ratio below which the gain falls [-]: a small turn moves a slow orbit by much."""
+"""Speed ratio below which the gain decreases [-]: a small turn moves a slow orbit far."""
 
 _SLOW_GAIN_MIN = 0.1
-"""Fraction of that gain at rest [-]: an orbit at rest has to be centred, too."""
+"""Fraction of the gain for a centre at rest [-]: its orbit has to be centred as well."""
 
 _SWING = 0.1
-"""Speed over V_r of an unsteady swing that a slow orbit follows by half [-]: less is scatter."""
+"""Speed over V_r of an unsteady swing that a slow orbit follows by half [-]; less is scatter."""
 
 _SPEED_RATIO_MIN = 0.1
-"""Least speed ratio of a mean motion that is turned [-]."""
+"""Least speed ratio of a mean motion that may turn [-]."""
 
 
-class _Ahead(NamedTuple):
-    """Direction in which an orbit goes on, speed that gives it, centre's speed along it [m/s]."""
+class _OrbitMotion(NamedTuple):
+    """Direction of an orbit's motion, speed that determines it, centre's speed along it [m/s]."""
 
     north: float
     east: float
@@ -47,9 +47,9 @@ class _Ahead(NamedTuple):
 
 
 def motion_course(centre: MovingCentre) -> float:
-    """Return the course of a centre of oscillation; at rest, that against the plume [rad].
+    """Return the course of a centre of oscillation; at rest, the direction up the plume [rad].
 
-    An orbit lies across its course, and so across the plume of a vessel at rest.
+    An orbit lies across its course, so beside a vessel at rest it lies across the plume.
     """
     if centre.velocity_north == centre.velocity_east == 0.0:
         return math.atan2(-math.sin(centre.axis), -math.cos(centre.axis))
@@ -59,15 +59,15 @@ def motion_course(centre: MovingCentre) -> float:
 def mean_motion(
     centre: MovingCentre, off_north: float, off_east: float, speed: float, heading_rate_max: float
 ) -> tuple[float, float]:
-    """Return the mean course [rad] and the mean speed over speed [-] to demand of the reference.
+    """Return the demanded mean course [rad] and ratio of mean speed to speed [-] of the reference.
 
     Parameters
     ----------
-    centre : of oscillation, where the orbit's centre should be
-    off_north, off_east : from the orbit's centre to it [m]
+    centre : centre of oscillation, the demanded position of the orbit's centre
+    off_north, off_east : offset from the orbit's centre to the centre of oscillation [m]
     speed, heading_rate_max : V_r and omega_max [m/s, rad/s]
     """
-    ahead = _ahead(centre, speed)
+    ahead = _orbit_motion(centre, speed)
     gain = _CENTRE_GAIN * heading_rate_max
     most = _ALONG_FRACTION * speed
     behind = off_north * ahead.north + off_east * ahead.east
@@ -81,11 +81,11 @@ def mean_motion(
     return course, along / math.cos(turned) / speed
 
 
-def _ahead(centre: MovingCentre, speed: float) -> _Ahead:
-    """Return the direction in which the orbit of a centre goes on.
+def _orbit_motion(centre: MovingCentre, speed: float) -> _OrbitMotion:
+    """Return the direction of the orbit's motion.
 
-    A centre that recedes faster than its vessel moves reverses its motion: then the direction is
-    the vessel's, and the orbit backs away. To turn it round would take it far off.
+    A centre that recedes faster than its vessel moves reverses its motion. The orbit then keeps the
+    vessel's direction and backs away, because turning it round would move it far off.
     """
     north, east = _followed_velocity(centre, speed)
     cos_a = math.cos(centre.axis)
@@ -95,18 +95,18 @@ def _ahead(centre: MovingCentre, speed: float) -> _Ahead:
     if north * vessel_north + east * vessel_east >= 0.0:
         moving = math.hypot(north, east)
         if moving > _STILL * speed:
-            return _Ahead(north / moving, east / moving, moving, moving)
+            return _OrbitMotion(north / moving, east / moving, moving, moving)
     else:
         moving = math.hypot(vessel_north, vessel_east)
         if moving > _STILL * speed:
             cos_m = vessel_north / moving
             sin_m = vessel_east / moving
-            return _Ahead(cos_m, sin_m, moving, north * cos_m + east * sin_m)
-    return _Ahead(-cos_a, -sin_a, moving, -(north * cos_a + east * sin_a))
+            return _OrbitMotion(cos_m, sin_m, moving, north * cos_m + east * sin_m)
+    return _OrbitMotion(-cos_a, -sin_a, moving, -(north * cos_a + east * sin_a))
 
 
 def _followed_velocity(centre: MovingCentre, speed: float) -> tuple[float, float]:
-    """Return a centre's velocity, north and east, without a slow one's small swings [m/s]."""
+    """Return a centre's velocity, north and east, without small swings of a slow centre [m/s]."""
     slow = centre.speed_ratio / _SLOW
     if slow >= 1.0:
         return centre.velocity_north, centre.velocity_east

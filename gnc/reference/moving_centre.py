@@ -1,9 +1,8 @@
-"""The centre of oscillation of a vessel that manoeuvres: where it is, and how it moves.
+"""Position and motion of the centre of oscillation beside a manoeuvring vessel.
 
-The centre lies on the plume's axis, at the distance from the vessel that keeps the whole orbit out
-of the keep-out area. The axis turns with the vessel, or with its motion through the air: a vessel
-that turns moves the centre by omega_V x r_CO. Everything is in the frame of the
-air mass.
+The centre lies on the plume's axis, at a distance from the vessel that keeps the whole orbit out of
+the keep-out area. The axis turns with the vessel, or with the vessel's motion through the air: a
+turning vessel moves the centre by omega_V x r_CO. The frame is that of the air mass.
 """
 
 import math
@@ -14,55 +13,55 @@ from gnc.estimation.vessel import TargetMotion
 from gnc.numeric import clip, limited, wrap
 
 _AXIS_GAIN = 0.1
-"""Rate of the axis per difference from where it should be, in units of omega_max [-].
+"""Rate of the axis over its angle from the demanded direction, in units of omega_max [-].
 
-It is slow enough to average the scatter of the vessel's reports.
+The rate is low enough to average the scatter of the vessel's reports.
 """
 
 _IN_PLACE = 0.04
-"""Distance from its place within which the centre counts as being there, over r_CO [-]."""
+"""Largest error of the centre's distance that counts as in place, over r_CO [-]."""
 
 _AXIS_SPEED_FRACTION = 0.7
-"""Largest speed of the centre round the vessel, over the vehicle's, which must follow [-]."""
+"""Largest speed of the centre about the vessel, over the speed of the following vehicle [-]."""
 
 _DISTANCE_GAIN = 0.12
-"""Rate of the centre's distance per difference from where it should be over omega_max [-]."""
+"""Rate of the centre's distance over its error, in units of omega_max [-]."""
 
 _DISTANCE_SPEED_FRACTION = 0.3
-"""Rate at which the centre's distance may change, over the vehicle's excess speed [-]."""
+"""Largest rate of the centre's distance, over the vehicle's excess speed [-]."""
 
 _RECEDING_SPEED_FRACTION = 0.9
-"""Largest speed of a centre that has to recede, over the vehicle's, which must follow [-]."""
+"""Largest speed of a receding centre, over the speed of the following vehicle [-]."""
 
 _VESSEL_SPEED_MIN = 0.1
-"""Least speed over ground from which a vessel's turn is computed [m/s]: at rest it has none."""
+"""Least speed over ground at which a vessel's turn is computed [m/s]."""
 
 _EXCESS_SPEED_MIN = 0.05
-"""Least excess speed of the vehicle over the vessel that is assumed, over V_r [-]."""
+"""Least assumed excess speed of the vehicle over the vessel, over V_r [-]."""
 
 _SWING_MEMORY = 40.0
-"""Time over which a swing is averaged [s]: the scatter of reports averages out."""
+"""Time over which a swing is averaged [s], to remove the scatter of reports."""
 
 _CENTRE_SPEED_MIN = 0.01
-"""Least speed from which the centre's direction is computed [m/s]: at rest it has none."""
+"""Least speed at which the centre's direction is computed [m/s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CentreParameters:
-    """How a centre is placed.
+    """Parameters of the centre's position.
 
     Attributes
     ----------
-    distance_min : that the orbit keeps from the vessel [m]
-    speed_ratio_max : up to which the half-widths reach [-]
+    distance_min : least distance of the orbit from the vessel [m]
+    speed_ratio_max : largest speed ratio in the table of half-widths [-]
     along, across : |d_x|max and |d_y|max of the orbit, equation (12), at equal steps of nu from 0
         [m]
-    plume_heading : chi_P from the vessel's bow, or None where the plume trails behind the vessel's
-        motion through the air [rad]
-    vessel_course : at the start, where the bow of a vessel at rest points; only with a plume
+    plume_heading : chi_P from the vessel's bow [rad], or None if the plume trails behind the
+        vessel's motion through the air
+    vessel_course : initial course, in which the bow of a vessel at rest points; only with a plume
         heading [rad]
-    apparent_wind_min : below this the plume's direction counts as unknown, and so does the vessel's
-        course over the ground [m/s]
+    apparent_wind_min : apparent wind below which the plume's direction counts as unknown, and
+        ground speed below which the vessel's course does [m/s]
     speed, heading_rate_max : V_r and omega_max [m/s, rad/s]
     """
 
@@ -78,20 +77,20 @@ class CentreParameters:
 
 
 class MovingCentre:
-    """The centre, moved in steps.
+    """The centre of oscillation, moved in time steps.
 
     Attributes
     ----------
-    x, y : north and east of the vessel [m]
-    velocity_north, velocity_east : in the frame of the air mass [m/s]
-    axis : course along which the plume trails, in that frame [rad]
+    x, y : position north and east of the vessel [m]
+    velocity_north, velocity_east : velocity in the frame of the air mass [m/s]
+    axis : direction in which the plume trails, in that frame [rad]
     distance : r_CO [m]
-    speed_ratio : nu, vessel through the air over the vehicle's speed [-]
-    receding : rate of its distance [m/s]
-    swing : what turning about the vessel adds to the velocity, to the right of the axis [m/s]
-    steady_swing : part of the swing that has gone on for a while [m/s]
-    in_place : whether its distance is what it should be
-    plume_known : whether the apparent wind is strong enough for the plume to have a known direction
+    speed_ratio : nu, the vessel's airspeed over the vehicle's speed [-]
+    receding : rate of the distance [m/s]
+    swing : velocity from turning about the vessel, to the right of the axis [m/s]
+    steady_swing : time average of the swing [m/s]
+    in_place : whether the distance is as demanded
+    plume_known : whether the apparent wind is strong enough to give the plume's direction
     """
 
     def __init__(self, parameters: CentreParameters) -> None:
@@ -121,14 +120,14 @@ class MovingCentre:
         additional_rate: float = 0.0,
         bearing: float = 0.0,
     ) -> None:
-        """Move on by ``time_step`` [s].
+        """Move the centre by one ``time_step`` [s].
 
         Parameters
         ----------
-        own, vessel : the wind that the vehicle measures, and the motion of the vessel
-        additional_range : added to r_CO for now [m]
-        additional_rate : at which the additional range grows [m/s]
-        bearing : of the plume, to the right of where it would trail [rad]
+        own, vessel : wind measured by the vehicle, and motion of the vessel
+        additional_range : temporary addition to r_CO [m]
+        additional_rate : rate of the additional range [m/s]
+        bearing : angle of the plume to the right of its computed direction [rad]
         """
         p = self._parameters
         air_north = vessel.velocity_north - own.wind_north
@@ -140,10 +139,10 @@ class MovingCentre:
             self._started = True
             self.axis = demanded
             self.distance = self._target(air_north, air_east) + additional_range
-        # The axis turns at that rate, and towards its demand.
+        # The axis turns at the trailing plume's rate, plus a rate towards its demand.
         fastest = _AXIS_SPEED_FRACTION * p.speed / self.distance
         turn = limited(turn + _AXIS_GAIN * p.heading_rate_max * wrap(demanded - self.axis), fastest)
-        # The centre recedes or draws near, until the orbit across its motion keeps out.
+        # The centre recedes or approaches until the orbit across its motion just keeps out.
         swing = turn * self.distance
         swung_north = air_north - swing * math.sin(self.axis)
         swung_east = air_east + swing * math.cos(self.axis)
@@ -180,9 +179,9 @@ class MovingCentre:
         through_air: float,
         bearing: float,
     ) -> tuple[float, float]:
-        """Return the course along which the plume trails [rad], and its rate [rad/s].
+        """Return the direction in which the plume trails [rad], and its rate [rad/s].
 
-        Without a known course of vessel or wind, the axis stays.
+        If the course of vessel or wind is unknown, the axis stays.
         """
         p = self._parameters
         north = vessel.acceleration_north
@@ -205,7 +204,7 @@ class MovingCentre:
         return self.axis, 0.0
 
     def _target(self, velocity_north: float, velocity_east: float) -> float:
-        """Return r_CO by equations (10) and (11), for an orbit across a centre's velocity [m]."""
+        """Return r_CO by equations (10) and (11), for an orbit across the centre's velocity [m]."""
         p = self._parameters
         last = len(p.along) - 1
         moving = math.hypot(velocity_north, velocity_east)

@@ -1,4 +1,4 @@
-"""The reference on the orbit beside a steady vessel, and how a vehicle joins that orbit."""
+"""The reference on an orbit beside a steady vessel, and its start when a vehicle joins it."""
 
 import copy
 import math
@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from gnc.reference.reference import Orbit, OscillatingPoint, ReferenceShape
 
 _PHASES = 72
-"""Phases at which an orbit may be joined: 5 degrees apart."""
+"""Number of phases at which an orbit may be joined, 5 degrees apart."""
 
 _COURSE_COST = 1.5
 """Cost of a course difference when an orbit is joined, in turn radii per radian [-].
 
-To join across its course, the vehicle needs about its turn, and half of it back.
+The vehicle has to turn by the difference, and by about half of it back.
 """
 
 
@@ -28,35 +28,35 @@ _STATE = (
     "_phase",
     "_steps",
 )
-"""What changes of an oscillating reference as it moves."""
+"""Attributes that change as an oscillating reference moves."""
 
 
 class OscillatingReference:
     """A reference on an orbit about a vessel that moves steadily: equations (2), (3) and (4).
 
-    Its course is in closed form; its position is integrated by Simpson's rule, good to 1e-9 m a
-    step at 20 Hz, and to 1e-5 m where the roll rate of a shape jumps. Time comes from the step
-    count.
+    The course is computed in closed form. The position is integrated by Simpson's rule, with an
+    error of 1e-9 m per step at 20 Hz, or 1e-5 m where the roll rate of a shape jumps. Time comes
+    from the step count.
 
-    It starts where its orbit is centred on the centre of oscillation, on the course of phi_0: that
-    of the paper's orbit is eta cos(phi_0) from the vessel's, equation (7). Differs from equation
-    (3), which says A/omega_0 and so holds for phi_0 = 0 only, and from starting on the centre: at
-    another phase that orbit would not be centred on it. With a smaller turn rate the orbit is
-    larger by as much, and meets the whole one at phase 0.
+    The start is the point of phase phi_0 on an orbit centred on the centre of oscillation; the
+    course there is eta cos(phi_0) from the vessel's in the paper's orbit, equation (7). Differs
+    from equation (3), whose A/omega_0 holds for phi_0 = 0 only, and from a start on the centre,
+    because an orbit that starts there at another phase is not centred on it. With a smaller turn
+    rate the orbit is larger in proportion, and meets the original orbit at phase 0.
 
     Parameters
     ----------
-    orbit : that it flies
+    orbit : orbit of the reference
     phase : phi_0 [rad]
-    centre_north, centre_east : of oscillation at time 0 [m]
-    vessel_course : at time 0 [rad]
+    centre_north, centre_east : centre of oscillation at time 0 [m]
+    vessel_course : course at time 0 [rad]
     time_step : [s]
-    turn_rate_fraction : fraction of its heading rate that it turns with at first [-]
+    turn_rate_fraction : initial fraction of the orbit's heading rate [-]
 
     Attributes
     ----------
     north, east, course, heading_rate, speed : same as ``Reference``
-    turn_rate_fraction : now [-]
+    turn_rate_fraction : present fraction of the orbit's heading rate [-]
     """
 
     def __init__(
@@ -93,7 +93,7 @@ class OscillatingReference:
         self.heading_rate = turn_rate_fraction * orbit.heading_rate(phase)
 
     def __copy__(self) -> "OscillatingReference":
-        """Return a copy, which a law may move ahead. Python cannot copy a compiled object."""
+        """Return a copy, which a law may move ahead; Python cannot copy a compiled object."""
         other = OscillatingReference(
             self._orbit,
             phase=self._phase,
@@ -107,7 +107,7 @@ class OscillatingReference:
         return other
 
     def __deepcopy__(self, _memo: object) -> "OscillatingReference":
-        """Return a copy: its orbit never changes."""
+        """Return a copy that shares the orbit, which never changes."""
         return self.__copy__()
 
     def step(self, vessel_heading_rate: float = 0.0) -> None:
@@ -134,11 +134,11 @@ class OscillatingReference:
         )
 
     def set_turn_rate_fraction(self, fraction: float) -> None:
-        """Set the fraction of its heading rate that it turns with from phase 0 on [-]."""
+        """Set the fraction of the orbit's heading rate from the next phase 0 on [-]."""
         self._fraction_demand = fraction
 
     def _change_fraction(self, angle: float) -> float:
-        """Return the phase after a step [rad]; past phase 0 it goes on at the demanded rate."""
+        """Return the phase after a step [rad]; past phase 0 the demanded fraction applies."""
         passage = 2.0 * math.pi * math.floor(angle / (2.0 * math.pi))
         if angle - self._omega_0 * self._time_step >= passage:
             return angle
@@ -150,21 +150,21 @@ class OscillatingReference:
 
 
 class ClosingReference:
-    """A reference that is moved outwards along the plume's axis, and closes in once it is tracked.
+    """A reference displaced outwards along the plume's axis, which closes in once it is tracked.
 
     Parameters
     ----------
-    reference : the reference in its place
-    axis : course along which the plume trails [rad]
-    standoff : how far it is moved outwards at first [m]
-    rate : at which it closes in [m/s]
+    reference : the reference without displacement
+    axis : direction in which the plume trails [rad]
+    standoff : initial displacement [m]
+    rate : rate of closing in [m/s]
     time_step : [s]
 
     Attributes
     ----------
     north, east, course, heading_rate, speed : same as ``Reference``
-    standoff : how far it is moved outwards now [m]
-    closing : whether it closes in
+    standoff : present displacement [m]
+    closing : whether the displacement decreases
     """
 
     def __init__(
@@ -193,7 +193,7 @@ class ClosingReference:
         self._place()
 
     def __copy__(self) -> "ClosingReference":
-        """Return a copy, which a law may move ahead. Python cannot copy a compiled object."""
+        """Return a copy, which a law may move ahead; Python cannot copy a compiled object."""
         other = ClosingReference(
             copy.copy(self.reference), axis=0.0, standoff=self.standoff, rate=0.0, time_step=1.0
         )
@@ -218,11 +218,11 @@ class ClosingReference:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JoinedOrbit:
-    """An orbit beside a steady vessel, to be joined at any phase.
+    """An orbit beside a steady vessel that can be joined at any phase.
 
     Attributes
     ----------
-    shape, orbit : of the reference
+    shape, orbit : shape and orbit of the reference
     vessel_course : [rad]
     time_step : [s]
     """
@@ -240,7 +240,7 @@ class JoinedOrbit:
         *,
         turn_rate_fraction: float = 1.0,
     ) -> OscillatingReference:
-        """Return the reference at a phase [rad] of the orbit about a centre [m]."""
+        """Return a reference that starts at a phase [rad] of the orbit about a centre [m]."""
         return OscillatingReference(
             self.orbit,
             phase=phase,
@@ -261,13 +261,13 @@ class JoinedOrbit:
         course: float,
         turn_radius: float,
     ) -> OscillatingReference:
-        """Return the reference that a vehicle reaches with the least effort, slowed down for it.
+        """Return the reference that a vehicle reaches with the least effort; it turns more slowly.
 
         Parameters
         ----------
-        centre_north, centre_east : of oscillation now [m]
-        north, east, course : of the vehicle now [m, m, rad]
-        turn_radius : of the vehicle [m]
+        centre_north, centre_east : present centre of oscillation [m]
+        north, east, course : present position and course of the vehicle [m, m, rad]
+        turn_radius : turn radius of the vehicle [m]
         """
 
         def cost(reference: OscillatingReference) -> float:

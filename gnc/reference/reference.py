@@ -1,4 +1,4 @@
-"""The point that is tracked: what it is, and which orbits it can have."""
+"""Protocols of the reference, its orbits and its shapes, and the registry of shapes."""
 
 import math
 from collections.abc import Callable
@@ -13,7 +13,7 @@ Array = npt.NDArray[np.float64]
 
 
 class Reference(Protocol):
-    """A point of constant speed to be tracked, moved in equal time steps: equation (13).
+    """A point of constant speed that is tracked, moved in equal time steps: equation (13).
 
     Attributes
     ----------
@@ -34,28 +34,28 @@ class Reference(Protocol):
 
 
 class OscillatingPoint(Reference, Protocol):
-    """A reference on an orbit, which can be slowed down while a vehicle is on its way to it.
+    """A reference on an orbit that can turn more slowly until a vehicle has reached it.
 
     Attributes
     ----------
-    turn_rate_fraction : fraction of its heading rate that it turns with now [-]
+    turn_rate_fraction : present fraction of the orbit's heading rate [-]
     """
 
     turn_rate_fraction: float
 
     def set_turn_rate_fraction(self, fraction: float) -> None:
-        """Set the fraction of its heading rate that it turns with from a passage of phase 0 on [-].
+        """Set the fraction of the orbit's heading rate from the next phase 0 on [-].
 
-        There it turns least, and the slower orbit, which is larger, meets the other one.
+        At phase 0 the heading rate is smallest, and the slower, larger orbit meets the other one.
         """
 
 
 class PeriodicPath(Protocol):
-    """A periodic motion about a centre that moves at nu V_r on a straight course."""
+    """A periodic path about a centre that moves straight at the speed nu V_r."""
 
     @property
     def nu(self) -> float:
-        """Speed ratio, mean speed over speed [-]."""
+        """Speed ratio, the mean speed over the speed [-]."""
 
     @property
     def speed(self) -> float:
@@ -63,7 +63,7 @@ class PeriodicPath(Protocol):
 
     @property
     def eta(self) -> float:
-        """Largest course offset from that of the centre [rad]."""
+        """Largest course offset from the centre's course [rad]."""
 
     @property
     def omega_0(self) -> float:
@@ -71,7 +71,7 @@ class PeriodicPath(Protocol):
 
     @property
     def limit(self) -> str:
-        """What set the frequency, such as ``heading rate`` or ``roll rate``."""
+        """What limits the frequency, such as ``heading rate`` or ``roll rate``."""
 
     @property
     def amplitude(self) -> float:
@@ -86,10 +86,10 @@ class PeriodicPath(Protocol):
         """Time between passages through the centre of oscillation [s]."""
 
     def offset(self, time: npt.ArrayLike) -> tuple[Array, Array]:
-        """Return the reference's offset from the centre, along its course and to its right [m].
+        """Return the reference's offset from the centre, along the centre's course and right [m].
 
-        ``time`` [s] counts from phase 0, the passage through the centre at the largest course
-        offset to the right. Both have its shape.
+        ``time`` [s] counts from phase 0, the passage through the centre with the largest course
+        offset to the right. Both offsets have the shape of ``time``.
         """
 
     @property
@@ -97,57 +97,55 @@ class PeriodicPath(Protocol):
         """Whether the second half of the orbit mirrors the first across the centre's course."""
 
     def half_widths(self) -> tuple[float, float]:
-        """Return how far the orbit reaches from the centre, along its course and across [m]."""
+        """Return the orbit's largest offsets from the centre, along its course and across [m]."""
 
 
 class Orbit(PeriodicPath, Protocol):
-    """A reference's periodic motion about the centre of oscillation."""
+    """A periodic path of a reference, with course and heading rate over its phase."""
 
     def course(self, phase: float) -> float:
-        """Return the course offset from that of the centre at a phase, omega_0 times time [rad]."""
+        """Return the course relative to the centre's at a phase, omega_0 times time [rad]."""
 
     def heading_rate(self, phase: float) -> float:
         """Return the heading rate at a phase [rad/s]."""
 
     def sidebands(self, orders: npt.NDArray[np.int64]) -> Array:
-        """Return |c_n|^2 of the Fourier series of exp(i course) at each order n, same shape [-]."""
+        """Return |c_n|^2 of the Fourier series of exp(i course), for each order n [-]."""
 
 
 class Swing(Protocol):
-    """The courses of a shape at every amplitude eta, through which a steered reference moves.
+    """The courses of a shape at every amplitude eta, for a steered reference.
 
-    A course is eta at phase 0, -eta half a period later, and everywhere the negative of itself half
-    a period later.
+    A course is eta at phase 0, and changes its sign after every half period.
     """
 
     def eta(self, speed_ratio: float) -> float:
-        """Return the amplitude for a mean speed over speed between -0.2 and 1 [rad]."""
+        """Return the amplitude for a ratio of mean speed to speed between -0.2 and 1 [rad]."""
 
     def frequency(self, eta: float, heading_rate: float) -> float:
-        """Return the largest omega_0 within a heading rate [rad/s] and the roll rate [rad/s].
+        """Return the largest omega_0 for a heading rate [rad/s] and the limit of roll rate [rad/s].
 
-        Below ``gnc.reference.shapes.ETA_FREQUENCY`` it no longer rises.
+        Below the amplitude ``gnc.reference.shapes.ETA_FREQUENCY`` omega_0 is constant.
         """
 
     def course(self, eta: float, phase: float) -> float:
         """Return the course offset from the mean course [rad]."""
 
     def slopes(self, eta: float, phase: float) -> tuple[float, float]:
-        """Return the slopes of the course offset: over eta, and over the phase per eta [-]."""
+        """Return the derivatives of the course offset by eta, and by phase over eta [-]."""
 
     def offset(self, eta: float, phase: float) -> tuple[float, float]:
         """Return the offset from the orbit's centre, along its course and right [V_r/omega_0]."""
 
 
 class ReferenceShape(Protocol):
-    """A kind of orbit: a frozen dataclass, registered by a name."""
+    """A kind of orbit: a frozen dataclass that is registered under a name."""
 
     @property
     def turn_rate_fraction_until_tracked(self) -> float:
-        """Fraction of its heading rate that a reference turns with until it is tracked [-].
+        """Fraction of the orbit's heading rate until the reference is tracked [-].
 
-        A vehicle whose commands are cut at omega_max cannot catch up with a reference that takes
-        all of it.
+        A vehicle limited to omega_max cannot catch up with a reference that uses all of omega_max.
         """
 
     def design(
@@ -169,11 +167,11 @@ class ReferenceShape(Protocol):
         heading_rate_max : omega_max [rad/s]
         reserve : fraction of omega_max that the reference leaves to feedback [-]
         vessel_heading_rate : omega_V [rad/s]
-        roll_rate_max : of the vehicle [rad/s]
+        roll_rate_max : largest roll rate of the vehicle [rad/s]
 
         Raises
         ------
-        InfeasibleError : there is none
+        InfeasibleError : the vehicle can follow no such orbit
         """
 
     def swing(self, *, speed: float, heading_rate: float, roll_rate_max: float) -> Swing:
@@ -182,8 +180,8 @@ class ReferenceShape(Protocol):
         Parameters
         ----------
         speed : V_r [m/s]
-        heading_rate : largest of the reference [rad/s]
-        roll_rate_max : of the vehicle [rad/s]
+        heading_rate : largest heading rate of the reference [rad/s]
+        roll_rate_max : largest roll rate of the vehicle [rad/s]
 
         Raises
         ------
@@ -194,17 +192,17 @@ class ReferenceShape(Protocol):
 REFERENCE_SHAPES: Registry[Callable[..., ReferenceShape]] = Registry(
     "reference_shape", folder="gnc.reference", methods=("design", "swing")
 )
-"""Reference shapes by name; calling one with its parameters makes it."""
+"""Reference shapes by name: classes that are called with the shape's parameters."""
 
 reference_shape = REFERENCE_SHAPES.register
-"""Decorator that registers a reference shape by a name."""
+"""Decorator that registers a reference shape under a name."""
 
 
 class CirclingReference:
-    """A reference that turns steadily, that of the paper's Simulation 1: (13) at constant omega_r.
+    """The reference of the paper's Simulation 1, which turns steadily: (13) at constant omega_r.
 
-    It starts at the origin on course 0. Its motion is in closed form; time comes from the step
-    count.
+    It starts at the origin on course 0. The motion is computed in closed form; time comes from the
+    step count.
 
     Parameters
     ----------

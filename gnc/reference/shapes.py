@@ -1,6 +1,6 @@
-"""The shapes that a reference's orbit can have: sinusoid, fastest oscillation, and loiter.
+"""Shapes of a reference's orbit: sinusoid, fastest oscillation, and loiter.
 
-The closed forms of the last two are in docs/fastest_oscillation.md.
+The closed forms of the last two are derived in docs/fastest_oscillation.md.
 """
 
 import bisect
@@ -23,62 +23,61 @@ from gnc.paper import available_heading_rate, design_oscillation
 from gnc.reference.reference import Array, Swing, reference_shape
 
 ETA_FREQUENCY = 0.2
-"""Amplitude below which the frequency of a steered reference no longer rises [rad]."""
+"""Amplitude below which the frequency of a steered reference is constant [rad]."""
 
 SPEED_RATIO_MIN = -0.2
-"""Least mean speed over speed in the tables [-]: a reference may back away from its vessel."""
+"""Least ratio of mean speed to speed in the tables [-]: a reference may move backwards."""
 
 ETA_STEP = 0.005
 """Step of the tables [rad].
 
-Values are linear between rows: good to the square of the step over 8, 3e-6, times a curvature up to
-1.
+The error of linear interpolation is the squared step over 8, 3e-6, times a curvature up to 1.
 """
 
 _SINUSOID_ORDERS = 4
-"""Pairs of Bessel functions in its orbit [-]; the rest is below 1e-4 of the largest width."""
+"""Pairs of Bessel functions in the sinusoid's orbit [-], for errors below 1e-4 of its width."""
 
 _SINUSOID_ETA_MAX = 2.9
-"""Largest amplitude in the sinusoid's tables [rad]: J_0(2.9) = -0.224 is beyond the least ratio."""
+"""Largest amplitude in the sinusoid's tables [rad]: J_0(2.9) = -0.224 < ``SPEED_RATIO_MIN``."""
 
 _BANK_SWING_ORDERS = 8
-"""Pairs of terms in the series of its orbit [-]; what is left out is below 1e-4 of its width."""
+"""Pairs of terms in the series of a bank swing's orbit [-], for errors below 1e-4 of its width."""
 
 _BANK_SWING_ETA_MIN = 1e-9
-"""Least amplitude for which a bank swing is computed [rad]: a smaller one is as straight."""
+"""Least amplitude for which a bank swing is computed [rad]; smaller ones are straight."""
 
 _FASTEST_ETA_MAX = 3.2
-"""Amplitude whose mean speed is below 0 at any roll rate [rad]: sin(3.2)/3.2 = -0.02."""
+"""Amplitude with a mean speed below 0 at any roll rate [rad]: sin(3.2)/3.2 = -0.02."""
 
 _FRACTION_UNTIL_TRACKED = 0.8
 """Fraction of the heading rate of a fastest oscillation or loiter until it is tracked [-].
 
-Beside an orbit that takes nearly all of it, for most of the time, the cut commands of the steering
-law have limit cycles: of 48 flights in still air from anywhere about the vessel 7 did not settle
-with 0.985 of omega_max, 5 with 0.95, and none with 0.9.
+If an orbit uses nearly all of omega_max most of the time, the steering law's saturated commands can
+cause limit cycles. Of 48 flights in still air from all around the vessel, 7 did not settle with a
+fraction of 0.985, 5 with 0.95, and none with 0.9.
 """
 
 _PATH_PIECES = 1024
-"""Pieces of a period [-]: a cubic over each is good to 1e-7 of V_r/omega_0."""
+"""Pieces of a period [-]: cubic interpolation has errors of 1e-7 V_r/omega_0."""
 
 _FOURIER_SAMPLES = 128
-"""Samples of a period [-]: Fourier coefficients fall with the third power, so 1e-6 is left out."""
+"""Samples of a period [-]: Fourier coefficients decay with the third power, so errors are 1e-6."""
 
 _TURN = 2.0 * math.pi
 _QUARTER_TURN = 0.5 * math.pi
 _PER_QUARTER = 1.0 / _QUARTER_TURN
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
-"""Of Gauss's rule, good to 1e-12 of the mean speed while the aircraft rolls."""
+"""Nodes and weights of Gauss's rule, for errors of 1e-12 of the mean speed during a roll."""
 
 _RULE = tuple(zip(_NODES.tolist(), _WEIGHTS.tolist(), strict=True))
 """Pairs of node and weight."""
 
 Course = Callable[[float], float]
-"""Course offset at a phase [rad], of period 2 pi but for whole turns."""
+"""Course offset over the phase [rad], with the period 2 pi except for whole turns."""
 
 
-# Any periodic course: its series, and its path where there is no closed form.
+# Any periodic course: Fourier series, and path without a closed form.
 
 
 def fourier_coefficients(course: Course) -> npt.NDArray[np.complex128]:
@@ -93,11 +92,11 @@ class CoursePath:
 
     Parameters
     ----------
-    course : over the phase
+    course : course offset over the phase
 
     Attributes
     ----------
-    mean : mean of exp(i course), the mean velocity; the real part is along [-]
+    mean : mean of exp(i course), the mean velocity; its real part is along the mean course [-]
     """
 
     def __init__(self, course: Course) -> None:
@@ -113,12 +112,12 @@ class CoursePath:
         self._right = CubicHermiteSpline(knots, place.imag, slope.imag)
 
     def offset(self, phase: npt.ArrayLike) -> tuple[Array, Array]:
-        """Return the offset from phase 0, along and right, same shape as phase [V_r/omega_0]."""
+        """Return the offset from the point of phase 0, along and right, per phase [V_r/omega_0]."""
         within = np.mod(phase, 2.0 * np.pi)
         return np.asarray(self._along(within)), np.asarray(self._right(within))
 
     def half_widths(self) -> tuple[float, float]:
-        """Return how far the path reaches from phase 0, along and across [V_r/omega_0]."""
+        """Return the largest offsets from the point of phase 0, along and across [V_r/omega_0]."""
         return _farthest(self._along), _farthest(self._right)
 
 
@@ -128,29 +127,30 @@ def _farthest(part: "CubicHermiteSpline[np.float64]") -> float:
 
 
 class OrbitTables:
-    """Mean speed and orbit of a shape's courses over their amplitude eta, for use in flight.
+    """Tables of mean speed and orbit over the amplitude eta, for use in flight.
 
     Parameters
     ----------
-    ratios : mean speed over speed at equal steps ``ETA_STEP`` of eta from 0, falling to below
+    ratios : mean speed over speed at steps ``ETA_STEP`` of eta from 0, descending to below
         ``SPEED_RATIO_MIN``, shape (n,) [-]
-    series : coefficients of sin(theta), sin(2 theta), ... in the orbit, rightward and along in
-        turn, shape (n, 2 terms) [V_r/omega_0]
+    series : coefficients of sin(theta), sin(2 theta), ... in the orbit, alternately right and
+        along, shape (n, 2 terms) [V_r/omega_0]
     """
 
     def __init__(self, ratios: Array, series: Array) -> None:
         etas = ETA_STEP * np.arange(len(ratios))
-        # Near 1 the lack of speed grows with the square of eta: eta is smooth over its root.
+        # Near 1 the ratio decreases with the square of eta, so eta is smooth over the root of 1 -
+        # ratio.
         roots = np.sqrt(np.maximum(0.0, 1.0 - ratios))
         kept = roots <= math.sqrt(1.0 - SPEED_RATIO_MIN)
         self._roots: list[float] = roots[kept].tolist()
         self._etas: list[float] = etas[kept].tolist()
         self._rows: list[list[float]] = series.tolist()
-        # Rounding must leave a row after the one that is found.
+        # In spite of rounding, a row must follow the one that is found.
         self._eta_last = ETA_STEP * (len(ratios) - 3)
 
     def eta(self, speed_ratio: float) -> float:
-        """Return eta for a mean speed over speed, which is clipped to the table [rad]."""
+        """Return eta for a ratio of mean speed to speed, which is clipped to the table [rad]."""
         if speed_ratio >= 1.0:
             return 0.0
         roots = self._roots
@@ -186,27 +186,26 @@ class OrbitTables:
 
 @dataclass(frozen=True, slots=True)
 class SinusoidSwing:
-    """Courses eta cos(theta); methods same as ``gnc.reference.reference.Swing``.
+    """Courses eta cos(theta); methods as in ``gnc.reference.reference.Swing``.
 
-    Differs from ``gnc.paper`` in that eta comes from a table, because a steered reference needs it
-    often, and may have to back away: ratios down to -0.2 are those of eta beyond the first zero of
-    J_0.
+    Differs from ``gnc.paper`` in that eta comes from a table, because a steered reference needs eta
+    at every step, also for negative speed ratios, where eta lies beyond the first zero of J_0.
 
     Attributes
     ----------
-    heading_rate : largest [rad/s]
-    acceleration : largest rate of the heading rate, g/V_r times the roll rate [rad/s^2]
+    heading_rate : largest heading rate [rad/s]
+    acceleration : largest heading acceleration, g/V_r times the roll rate [rad/s^2]
     """
 
     heading_rate: float
     acceleration: float
 
     def eta(self, speed_ratio: float) -> float:
-        """Return eta for a mean speed over speed, equation (6), within 1e-5 [rad]."""
+        """Return eta for a ratio of mean speed to speed, equation (6), within 1e-5 [rad]."""
         return _sinusoid_tables().eta(speed_ratio)
 
     def frequency(self, eta: float, heading_rate: float) -> float:
-        """Return omega_0 by the heading rate or the roll rate, the lower one [rad/s]."""
+        """Return omega_0, the lower one of the limits by heading rate and by roll rate [rad/s]."""
         eta = eta if eta > ETA_FREQUENCY else ETA_FREQUENCY
         largest = heading_rate if heading_rate < self.heading_rate else self.heading_rate
         by_heading_rate = largest / eta
@@ -218,7 +217,7 @@ class SinusoidSwing:
         return eta * math.cos(phase)
 
     def slopes(self, eta: float, phase: float) -> tuple[float, float]:  # noqa: ARG002 - of the Protocol
-        """Return the slope of the course over eta, and that over theta per eta [-]."""
+        """Return the derivatives of the course by eta, and by theta over eta [-]."""
         return math.cos(phase), -math.sin(phase)
 
     def offset(self, eta: float, phase: float) -> tuple[float, float]:
@@ -229,7 +228,7 @@ class SinusoidSwing:
 @reference_shape("sinusoid")
 @dataclass(frozen=True, slots=True)
 class Sinusoid:
-    """The paper's reference: its course oscillates about the vessel's as a sinusoid."""
+    """The paper's reference, whose course oscillates sinusoidally about the vessel's course."""
 
     turn_rate_fraction_until_tracked: ClassVar[float] = 1.0
     design = staticmethod(design_oscillation)
@@ -249,11 +248,11 @@ def _sinusoid_tables() -> OrbitTables:
     return OrbitTables(j0(etas), np.stack(columns, axis=-1))
 
 
-# The fastest oscillation: the reference turns as hard as it may, one way and then the other.
+# The fastest oscillation: the reference turns at its limits, alternately left and right.
 
 
 class _Quarter(NamedTuple):
-    """A quarter period: its length, the time until bank is largest, and the heading rate then."""
+    """A quarter period: its duration, the time until bank is largest, and the heading rate then."""
 
     time: float
     ramp: float
@@ -261,19 +260,19 @@ class _Quarter(NamedTuple):
 
 
 class BankSwing:
-    """Courses of an aircraft that rolls from bank to bank as hard as it may; same as ``Swing``.
+    """Courses of an aircraft that rolls from bank to bank at its limits; methods as in ``Swing``.
 
-    From the passage through the centre, phase 0, bank falls from 0 at the roll rate p to -phi_max,
-    is held, and is back at 0 half a period later; then the same to the other side. Turns are
-    coordinated: omega = g/V tan(phi). While it rolls the course has changed by g/(V p) ln cos(p t),
-    and while bank is held it changes evenly. A course that turns through less than rolling to
-    phi_max and back takes is rolled through alone, with less bank.
+    From the passage through the centre, phase 0, bank decreases from 0 at the roll rate p to
+    -phi_max, is held, and is back at 0 half a period later; the other half period mirrors this.
+    Turns are coordinated: omega = g/V tan(phi). During a roll the course changes by g/(V p) ln
+    cos(p t); while bank is held the course changes uniformly. If the course change is too small to
+    reach phi_max, the aircraft rolls to a smaller bank and back at once.
 
     Parameters
     ----------
     speed : V_r [m/s]
-    heading_rate : largest, that of phi_max [rad/s]
-    roll_rate_max : p; may be infinite [rad/s]
+    heading_rate : largest heading rate, at phi_max [rad/s]
+    roll_rate_max : roll rate p; may be infinite [rad/s]
     """
 
     def __init__(self, *, speed: float, heading_rate: float, roll_rate_max: float) -> None:
@@ -281,13 +280,13 @@ class BankSwing:
         self._heading_rate = heading_rate
         self._roll_rate = roll_rate_max
         bank_max = math.atan(heading_rate / self._per_tangent)
-        # Time in which bank reaches phi_max, and the course that is turned through meanwhile.
+        # Time in which bank reaches phi_max, and the course change in this time.
         self._ramp = bank_max / roll_rate_max
         self._rolling = self._per_tangent / roll_rate_max
         self._rolled = -self._rolling * math.log(math.cos(bank_max))
 
     def half_period(self, eta: float) -> float:
-        """Return the crossing interval, from one largest course offset to the other [s]."""
+        """Return half the period, the crossing interval [s]."""
         return 2.0 * self._quarter(eta).time
 
     def largest_heading_rate(self, eta: float) -> float:
@@ -299,11 +298,11 @@ class BankSwing:
         return eta > self._rolled
 
     def eta(self, speed_ratio: float) -> float:
-        """Return eta for a mean speed over speed, by a table, within 1e-5 [rad]."""
+        """Return eta for a ratio of mean speed to speed, from a table, within 1e-5 [rad]."""
         return self._tables.eta(speed_ratio)
 
     def speed_ratio(self, eta: float) -> float:
-        """Return the mean speed over speed: that of cos(course) over a quarter period [-]."""
+        """Return the mean speed over speed, the mean of cos(course) over a quarter period [-]."""
         if eta < _BANK_SWING_ETA_MIN:
             return 1.0
         quarter, ramp, turning = self._quarter(eta)
@@ -314,7 +313,7 @@ class BankSwing:
         return (0.5 * ramp * total + math.sin(turning * (quarter - ramp)) / turning) / quarter
 
     def frequency(self, eta: float, heading_rate: float) -> float:
-        """Return the largest omega_0 within a heading rate [rad/s] and the roll rate [rad/s]."""
+        """Return the largest omega_0 for a heading rate [rad/s] and the roll-rate limit [rad/s]."""
         quarter, _, largest = self._quarter(max(ETA_FREQUENCY, eta))
         fastest = _QUARTER_TURN / quarter
         return fastest if heading_rate >= largest else fastest * heading_rate / largest
@@ -324,8 +323,7 @@ class BankSwing:
         if eta < _BANK_SWING_ETA_MIN and not self.holds_bank(eta):
             return eta * math.cos(phase)
         quarter, rate, held = self._held(eta)
-        # Time from the middle of the way across: one half of the period is before phase 0, the
-        # other after it.
+        # Time from the middle of a half period; one half lies before phase 0, the other after it.
         off = quarter - quarter * _PER_QUARTER * abs(math.remainder(phase, _TURN))
         if -held <= off <= held or not self._ramp:
             return rate * off
@@ -333,7 +331,7 @@ class BankSwing:
         return course if off > 0.0 else -course
 
     def heading_rate(self, eta: float, phase: float) -> float:
-        """Return the heading rate of a reference that takes full rates [rad/s]."""
+        """Return the heading rate of a reference at its limits [rad/s]."""
         quarter, ramp, rate = self._quarter(eta)
         angle = math.remainder(phase, _TURN)
         time = quarter - abs(quarter - quarter * _PER_QUARTER * abs(angle))
@@ -342,13 +340,13 @@ class BankSwing:
         return -rate if angle > 0.0 else rate
 
     def slopes(self, eta: float, phase: float) -> tuple[float, float]:
-        """Return the slopes of the course offset: over eta, and over the phase per eta [-]."""
+        """Return the derivatives of the course offset by eta, and by phase over eta [-]."""
         if eta < _BANK_SWING_ETA_MIN and not self.holds_bank(eta):
             return math.cos(phase), -math.sin(phase)
         quarter, rate, held = self._held(eta)
         angle = math.remainder(phase, _TURN)
         off = quarter - quarter * _PER_QUARTER * abs(angle)
-        # Per unit of eta, a quarter of the period grows by 1 over the largest heading rate, whether
+        # The derivative of the quarter period by eta is 1 over the largest heading rate, whether
         # bank is held or not.
         if -held <= off <= held or not self._ramp:
             by_eta = off / quarter
@@ -376,7 +374,7 @@ class BankSwing:
         return _Quarter(time, time, self._per_tangent * tangent)
 
     def _held(self, eta: float) -> tuple[float, float, float]:
-        """Return a quarter period [s], the largest heading rate [rad/s], half its duration [s]."""
+        """Return quarter period [s], largest heading rate [rad/s], and half its duration [s]."""
         quarter = self._quarter(eta)
         held = (eta - self._rolled) / self._heading_rate if self.holds_bank(eta) else 0.0
         return quarter.time, quarter.heading_rate, held
@@ -388,8 +386,8 @@ class BankSwing:
         while len(ratios) < 3 or ratios[-3] > SPEED_RATIO_MIN:
             ratios.append(self.speed_ratio(ETA_STEP * len(ratios)))
         order = np.arange(1, 2 * _BANK_SWING_ORDERS + 1)
-        # The course is even in the phase, and its negative half a period later: of exp(i course)
-        # the cosine has even orders alone, and the sine odd ones.
+        # The course is even in the phase and changes its sign after half a period, so the cosine of
+        # the course has even orders only, and the sine odd ones.
         series = [
             fourier_coefficients(functools.partial(self.course, ETA_STEP * i))[order]
             for i in range(len(ratios))
@@ -400,13 +398,13 @@ class BankSwing:
 
 @functools.lru_cache(maxsize=8)
 def bank_swing(speed: float, heading_rate: float, roll_rate_max: float) -> BankSwing:
-    """Return the courses within some limits, cached with their tables; see ``BankSwing``."""
+    """Return a ``BankSwing`` with these parameters, cached because of its tables."""
     return BankSwing(speed=speed, heading_rate=heading_rate, roll_rate_max=roll_rate_max)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FastestOscillation:
-    """The oscillation of shortest period within a bank and a roll rate; same as ``Orbit``.
+    """The oscillation with the shortest period for a largest bank and roll rate; an ``Orbit``.
 
     Attributes
     ----------
@@ -415,7 +413,7 @@ class FastestOscillation:
     eta : course amplitude [rad]
     crossing_interval : time between crossings of the centre of oscillation, half a period [s]
     omega_0 : angular frequency [rad/s]
-    courses : of every amplitude
+    courses : courses of every amplitude
     """
 
     nu: float
@@ -438,7 +436,7 @@ class FastestOscillation:
 
     @property
     def limit(self) -> str:
-        """Return ``heading rate`` where the largest bank is held, or else ``roll rate``."""
+        """Return ``heading rate`` if the largest bank is held, otherwise ``roll rate``."""
         return "heading rate" if self.courses.holds_bank(self.eta) else "roll rate"
 
     def offset(self, time: npt.ArrayLike) -> tuple[Array, Array]:
@@ -450,13 +448,13 @@ class FastestOscillation:
         return unit * along, unit * right
 
     def half_widths(self) -> tuple[float, float]:
-        """Return how far the orbit reaches from the centre, along its course and across [m]."""
+        """Return the orbit's largest offsets from the centre, along its course and across [m]."""
         along, across = _oscillation_path(self.courses, self.eta).half_widths()
         unit = self.speed / self.omega_0
         return unit * along, unit * across
 
     def course(self, phase: float) -> float:
-        """Return the course offset from that of the centre at a phase [rad]."""
+        """Return the course offset from the centre's course at a phase [rad]."""
         return self.courses.course(self.eta, phase)
 
     def heading_rate(self, phase: float) -> float:
@@ -471,10 +469,9 @@ class FastestOscillation:
 @reference_shape("fastest")
 @dataclass(frozen=True, slots=True)
 class Fastest:
-    """The reference whose bank is a trapezoid, which crosses most often within its limits.
+    """The reference with trapezoidal bank, which crosses most often within its limits.
 
-    Differs from equation (2), whose heading rate is a sinusoid, because that reaches its limit for
-    moments alone.
+    Differs from equation (2), whose sinusoidal heading rate reaches its limit for moments only.
     """
 
     turn_rate_fraction_until_tracked: ClassVar[float] = _FRACTION_UNTIL_TRACKED
@@ -524,25 +521,25 @@ def _oscillation_path(courses: BankSwing, eta: float) -> CoursePath:
     return CoursePath(functools.partial(courses.course, eta))
 
 
-# The loiter: a circle that moves with the vessel and meets its plume twice a turn.
+# The loiter: a circle that moves with the vessel and crosses the plume twice per turn.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoiterOrbit:
-    """One turn of a loiter; same as ``Orbit``, with phase 0 in the middle of its straight leg.
+    """The orbit of a loiter, with phase 0 in the middle of its straight leg; an ``Orbit``.
 
-    It turns to the right at the largest bank, all the way round; where its course is that of the
-    vessel, bank falls at the roll rate and rises again, and it flies straight on for as long as the
-    vessel needs to come along.
+    The reference turns to the right at the largest bank. On the vessel's course, bank decreases at
+    the roll rate, and the reference flies straight for long enough to keep up with the vessel; then
+    bank increases again.
 
     Attributes
     ----------
     nu : speed ratio [-]
     speed : V_r [m/s]
     amplitude : largest heading rate [rad/s]
-    roll_rate : at which bank changes; may be infinite [rad/s]
-    least_bank : on the vessel's course [rad]
-    straight : half the time for which bank is 0 there [s]
+    roll_rate : rate at which bank changes; may be infinite [rad/s]
+    least_bank : bank on the vessel's course [rad]
+    straight : half the time of straight flight [s]
     """
 
     nu: float
@@ -562,7 +559,7 @@ class LoiterOrbit:
 
     @property
     def period(self) -> float:
-        """Time of one turn [s]."""
+        """Duration of one turn [s]."""
         return 2.0 * self.crossing_interval
 
     @property
@@ -572,18 +569,18 @@ class LoiterOrbit:
 
     @property
     def turned(self) -> float:
-        """Course that is turned through while bank rises to its largest value [rad]."""
+        """Change of course while bank rises to its largest value [rad]."""
         return self._rolling * math.log(math.cos(self.least_bank) / math.cos(self._bank))
 
     def offset(self, time: npt.ArrayLike) -> tuple[Array, Array]:
-        """Return the offset from the point of the plume that it crosses every half turn [m]."""
+        """Return the offset from the point where the plume is crossed every half turn [m]."""
         path, side = _loiter_path(self)
         unit = self.speed / self.omega_0
         along, right = path.offset(self.omega_0 * np.asarray(time, dtype=np.float64))
         return unit * along, unit * (right - side)
 
     def half_widths(self) -> tuple[float, float]:
-        """Return how far the orbit reaches from that point, along its course and across [m]."""
+        """Return the largest offsets from the crossing point, along the course and across [m]."""
         path, side = _loiter_path(self)
         unit = self.speed / self.omega_0
         along, _ = path.half_widths()
@@ -591,7 +588,7 @@ class LoiterOrbit:
         return unit * along, unit * max(side, float(far) - side)
 
     def course(self, phase: float) -> float:
-        """Return the course offset from that of the vessel; it grows by a turn a period [rad]."""
+        """Return the course relative to the vessel's course, growing by a turn per period [rad]."""
         turns = round(phase / _TURN)
         time = (phase - _TURN * turns) / self.omega_0
         return _TURN * turns + math.copysign(self._half(abs(time)), time)
@@ -601,7 +598,7 @@ class LoiterOrbit:
         time = abs(math.remainder(phase, _TURN)) / self.omega_0 - self.straight
         if time >= self._ramp:
             return self.amplitude
-        # An infinite roll rate times 0 s would be NaN.
+        # An infinite roll rate times 0 s is NaN.
         bank = self.least_bank + (self.roll_rate * time if time > 0.0 else 0.0)
         return STANDARD_GRAVITY / self.speed * math.tan(bank)
 
@@ -632,7 +629,7 @@ class LoiterOrbit:
         return (self._bank - self.least_bank) / self.roll_rate
 
     def _half(self, time: float) -> float:
-        """Return the course within half a turn [rad]."""
+        """Return the course at a time within the first half turn [rad]."""
         time -= self.straight
         if time <= 0.0:
             return 0.0
@@ -645,10 +642,10 @@ class LoiterOrbit:
 @reference_shape("loiter")
 @dataclass(frozen=True, slots=True)
 class LoiterShape:
-    """The reference that circles with the vessel and meets its plume twice a turn.
+    """The reference that circles along with the vessel and crosses the plume twice per turn.
 
-    Differs from equation (2) in that its course goes all the way round, because a slow vessel's
-    plume is crossed more often so: below a speed ratio of 0.33, than by any oscillation.
+    Differs from equation (2) in that the course turns all the way round, because below a speed
+    ratio of 0.33 a loiter crosses the plume more often than any oscillation.
     """
 
     turn_rate_fraction_until_tracked: ClassVar[float] = _FRACTION_UNTIL_TRACKED
@@ -667,9 +664,9 @@ class LoiterShape:
 
         Raises
         ------
-        InfeasibleError : same as ``available_heading_rate``; or the vessel is so fast that the
-            loiter stays on one side of its plume, or the vehicle rolls so slowly that it has turned
-            by more than half a turn before it has reached its bank
+        InfeasibleError : as in ``available_heading_rate``; or the vessel is so fast that the loiter
+            stays on one side of the plume; or the vehicle rolls so slowly that it turns by more
+            than half a turn before it reaches its bank
         """
         available = available_heading_rate(
             nu=nu,
@@ -703,7 +700,7 @@ class LoiterShape:
         return _checked(turn(float(brentq(excess, 0.0, bank, xtol=1e-14)), 0.0))
 
     def swing(self, *, speed: float, heading_rate: float, roll_rate_max: float) -> Swing:  # noqa: ARG002 - of the Protocol
-        """Raise an InfeasibleError: beside a faster vessel it would have to oscillate."""
+        """Raise an InfeasibleError: a loiter cannot follow a faster vessel without oscillating."""
         raise InfeasibleError(
             "reference.shape is 'loiter', which cannot be steered in wind or beside a vessel that"
             " manoeuvres: fly it in still air beside a steady vessel (guidance.mission=track), or"
@@ -712,7 +709,7 @@ class LoiterShape:
 
 
 def _checked(loiter: LoiterOrbit) -> LoiterOrbit:
-    """Return a loiter that goes round as it should, or raise an InfeasibleError."""
+    """Return a loiter, or raise an InfeasibleError if it is not a full circle."""
     if loiter.turned >= math.pi:
         raise InfeasibleError(
             f"reference.shape is 'loiter', which turns by {math.degrees(loiter.turned):.0f} deg"
@@ -722,7 +719,7 @@ def _checked(loiter: LoiterOrbit) -> LoiterOrbit:
         )
     if loiter.straight >= 0.5 * loiter.crossing_interval:
         raise InfeasibleError(
-            "reference.shape is 'loiter', which beside a vessel of speed ratio"
+            "reference.shape is 'loiter', which at a speed ratio"
             f" nu = {loiter.nu:g} flies straight for half of its time or more, and stays on one"
             " side of the plume; that happens above about 0.5: set reference.shape to 'fastest'"
         )
@@ -731,7 +728,7 @@ def _checked(loiter: LoiterOrbit) -> LoiterOrbit:
 
 @functools.lru_cache(maxsize=128)
 def _loiter_path(loiter: LoiterOrbit) -> tuple[CoursePath, float]:
-    """Return the path from its straight leg's middle, and the plume to its right [V_r/omega_0]."""
+    """Return the path from the middle of the straight leg, and the plume's offset to the right."""
     path = CoursePath(loiter.course)
     _, side = path.offset(0.5 * math.pi)
     return path, float(side)

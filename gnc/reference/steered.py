@@ -1,15 +1,15 @@
-"""A reference whose mean velocity is steered, to follow a centre of oscillation that manoeuvres.
+"""A reference with a steered mean velocity, which follows a manoeuvring centre of oscillation.
 
-The course is that of equation (3), chi_r = chi_m + eta cos(theta), or that of another shape of the
-same amplitude and phase, but the mean course chi_m, the amplitude eta and the frequency omega_0
-change with time. Their rates share the heading rate that the vehicle can fly: what turning the mean
-course takes is taken from the frequency, so that |chi_m'| + |eta'| and the largest heading rate of
-the oscillation, eta omega_0 of the sinusoid, together never exceed it.
+The course is chi_r = chi_m + eta cos(theta), equation (3), or the course of another shape with the
+same amplitude and phase. The mean course chi_m, the amplitude eta and the frequency omega_0 change
+with time. Their rates share the vehicle's heading rate: the frequency is reduced so that |chi_m'| +
+|eta'| plus the largest heading rate of the oscillation, eta omega_0 for the sinusoid, never exceeds
+it.
 
-Where the orbit's centre is follows from the present parameters by a series, that of equation (12)
-of the sinusoid. Turning the mean course by dchi moves the centre by dchi times its distance from
-the reference, up to a hundred metres per radian, and so does a change of eta. Both therefore move
-mostly while the reference passes the centre.
+The position of the orbit's centre follows from the present parameters by a series, equation (12)
+for the sinusoid. Turning the mean course by dchi moves the centre by dchi times its distance from
+the reference, up to a hundred metres per radian, and a change of eta moves it as well. Both
+therefore change mostly while the reference passes the centre.
 """
 
 import math
@@ -18,16 +18,16 @@ from gnc.numeric import limited, wrap
 from gnc.reference.reference import Swing
 
 _GATE = 0.2
-"""Fraction of their rates that mean course and amplitude keep farthest from the centre [-]."""
+"""Fraction of the rates of mean course and amplitude that remains far from the centre [-]."""
 
 _RATE_GAIN = 0.8
-"""Rate of mean course and amplitude per difference from the demand, over the heading rate [-]."""
+"""Rate of mean course and amplitude over their error, in units of the heading rate [-]."""
 
 _RATE_FRACTION = 0.3
-"""Fraction of the heading rate that either of them may take [-]."""
+"""Largest rate of mean course or of amplitude, over the heading rate [-]."""
 
 _SMOOTHING = 0.25
-"""Time constant of their rates, over one through the heading rate [-]: an aircraft has to roll."""
+"""Time constant of these rates times the heading rate [-]: an aircraft has to roll."""
 
 _STATE = (
     "north",
@@ -49,24 +49,24 @@ _STATE = (
 
 
 class SteeredReference:
-    """A reference in equal time steps, with a mean velocity that ``steer`` sets.
+    """A reference moved in equal time steps, with a mean velocity set by ``steer``.
 
     Parameters
     ----------
-    north, east : where it starts, in the frame in which it moves [m]
+    north, east : start position in the frame of its motion [m]
     mean_course : chi_m [rad]
-    speed_ratio : its mean speed over its speed [-]
+    speed_ratio : mean speed over speed [-]
     phase : theta [rad]
-    swing : courses of its shape
+    swing : courses of the shape
     speed : V_r [m/s]
-    heading_rate : largest, omega_max less the reserve [rad/s]
+    heading_rate : largest heading rate, omega_max minus the reserve [rad/s]
     time_step : [s]
 
     Attributes
     ----------
-    north, east, course, heading_rate, speed : same as ``gnc.reference.reference.Reference``
-    mean_course, eta, omega_0, phase : of the oscillation [rad, rad, rad/s, rad]
-    turn_rate_fraction : fraction of its heading rate that it turns with now [-]
+    north, east, course, heading_rate, speed : as in ``gnc.reference.reference.Reference``
+    mean_course, eta, omega_0, phase : parameters of the oscillation [rad, rad, rad/s, rad]
+    turn_rate_fraction : present fraction of the heading rate [-]
     """
 
     def __init__(
@@ -105,7 +105,7 @@ class SteeredReference:
         self.heading_rate = self.eta * self.omega_0 * swing.slopes(self.eta, phase)[1]
 
     def __copy__(self) -> "SteeredReference":
-        """Return a copy, which a law may move ahead. Python cannot copy a compiled object."""
+        """Return a copy, which a law may move ahead; Python cannot copy a compiled object."""
         other = SteeredReference(
             north=self.north,
             east=self.east,
@@ -122,16 +122,16 @@ class SteeredReference:
         return other
 
     def __deepcopy__(self, _memo: object) -> "SteeredReference":
-        """Return a copy: its shape never changes."""
+        """Return a copy that shares the shape, which never changes."""
         return self.__copy__()
 
     def steer(self, mean_course: float, speed_ratio: float) -> None:
-        """Set the demanded mean course [rad] and mean speed over speed [-]."""
+        """Set the demanded mean course [rad] and ratio of mean speed to speed [-]."""
         self._mean_demand = mean_course
         self._eta_demand = self._swing.eta(speed_ratio)
 
     def set_turn_rate_fraction(self, fraction: float) -> None:
-        """Set the fraction of its heading rate that it turns with from its next passage on [-]."""
+        """Set the fraction of the heading rate from the next passage of the centre on [-]."""
         self._fraction_demand = fraction
 
     def step(self) -> None:
@@ -142,7 +142,7 @@ class SteeredReference:
         mean_course = self.mean_course
         phase = self.phase
         first = self.course
-        # Mean course and amplitude move towards their demands, mostly while the centre is passed.
+        # Mean course and amplitude approach their demands, mostly near the centre.
         cos_phase = math.cos(phase)
         gate = _GATE + (1.0 - _GATE) * cos_phase * cos_phase
         turn = limited(self._rate_gain * wrap(self._mean_demand - mean_course), self._rate_max)
@@ -156,7 +156,7 @@ class SteeredReference:
         middle_mean = mean_course + half * mean_rate
         eta = eta + dt * eta_rate
         mean_course = mean_course + dt * mean_rate
-        # The oscillation takes what they leave of the heading rate.
+        # The oscillation uses the remaining heading rate.
         left = self.turn_rate_fraction * self._available - abs(mean_rate) - abs(eta_rate)
         omega_0 = swing.frequency(eta, left)
         middle = middle_mean + swing.course(middle_eta, phase + half * omega_0)
@@ -179,7 +179,7 @@ class SteeredReference:
         self.course = last
 
     def centre(self) -> tuple[float, float]:
-        """Return north and east of the orbit's centre, if its parameters stayed as they are [m]."""
+        """Return north and east of the centre of the orbit with the present parameters [m]."""
         along, right = self._swing.offset(self.eta, self.phase)
         scale = self.speed / self.omega_0
         cos_m = math.cos(self.mean_course)

@@ -1,1 +1,1 @@
-"""The aircraft with its autopilot in JSBSim, and flight tests of both."""
+"""Flight of the aircraft under its autopilot in JSBSim, and measurements in flight."""

@@ -1,4 +1,4 @@
-"""An aircraft that flies under its autopilot in JSBSim."""
+"""An aircraft under its autopilot in JSBSim."""
 
 import tempfile
 from collections.abc import Callable
@@ -23,20 +23,21 @@ from innerloop.jsbsim.system import (
 
 
 class AutopilotedAircraft:
-    """An aircraft and its autopilot, as ``innerloop.jsbsim.system.write_root`` wrote them.
+    """An aircraft with its autopilot, from a root of ``innerloop.jsbsim.system.write_root``.
 
     Parameters
     ----------
     spec : the aircraft
     root : JSBSim root with the autopilot
-    failable : whether parts can fail in flight; the aircraft then flies a prepared copy of ``root``
+    failable : whether parts can fail in flight; the aircraft then flies from a modified copy of
+        ``root``
 
     Attributes
     ----------
     fdm : the simulation
-    run : advances it by one time step, in the weather of its release
-    command_airspeed, command_altitude, command_heading_rate : setters of the commands
-        [m/s, m, rad/s]
+    run : function that flies one time step in the weather given at the release
+    command_airspeed, command_altitude, command_heading_rate : functions that set the commands [m/s,
+        m, rad/s]
     """
 
     def __init__(self, spec: AircraftSpec, root: Path, *, failable: bool = False) -> None:
@@ -65,14 +66,14 @@ class AutopilotedAircraft:
         altitude: float,
         weather: Weather | None = None,
     ) -> None:
-        """Start a new flight from a straight and level equilibrium, commanded to stay in it.
+        """Start a new flight in a straight and level equilibrium, with commands to stay there.
 
         Parameters
         ----------
-        state : the equilibrium's state, against the air
+        state : state of the equilibrium, relative to the air
         airspeed, altitude : commands [m/s, m]
-        weather : of the flight; None for still air. The wind blows from the start; turbulence
-            begins with the release, and the times of gusts count from it.
+        weather : weather of the flight; None for still air. The wind blows from the start;
+            turbulence and the times of gusts begin at the release.
         """
         if self._weathered or (self._faults and self._faults.failed):
             end_weather(self.fdm)
@@ -85,8 +86,8 @@ class AutopilotedAircraft:
         self.fdm.write(ELEVATOR_HELD, 0.0)
         self.fdm.write(RESET, -1.0)
         wind = weather.wind.now(0.0, altitude) if weather else None
-        # JSBSim counts the autopilot's steps on from one flight to the next. Its clock tells at
-        # which step of a period the last flight ended.
+        # JSBSim continues to count the autopilot's steps from the last flight. The clock shows in
+        # which step of a period that flight ended.
         remaining = -round(self.fdm.read(CLOCK) / self.fdm.time_step) % self._period
         if remaining:
             self.fdm.hold(state, remaining, wind)
@@ -100,14 +101,15 @@ class AutopilotedAircraft:
             self.run = begin_weather(self.fdm, weather)
 
     def hold_elevator(self) -> None:
-        """Hold the elevator at its position at the release; stability alone then controls pitch.
+        """Hold the elevator at its position at the release, after a failure.
 
-        The remaining controls after a failure then have one task instead of two conflicting ones.
+        The aircraft's own stability then controls pitch, and the remaining controls do not have to
+        serve conflicting aims.
         """
         self.fdm.write(ELEVATOR_HELD, 1.0)
 
     def fail(self, name: str) -> None:
-        """Let a part fail from the next time step on.
+        """Make a part fail from the next time step on.
 
         Parameters
         ----------
@@ -115,7 +117,7 @@ class AutopilotedAircraft:
 
         Raises
         ------
-        AircraftError : there is no such part, or the aircraft was not made ``failable``
+        AircraftError : there is no such part, or the aircraft is not ``failable``
         """
         if self._faults is None:
             raise AircraftError(

@@ -1,9 +1,9 @@
-"""The limit cycle of an aircraft whose servos have play: no linear model has it.
+"""Measure the limit cycle of an aircraft whose servos have play.
 
-A servo that does not answer to small commands lets the aircraft drift until the command is large
-enough, and the autopilot then brings it back too late. What follows is an oscillation of fixed
-amplitude and period (A. Gelb, W. E. Vander Velde, Multiple-Input Describing Functions, 1968,
-ch. 3).
+A servo with play does not follow small commands. The aircraft drifts until the command is large
+enough, and the autopilot brings it back too late. The result is an oscillation of fixed amplitude
+and period, which no linear model shows (A. Gelb, W. E. Vander Velde, Multiple-Input Describing
+Functions, 1968, ch. 3).
 """
 
 import math
@@ -20,18 +20,22 @@ from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 Array = npt.NDArray[np.float64]
 
 DURATION = 120.0
-"""Flight straight and level, of which the last half is measured [s]: cycles of up to 20 s show."""
+"""Duration of the straight and level flight [s]; its second half shows periods up to 20 s."""
 
 ALTITUDE_MIN, BANK_MIN = 0.05, math.radians(0.1)
-"""Amplitudes of altitude or bank from which on an oscillation counts [m, rad]: a sixth and a third
-of those of JSBSim's c172x."""
+"""Least amplitudes of altitude and bank in a limit cycle [m, rad].
+
+They are a sixth and a third of the amplitudes of JSBSim's c172x.
+"""
 
 _SUSTAINED = 0.8
-"""Least ratio of the amplitude in the last quarter to that in the one before it [-]: a cycle keeps
-its amplitude, a slow response decays."""
+"""Least ratio of the amplitudes in the last quarter and the quarter before it [-].
+
+A limit cycle keeps its amplitude, and a slow response decays.
+"""
 
 _PERIODS_MIN = 2
-"""Whole periods that the measured half has at least [-]."""
+"""Least number of whole periods in the measured half [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,7 +45,7 @@ class LimitCycle:
     Attributes
     ----------
     altitude, bank : amplitudes [m, rad]
-    period : [s]; NaN where nothing is sustained above ``ALTITUDE_MIN`` and ``BANK_MIN``
+    period : [s]; NaN if no oscillation above ``ALTITUDE_MIN`` or ``BANK_MIN`` is sustained
     """
 
     altitude: float
@@ -50,16 +54,16 @@ class LimitCycle:
 
     @property
     def is_flown(self) -> bool:
-        """Whether there is an oscillation that counts."""
+        """Whether the aircraft flies a limit cycle."""
         return math.isfinite(self.period)
 
 
 def measure_limit_cycle(aircraft: AutopilotedAircraft, start: Trim) -> LimitCycle:
-    """Return the oscillation of a flight straight and level in still air.
+    """Return the limit cycle in straight and level flight in still air.
 
     Parameters
     ----------
-    aircraft : with its autopilot; its flight is ended
+    aircraft : aircraft with its autopilot; its flight is ended
     start : straight and level equilibrium
     """
     aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
@@ -73,7 +77,7 @@ def measure_limit_cycle(aircraft: AutopilotedAircraft, start: Trim) -> LimitCycl
 
 
 def limit_cycle(altitude: Array, bank: Array) -> LimitCycle:
-    """Return the oscillation in the last half of a flight, from samples each ``TIME_STEP``.
+    """Return the limit cycle in the second half of a flight, sampled at each ``TIME_STEP``.
 
     Parameters
     ----------
@@ -95,17 +99,17 @@ def limit_cycle(altitude: Array, bank: Array) -> LimitCycle:
 
 
 def _without_trend(values: Array) -> Array:
-    """Return deviations from the straight line through the values."""
+    """Return the deviations of values from their regression line."""
     number = np.arange(len(values), dtype=np.float64)
     line = np.polyval(np.polyfit(number, values, 1), number)
     return np.asarray(values - line, dtype=np.float64)
 
 
 def _period(deviation: Array) -> float:
-    """Return the mean time between upward crossings of zero [s]; NaN of too few of them."""
+    """Return the mean time between upward zero crossings [s]; NaN if there are too few."""
     before = np.flatnonzero((deviation[:-1] < 0.0) & (deviation[1:] >= 0.0))
     if len(before) <= _PERIODS_MIN:
         return math.nan
-    # Between two samples the crossing is that of the line through both.
+    # The time of a crossing is interpolated between two samples.
     crossing = before + deviation[before] / (deviation[before] - deviation[before + 1])
     return TIME_STEP * float(np.mean(np.diff(crossing)))

@@ -1,4 +1,4 @@
-"""How an aircraft loses airspeed and leaves its turn when a part of it fails."""
+"""Measure how an aircraft loses airspeed and leaves its turn when a part fails."""
 
 import itertools
 import math
@@ -17,42 +17,41 @@ from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 _AIRSPEED = "velocities/vt-fps"
 
 _SIDES = (-1.0, 1.0)
-"""Turns to the left and to the right."""
+"""Signs of a turn to the left and to the right."""
 
 _FALL_WATCHED = 5.0
-"""Time from the failure in which the airspeed is recorded [s]: engines run down for seconds."""
+"""Time after the failure in which the airspeed is recorded [s]: engines run down for seconds."""
 
 _FALL_OVER = 1.0
-"""Time over which a rate of fall is taken [s]."""
+"""Time over which the rate of the airspeed's fall is averaged [s]."""
 
 _CLIMB_TIME = 8.0
 """Duration of the climb before the failure [s]."""
 
 _CLIMB_STEP = 0.5
-"""Time between the altitude commands of the climb [s]."""
+"""Time between altitude commands in the climb [s]."""
 
 _ROOM = 1000.0
-"""Height of a glide's start above flights, not to end in the sea, and its commanded depth [m]."""
+"""Additional height at which a glide starts, and descent that is commanded in it [m]."""
 
 _KNOWN_AFTER = 2.0
-"""Time for which the airspeed may fall below the slowest commanded until a failure is known [s]."""
+"""Time below the slowest commanded airspeed after which an engine failure is detected [s]."""
 
 _FALL_MAX = 120.0
-"""Time after which a glide is commanded even if the airspeed has not fallen to its start [s]."""
+"""Time after which a glide is commanded even if the airspeed is still higher [s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PartFailure:
-    """Effect of the failure of a part in the steepest turn that is commanded.
+    """Effect of a part's failure in the steepest commanded turn.
 
     Attributes
     ----------
-    airspeed_fall : largest rate at which the airspeed falls until the engine is known to have
-        failed [m/s2]
-    glide_deviation : distance from the turn while the aircraft pushes over to its glide, after any
-        failure [m]
-    glide_undershoot : by how much the airspeed falls below that of the glide within half a turn,
-        when the glide begins at its airspeed without thrust [m/s]
+    airspeed_fall : largest rate at which the airspeed falls after the engine's failure [m/s2]
+    glide_deviation : largest distance from the turn during the push-over to the glide, after the
+        failure of any part [m]
+    glide_undershoot : largest difference by which the airspeed falls below the commanded one within
+        half a turn, in a glide without thrust that begins at that airspeed [m/s]
     """
 
     airspeed_fall: float
@@ -60,7 +59,7 @@ class PartFailure:
     glide_undershoot: float
 
     def or_worse(self, other: "PartFailure") -> "PartFailure":
-        """Return the larger of each figure."""
+        """Return the larger value of each figure."""
         return PartFailure(
             airspeed_fall=max(self.airspeed_fall, other.airspeed_fall),
             glide_deviation=max(self.glide_deviation, other.glide_deviation),
@@ -77,17 +76,17 @@ def measure_part_failure(
 ) -> PartFailure:
     """Return the effect of a part's failure in a settled turn, level or at the start of a climb.
 
-    If the engine failed, the glide begins at airspeeds down to the lowest that may have been
-    reached. If a surface is stuck, it begins at once, and with the engine's power the aircraft may
-    be commanded to sink faster.
+    After an engine failure the glide begins at airspeeds down to the lowest that can be reached
+    before the failure is detected. With a stuck surface the glide begins at once, with the engine
+    running.
 
     Parameters
     ----------
-    aircraft : with its autopilot, and made ``failable``; its flight is ended
+    aircraft : ``failable`` aircraft with its autopilot; its flight is ended
     start : straight and level equilibrium
-    bank : of the turn [rad]
-    airspeed_min : the slowest airspeed that is commanded [m/s]
-    gradient : of the commanded climb [-]
+    bank : bank of the turn [rad]
+    airspeed_min : slowest commanded airspeed [m/s]
+    gradient : gradient of the commanded climb [-]
     """
     glide = glide_airspeed(start.airspeed, airspeed_min)
     fall = max(_airspeed_fall(_Turn(aircraft, start, side, bank, gradient)) for side in _SIDES)
@@ -106,26 +105,26 @@ def measure_part_failure(
 
 
 def glide_airspeed(airspeed: float, airspeed_min: float) -> float:
-    """Return the airspeed to command in a glide, by V_r and the slowest commanded [m/s]."""
+    """Return the airspeed to command in a glide, from V_r and the slowest commanded one [m/s]."""
     return 0.5 * (airspeed + airspeed_min)
 
 
 class _Glide(NamedTuple):
-    """Distance from the commanded turn at its airspeed [m], and lowest airspeed [m/s]."""
+    """Largest distance from the commanded turn [m], and lowest airspeed [m/s]."""
 
     deviation: float
     slowest: float
 
 
 class _Turn:
-    """A settled turn, which may go on in a climb.
+    """A settled turn, which may continue as a climb.
 
     Attributes
     ----------
-    aircraft : in the turn
+    aircraft : aircraft in the turn
     rate : commanded heading rate [rad/s]
     half : duration of half a turn [JSBSim time steps]
-    altitude : at which it begins, ``room`` above that of the equilibrium [m]
+    altitude : initial altitude, ``room`` above the equilibrium's altitude [m]
     """
 
     def __init__(
@@ -153,7 +152,7 @@ class _Turn:
             aircraft.run()
 
     def airspeeds(self, *, engine_fails: bool) -> Iterator[float]:
-        """Climb, then yield the airspeed before each time step [m/s], for ever.
+        """Climb, then yield the airspeed before each further time step, without end [m/s].
 
         With ``engine_fails`` the engine fails at the first of these steps.
         """
@@ -178,10 +177,10 @@ def _airspeed_fall(turn: _Turn) -> float:
 
 
 def _glide(turn: _Turn, glide: float, begins: float) -> _Glide:
-    """Return half a turn after the aircraft is commanded to glide.
+    """Return deviation and airspeed in the half turn after a glide is commanded.
 
-    The engine fails, and the aircraft is commanded to ``glide`` [m/s] when its airspeed is down to
-    ``begins`` [m/s]. If that is infinite, it is at once, with the engine's power.
+    The engine fails, and the airspeed ``glide`` [m/s] is commanded once the airspeed has fallen to
+    ``begins`` [m/s]. If ``begins`` is infinite, the engine runs and the glide begins at once.
     """
     airspeeds = turn.airspeeds(engine_fails=math.isfinite(begins))
     for fallen_to in itertools.islice(airspeeds, round(_FALL_MAX / TIME_STEP)):

@@ -1,7 +1,7 @@
-"""Responses that the linear models predict and that JSBSim flies, and their measures.
+"""Compare responses of the linear models with responses flown in JSBSim.
 
-Steps of the autopilot's commands are flown by the aircraft under its autopilot. Doublets of single
-controls, flown by the bare aircraft, verify its linear model.
+The aircraft with its autopilot flies steps of the commands. The bare aircraft flies doublets of
+single controls, which verify its linear model.
 """
 
 import math
@@ -35,7 +35,7 @@ CHANNELS: dict[str, tuple[str, float]] = {
     "aileron_command": ("autopilot/aileron-command", 1.0),
     "throttle_command": ("autopilot/throttle-command", 1.0),
 }
-"""Recorded quantities of a step, named as in the closed loop: JSBSim property, SI of its unit."""
+"""Recorded quantities of a step response by name: JSBSim property, and SI value of its unit."""
 
 OUTPUTS: dict[str, tuple[str, float]] = {
     "airspeed": ("velocities/vt-fps", METRES_PER_FOOT),
@@ -47,7 +47,7 @@ OUTPUTS: dict[str, tuple[str, float]] = {
     "roll": ("attitude/phi-rad", 1.0),
     "pitch": ("attitude/theta-rad", 1.0),
 }
-"""States that are compared after a doublet: JSBSim property, SI of its unit."""
+"""States that are compared after a doublet: JSBSim property, and SI value of its unit."""
 
 _MOVED_BY = {
     "elevator": ("alpha", "q", "pitch"),
@@ -55,25 +55,24 @@ _MOVED_BY = {
     "rudder": ("beta", "r"),
     "throttle": ("airspeed",),
 }
-"""States that each control is meant to move: a relative error means little for the others."""
+"""States compared for each control: relative errors of states that barely move mean little."""
 
 _DOUBLET_RECORDED = 6.0
 """Time over which a doublet's response is compared [s]."""
 
 _DOUBLET_HALF = 1.0
-"""Duration of each half of a doublet [s]."""
+"""Duration of either half of a doublet [s]."""
 
 _DOUBLET_SIZE = 0.01
-"""Deflection of each half of a doublet [-]."""
+"""Deflection in either half of a doublet [-]."""
 
 _SUBSTEPS = 8
-"""Substeps of a time step in a doublet [-]: JSBSim's integration errors are of first order."""
+"""Steps per time step in a doublet [-]: JSBSim's integration is of first order."""
 
 _SETTLED = 1e-9
 """Change of acceleration per substep below which servos and engines count as settled.
 
-Behind an engine as slow as a second that is 1e-6 from the end, where a doublet accelerates the
-aircraft by 1e-2 and more.
+With an engine lag of one second, an error of 1e-6 remains; a doublet causes at least 1e-2.
 """
 
 
@@ -83,10 +82,10 @@ class Response:
 
     Attributes
     ----------
-    command : name of the command, e.g. ``heading_rate``
-    size : of the step [SI]
-    time : shape (n,) [s], from the step
-    channels : shape (n,) each, deviations from trim by name of ``CHANNELS`` [SI]
+    command : name of the command, such as ``heading_rate``
+    size : size of the step [SI]
+    time : time after the step, shape (n,) [s]
+    channels : deviations from trim by name of ``CHANNELS``, shape (n,) each [SI]
     """
 
     command: str
@@ -102,7 +101,7 @@ class Response:
         return float(self.time[np.argmax(fraction >= 0.9)] - self.time[np.argmax(fraction >= 0.1)])
 
     def overshoot(self) -> float:
-        """Return how far the response goes past the step, as a fraction of the step [-]."""
+        """Return the overshoot as a fraction of the step [-]."""
         return max(0.0, float(np.max(self.channels[self.command] / self.size)) - 1.0)
 
     def largest(self, channel: str) -> float:
@@ -118,7 +117,7 @@ def predicted_step(
     Parameters
     ----------
     schedule, index : the design, and the index of its airspeed
-    command, size, duration : name of the command, its step [SI], and how long it is recorded [s]
+    command, size, duration : name of the command, its step [SI], and the recorded time [s]
     """
     autopilot = linear_controller(ControlLaw(schedule), schedule.level(index))
     loop = closed_loop(schedule.models[index][LEVEL_GAINS], autopilot, schedule.delay)
@@ -149,7 +148,7 @@ def model_step(schedule: Schedule, size: float, duration: float) -> Response:
 def flown_step(
     aircraft: AutopilotedAircraft, start: Trim, command: str, size: float, duration: float
 ) -> Response:
-    """Return the response in JSBSim to a step from an equilibrium; see ``predicted_step``."""
+    """Return the response flown in JSBSim to a step from an equilibrium; see ``predicted_step``."""
     aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
     if command == "airspeed":
         aircraft.command_airspeed(start.airspeed + size)
@@ -165,9 +164,9 @@ def flown_step(
 def measure_lag(aircraft: AutopilotedAircraft, start: Trim, bank: float) -> float:
     """Return the lag of the flown heading rate behind a slow sinusoidal command [s].
 
-    The amplitude is half the heading rate of a turn at ``bank`` [rad]. The frequency is that
-    heading rate itself, near which those of the guidance lie. The phase is fitted over two periods
-    after two.
+    The amplitude is half the heading rate of a turn at ``bank`` [rad]. The angular frequency equals
+    that heading rate, close to the frequencies of the guidance. The phase is fitted over the third
+    and fourth periods.
     """
     frequency = heading_rate_for_bank(bank, start.airspeed)
     amplitude = 0.5 * frequency
@@ -187,11 +186,11 @@ def measure_lag(aircraft: AutopilotedAircraft, start: Trim, bank: float) -> floa
 
 
 def verify_model(fdm: Fdm, model: LinearModel, level: Trim) -> list[dict[str, Any]]:
-    """Return the largest error of each prediction over the largest excursion flown.
+    """Return the largest error of predicted doublet responses, over the largest flown excursion.
 
-    There is one record for each control and each state it is meant to move: ``input``, ``output``
-    and ``error``, which is None if the state did not move. The ``model`` is that of ``fdm`` about
-    the equilibrium ``level``; another simulation of the aircraft flies at a finer time step.
+    Each record has the control ``input``, the state ``output`` and the ``error`` [-], which is None
+    if the state did not move. ``model`` is the linear model of ``fdm`` about the equilibrium
+    ``level``. A new simulation with a finer time step flies the doublets.
     """
     fine = Fdm(fdm.spec, time_step=fdm.time_step / _SUBSTEPS)
     time = fine.time_step * np.arange(round(_DOUBLET_RECORDED / fine.time_step), dtype=np.float64)
@@ -214,7 +213,7 @@ def verify_model(fdm: Fdm, model: LinearModel, level: Trim) -> list[dict[str, An
 
 
 def _flown_with(fdm: Fdm, level: Trim, name: str, deflections: Array) -> dict[str, Array]:
-    """Return the deviations of ``OUTPUTS`` under deflections [-] of a control from equilibrium."""
+    """Return the deviations of ``OUTPUTS`` from equilibrium, for a control's deflections [-]."""
     fdm.command(dict(level.inputs))
     fdm.allow_engine_restart()
     fdm.place(level.state())
@@ -234,9 +233,9 @@ def _deviations(
     steps: int,
     before_step: Callable[[int], None],
 ) -> dict[str, Array]:
-    """Fly some time steps; return the deviations of quantities from their first values [SI].
+    """Fly ``steps`` time steps; return the deviations of quantities from their first values [SI].
 
-    ``before_step`` is called with the number of each step, after its values are read.
+    ``before_step`` is called with each step's number, after the values have been read.
     """
     reads = [fdm.node(name).get_double_value for name, _ in quantities.values()]
     rows = []

@@ -1,9 +1,9 @@
-"""Whether the control surfaces follow their commands, from the positions that servos report.
+"""Detect stuck control surfaces from the positions that servos report.
 
-A sound servo trails its command by its lag and its limited speed, from stop to stop when a turn is
-reversed. A stuck servo stays where it is while its commands change. Time distinguishes them without
-a model of the servo: the command of a sound servo was at its present position, or beyond, within
-the last few tenths of a second.
+A sound servo trails its command because of its lag and its limited speed. A stuck servo stays at
+its position while its commands change. No model of the servo is needed to distinguish them: the
+command of a sound servo has been at or beyond the present position within the last few tenths of a
+second.
 """
 
 from collections import deque
@@ -15,11 +15,11 @@ from aircraft.spec import Feedback
 from innerloop.jsbsim.system import commanded_property
 
 _TRAVEL_TIME = 0.4
-"""Longest time a sound surface may trail its command [s]: the X8's travels 0.30 s, lags 25 ms."""
+"""Longest time that a sound surface trails its command [s]: X8, 0.30 s of travel, 25 ms of lag."""
 
 
 class _Surface(NamedTuple):
-    """Command [-] and position of a surface, its travel [unit of position], and recent commands."""
+    """Command [-], position and travel [unit of the position] of a surface, and recent commands."""
 
     command: Callable[[], float]
     position: Callable[[], float]
@@ -30,13 +30,13 @@ class _Surface(NamedTuple):
 class ServoMonitor:
     """Monitors every control surface of one aircraft in flight.
 
-    The throttle is not monitored: it moves no surface. A control input without a servo model counts
-    as being at its command, as it is behind the switch of a fault.
+    The throttle is not monitored, because it moves no surface. Without a servo model, a surface is
+    taken to be at the command that a fault may have overwritten.
 
     Parameters
     ----------
-    fdm : of an aircraft with its autopilot
-    time_step : between calls of ``watch`` or ``error`` [s]
+    fdm : simulation of an aircraft with its autopilot
+    time_step : time between calls of ``watch`` or ``error`` [s]
     """
 
     def __init__(self, fdm: Fdm, time_step: float) -> None:
@@ -71,9 +71,9 @@ class ServoMonitor:
             surface.recent.append(surface.command())
 
     def error(self) -> float:
-        """Record the commands; return the largest distance of a surface from the recent ones [-].
+        """Record the commands; return the largest distance of a surface from its recent commands.
 
-        The distance is a fraction of the surface's travel.
+        The distance is a fraction of the surface's travel [-].
         """
         worst = 0.0
         for command, position, travel, recent in self._surfaces:
@@ -81,7 +81,7 @@ class ServoMonitor:
             at = position() / travel
             recent.append(now)
             oldest = recent[0]
-            # Between the oldest and the newest command a surface is at no distance from them.
+            # A surface between its oldest and newest command follows its commands.
             if not (oldest <= at <= now or now <= at <= oldest):
                 off = at - max(recent) if at > now else min(recent) - at
                 worst = off if off > worst else worst

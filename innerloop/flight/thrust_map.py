@@ -1,7 +1,7 @@
-"""Thrust over airspeed and throttle, and drag and angle of attack over airspeed and lift.
+"""Measure thrust over airspeed and throttle, and drag and angle of attack over airspeed and lift.
 
-Thrust is measured with the body held still, drag and angle of attack in the equilibria of the
-autopilot's tables: there thrust is equal to drag.
+Thrust is measured with the body held still. Drag and angle of attack are measured in the equilibria
+of the autopilot's tables, where drag equals thrust.
 """
 
 import math
@@ -16,25 +16,25 @@ from innerloop.schedule import Schedule
 
 FORWARD_FORCE = "forces/fbx-total-lbs"
 DOWNWARD_FORCE = "forces/fbz-total-lbs"
-"""Forces of air and engines on the body [lbf]; over the weight, what accelerometers measure."""
+"""Force of air and engines downwards [lbf]; an accelerometer measures it over the mass."""
 
 THRUST = "forces/fbx-prop-lbs"
-"""Force of the engines along the body's axis [lbf]."""
+"""Force of the engines along the body's longitudinal axis [lbf]."""
 
 WEIGHT = "inertia/weight-lbs"
 """Weight of the aircraft [lbf]."""
 
 _THROTTLE_STEPS = 10
-"""Steps of the throttle from end to end in the table [-]: a propeller brakes at little throttle."""
+"""Steps of the throttle in the table from idle to full [-]: a propeller brakes at low throttle."""
 
 _SETTLED = 1e-6
 """Change of acceleration in a step below which engines count as settled [m/s^2, rad/s^2]."""
 
 _SPOOLED = 0.9
-"""Share of the thrust's way from idle to full throttle after which it counts as there [-]."""
+"""Fraction of the change of thrust after which engines count as spooled up [-]."""
 
 _SPOOL_MAX = 20.0
-"""Longest time in which engines may come from idle to full throttle [s]."""
+"""Time limit for engines to spool up from idle to full throttle [s]."""
 
 Array = npt.NDArray[np.float64]
 
@@ -43,16 +43,17 @@ Array = npt.NDArray[np.float64]
 class ThrustMap:
     """Thrust and drag of one aircraft over its weight [-].
 
-    With n the lift over the weight and V the airspeed, the angle of attack is a0 + a1 n/V^2, and
-    the drag V^2 (c0 + c1 n/V^2 + c2 (n/V^2)^2): straight lift curve and parabolic polar.
+    Let n be the lift over the weight and V the airspeed. The angle of attack is a0 + a1 n/V^2 (a
+    linear lift curve), and the drag over the weight is V^2 (c0 + c1 n/V^2 + c2 (n/V^2)^2) (a
+    parabolic polar).
 
     Attributes
     ----------
-    airspeeds, throttles : of the table [m/s, -]
-    thrust : shape (airspeeds, throttles), with engines settled [-]
+    airspeeds, throttles : axes of the table [m/s, -]
+    thrust : thrust over weight with settled engines, shape (airspeeds, throttles) [-]
     attack : a0, a1 [rad, rad m^2/s^2]
     polar : c0, c1, c2 [s^2/m^2, -, m^2/s^2]
-    spool_time : from the command of full throttle at idle until nine tenths of the thrust are there
+    spool_time : time from the command of full throttle at idle until 90 % of the change of thrust
         [s]
     """
 
@@ -70,16 +71,16 @@ def measure_thrust(fdm: Fdm, schedule: Schedule) -> ThrustMap:
     Parameters
     ----------
     fdm : the bare aircraft; its state is changed
-    schedule : tables of its autopilot, with the equilibria
+    schedule : tables of the autopilot, with the equilibria
     """
     throttle = schedule.spec.input("throttle")
     throttles = np.linspace(throttle.lower, throttle.upper, _THROTTLE_STEPS + 1)
     level = [schedule.level(i) for i in range(len(schedule.airspeeds))]
-    table = [[_held(fdm, trim, float(at))[0] for at in throttles] for trim in level]
+    table = [[_settled_forces(fdm, trim, float(at))[0] for at in throttles] for trim in level]
     equilibria = [trim for row in schedule.trims for trim in row]
     loadings, squared, attacks, drags = [], [], [], []
     for trim in equilibria:
-        thrust, forward, lift = _held(fdm, trim, trim.inputs["throttle"])
+        thrust, forward, lift = _settled_forces(fdm, trim, trim.inputs["throttle"])
         along = forward * math.cos(trim.alpha) - lift * math.sin(trim.alpha)
         loadings.append(lift / trim.airspeed**2)
         squared.append(trim.airspeed**2)
@@ -98,8 +99,8 @@ def measure_thrust(fdm: Fdm, schedule: Schedule) -> ThrustMap:
     )
 
 
-def _held(fdm: Fdm, trim: Trim, throttle: float) -> tuple[float, float, float]:
-    """Return thrust, force forward and force upward over the weight at a throttle, settled [-]."""
+def _settled_forces(fdm: Fdm, trim: Trim, throttle: float) -> tuple[float, float, float]:
+    """Return settled thrust, forward force and upward force at a throttle, over the weight [-]."""
     fdm.place(trim.state())
     fdm.command({**trim.inputs, "throttle": throttle})
     with fdm.frozen():
@@ -113,9 +114,9 @@ def _held(fdm: Fdm, trim: Trim, throttle: float) -> tuple[float, float, float]:
 
 
 def _spool_time(fdm: Fdm, trim: Trim, idle: float, full: float) -> float:
-    """Return the time after which thrust stays within a tenth of its way to full throttle [s]."""
-    end = _held(fdm, trim, full)[0] * fdm.read(WEIGHT)
-    begin = _held(fdm, trim, idle)[0] * fdm.read(WEIGHT)
+    """Return the time from idle to 90 % of the change of thrust, at full throttle [s]."""
+    end = _settled_forces(fdm, trim, full)[0] * fdm.read(WEIGHT)
+    begin = _settled_forces(fdm, trim, idle)[0] * fdm.read(WEIGHT)
     fdm.command({**trim.inputs, "throttle": full})
     steps = round(_SPOOL_MAX / TIME_STEP)
     late = 0
@@ -130,6 +131,6 @@ def _spool_time(fdm: Fdm, trim: Trim, idle: float, full: float) -> float:
 
 
 def _fit(columns: Array, values: list[float]) -> list[float]:
-    """Return the least squares' coefficients of the columns."""
+    """Return the least-squares coefficients of the columns."""
     coefficients: list[float] = np.linalg.lstsq(columns, np.array(values), rcond=None)[0].tolist()
     return coefficients

@@ -1,15 +1,17 @@
-"""Turn reversals: how the heading rate follows them, and how far aircraft stray from that.
+"""Turn reversals: the response of the heading rate, and the deviation from the predicted path.
 
-The keep-out guard predicts turns by a dead time, a lag and the course that is still to come of
-earlier commands (``gnc/guard/turn.py``). Rolling, airspeed lost in the turn and integrators of the
-autopilot make the aircraft's path another one. A search over reversals finds the largest deviation.
-The deviation that counts is how much nearer the aircraft comes to what it turns away from, over the
-change of heading rate in the turn, or over the largest recent change of command if that is larger.
+The keep-out guard predicts turns with a dead time, a lag, and the pending course change of earlier
+commands (``gnc/guard/turn.py``). Rolling, loss of airspeed and the autopilot's integrators change
+the flown path. A search over reversals finds the largest deviation.
 
-A turn away from a disc at rest comes closest to it within a quarter of a turn. From a disc that
-closes in at the sine of an angle times the aircraft's speed, it comes closest later by that angle.
-So deviations are taken in directions that lean forward, and the turn is flown on by the largest
-lean.
+The deviation is the distance by which the aircraft comes closer to an obstacle than predicted. It
+is divided by the change of heading rate in the turn, or by the largest recent change of command if
+that is larger.
+
+A turn away from a disc at rest comes closest to the disc within a quarter of a turn. If the disc
+approaches at the aircraft's speed times the sine of an angle, the closest approach is later by that
+angle. Deviations are therefore also measured in directions that lean forward from abeam, and the
+turn is flown on by the largest lean.
 """
 
 import functools
@@ -47,56 +49,56 @@ from innerloop.jsbsim.system import HEADING_RATE
 from innerloop.robustness import CASES
 from innerloop.schedule import Schedule
 
-AIRCRAFT = {name: case.by for name, case in CASES.items() if case.periods_late == 0}
-"""The aircraft that fly reversals: as modelled first, then perturbed, by name."""
+REVERSAL_PERTURBATIONS = {name: case.by for name, case in CASES.items() if case.periods_late == 0}
+"""Perturbations of the aircraft that fly reversals, by name; the aircraft as modelled is first."""
 
-PART = 200
-"""Reversals of one task of a repeated search [-]: an interruption loses no more of each process."""
+REVERSALS_PER_TASK = 200
+"""Reversals in one task of a repeated search [-]: the most that an interruption loses."""
 
 _PROCESSES = 2
 
 _LEAD_FRACTION = 0.01
-"""Largest lead of the model, over the aircraft's final displacement [-]."""
+"""Largest lead of the model over the aircraft's final displacement [-]."""
 
 _REVERSALS_MIN, _REVERSALS_MAX = 20, 150
-"""Fewest and most reversals of every design's search [-]; ``--reversals`` flies more."""
+"""Least and largest number of reversals in a design's search [-]; ``--reversals`` flies more."""
 
 _SEARCH_TIME = 1000.0
-"""Flight time of that search, within those limits [s]."""
+"""Flight time of that search, which determines the number of reversals [s]."""
 
 _RANDOM_SHARE = 0.5
-"""Share of the reversals whose commands do not depend on the worst so far [-]."""
+"""Fraction of the reversals whose commands do not depend on earlier results [-]."""
 
 _WORST_KEPT = 2
-"""Number of the worst reversals so far near which the search tries further ones [-]."""
+"""Number of worst reversals that the search varies [-]."""
 
 _STEP_SIGMA = 0.15
-"""Standard deviation of a step to them, in command/omega_max and in log(duration) [-]."""
+"""Standard deviation of these variations, in command/omega_max and in log(duration) [-]."""
 
 _HOLD_MIN, _HOLD_MAX = 0.1, 3.0
-"""Shortest and longest time for which a command is held before the turn, over 1/omega_max [-]."""
+"""Shortest and longest duration of a command before the turn, over 1/omega_max [-]."""
 
 _COMMANDS_BEFORE = 3
-"""Commands before the turn [-]."""
+"""Number of commands before the turn [-]."""
 
 _SETTLED = 3.0
-"""Time after which a turn is settled, over 1/omega_max [-]."""
+"""Time until a turn is settled, over 1/omega_max [-]."""
 
 _ROLL_TIMES, _BACK_TIMES = (1.0, 1.5, 2.0), (0.2, 2.0, 3.0, 4.0)
-"""Durations of rolling to the other side and of rolling back since, over dead time and lag [-].
+"""Durations of a roll to the other side and of the roll back, over dead time plus lag [-].
 
-In the middle of a roll the aircraft turns on, and heading rates oscillate for as long after it.
+In the middle of a roll the aircraft still turns, and the heading rate oscillates afterwards.
 """
 
 _LEANS = np.radians([0.0, 30.0, 60.0])
-"""How far the direction away leans forward of abeam [rad]: the more, the faster the disc."""
+"""Angles forward of abeam at which deviations are measured [rad]: larger for faster discs."""
 
 Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TurnReversalResponse:
-    """A dead time [s] and a first-order lag [s] that displace the aircraft as it flies."""
+    """Dead time [s] and first-order lag [s] that give the displacement of the flown reversal."""
 
     delay: float
     lag: float
@@ -104,19 +106,20 @@ class TurnReversalResponse:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReversalSearch:
-    """What a search over reversals found.
+    """Result of a search over reversals.
 
     Attributes
     ----------
-    reversals : flown [-]
-    deviation : largest, over the change of heading rate as a share of a full reversal [m]
-    deviations : largest of each aircraft [m]; minus infinity for one that flew none
-    random_reversals : reversals that did not follow the worst so far [-]
-    p99_deviation : least deviation that at most one in a hundred of these exceeds [m]
-    command_before : heading-rate command just before the worst, over omega_max to the side of the
-        turn [-]
-    airspeed_before : airspeed at its beginning [m/s]
-    altitude_error : largest difference from the altitude that is held, in all of the flight [m]
+    reversals : number of reversals flown [-]
+    deviation : largest deviation, over the change of heading rate as a fraction of a full reversal
+        [m]
+    deviations : largest deviation of each aircraft [m]; minus infinity if it flew no reversal
+    random_reversals : number of reversals whose commands did not depend on earlier results [-]
+    p99_deviation : deviation that at most one in a hundred random reversals exceeds [m]
+    command_before : heading-rate command just before the worst reversal, over omega_max, positive
+        to the side of the turn [-]
+    airspeed_before : airspeed at the beginning of the worst reversal [m/s]
+    altitude_error : largest deviation from the commanded altitude in the whole flight [m]
     """
 
     reversals: int
@@ -134,20 +137,20 @@ def measure_turn_reversal(
 ) -> TurnReversalResponse:
     """Return the response to a reversal from a settled turn at ``bank`` [rad], left to right.
 
-    The measure is the displacement of the aircraft, the integral of its course error. Dead time and
-    lag are equal, and the shortest for which the model is nowhere ahead of the aircraft over a
-    quarter of a turn, except for 1 % of the final displacement. The lag of slow commands,
-    ``measure_lag``, is shorter: the aircraft rolls through twice the bank.
+    The displacement of the aircraft, the integral of its course error, is compared with the
+    model's. Dead time and lag are equal. They are the shortest with which the model leads the
+    aircraft by at most 1 % of the final displacement over a quarter of a turn. They are longer than
+    the lag of slow commands, ``measure_lag``, because the aircraft rolls through twice the bank.
 
     Parameters
     ----------
-    aircraft : with its autopilot; its flight is ended
+    aircraft : aircraft with its autopilot; its flight is ended
     start : straight and level equilibrium
-    bank : [rad]
+    bank : bank of the turn [rad]
 
     Raises
     ------
-    AircraftError : it does not follow the reversal
+    AircraftError : the aircraft does not follow the reversal
     """
     rate = heading_rate_for_bank(bank, start.airspeed)
     aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
@@ -180,7 +183,7 @@ def measure_turn_reversal(
 
 
 def displacement(time: Array, reversal: TurnReversalResponse) -> Array:
-    """Return the integral of the course error, ``time`` [s] after a unit step of command [s2]."""
+    """Return the model's displacement ``time`` [s] after a unit step of the command [s2]."""
     after = np.maximum(time - reversal.delay, 0.0)
     lag = reversal.lag
     late = np.minimum(time, reversal.delay)
@@ -188,7 +191,7 @@ def displacement(time: Array, reversal: TurnReversalResponse) -> Array:
 
 
 def perturbed_aircraft(spec: AircraftSpec, root: Path, by: Perturbation) -> AutopilotedAircraft:
-    """Return an aircraft under the autopilot of a JSBSim root, ``by`` factors off its model."""
+    """Return a perturbed aircraft under the autopilot of a JSBSim root."""
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(shutil.copytree(root, Path(folder) / "root"))
         perturb(copy / "aircraft" / spec.model / f"{spec.model}.xml", by)
@@ -199,16 +202,16 @@ def perturbed_aircraft(spec: AircraftSpec, root: Path, by: Perturbation) -> Auto
 def reversal_record(
     spec: AircraftSpec, root: Path, start: Trim, bank: float, slow_lag: float
 ) -> dict[str, Any]:
-    """Return the heading-rate response to a turn reversal, and the deviations that a search found.
+    """Return the response to a turn reversal, and the largest deviations of a search, as a record.
 
     Parameters
     ----------
     spec, root : the aircraft, and a JSBSim root of its autopilot
     start : straight and level equilibrium
-    bank : of the turns [rad]
-    slow_lag : of the heading rate behind slow commands [s]
+    bank : bank of the turns [rad]
+    slow_lag : lag of the heading rate behind slow commands [s]
     """
-    aircraft = [perturbed_aircraft(spec, root, by) for by in AIRCRAFT.values()]
+    aircraft = [perturbed_aircraft(spec, root, by) for by in REVERSAL_PERTURBATIONS.values()]
     response = measure_turn_reversal(aircraft[0], start, bank)
     count = reversals_of_a_design(bank, start.airspeed)
     found = search_reversals(
@@ -238,7 +241,7 @@ def repeat_search(
     *,
     done: Callable[[int, float], None],
 ) -> dict[str, Any]:
-    """Return the largest deviation in a search with other random numbers than the design's own.
+    """Repeat the search for the largest deviation with new random numbers; return its record.
 
     An interrupted search returns the result of its finished tasks, if there are any.
 
@@ -246,9 +249,9 @@ def repeat_search(
     ----------
     schedule, record : the design and its record, which contains the response
     root : JSBSim root of its autopilot
-    reversals : how many are flown
-    done : called after each task with the number of reversals flown, and the largest deviation
-        so far [m]
+    reversals : number of reversals
+    done : called after each task with the number of reversals flown and the largest deviation so
+        far [m]
     """
     recorded = record["turn_reversal"]
     search = functools.partial(
@@ -265,9 +268,9 @@ def repeat_search(
         min(_PROCESSES, os.cpu_count() or 1), initializer=follow_parent
     ) as pool:
         running = [
-            pool.submit(search, min(PART, reversals - first), seed)
+            pool.submit(search, min(REVERSALS_PER_TASK, reversals - first), seed)
             # The design's own search has the seed 0.
-            for seed, first in enumerate(range(0, reversals, PART), start=1)
+            for seed, first in enumerate(range(0, reversals, REVERSALS_PER_TASK), start=1)
         ]
         try:
             for finished in as_completed(running):
@@ -280,7 +283,7 @@ def repeat_search(
             pool.shutdown(cancel_futures=True)
             if not searches:
                 raise
-            print("interrupted; what was found so far is recorded", file=sys.stderr)
+            print("interrupted; the finished reversals are recorded", file=sys.stderr)
     worst = max(searches, key=lambda search: search.deviation)
     return {
         "reversals": sum(search.reversals for search in searches),
@@ -301,22 +304,23 @@ def _search_perturbed(
     reversals: int,
     seed: int,
 ) -> ReversalSearch:
-    aircraft = [perturbed_aircraft(spec, root, by) for by in AIRCRAFT.values()]
+    aircraft = [perturbed_aircraft(spec, root, by) for by in REVERSAL_PERTURBATIONS.values()]
     return search_reversals(
         aircraft, start, bank, response, slow_lag, reversals=reversals, seed=seed
     )
 
 
 def _largest_deviations(searches: Sequence[ReversalSearch]) -> dict[str, float]:
-    """Return the largest deviation [m] of each aircraft that flew a reversal, by its name."""
+    """Return the largest deviation [m] by name of each aircraft that flew a reversal."""
     found = {
-        name: max(search.deviations[i] for search in searches) for i, name in enumerate(AIRCRAFT)
+        name: max(search.deviations[i] for search in searches)
+        for i, name in enumerate(REVERSAL_PERTURBATIONS)
     }
     return {name: deviation for name, deviation in found.items() if math.isfinite(deviation)}
 
 
 def reversals_of_a_design(bank: float, airspeed: float) -> int:
-    """Return how many reversals a design flies at a bank [rad] and an airspeed [m/s]."""
+    """Return the number of reversals in a design's search, by bank [rad] and airspeed [m/s]."""
     quarter_turn = 0.5 * math.pi / heading_rate_for_bank(bank, airspeed)
     return min(max(round(0.5 * _SEARCH_TIME / quarter_turn), _REVERSALS_MIN), _REVERSALS_MAX)
 
@@ -332,22 +336,22 @@ def search_reversals(
     seed: int = 0,
     settled: bool = False,
 ) -> ReversalSearch:
-    """Return the largest deviation from the predicted turn in so many reversals.
+    """Search for the reversal with the largest deviation from the predicted turn.
 
     The aircraft take turns, each in one long flight. The first reversals begin after a roll to the
-    other side, the next after a few full turns to random sides for random durations; before every
-    second one of these, a command is less than full. Those of the second half climb: aircraft and
-    commands are those of one of the worst so far, the commands changed at random.
+    other side. The next ones begin after full commands to random sides for random durations; in
+    every second one a command is less than full. The second half is a random local search: it
+    repeats one of the worst reversals so far with randomly varied commands.
 
     Parameters
     ----------
-    aircraft : with their autopilot, as modelled and perturbed; their flight is ended
+    aircraft : aircraft with their autopilot, as modelled and perturbed; their flight is ended
     start : straight and level equilibrium
-    bank : whose coordinated turn is omega_max [rad]
-    response : of the heading rate to a reversal
-    slow_lag : delay behind slow commands [s]
-    reversals, seed : how many are flown, and of their random numbers
-    settled : whether each aircraft reverses a settled full turn as well, from either side
+    bank : bank of the coordinated turn at omega_max [rad]
+    response : response of the heading rate to a reversal
+    slow_lag : lag of the heading rate behind slow commands [s]
+    reversals, seed : number of reversals, and seed of the random numbers
+    settled : whether each aircraft also reverses a settled full turn from either side
     """
     rate = heading_rate_for_bank(bank, start.airspeed)
     generator = np.random.default_rng(seed)
@@ -355,7 +359,7 @@ def search_reversals(
     flights = [_Flight(each, start, response, slow_lag, rate) for each in aircraft]
     flown: list[_Reversal] = []
 
-    def reverse(which: int, before: _Before) -> None:
+    def reverse(which: int, before: _EntryCommands) -> None:
         flight = flights[which]
         for share, held in before.commands:
             flight.fly(share * rate, held / rate)
@@ -379,7 +383,7 @@ def search_reversals(
     if settled:
         for which in range(len(flights)):
             for side in (1.0, -1.0):
-                reverse(which, _Before(((-side, _SETTLED),), side))
+                reverse(which, _EntryCommands(((-side, _SETTLED),), side))
     worst_of_all = max(flown, key=lambda reversal: reversal.deviation)
     random_ones = [reversal.deviation for reversal in flown[:random_count] + flown[reversals:]]
     return ReversalSearch(
@@ -397,63 +401,63 @@ def search_reversals(
     )
 
 
-class _Before(NamedTuple):
-    """Commands before a reversal, over omega_max and held over 1/omega_max; then to which side."""
+class _EntryCommands(NamedTuple):
+    """Commands before a reversal: (command/omega_max, duration omega_max), and the turn's side."""
 
     commands: tuple[tuple[float, float], ...]
     side: float
 
 
 class _Reversal(NamedTuple):
-    """Deviation [m] of a reversal of one of the aircraft, and airspeed at its beginning [m/s]."""
+    """A flown reversal: deviation [m], index of the aircraft, commands before, airspeed [m/s]."""
 
     deviation: float
     which: int
-    before: _Before
+    before: _EntryCommands
     airspeed: float
 
 
-def _rolls(late: float) -> list[_Before]:
-    """Return turns to the other side and back; ``late`` is dead time and lag over 1/omega_max."""
+def _rolls(late: float) -> list[_EntryCommands]:
+    """Return rolls to the other side and back; ``late`` is dead time plus lag, over 1/omega_max."""
     return [
-        _Before(((1.0, _SETTLED), (-1.0, rolling * late), (1.0, back * late)), 1.0)
+        _EntryCommands(((1.0, _SETTLED), (-1.0, rolling * late), (1.0, back * late)), 1.0)
         for rolling in _ROLL_TIMES
         for back in _BACK_TIMES
     ]
 
 
-def _random(generator: np.random.Generator, *, full: bool) -> _Before:
-    """Return random commands and a random side: full turns, or one of them less than ``full``."""
+def _random(generator: np.random.Generator, *, full: bool) -> _EntryCommands:
+    """Return random commands and a random side; unless ``full``, one command is reduced."""
     shares = generator.choice([-1.0, 1.0], _COMMANDS_BEFORE)
     if not full:
         shares[generator.integers(_COMMANDS_BEFORE)] = generator.uniform(-1.0, 1.0)
     log_held = generator.uniform(math.log(_HOLD_MIN), math.log(_HOLD_MAX), _COMMANDS_BEFORE)
     held = np.exp(log_held)
     side = float(generator.choice([-1.0, 1.0]))
-    return _Before(tuple(zip(shares.tolist(), held.tolist(), strict=True)), side)
+    return _EntryCommands(tuple(zip(shares.tolist(), held.tolist(), strict=True)), side)
 
 
-def _changed(before: _Before, generator: np.random.Generator) -> _Before:
-    """Return commands near others."""
+def _changed(before: _EntryCommands, generator: np.random.Generator) -> _EntryCommands:
+    """Return randomly varied commands."""
     commands = []
     for share, held in before.commands:
         turn, longer = _STEP_SIGMA * generator.standard_normal(2)
         changed_share = float(np.clip(share + turn, -1.0, 1.0))
         changed_hold = float(np.clip(held * math.exp(longer), _HOLD_MIN, _HOLD_MAX))
         commands.append((changed_share, changed_hold))
-    return _Before(tuple(commands), before.side)
+    return _EntryCommands(tuple(commands), before.side)
 
 
 class _Flight:
-    """An aircraft under way, what it was commanded, and the course that is still to come of that.
+    """An aircraft in flight, with its recent commands and their pending course change.
 
-    The model of the turn is the guard's (``gnc/guard/turn.py``), at the time step of the aircraft.
-    Parameters are those of ``search_reversals``, and omega_max [rad/s].
+    The turn is predicted with the guard's model (``gnc/guard/turn.py``) at the aircraft's time
+    step. Parameters are as in ``search_reversals``; ``rate_max`` is omega_max [rad/s].
 
     Attributes
     ----------
-    altitude_error : largest difference from the altitude at the release [m]
-    lack : commanded course that has not been turned yet [rad]
+    altitude_error : largest deviation from the altitude at the release [m]
+    lack : commanded course change that has not been flown yet [rad]
     """
 
     def __init__(
@@ -479,14 +483,14 @@ class _Flight:
         self._kept = math.exp(-TIME_STEP / (PENDING_DECAY * response.lag))
         self._fading = math.exp(-TIME_STEP / (CHANGE_DECAY * response.lag))
         self._largest_change = 0.0
-        # Those that have not acted yet, and before them those of the last piece.
+        # Commands of the last piece of the flight, then those that have not acted yet.
         self._commands: list[float] = [0.0] * self._delay_steps
         self.altitude_error = 0.0
         self.lack = 0.0
 
     @property
     def speed(self) -> float:
-        """Ground speed, in still air [m/s]."""
+        """Ground speed [m/s]; the air is still."""
         return math.hypot(self._north(), self._east()) * METRES_PER_FOOT
 
     @property
@@ -495,7 +499,7 @@ class _Flight:
         return max(LEAST_CHANGE, self._largest_change / (2.0 * self._rate_max))
 
     def fly(self, heading_rate: float, duration: float) -> Array:
-        """Return the path [m], shape (steps, 2), under a command [rad/s] held for a time [s]."""
+        """Hold a heading-rate command [rad/s] for a time [s]; return the path [m], (steps, 2)."""
         self._aircraft.command_heading_rate(heading_rate)
         steps = max(1, round(duration / TIME_STEP))
         values = [self._north(), self._east(), self._rate(), self._height()]
@@ -514,12 +518,12 @@ class _Flight:
     def predicted_turn(self, turn: float, duration: float, speed: float) -> tuple[Array, float]:
         """Return the predicted path [m], shape (steps, 2), and the change of heading rate [-].
 
-        That change is counted from when the command acts, over a full reversal.
+        The change is counted from the time at which the command acts, over a full reversal.
 
         Parameters
         ----------
-        turn, duration : the command [rad/s], held on [s]
-        speed : of the vehicle [m/s]
+        turn, duration : command [rad/s], and its duration [s]
+        speed : speed of the vehicle [m/s]
         """
         steps = max(1, round(duration / TIME_STEP))
         lag = self._response.lag
@@ -541,7 +545,7 @@ class _Flight:
         return np.asarray(path), max(self.change, change)
 
     def _take_in(self, heading_rate: float, velocities_and_rates: Array) -> None:
-        """Take in a held command [rad/s] and what was flown under it."""
+        """Update the pending course change with a held command [rad/s] and the flown motion."""
         steps = len(velocities_and_rates) - 1
         newest = abs(heading_rate - self._commands[-1])
         self._largest_change = max(newest, self._largest_change) * self._fading**steps
@@ -556,7 +560,7 @@ class _Flight:
 
 
 def _deviation(flown: Array, predicted: Array, side: float) -> float:
-    """Return the largest lack of distance from what is turned away from [m]."""
+    """Return the largest distance by which the flown path lies closer to the obstacle [m]."""
     heading = np.gradient(predicted, axis=0)
     course = np.arctan2(heading[:, 1], heading[:, 0])
     lack = predicted - flown

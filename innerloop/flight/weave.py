@@ -1,10 +1,10 @@
-"""How an aircraft weaves, as its sensors see it: the wind that is measured then is a little wrong.
+"""Record an aircraft's weaves with its sensors, to find the bias of the measured wind.
 
-The wind is measured by the triangle of ground speed, airspeed and the course through the air. That
-course is the heading and the crab angle of a steady turn at V_r, at the bank of the moment. While
-an aircraft rolls, its crab angle is another one, and a weave rolls at the same places of each of
-its periods, so that what is wrong does not average out. In a turn at another airspeed the angle of
-attack is another one, and so is the crab angle, for as long as the turn lasts.
+The wind follows from ground speed, airspeed and the course through the air. That course is
+estimated as the heading plus the crab angle of a steady turn at V_r with the present bank. During a
+roll the crab angle differs. A weave rolls at the same points of every period, so the error does not
+average out. In a turn at another airspeed the angle of attack differs, and the crab angle is wrong
+for the whole turn.
 """
 
 import math
@@ -17,20 +17,20 @@ from common.physics import METRES_PER_FOOT, heading_rate_for_bank
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 
 INTERVAL = 0.5
-"""Time between the samples of a weave [s]: as often as the guidance measures the wind."""
+"""Time between the samples of a weave [s], equal to the guidance's interval of wind samples."""
 
 _SWINGS = (0.4, 0.8, 1.57)
-"""How far courses swing to either side of the middle [rad]."""
+"""Amplitudes of the course in weaves [rad]."""
 
 
 class WeaveSample(NamedTuple):
-    """What sensors read in a weave.
+    """Sensor readings at one time of a weave.
 
     Attributes
     ----------
     airspeed : [m/s]
-    heading, roll : of the body [rad]
-    velocity_north, velocity_east : over the ground, in still air [m/s]
+    heading, roll : attitude of the body [rad]
+    velocity_north, velocity_east : velocity over the ground in still air [m/s]
     """
 
     airspeed: float
@@ -41,16 +41,16 @@ class WeaveSample(NamedTuple):
 
 
 Samples = tuple[WeaveSample, ...]
-"""A stretch of a flight, every ``INTERVAL``."""
+"""Samples of a part of a flight, at every ``INTERVAL``."""
 
 
 class Weave(NamedTuple):
-    """A weave, from straight and level flight on.
+    """A weave that begins in straight and level flight.
 
     Attributes
     ----------
-    entry : its first turn
-    period : one period of it, once another one has been flown
+    entry : samples of the first turn
+    period : samples of the second period
     """
 
     entry: Samples
@@ -58,7 +58,7 @@ class Weave(NamedTuple):
 
 
 class _Turn(NamedTuple):
-    """A turn of a weave: airspeed that is commanded [m/s], and its heading rate [rad/s]."""
+    """A turn of a weave: commanded airspeed [m/s] and heading rate [rad/s]."""
 
     airspeed: float
     rate: float
@@ -67,15 +67,16 @@ class _Turn(NamedTuple):
 def measure_weaves(
     aircraft: AutopilotedAircraft, start: Trim, bank: float, slowest: float, fastest: float
 ) -> tuple[Weave, ...]:
-    """Return weaves of several widths at its airspeed, at the slowest and the fastest one, and with
-    slow turns to the left and fast ones to the right.
+    """Return weaves of several amplitudes at V_r, at the slowest and the fastest airspeed.
+
+    Further weaves turn slowly to the left and fast to the right.
 
     Parameters
     ----------
-    aircraft : with its autopilot; its flight is ended
-    start : straight and level equilibrium
-    bank : of the turns at its airspeed, and the largest at others [rad]
-    slowest, fastest : airspeeds that are commanded [m/s]
+    aircraft : aircraft with its autopilot; its flight is ended
+    start : straight and level equilibrium, at V_r
+    bank : bank of the turns at V_r, and the largest bank at other airspeeds [rad]
+    slowest, fastest : commanded airspeeds [m/s]
     """
     largest = heading_rate_for_bank(bank, start.airspeed)
     usual, slow, fast = (
@@ -91,7 +92,7 @@ def measure_weaves(
 def _weave(
     aircraft: AutopilotedAircraft, start: Trim, left: _Turn, right: _Turn, swing: float
 ) -> Weave:
-    """Return a weave whose courses swing by an angle to either side of the middle [rad]."""
+    """Return a weave whose course has the amplitude ``swing`` [rad]."""
     aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
 
     def turn(side: float, of: _Turn, course: float) -> list[WeaveSample]:
@@ -106,7 +107,7 @@ def _weave(
 
 
 def _samples(aircraft: AutopilotedAircraft, number: int) -> Iterator[WeaveSample]:
-    """Yield samples of a flight that goes on."""
+    """Continue the flight; yield ``number`` samples."""
     read = aircraft.fdm.read
     for _ in range(number):
         aircraft.fdm.step(round(INTERVAL / TIME_STEP))

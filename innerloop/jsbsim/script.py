@@ -1,4 +1,4 @@
-"""A JSBSim script that flies an aircraft under its autopilot without Python."""
+"""Write a JSBSim script that flies an aircraft under its autopilot without Python."""
 
 import itertools
 import math
@@ -33,10 +33,10 @@ from innerloop.jsbsim.system import (
 from innerloop.schedule import Schedule
 
 OUTPUT_RATE = 20.0
-"""Rows per second of the script's output file [Hz]."""
+"""Rate of rows in the script's output file [Hz]."""
 
 _AFTERWARDS = 10.0
-"""Flight after the last command [s]."""
+"""Flight time after the last command [s]."""
 
 _MOTION = (
     "position/lat-geod-deg",
@@ -58,7 +58,7 @@ _MOTION = (
 
 
 class Command(NamedTuple):
-    """A command's time after the release [s], JSBSim property, value [SI], and note in words."""
+    """A command: time after the release [s], JSBSim property, value [SI], and note in words."""
 
     time: float
     name: str
@@ -69,10 +69,10 @@ class Command(NamedTuple):
 def demonstration(envelope: Envelope, start: Trim) -> tuple[Command, ...]:
     """Return commands that demonstrate the autopilot: turn, climb, change speed, and back.
 
-    The turns are flown at a quarter of the heading rate of the largest commanded bank. The altitude
-    changes by the distance flown in half a second. The airspeed changes towards the farther end of
-    the envelope, by a tenth or by half the distance to that end, whichever is less. It begins in
-    the level equilibrium ``start``.
+    The flight begins in the level equilibrium ``start``. Turns have a quarter of the heading rate
+    at the largest commanded bank. The altitude changes by the distance flown in half a second. The
+    airspeed changes towards the farther end of the envelope, by a tenth or by half the distance to
+    that end, whichever is less.
     """
     heading_rate = 0.25 * heading_rate_for_bank(envelope.bank_max, start.airspeed)
     altitude_step = 0.5 * start.airspeed
@@ -97,8 +97,8 @@ def demonstration(envelope: Envelope, start: Trim) -> tuple[Command, ...]:
 def write_script(schedule: Schedule, root: Path) -> Path:
     """Write a JSBSim script of ``demonstration`` into a root of ``write_root``; return its path.
 
-    The script releases the aircraft as ``AutopilotedAircraft.release`` does, at 0 s of its clock,
-    from level flight at the middle design airspeed.
+    The script releases the aircraft in the same way as ``AutopilotedAircraft.release``, at 0 s of
+    its clock, in level flight at the middle design airspeed.
     """
     spec, start = schedule.spec, schedule.level(schedule.middle)
     commands = demonstration(schedule.envelope, start)
@@ -126,7 +126,7 @@ def write_script(schedule: Schedule, root: Path) -> Path:
         end=commands[-1].time + _AFTERWARDS,
         step=TIME_STEP,
         rate=OUTPUT_RATE,
-        before=_before(start, held * TIME_STEP),
+        before=_initial_properties(start, held * TIME_STEP),
         events="\n".join(events),
         columns="\n".join(
             f'    <property caption="{column}">{column}</property>' for column in columns(fdm)
@@ -137,7 +137,7 @@ def write_script(schedule: Schedule, root: Path) -> Path:
 
 
 def _preparations(fdm: Fdm, period: int) -> tuple[int, list[str]]:
-    """Return how many steps the body is held before release, and the events in that time."""
+    """Return the number of time steps in which the body is held, and the events in that time."""
     settle = hold_steps(fdm.spec, period)
     run_up = (2 if fdm.cranked else 1) * RUN_UP_STEPS if fdm.spec.engine_flags else 0
     held = settle + run_up
@@ -157,20 +157,20 @@ def _preparations(fdm: Fdm, period: int) -> tuple[int, list[str]]:
 def columns(fdm: Fdm) -> list[str]:
     """Return the columns of the script's output file after ``Time``, as JSBSim properties.
 
-    They are motion, commands, controls and engines of ``fdm``, the aircraft under its autopilot.
+    They are motion, commands, controls and engines of the aircraft with its autopilot, ``fdm``.
     """
     names = [
         *_MOTION,
         *(command for i in fdm.spec.inputs for command in i.commands),
         *(s.position for s in fdm.spec.driven_states),
     ]
-    # Not set-running, which stays 0 for an electric motor that runs.
+    # The property set-running is not used: it is 0 for a running electric motor.
     thrusts = (f"propulsion/engine[{engine}]/thrust-lbs" for engine in itertools.count())
     return [*names, *itertools.takewhile(fdm.has, thrusts)]
 
 
-def _before(start: Trim, held: float) -> str:
-    """Return the properties to set before the initial state, for a body then ``held`` [s]."""
+def _initial_properties(start: Trim, held: float) -> str:
+    """Return the properties to set before the initial state, for a body held for ``held`` [s]."""
     values = (
         *initial_conditions(before_hold(start.state(), held)),
         (AIRSPEED_COMMAND, start.airspeed),
@@ -182,10 +182,10 @@ def _before(start: Trim, held: float) -> str:
 
 
 def _event(note: str, step: int, values: Sequence[tuple[str, float]]) -> str:
-    """Return an event that sets values between ``step`` time steps from release and the next one.
+    """Return an event that sets values ``step`` time steps after the release.
 
-    JSBSim advances its clock before it evaluates events, and its rounding errors add up: the half
-    step is far from both neighbours.
+    JSBSim advances its clock before it evaluates events, and the clock accumulates rounding errors.
+    The condition therefore stands half a step later, between two steps.
     """
     lines = "\n".join(
         f'      <set name="{name}" value="{float(value)!r}"/>' for name, value in values

@@ -1,11 +1,11 @@
-"""The autopilot written out as a JSBSim ``<system>``, and a JSBSim root that flies it.
+"""Write the autopilot as a JSBSim ``<system>``, and a JSBSim root that flies it.
 
 The commands are ``AIRSPEED_COMMAND`` [m/s], ``ALTITUDE_COMMAND`` [m] and ``HEADING_RATE_COMMAND``
 [rad/s].
 
-A component costs JSBSim more than a table does: some forty components were a third of its time
-step. So a value is a component only if it is read from outside, a state, looked up in a table, or
-expensive to compute twice.
+Components take JSBSim more time than tables: forty components take a third of a time step. A value
+is a component only if it is read from outside, is a state, is looked up in a table, or is expensive
+to compute twice.
 """
 
 import math
@@ -29,19 +29,19 @@ HEADING_RATE_COMMAND = "autopilot/heading-rate-command-rad_sec"
 HEADING_RATE = "autopilot/heading-rate-rad_sec"
 BANK_COMMAND = "autopilot/bank-command-rad"
 CONTROL_COMMAND = "autopilot/{}-command"
-"""Pattern of the properties with the command of a control [-], by its name in the linear model."""
+"""Pattern of the property with the command of a control [-]; the name is the linear model's."""
 
 RESET = "autopilot/reset"
-"""Negative to hold every integrator at 0, otherwise 0."""
+"""Property that is negative to hold every integrator at 0, otherwise 0."""
 
 PERIOD = "autopilot/period-steps"
-"""Time steps from one computation of the autopilot to the next."""
+"""Property with the number of time steps between computations of the autopilot."""
 
 ELEVATOR_HELD = "autopilot/elevator-held"
-"""1 to hold the elevator instead of controlling it, otherwise 0."""
+"""Property that is 1 to hold the elevator instead of controlling it, otherwise 0."""
 
 HELD_ELEVATOR = "autopilot/held-elevator"
-"""Command at which the elevator is held [-]."""
+"""Property with the command at which the elevator is held [-]."""
 
 _AIRSPEED = "autopilot/airspeed-mps"
 _SIDESLIP = "aero/beta-rad"
@@ -60,10 +60,11 @@ Array = npt.NDArray[np.float64]
 
 
 def hold_steps(spec: AircraftSpec, period: int) -> int:
-    """Return how many time steps a body is held before its release while servos and engines settle.
+    """Return the number of time steps for which a body is held before its release.
 
-    These are whole periods [time steps] of the autopilot, so that it computes in the last of them.
-    Guidance and record read a whole number of periods later, and so what it computed then.
+    Servos and engines settle in this time. It is a whole number of the autopilot's periods [time
+    steps], so the autopilot computes in the last step. Guidance and record then read new values,
+    because they follow whole periods later.
     """
     settle = round(spec.settle_time / TIME_STEP)
     return settle + -settle % period
@@ -75,7 +76,7 @@ def system_name(spec: AircraftSpec) -> str:
 
 
 def commanded_property(control_input: ControlInput) -> str:
-    """Return the property of the command that JSBSim gets from the autopilot for a control [-]."""
+    """Return the property with the command that the autopilot gives JSBSim for a control [-]."""
     if control_input.effectiveness:
         return f"autopilot/{control_input.name}-surface-command"
     return CONTROL_COMMAND.format(control_input.name)
@@ -84,8 +85,8 @@ def commanded_property(control_input: ControlInput) -> str:
 def write_root(schedule: Schedule, directory: Path) -> Path:
     """Write a JSBSim root with a copy of the aircraft, its engines and the autopilot; return it.
 
-    Any JSBSim started on this root flies the aircraft under the autopilot. The model's own outputs
-    and autopilot are left out (``aircraft.model``); its servos keep their play.
+    Every JSBSim program flies the aircraft under the autopilot from this root. The model's own
+    outputs and autopilot are left out (``aircraft.model``); its servos keep their play.
     """
     spec = schedule.spec
     model_file = copy_model(spec.files, directory)
@@ -117,7 +118,7 @@ def system_xml(schedule: Schedule) -> str:
         "Airspeed and altitude": _longitudinal(schedule),
         "Heading rate": _lateral(schedule),
     }
-    # The integrators of a channel that runs every few time steps integrate over as many.
+    # In a channel that runs every few time steps, integrators use that longer step.
     body = "\n".join(
         channel(name, schedule.period, components) for name, components in channels.items()
     )
@@ -149,7 +150,7 @@ def _measurements(schedule: Schedule) -> list[str]:
     moment = minus(times(speed_ahead, right(*force[1:])), times(speed_right, ahead(*force)))
     speed_squared = total(times(speed_ahead, speed_ahead), times(speed_right, speed_right))
     inertia = times(read("inertia/mass-slugs"), operation("max", speed_squared, number(1.0)))
-    # At least 1 m/s: JSBSim runs the system once without a speed, and integrators keep the result
+    # At least 1 m/s: JSBSim runs the system once at speed 0, and integrators would keep the result
     # of a division by zero.
     airspeed = operation("max", times(read("velocities/vt-fps"), foot), number(1.0))
     return [
@@ -190,9 +191,9 @@ def _longitudinal(schedule: Schedule) -> list[str]:
             read(altitude_error), -weights.altitude_error_max, weights.altitude_error_max
         ),
     }
-    # A larger error demands a steady climb or acceleration; integrated on the way there, it would
-    # overshoot by as much again. An altitude error that still grows is integrated beyond the limit
-    # as well: its integral may be what makes it grow, and would do so for ever.
+    # A larger error demands a steady climb or acceleration; integrating it meanwhile would cause an
+    # overshoot. A growing altitude error is integrated beyond the limit as well, because the
+    # integral itself may be the cause of its growth.
     near = within(read(altitude_error), weights.altitude_error_max)
     leaving = operation("lt", times(read(altitude_error), read(_CLIMB_RATE)), number(0.0))
     integrated = (
@@ -213,7 +214,7 @@ def _longitudinal(schedule: Schedule) -> list[str]:
         if name == "elevator":
             demand = operation("ifthen", read(ELEVATOR_HELD), read(HELD_ELEVATOR), demand)
         components += [
-            # The integral of the last step enters here.
+            # This uses the integral of the last step.
             function(
                 unlimited,
                 total(_trim_table(schedule, name), read(f"autopilot/{name}-integral"), *feedback),
@@ -258,7 +259,7 @@ def _lateral(schedule: Schedule) -> list[str]:
             *_control(schedule.spec.input(name), read(unlimited)),
         ]
         if name == "rudder":
-            # It removes the remaining sideslip.
+            # The integral removes the remaining sideslip.
             growth = [times(_gain_table(schedule, "sideslip_integral"), read(_SIDESLIP))]
             command = CONTROL_COMMAND.format(name)
             components += _integral(schedule, name, command, unlimited, growth)
@@ -268,7 +269,7 @@ def _lateral(schedule: Schedule) -> list[str]:
 def _integral(
     schedule: Schedule, name: str, command: str, unlimited: str, growth: Sequence[str]
 ) -> list[str]:
-    """Return an integral that back-calculation holds to what the ``command`` can be."""
+    """Return an integral with back-calculation, which limits it while the command saturates."""
     rate = f"autopilot/{name}-integral-rate"
     held = times(number(schedule.weights.anti_windup_rate), minus(read(command), read(unlimited)))
     return [function(rate, total(*growth, held)), integrator(f"autopilot/{name}-integral", rate)]
@@ -293,7 +294,7 @@ def _heading_rate_model(schedule: Schedule) -> list[str]:
 
 
 def _bank_command(schedule: Schedule) -> list[str]:
-    """Return the bank of the model's turn, corrected by the integral of the heading-rate error."""
+    """Return the bank of the model's turn plus the integral of the heading-rate error."""
     bank_max = schedule.envelope.bank_max
     turns = schedule.turns()
     model_turn, model_bank = "autopilot/model-turn", "autopilot/model-bank-rad"
@@ -321,7 +322,7 @@ def _bank_command(schedule: Schedule) -> list[str]:
 
 
 def _control(control_input: ControlInput, demand: str) -> list[str]:
-    """Return components that keep a control within its range and pass it to JSBSim."""
+    """Return components that limit a control to its range and pass the command to JSBSim."""
     name = CONTROL_COMMAND.format(control_input.name)
     value = clipped(demand, control_input.lower, control_input.upper)
     if not control_input.effectiveness:
@@ -335,7 +336,7 @@ def _control(control_input: ControlInput, demand: str) -> list[str]:
 
 
 def _gain_table(schedule: Schedule, name: str, *index: int) -> str:
-    """Return an entry of one of the ``Gains`` over bank and commanded airspeed."""
+    """Return the table of one entry of the ``Gains`` over bank and commanded airspeed."""
     values = [
         [float(np.asarray(getattr(gains, name))[index]) for gains in row] for row in schedule.gains
     ]
@@ -343,12 +344,12 @@ def _gain_table(schedule: Schedule, name: str, *index: int) -> str:
 
 
 def _trim_table(schedule: Schedule, quantity: str, bank: str = _ROLL) -> str:
-    """Return a trim quantity over bank, by default the actual one, and commanded airspeed."""
+    """Return the table of a trim quantity over bank (by default actual) and commanded airspeed."""
     values = schedule.over_bank(quantity)
     return table_2d(bank, _SCHEDULE, schedule.banks, schedule.airspeeds, values)
 
 
-# JSBSim's XML as far as the autopilot needs it: expressions, tables and components.
+# Helpers that write JSBSim's XML: expressions, tables and components.
 
 
 def number(value: float) -> str:
@@ -367,32 +368,32 @@ def operation(tag: str, *operands: str) -> str:
 
 
 def total(*operands: str) -> str:
-    """Return the sum."""
+    """Return the sum of operands."""
     return operation("sum", *operands)
 
 
 def times(*operands: str) -> str:
-    """Return the product."""
+    """Return the product of operands."""
     return operation("product", *operands)
 
 
 def minus(first: str, *others: str) -> str:
-    """Return the first less the others."""
+    """Return the first operand minus the others."""
     return operation("difference", first, *others)
 
 
 def clipped(value: str, low: float, high: float) -> str:
-    """Return ``value`` kept within ``low`` and ``high``."""
+    """Return ``value`` limited to the range from ``low`` to ``high``."""
     return operation("min", operation("max", value, number(low)), number(high))
 
 
 def within(value: str, limit: float) -> str:
-    """Return 1 while ``value`` lies within plus and minus ``limit``, otherwise 0."""
+    """Return 1 if the absolute value is at most ``limit``, otherwise 0."""
     return operation("le", operation("abs", value), number(limit))
 
 
 def table_1d(at: str, rows: Sequence[float], values: Sequence[float]) -> str:
-    """Return linear interpolation of ``values`` over property ``at``, constant past the ends."""
+    """Return a linear interpolation of ``values`` over property ``at``, constant past the ends."""
     data = "\n".join(f"{row:.9g} {value:.9g}" for row, value in zip(rows, values, strict=True))
     return (
         f'<table><independentVar lookup="row">{at}</independentVar>'
@@ -403,7 +404,7 @@ def table_1d(at: str, rows: Sequence[float], values: Sequence[float]) -> str:
 def table_2d(
     row_at: str, column_at: str, rows: Sequence[float], columns: Sequence[float], values: Array
 ) -> str:
-    """Return bilinear interpolation of ``values`` (rows, columns), constant past the edges."""
+    """Return a bilinear interpolation of ``values`` (rows, columns), constant past the edges."""
     head = " ".join(f"{column:.9g}" for column in columns)
     body = "\n".join(
         f"{row:.9g} " + " ".join(f"{x:.9g}" for x in line)
@@ -430,8 +431,8 @@ def channel(name: str, period: int, components: Sequence[str]) -> str:
 def integrator(name: str, source: str) -> str:
     """Return a component that integrates ``source`` by the trapezoidal rule.
 
-    It is held at 0 while ``RESET`` is negative. JSBSim's ``<integrator>`` can be held but
-    not reset, so this is a ``<pid>`` with its integral alone.
+    The output is 0 while ``RESET`` is negative. JSBSim's ``<integrator>`` cannot be reset, so this
+    is a ``<pid>`` with an integral only.
     """
     gains = '<kp>0</kp><ki type="trap">1</ki><kd>0</kd>'
     return f'<pid name="{name}"><input>{source}</input>{gains}<trigger>{RESET}</trigger></pid>'

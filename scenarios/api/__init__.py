@@ -1,6 +1,4 @@
-"""The programming interface: fly a scenario from a script or a notebook. Its names are those of
-``scenarios``.
-"""
+"""The programming interface for scripts and notebooks; ``scenarios`` exports its names."""
 
 from scenarios.api.flying import fly, run
 from scenarios.api.results import Flight, Run

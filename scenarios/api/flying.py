@@ -1,4 +1,4 @@
-"""Fly one flight, or a whole study, from a program."""
+"""Fly one flight or a whole study from a program."""
 
 import os
 import shutil
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from scenarios.engine.task import Work
     from scenarios.studies.base import FlightStudy
 
-_LOOKED_THROUGH = 1000
-"""Most flights of a study among which the name that was meant is looked for."""
+_SEARCHED_MAX = 1000
+"""Largest number of flights among which a similar name is searched for."""
 
 
 def fly(
@@ -35,25 +35,24 @@ def fly(
     progress: bool = False,
     **keys: object,
 ) -> Flight:
-    """Fly one flight of a scenario, in this process, and return it with its time history.
+    """Fly one flight of a scenario in this process; return it with its time history.
 
-    It is the flight that the command line flies, to the last bit. Nothing is written unless ``out``
-    is given: the files that are needed on the way are in a temporary directory, which is removed
-    together with what is returned.
+    The flight is the same as from the command line, to the last bit. Without ``out`` its files are
+    in a temporary directory, which is removed together with the returned object.
 
     Parameters
     ----------
-    scenario : a name of the catalog, the path of a TOML file, what such a file holds, as a mapping,
-        or what ``load`` returned
-    flight_id : name of the flight, where the scenario has several
+    scenario : name of a catalog scenario, path of a TOML file, a mapping with the contents of such
+        a file, or a ``Scenario``
+    flight_id : name of the flight, if the scenario has several flights
     out : run directory, which must be new or empty
-    progress : show a progress bar on standard error
-    keys : to set, same as ``Scenario.set``:
-        ``fly("sweep_nu", nu=0.5, **{"guidance.preview": False})``
+    progress : whether to show a progress bar on standard error
+    keys : keys to set, as in ``Scenario.set``: ``fly("sweep_nu", nu=0.5, **{"guidance.preview":
+        False})``
 
     Raises
     ------
-    InputError : the scenario cannot be flown, or has several flights, or not this one; one line
+    InputError : the scenario cannot be flown, has several flights, or does not have this one
     """
     from scenarios.engine.processes import InProcessExecutor
     from scenarios.engine.runner import fly_study
@@ -70,7 +69,8 @@ def fly(
         single = SingleFlight.of(study, name)
         if single is None:
             raise InputError(
-                f"'{loaded.name}' has no flight '{name}'; its flights are {_names(study)}{_meant(name, study)}"
+                f"'{loaded.name}' has no flight '{name}'; its flights are"
+                f" {_names(study)}{_suggested(name, study)}"
             )
         result = fly_study(
             single, directory, executor_factory=InProcessExecutor, resume=False, progress=show
@@ -87,23 +87,22 @@ def run(
     progress: bool = False,
     **keys: object,
 ) -> Run:
-    """Fly a whole study and return its results.
+    """Fly a whole study; return its results.
 
-    They are those of the command line, to the last bit. Nothing is written unless ``out`` is given:
-    the files that are needed on the way are in a temporary directory, which is removed together
-    with what is returned.
+    The results are the same as from the command line, to the last bit. Without ``out`` the files
+    are in a temporary directory, which is removed together with the returned object.
 
     Parameters
     ----------
-    scenario, out, progress, keys : same as ``fly``
-    jobs : number of processes; one per core if not given
+    scenario, out, progress, keys : as in ``fly``
+    jobs : number of processes; by default one per core
 
     Raises
     ------
     InputError : the scenario cannot be flown, the directory cannot be used, or a part that was
-        given as an object cannot be sent to other processes; one line
-    KeyboardInterrupt : it was interrupted; in ``out`` finished flights are kept, and ``--resume``
-        of the command line goes on
+        given as an object cannot be sent to other processes
+    KeyboardInterrupt : the run was interrupted; finished flights are kept in ``out``, and the
+        command line continues the run with ``--resume``
     """
     from scenarios.engine.runner import ExecutorFactory
     from scenarios.studies.base import run_study
@@ -136,18 +135,19 @@ def run(
 
 
 def flights_of(loaded: Scenario) -> "FlightStudy":
-    """Return the study of a scenario whose flights can be flown alone.
+    """Return the study of a scenario whose flights can be flown one by one.
 
     Raises
     ------
-    InputError : it has no such flights
+    InputError : the study has no such flights
     """
     from scenarios.studies.base import FlightStudy, study_of
 
     study = study_of(loaded.config, loaded.name, loaded.changes)
     if not isinstance(study, FlightStudy) or study.chooses_flights:
         raise InputError(
-            f"'{loaded.name}' is a study of {loaded.config.study}, which has no flight that could be flown alone; use run"
+            f"'{loaded.name}' is a study of {loaded.config.study}, whose flights cannot be"
+            " flown one by one; use run"
         )
     return study
 
@@ -157,13 +157,14 @@ def _only_flight(study: "FlightStudy", loaded: Scenario) -> str:
     if study.planned > 1:
         single = " set nu to a single number," if sweeps_nu(loaded) else ""
         raise InputError(
-            f"'{loaded.name}' has {study.planned} flights; name one of them by flight_id ({_names(study)}),{single} or use run"
+            f"'{loaded.name}' has {study.planned} flights; name one of them by flight_id"
+            f" ({_names(study)}),{single} or use run"
         )
     return next(iter(study.experiments.values())).named(0)[0]
 
 
 def _names(study: "FlightStudy") -> str:
-    """Return the names of the first and the last flight, comparisons apart."""
+    """Return the names of the first and the last flight, without comparisons."""
     first, *_, last = [
         (experiment, number)
         for experiment in study.experiments.values()
@@ -174,12 +175,12 @@ def _names(study: "FlightStudy") -> str:
     )
 
 
-def _meant(name: str, study: "FlightStudy") -> str:
-    """Return the name of the flight that was meant, of so few that they are looked through at once."""
+def _suggested(name: str, study: "FlightStudy") -> str:
+    """Return a suggestion of a flight with a similar name, if there are not too many flights."""
     experiments = [
         experiment
         for experiment in study.experiments.values()
-        if experiment.flights <= _LOOKED_THROUGH
+        if experiment.flights <= _SEARCHED_MAX
     ]
     return did_you_mean(
         name,
@@ -192,14 +193,12 @@ def _meant(name: str, study: "FlightStudy") -> str:
 
 
 Keeping = Callable[[object], None]
-"""Called with the object together with which a temporary directory is removed."""
+"""Function that ties the life of a temporary directory to an object."""
 
 
 @contextmanager
 def _directory(out: str | os.PathLike[str] | None) -> Iterator[tuple[Path, Keeping]]:
-    """Yield the run directory; one that is temporary is removed with what it is kept for, or if
-    there is nothing.
-    """
+    """Yield the run directory; a temporary one is removed together with the object tied to it."""
     if out is not None:
         _refuse_taken(Path(out))
         yield Path(out), lambda _: None
@@ -218,19 +217,20 @@ def _directory(out: str | os.PathLike[str] | None) -> Iterator[tuple[Path, Keepi
 
 
 def _refuse_taken(directory: Path) -> None:
-    """Refuse a directory that is not empty, in the words of a program."""
+    """Refuse a directory that is not empty, with a message for a program."""
     from scenarios.engine.run_directory import RunDirectory
 
     try:
         RunDirectory(directory).refuse_taken()
     except InputError as error:
         raise InputError(
-            f"out: {str(error).partition(';')[0]}; give the path of a directory that is new or empty"
+            f"out: {str(error).partition(';')[0]}; give the path of a directory that is new or"
+            " empty"
         ) from None
 
 
 def _shown(*, progress: bool) -> "AbstractContextManager[Progress]":
-    """Return the context of what is called as flights advance: a progress bar, or nothing."""
+    """Return the context of a progress bar, or of a function that does nothing."""
     from scenarios.engine.runner import progress_bar
 
     return progress_bar() if progress else nullcontext(lambda *_: None)

@@ -1,6 +1,4 @@
-"""Parts that are given as objects: each gets a name, by which a scenario knows it while it is
-checked and flown.
-"""
+"""Parts given as objects: each gets a name under which it is registered temporarily."""
 
 import copy
 import pickle
@@ -18,23 +16,23 @@ from scenarios.scenario.added_keys import ADDED
 from scenarios.world.ais import AisReports
 
 PLAIN = (bool, int, float, str)
-"""Types of values that a scenario file has."""
+"""Types of values in a scenario file."""
 
 _LAWS = (
     *("guidance.law", "following.margin_law"),
     *(key for keys in ADDED for key in keys.LAW_KEYS),
 )
 _COPIED = ("vessel.track", "reference.shape")
-"""Keys whose part may be an object that is made already: each flight takes a copy."""
+"""Keys whose part may be an existing object, of which each flight takes a copy."""
 
 
-_OF_KEYS = ("set", "set_kinematic", "tuning_set")
-"""Last words of tables whose entries are dotted keys themselves."""
+_TABLES_OF_KEYS = ("set", "set_kinematic", "tuning_set")
+"""Last words of tables whose entries are dotted keys."""
 
 
 @dataclass(frozen=True, slots=True)
 class Copies:
-    """A part of which each flight takes a copy, so that none sees what another has left in it."""
+    """A part of which each flight takes a copy, so that flights do not share its state."""
 
     part: object
 
@@ -49,9 +47,9 @@ class GivenPart:
 
     Attributes
     ----------
-    key : of the scenario, that it was given for
-    name : that the scenario has for it
-    part : what the registry of the key's parts holds
+    key : key of the scenario
+    name : name in the scenario
+    part : the part as the registry has it
     """
 
     key: str
@@ -64,11 +62,11 @@ Parts = tuple[GivenPart, ...]
 
 @contextmanager
 def registered(parts: Parts) -> Iterator[None]:
-    """Have the parts known by their names inside the context.
+    """Register parts under their names inside the context.
 
     Raises
     ------
-    InputError : another part is known by one of the names
+    InputError : another part has one of the names
     """
     from scenarios.planning.reference import orbits
 
@@ -81,15 +79,14 @@ def registered(parts: Parts) -> Iterator[None]:
             except PluginError as error:
                 raise InputError(f"{given.key}: {error}") from None
         if any(given.key == "reference.shape" for given in parts):
-            # They are remembered by the name of the shape, which may have been another one's
-            # before.
+            # The cache's key is the shape's name, which may have belonged to another shape.
             orbits.cache_clear()
         yield
 
 
 @dataclass(frozen=True, slots=True)
 class WorkWithParts:
-    """Work with the parts that it needs, so that processes of their own know them, too."""
+    """Work together with parts given as objects, so that other processes can register them."""
 
     wrapped: Work
     parts: Parts
@@ -123,28 +120,29 @@ def check_picklable(parts: Parts) -> None:
     for given in parts:
         try:
             pickle.dumps(given)
-        except Exception as error:  # noqa: BLE001 - what is wrong is for the part to say
+        except Exception as error:  # noqa: BLE001 - a user's part may raise anything
             what = f"{type(error).__name__}: {error}".splitlines()[0]
             raise InputError(
-                f"{given.key}: '{given.name}' cannot be sent to other processes ({what}); define it at the top of a module"
+                f"{given.key}: '{given.name}' cannot be sent to other processes ({what});"
+                " define it at the top of a module"
             ) from None
 
 
 def named(given: Mapping[str, Any]) -> tuple[dict[str, Any], Parts]:
-    """Return a table with names in place of objects, and the parts that the names stand for.
+    """Return a table with names in place of objects, and the named parts.
 
-    A steering law that is made already brings the keys of its fields: ``law=MyLaw(gain=2.0)`` sets
-    ``gain`` beside ``law``. So do reports that are read already, with their file and the vessel in
-    it: ``track=read_ais("ais.csv", mmsi=219999001)``.
+    An existing steering law also sets the keys of its fields: ``law=MyLaw(gain=2.0)`` sets ``gain``
+    as well. AIS reports that have been read also set file and vessel: ``track=read_ais("ais.csv",
+    mmsi=219999001)``.
 
     Parameters
     ----------
-    given : a table of a scenario, or keys with dots
+    given : a table of a scenario, or dotted keys
 
     Raises
     ------
-    InputError : an object where the scenario has no part, or one that is not of the kind; two that
-        have one name
+    InputError : a key does not take an object, an object is not a part of its key, or two objects
+        have the same name
     """
     namer = _Namer()
     table = namer.table(given, "")
@@ -152,7 +150,7 @@ def named(given: Mapping[str, Any]) -> tuple[dict[str, Any], Parts]:
 
 
 class _Namer:
-    """Goes through a table and collects the objects that it finds."""
+    """Replaces the objects in a table by names, and collects them."""
 
     def __init__(self) -> None:
         self.found: dict[tuple[str, str], GivenPart] = {}
@@ -188,13 +186,13 @@ class _Namer:
             return str(value)
         if isinstance(value, PLAIN) and type(value) in PLAIN:
             return value
-        # Numbers and arrays of numpy, times, and what else has a plain form.
+        # NumPy's numbers and arrays, times, and other types with a plain form.
         if hasattr(value, "tolist"):
             return value.tolist()
         return value if value is None or hasattr(value, "isoformat") else self.part(key, value)
 
     def part(self, key: str, part: Any) -> str:
-        """Return the name of an object that is given for a key."""
+        """Return the name of an object that is given for a key, and collect the object."""
         from aircraft.fleet.find import stock_names
 
         key = key.removeprefix("sweep.")
@@ -210,12 +208,14 @@ class _Namer:
             name = type(part).__name__
         elif key in _LAWS and not is_dataclass(part):
             raise InputError(
-                f"{key} is an object of class {type(part).__name__}, which is no dataclass; write @dataclass(frozen=True) before"
+                f"{key} is an object of class {type(part).__name__}, which is not a dataclass;"
+                " write @dataclass(frozen=True) before"
                 " the class: its fields, each with a default, are keys of [guidance]"
             )
         else:
             raise InputError(
-                f"{key} is an object of class {type(part).__name__}; give the class itself: each flight makes its own"
+                f"{key} is an object of class {type(part).__name__}; give the class itself,"
+                " from which each flight creates its own object"
             )
         if key != "aircraft" and not name.isidentifier():
             raise InputError(f"{key} is {name}, which has no name; define it by class or def")
@@ -225,7 +225,8 @@ class _Namer:
             raise InputError(f"{key}: {error}") from None
         if key == "aircraft" and name in stock_names():
             raise InputError(
-                f"aircraft is an object called '{name}', as one of JSBSim's own is; rename yours"
+                f"aircraft is an object called '{name}', the name of one of JSBSim's own;"
+                " rename yours"
             )
         given = GivenPart(key, name, Copies(part) if made and key in _COPIED else part)
         if self.found.setdefault((registry.kind, name), given).part != given.part:
@@ -234,21 +235,19 @@ class _Namer:
 
 
 def _key(key: str, name: str, beside: Mapping[str, Any]) -> str:
-    """Return the dotted key that an entry of a table is about: of a random variable's choices that
-    of the variable.
-    """
+    """Return the dotted key of an entry; choices of a random variable belong to its key."""
     if name == "choice" and "key" in beside:
         return str(beside["key"])
-    within = "" if key.rpartition(".")[2] in _OF_KEYS or not key else f"{key}."
+    within = "" if key.rpartition(".")[2] in _TABLES_OF_KEYS or not key else f"{key}."
     return f"{within}{name}"
 
 
 def _registry(key: str) -> Registry[Any]:
-    """Return the registry of the parts that a key names.
+    """Return the registry of a key's parts.
 
     Raises
     ------
-    InputError : it names none
+    InputError : the key takes no part
     """
     from aircraft.fleet import AIRCRAFT
     from gnc.laws import STEERING_LAWS
@@ -265,6 +264,7 @@ def _registry(key: str) -> Registry[Any]:
     }
     if key not in registries:
         raise InputError(
-            f"{key} is an object; it takes a number, a word or a list: objects are for {', '.join(registries)}"
+            f"{key} is an object; it takes a number, a word or a list: objects are for"
+            f" {', '.join(registries)}"
         )
     return registries[key]

@@ -1,4 +1,4 @@
-"""What a notebook shows of a scenario, a flight or a run."""
+"""HTML of tables and figures for notebooks."""
 
 import base64
 import html
@@ -13,7 +13,7 @@ _DPI = 90
 
 
 def table(rows: Iterable[Sequence[object]]) -> str:
-    """Return rows as a table of HTML; whatever stands in a cell is text."""
+    """Return rows as an HTML table; cells are escaped."""
     body = "".join(
         f"<tr>{''.join(f'<td>{html.escape(str(cell))}</td>' for cell in row)}</tr>" for row in rows
     )
@@ -21,7 +21,7 @@ def table(rows: Iterable[Sequence[object]]) -> str:
 
 
 def picture(figure: "Figure", alternative: str) -> str:
-    """Return a figure as an image inside the page, with the text that stands for it."""
+    """Return a figure as an HTML image with its alternative text."""
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png", dpi=_DPI)
     content = base64.b64encode(buffer.getvalue()).decode()

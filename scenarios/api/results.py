@@ -1,4 +1,4 @@
-"""What flying returns: a run, and its flights."""
+"""Results of flying: runs and flights."""
 
 import functools
 import html
@@ -23,30 +23,30 @@ if TYPE_CHECKING:
 
     from reports.run.run_data import RunData
 
-_SHOWN = 12
-"""Flights that a notebook shows at most."""
+_FLIGHTS_SHOWN = 12
+"""Largest number of flights in a notebook's table."""
 
 _UNMEASURED = [
     outcome.value for outcome in (Outcome.INFEASIBLE, Outcome.TRIM_FAILED, Outcome.FAILED)
 ]
-"""How flights end of which nothing is measured."""
+"""Outcomes of flights without any measurement."""
 
 
 class Run:
-    """The results of a study. Made by ``run``.
+    """The results of a study, returned by ``run``.
 
-    Tables are data frames with the units of their columns in ``attrs["units"]``, as
-    ``summary.attrs["units"]["min_distance_m"]``, and what they are in ``attrs["meanings"]``. What is
-    changed in them changes no flight and no report.
+    Tables are data frames with the columns' units in ``attrs["units"]``, such as
+    ``summary.attrs["units"]["min_distance_m"]``, and their meanings in ``attrs["meanings"]``. They
+    are copies: changing them changes no flight and no report.
 
     Parameters
     ----------
-    directory : of the run
+    directory : run directory
     lines : the result in lines of text
 
     Attributes
     ----------
-    directory, lines : the same
+    directory, lines : as given
     """
 
     def __init__(self, directory: Path, *, lines: tuple[str, ...]) -> None:
@@ -63,28 +63,22 @@ class Run:
 
     @property
     def verdict(self) -> RunVerdict:
-        """Return what the run has shown: its counts, each criterion with its worst flights, and
-        whether everything is as required.
-        """
+        """Return the verdict, with counts and with the worst flights of each criterion."""
         return self._data.verdict
 
     @property
     def met(self) -> bool:
-        """Return whether every flight did what the scenario requires of it, as exit status 0 of the
-        command line.
-        """
+        """Return whether every flight met its requirement, which gives exit status 0."""
         return self.verdict.exit_status == MET
 
     @functools.cached_property
     def summary(self) -> "pd.DataFrame":
-        """Return a row per flight of the study, or per trajectory and law of a study of
-        convergence.
-        """
+        """Return a row per flight, or per trajectory and law of a study of convergence."""
         return self._explained(self._data.summary.copy(), SUMMARY)
 
     @functools.cached_property
     def comparison(self) -> "pd.DataFrame":
-        """Return a row per flight of the comparisons, possibly none."""
+        """Return a row per flight of the comparisons; there may be none."""
         return self._explained(self._data.comparison.copy(), COMPARISON)
 
     @functools.cached_property
@@ -94,18 +88,16 @@ class Run:
 
     @functools.cached_property
     def draws(self) -> "pd.DataFrame":
-        """Return a row per flight: the keys that were swept or sampled at random."""
+        """Return a row per flight with the keys that were swept or sampled at random."""
         return self._explained(self._data.draws.copy(), DRAWS)
 
     @property
     def columns(self) -> Mapping[str, Table]:
-        """Return what the columns are, by file and name: ``common.columns.Column`` has the title,
-        symbol, unit, digits, meaning, and which side is worse.
-        """
+        """Return the descriptions of columns, of type ``Column``, by file and name."""
         return self._data.columns
 
     def _explained(self, frame: "pd.DataFrame", table: str) -> "pd.DataFrame":
-        """Return a table with units and meanings of its columns in its attributes."""
+        """Add units and meanings of the columns to a table's attributes; return the table."""
         columns = {str(name): self._data.column(str(name), table) for name in frame}
         numbers = frame.select_dtypes(include="number").columns
         frame.attrs["units"] = {str(name): columns[str(name)].unit for name in numbers}
@@ -114,7 +106,7 @@ class Run:
 
     @property
     def flights(self) -> Mapping[str, "Flight"]:
-        """Return the flights by their names, those of the study before those of its comparisons."""
+        """Return the flights by name, first those of the study, then those of its comparisons."""
         tables = (self._data.summary, self._data.comparison)
         if "trial" not in self._data.summary:
             return {}
@@ -122,24 +114,22 @@ class Run:
 
     @property
     def statistics(self) -> Statistics | None:
-        """Return what a Monte Carlo study shows and how sure that is, or None of any other study."""
+        """Return the statistics of a Monte Carlo study, or None for any other study."""
         return None if self._data.statistics is None else statistics_of(self._data.statistics)
 
     def report(
         self, path: str | os.PathLike[str] | None = None, *, all_flights: bool = False
     ) -> str:
-        """Return the report as the text of an HTML page; with a path write it, as HTML or PDF by
-        the suffix, and return the path.
+        """Return the report as the text of an HTML page, or write it to a path and return the path.
 
         Parameters
         ----------
-        path : of the file; nothing is written without one
-        all_flights : print every flight that can be picked on the screen, not only the most
-            informative ones
+        path : path of an HTML or PDF file, by its suffix; None to write nothing
+        all_flights : whether a printed report has every flight instead of the most informative ones
 
         Raises
         ------
-        InputError : a suffix of no report, or the file cannot be written
+        InputError : the suffix is unknown, or the file cannot be written
         """
         from reports.output import write_report
 
@@ -153,7 +143,7 @@ class Run:
                 return page.read_text(encoding="utf-8")
 
     def __repr__(self) -> str:
-        """Return the result in lines."""
+        """Return the result as lines of text."""
         return "\n".join((f"Run: {self.manifest['title']}", *self.lines))
 
     def _repr_html_(self) -> str:
@@ -163,8 +153,8 @@ class Run:
             for name in ("flight_id", "outcome", "criteria_met", "min_distance_m", "crossing_count")
             if name in self.summary
         ]
-        rows = self.summary[columns].head(_SHOWN).itertuples(index=False)
-        more = len(self.summary) - _SHOWN
+        rows = self.summary[columns].head(_FLIGHTS_SHOWN).itertuples(index=False)
+        more = len(self.summary) - _FLIGHTS_SHOWN
         text = "".join(
             f"<p>{html.escape(line)}</p>" for line in (self.manifest["title"], *self.lines)
         )
@@ -172,16 +162,16 @@ class Run:
 
 
 class Flight:
-    """One flight. Made by ``fly``, or one of ``Run.flights``.
+    """One flight, returned by ``fly`` or from ``Run.flights``.
 
     Parameters
     ----------
-    run : that it belongs to
-    flight_id : its name
+    run : run of the flight
+    flight_id : name of the flight
 
     Attributes
     ----------
-    run, flight_id : the same
+    run, flight_id : as given
     """
 
     def __init__(self, run: Run, flight_id: str) -> None:
@@ -189,7 +179,7 @@ class Flight:
 
     @functools.cached_property
     def row(self) -> "pd.Series[Any]":
-        """Return its row of the summary; units are in ``attrs["units"]``."""
+        """Return the flight's row of the summary; units are in ``attrs["units"]``."""
         data = self.run._data
         for rows, name in ((data.summary, SUMMARY), (data.comparison, COMPARISON)):
             found = rows[rows["flight_id"] == self.flight_id]
@@ -198,22 +188,23 @@ class Flight:
                 row.attrs = dict(self.run._explained(found, name).attrs)
                 return row
         raise InputError(
-            f"the run in '{self.run.directory}' has no flight '{self.flight_id}'; its summary lists them"
+            f"the run in '{self.run.directory}' has no flight '{self.flight_id}'; its summary"
+            " lists them"
         )
 
     @functools.cached_property
     def history(self) -> "pd.DataFrame":
-        """Return its time history; units are in ``attrs["units"]``, what columns are in
-        ``attrs["meanings"]``.
+        """Return the time history; ``attrs`` has "units" and "meanings" of the columns.
 
         Raises
         ------
-        InputError : the run kept none of this flight
+        InputError : the run has no time history of this flight
         """
         history = self.run._data.history(self.flight_id)
         if history is None:
             raise InputError(
-                f"flight '{self.flight_id}' has no time history; raise histories, or fly it alone, with fly"
+                f"flight '{self.flight_id}' has no time history; raise histories, or fly it"
+                " alone with fly"
             )
         return self.run._explained(history, FLIGHTS)
 
@@ -225,29 +216,29 @@ class Flight:
 
     @property
     def met(self) -> bool:
-        """Return whether it kept out, completed its mission, and met every criterion."""
+        """Return whether the flight kept out, completed its mission, and met every criterion."""
         return bool(self.row["criteria_met"])
 
     @property
     def kept_out(self) -> bool:
-        """Return whether it is known to have kept out of the keep-out area, and came back."""
+        """Return whether the flight kept out of the keep-out area and came back."""
         return KeepOut.of(self.row.to_dict()) is KeepOut.KEPT_OUT
 
     @property
     def reasons(self) -> tuple[str, ...]:
-        """Return why it is not met, a sentence each; none if it is."""
+        """Return the reasons why the flight is not met, as sentences; empty if it is met."""
         message = str(self.row["message"])
-        # That of a flight that ended before anything was measured is one sentence, with its remedy.
+        # The message of a flight without any measurement is one sentence with a remedy.
         return tuple(
             filter(None, [message] if self.row["outcome"] in _UNMEASURED else message.split("; "))
         )
 
     def plot(self) -> "Figure":
-        """Return its track and its time histories as a figure of matplotlib.
+        """Return track and time histories as a matplotlib figure.
 
         Raises
         ------
-        InputError : the run kept no time history of this flight
+        InputError : the run has no time history of this flight
         """
         from reports.output import flight_figure
 
@@ -255,17 +246,17 @@ class Flight:
             return flight_figure(self.run._data, self.flight_id)
 
     def export(self, path: str | os.PathLike[str]) -> Path:
-        """Write it in the format that the suffix names, and return the path.
+        """Write the flight in the format that the suffix names; return the path.
 
         Parameters
         ----------
-        path : of the file: .parquet, .arrow, .csv (its time history), .kmz, .acmi, .czml, .mcap,
-            .nc, .tlog, .geojson, .tracks.csv, and the suffixes of exporters that others add
+        path : path of the file: .parquet, .arrow, .csv (the time history), .kmz, .acmi, .czml,
+            .mcap, .nc, .tlog, .geojson, .tracks.csv, and suffixes of further exporters
 
         Raises
         ------
-        InputError : another suffix, a package that is missing, no time history, or the file cannot
-            be written
+        InputError : the suffix is unknown, a package or the time history is missing, or the file
+            cannot be written
         """
         from reports.output import write_flight
 
@@ -274,11 +265,14 @@ class Flight:
         return Path(path)
 
     def __repr__(self) -> str:
-        """Return its name and how it ended."""
-        return f"Flight {self.flight_id}: {'met' if self.met else '; '.join((str(self.row['outcome']), *self.reasons))}"
+        """Return the flight's name and how it ended."""
+        return (
+            f"Flight {self.flight_id}:"
+            f" {'met' if self.met else '; '.join((str(self.row['outcome']), *self.reasons))}"
+        )
 
     def _repr_html_(self) -> str:
-        """Return its main figures as a table, and its track, for a notebook."""
+        """Return the flight's main figures as a table, and its track, for a notebook."""
         from reports.output import flight_figure
 
         units = self.row.attrs["units"]
@@ -307,7 +301,7 @@ class Flight:
 
 
 def _cell(value: object, unit: str) -> object:
-    """Return a value as a notebook shows it: four digits, and the unit if there is one."""
+    """Return a value for a notebook: numbers have four digits and a unit."""
     return (
         f"{value:.4g}{'' if unit == DIMENSIONLESS else f' {unit}'}"
         if isinstance(value, float)
@@ -317,7 +311,7 @@ def _cell(value: object, unit: str) -> object:
 
 @contextmanager
 def _one_line() -> Iterator[None]:
-    """Raise what is wrong with a run, a format, or a file to be written, as an InputError."""
+    """Raise errors of runs, formats and files as an InputError."""
     from common.errors import PluginError
     from reports.errors import ReportError
 

@@ -1,4 +1,4 @@
-"""A scenario in a program: loaded, changed, looked at."""
+"""Load and change a scenario in a program."""
 
 import os
 from collections.abc import Mapping
@@ -14,9 +14,7 @@ from scenarios.scenario.files import AnyStudy, load_document, load_study, sweeps
 from scenarios.scenario.overrides import Document, as_toml
 
 Given = str | os.PathLike[str] | Mapping[str, Any]
-"""What a scenario is loaded from: a name of the catalog, the path of a TOML file, or what such a
-file holds.
-"""
+"""Source of a scenario: a name of the catalog, a TOML file's path, or its contents."""
 
 _SHORT = {
     "law": "guidance.law",
@@ -24,20 +22,20 @@ _SHORT = {
     "track": "vessel.track",
     "plume": "plume.model",
 }
-"""Words for parts that are given as objects or by name, and the keys that they stand for."""
+"""Short words for keys of parts."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scenario:
-    """A scenario that is checked and can be flown; changing it makes another one. Made by ``load``.
+    """A checked scenario, returned by ``load``; changing it returns another one.
 
     Attributes
     ----------
-    name : of the scenario; the seeds of flights depend on it
-    source : name in the catalog, path of the file, or the document that it was loaded from
-    changes : keys that were set since, as ``key=value``, as ``--set`` of the command line has them
-    parts : what was given as objects
-    config : everything, with defaults, checked
+    name : name of the scenario, on which the seeds of flights depend
+    source : name in the catalog, path of the file, or contents of a file
+    changes : keys that have been set, each as ``key=value`` like ``--set`` of the command line
+    parts : parts given as objects
+    config : the checked configuration with all defaults
     """
 
     name: str
@@ -52,12 +50,11 @@ class Scenario:
 
     @property
     def title(self) -> str:
-        """Return its title."""
+        """Return the title of the scenario."""
         return self.config.title
 
     def set(self, **keys: object) -> "Scenario":
-        """Return the scenario with keys set for every flight, as ``--set`` of the command line
-        does.
+        """Return a scenario with keys set for every flight, like ``--set`` of the command line.
 
         Parameters
         ----------
@@ -67,18 +64,16 @@ class Scenario:
 
         Raises
         ------
-        InputError : an unknown key, a value out of range, or a key that no part of the flights
-            uses; one line
+        InputError : a key is unknown or unused, or a value is out of range
         """
         if not keys:
             return self
         dotted = dict(_dotted(keys))
         if "nu" in dotted:
             nu = dotted.pop("nu")
-            dotted = self._of_nu(nu) | dotted
+            dotted = self._speed_ratio_key(nu) | dotted
         values, parts = named(dotted)
-        # A part that is given again, as from a cell that was run again, takes the place of the one
-        # before.
+        # A part that is given again, as in a repeated notebook cell, replaces the former one.
         kept = [
             given
             for given in self.parts
@@ -87,10 +82,8 @@ class Scenario:
         changes = [_change(key, value) for key, value in values.items()]
         return replace(self, changes=(*self.changes, *changes), parts=(*kept, *parts))
 
-    def _of_nu(self, nu: object) -> dict[str, object]:
-        """Return the key that sets the speed ratio: that of the sweep or of the cases, where they
-        have one.
-        """
+    def _speed_ratio_key(self, nu: object) -> dict[str, object]:
+        """Return key and value that set the speed ratio, in the sweep or for the vessel."""
         nu = nu.tolist() if hasattr(nu, "tolist") else nu
         if isinstance(nu, list | tuple):
             return {"sweep.nu": nu}
@@ -116,30 +109,29 @@ class Scenario:
         return value
 
     def _repr_html_(self) -> str:
-        """Return name, title and changes as a table, for a notebook."""
+        """Return name, title and changes as an HTML table, for a notebook."""
         rows = [("name", self.name), ("study", self.config.study), ("title", self.title)]
         return table([*rows, *(tuple(change.split("=", maxsplit=1)) for change in self.changes)])
 
 
 def sweeps_nu(scenario: Scenario) -> bool:
-    """Return whether a scenario sets the speed ratio in its sweep or in its cases."""
+    """Return whether a scenario sets the speed ratio in its sweep or its cases."""
     return sweeps_speed_ratio(load_document(scenario.source, scenario.changes))
 
 
 def load(scenario: Given | Scenario, /, *, name: str | None = None, **keys: object) -> Scenario:
-    """Return a scenario, checked.
+    """Load and check a scenario.
 
     Parameters
     ----------
-    scenario : a name of the catalog, the path of a TOML file, what such a file holds, as a mapping,
-        or a scenario
-    name : of the scenario; that of the file, or "scenario", if not given
-    keys : same as ``Scenario.set``
+    scenario : name of a catalog scenario, path of a TOML file, a mapping with the contents of such
+        a file, or a ``Scenario``
+    name : name of the scenario; by default the file's name, or "scenario"
+    keys : keys to set, as in ``Scenario.set``
 
     Raises
     ------
-    InputError : no such scenario, an unknown key, a value out of range, or a key that no part of
-        the flights uses; one line
+    InputError : the scenario does not exist, a key is unknown or unused, or a value is out of range
     """
     if isinstance(scenario, Scenario):
         made = replace(scenario, name=name) if name else scenario
@@ -148,7 +140,8 @@ def load(scenario: Given | Scenario, /, *, name: str | None = None, **keys: obje
         made = Scenario(name=name or "scenario", source=document, parts=parts)
     elif not isinstance(scenario, str | os.PathLike):
         raise InputError(
-            f"scenario is {scenario!r}, of type {type(scenario).__name__}; give the name of a catalog scenario, the path of a file,"
+            f"scenario is {scenario!r}, of type {type(scenario).__name__}; give the name of a"
+            " catalog scenario, the path of a file,"
             " a mapping, or what load returned"
         )
     else:
@@ -157,7 +150,7 @@ def load(scenario: Given | Scenario, /, *, name: str | None = None, **keys: obje
 
 
 def _change(key: str, value: object) -> str:
-    """Return ``key=value`` as the command line has it."""
+    """Return ``key=value`` in the form of the command line."""
     try:
         return f"{key}={as_toml(value)}"
     except InputError as error:
@@ -165,9 +158,7 @@ def _change(key: str, value: object) -> str:
 
 
 def _dotted(keys: Mapping[str, object]) -> list[tuple[str, object]]:
-    """Return keys with dots in place of sections, and of the words that stand for keys; an empty
-    section stays, and is set so.
-    """
+    """Return dotted keys and values from sections and short words; empty sections stay."""
     found: list[tuple[str, object]] = []
     for key, value in keys.items():
         if isinstance(value, Mapping) and value and "." not in key:

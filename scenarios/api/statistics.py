@@ -1,6 +1,4 @@
-"""The statistics of a Monte Carlo study as an object: what is in ``statistics.json``, with names
-and types.
-"""
+"""The statistics of a Monte Carlo study as typed objects, from ``statistics.json``."""
 
 import math
 from collections.abc import Mapping
@@ -12,15 +10,13 @@ from scenarios.errors import InputError
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Probability:
-    """The probability of an event in a flight; limits that the flights do not give are not a
-    number.
+    """The probability of an event in a flight; limits are NaN if there are too few flights.
 
     Attributes
     ----------
     events, flights : number of flights with the event, and of all flights
-    estimate : share of flights with the event, or the estimate of subset simulation [-]
-    low, high : two-sided interval, by Clopper and Pearson, or by the scatter of subset simulations
-        [-]
+    estimate : fraction of flights with the event, or the estimate of subset simulation [-]
+    low, high : two-sided interval by Clopper and Pearson, or from repeated subset simulations [-]
     upper : one-sided upper bound [-]
     """
 
@@ -38,9 +34,9 @@ class Quantile:
 
     Attributes
     ----------
-    probability : of a value below it [-]
-    value : of the flights
-    low, high : interval from order statistics; a limit that the flights do not give is not a number
+    probability : probability of a value below the quantile [-]
+    value : quantile of the flights
+    low, high : interval from order statistics; NaN if there are too few flights
     """
 
     probability: float
@@ -51,18 +47,18 @@ class Quantile:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Statistics:
-    """What a Monte Carlo study shows, and how sure that is.
+    """Statistics of a Monte Carlo study.
 
     Attributes
     ----------
-    confidence : of each interval, not of all of them together [-]
-    flights, measured : number of flights that are done, and of those that were measured
-    outcomes : number of flights by their outcome
-    violation : probability of a keep-out violation, from the flights that were measured
-    violation_at_most : its one-sided upper bound if every flight of unknown end had one [-]
-    quantiles : quantiles of each figure, by its name with its unit, as "min_distance_m"; none of
-        subset simulation
-    content : everything that ``statistics.json`` holds
+    confidence : confidence of each single interval [-]
+    flights, measured : number of done flights, and of measured ones
+    outcomes : number of flights by outcome
+    violation : probability of a keep-out violation, from measured flights
+    violation_at_most : one-sided upper bound of it if unknown flights count as violations [-]
+    quantiles : quantiles of each figure by its column, such as "min_distance_m"; empty for subset
+        simulation
+    content : content of ``statistics.json``
     """
 
     confidence: float
@@ -79,12 +75,12 @@ class Statistics:
 
         Parameters
         ----------
-        figure : its name, as "min_distance_m"
-        probability : of a value below the quantile [-]
+        figure : column of the figure, such as "min_distance_m"
+        probability : probability of a value below the quantile [-]
 
         Raises
         ------
-        InputError : there is no such figure, or no such quantile of it
+        InputError : there is no such figure or no such quantile
         """
         known = self.quantiles.get(figure, ())
         for quantile in known:
@@ -100,9 +96,7 @@ class Statistics:
 
 
 def statistics_of(content: Mapping[str, Any]) -> Statistics:
-    """Return the object for the content of ``statistics.json``, of plain sampling or of subset
-    simulation.
-    """
+    """Return the object for the content of ``statistics.json``, by plain sampling or by subsets."""
     violation = content["violation"]
     plain = violation.get("measured", violation)
     flights = content["flights"]
@@ -137,5 +131,5 @@ def statistics_of(content: Mapping[str, Any]) -> Statistics:
 
 
 def _number(value: float | None) -> float:
-    """Return a number; JSON has none for "not a number"."""
+    """Return a number from JSON, in which None stands for NaN."""
     return math.nan if value is None else value

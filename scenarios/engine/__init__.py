@@ -1,1 +1,1 @@
-"""Executes the tasks of a study in many processes, and keeps every result on disk as it arrives."""
+"""Execute the tasks of a study in many processes, and store every result as it arrives."""

@@ -1,9 +1,8 @@
-"""Executes tasks on the workers of a Dask cluster: a running one, or one that is started on this
-machine.
+"""Execute tasks on the workers of a Dask cluster, running or started on this machine.
 
-The work is sent to every worker once, as a plugin, together with the aircraft's model: workers need
-the same code and packages, and files that the scenario names at the same paths, but no shared file
-system. If a worker dies, Dask itself gives its task to another.
+The work and the aircraft's model are sent to every worker once, as a plugin. Workers need the same
+code and packages, and the scenario's files at the same paths, but no shared file system. If a
+worker dies, Dask gives its task to another one.
 """
 
 import faulthandler
@@ -30,16 +29,15 @@ WORKER_COUNT_INTERVAL = 1.0
 """Shortest time between two counts of the workers [s]: a count takes milliseconds."""
 
 WORKER_MEMORY_MIN = 2**30
-"""Least memory limit of a worker that is started here [bytes]; with less, Dask may restart it
-before its first flight.
-"""
+"""Least memory limit of a started worker [bytes]: with less, Dask may restart it at once."""
 
 CONNECT_TIMEOUT = 15.0
-"""Time for the scheduler to answer, and for the first worker to register [s]."""
+"""Time limit for the scheduler to answer, and for the first worker to register [s]."""
 
 _FLYING = threading.Lock()
-"""Threads can share neither JSBSim nor faulthandler's timer: a worker with several flies one flight
-at a time, of all its runs.
+"""Lets a worker with several threads fly one flight at a time.
+
+Threads can share neither JSBSim nor the timer of faulthandler.
 """
 
 
@@ -48,16 +46,15 @@ class DaskExecutor:
 
     Parameters
     ----------
-    work : what each worker does with a task
-    scheduler : address of a running scheduler; without one a cluster of ``jobs`` workers is started
-        on this machine
-    jobs : number of workers to start, if there is no scheduler
-    limits : time and memory limits of a task; the memory limit holds for workers that are started
-        here
+    work : work to be done on each task
+    scheduler : address of a running scheduler; None to start a cluster of ``jobs`` workers on this
+        machine
+    jobs : number of workers to start without a scheduler
+    limits : time and memory limits of a task; the memory limit holds for started workers only
 
     Raises
     ------
-    InputError : no scheduler or no worker at the address, or a worker that runs other code
+    InputError : there is no scheduler or no worker at the address, or a worker has other software
     """
 
     def __init__(self, work: Work, *, scheduler: str | None, jobs: int, limits: Limits) -> None:
@@ -75,7 +72,8 @@ class DaskExecutor:
             memory = self._limits.memory
             if memory is not None and memory < WORKER_MEMORY_MIN:
                 raise InputError(
-                    f"--memory-limit is {memory / 2**30:.2f} GiB; a Dask worker needs {WORKER_MEMORY_MIN / 2**30:g} GiB:"
+                    f"--memory-limit is {memory / 2**30:.2f} GiB; a Dask worker needs"
+                    f" {WORKER_MEMORY_MIN / 2**30:g} GiB:"
                     " raise the limit"
                 )
             self._cluster = distributed.LocalCluster(
@@ -91,14 +89,16 @@ class DaskExecutor:
             )
         except (OSError, TimeoutError, ValueError) as error:
             raise InputError(
-                f"--scheduler {self._scheduler} does not answer ({type(error).__name__}); check that it is running there"
+                f"--scheduler {self._scheduler} does not answer ({type(error).__name__}); check"
+                " that it is running there"
             ) from None
         try:
             self._client.wait_for_workers(1, timeout=CONNECT_TIMEOUT)
         except TimeoutError:
             self.__exit__(TimeoutError, None, None)
             raise InputError(
-                f"--scheduler {self._scheduler} has no worker; start some with 'dask worker ADDRESS'"
+                f"--scheduler {self._scheduler} has no worker; start some with 'dask worker"
+                " ADDRESS'"
             ) from None
         self._check_code()
         self._client.register_plugin(
@@ -107,18 +107,20 @@ class DaskExecutor:
         return self
 
     def _check_code(self) -> None:
-        """Refuse workers whose results could differ, or that have none of the code."""
+        """Refuse workers that lack the program or have other versions of software."""
         for worker, theirs in self._client.run(fingerprint, on_error="return").items():
             if isinstance(theirs, BaseException):
                 self.__exit__(InputError, None, None)
                 raise InputError(
-                    f"Dask worker {worker} cannot run this program ({theirs}); install it there, in the same version"
+                    f"Dask worker {worker} cannot run this program ({theirs}); install it"
+                    " there, in the same version"
                 )
             if differing := differences(theirs):
                 self.__exit__(InputError, None, None)
                 name = differing[0]
                 raise InputError(
-                    f"Dask worker {worker} has {name} {theirs.get(name)}; here it is {fingerprint()[name]}: results would differ;"
+                    f"Dask worker {worker} has {name} {theirs.get(name)}; here it is"
+                    f" {fingerprint()[name]}: results would differ;"
                     " install the same version there"
                 )
 
@@ -128,7 +130,7 @@ class DaskExecutor:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """Disconnect from the cluster, and end it if it was started here."""
+        """Disconnect from the cluster, and end a cluster that was started here."""
         if kind is None:
             self._client.unregister_worker_plugin(self._name)
         self._client.close()
@@ -136,9 +138,7 @@ class DaskExecutor:
             self._cluster.close()
 
     def fly(self, tasks: Iterable[Task]) -> Iterator[Result]:
-        """Yield the result of every task as it arrives; a task that fails on a worker is tried once
-        more.
-        """
+        """Yield the result of every task as it arrives; a failed task is tried again."""
         waiting = iter(tasks)
         attempted: set[int] = set()
         running: dict[Any, Task] = {}
@@ -175,9 +175,7 @@ class DaskExecutor:
             yield from results
 
     def _count_workers(self) -> int:
-        """Return the number of workers, at most ``WORKER_COUNT_INTERVAL`` old: workers may join and
-        leave.
-        """
+        """Return the number of workers, counted at most ``WORKER_COUNT_INTERVAL`` ago."""
         now = time.monotonic()
         if now - self._counted_at > WORKER_COUNT_INTERVAL:
             self._counted_at = now
@@ -187,20 +185,27 @@ class DaskExecutor:
 
 def _reason(error: BaseException | None) -> str:
     if isinstance(error, distributed.KilledWorker):
-        return "several workers died while they flew it: killed, out of memory, or beyond the time limit"
-    return f"{MAX_ATTEMPTS} workers that flew it failed; the last one with {type(error).__name__}: {error}"
+        return (
+            "several workers died while they flew it: killed, out of memory, or beyond the time"
+            " limit"
+        )
+    return (
+        f"{MAX_ATTEMPTS} workers that flew it failed; the last one with {type(error).__name__}:"
+        f" {error}"
+    )
 
 
 def _fly(name: str, task: Task) -> Result:
-    """Do a task; runs on a worker."""
+    """Do a task on a worker."""
     plugin: Any = distributed.get_worker().plugins[name]
     result: Result = plugin.run(task)
     return result
 
 
 class _WorkPlugin(distributed.WorkerPlugin):
-    """Holds the work of a run on a worker, with its files in a directory of the run's name: a
-    worker may have several runs.
+    """Holds the work of a run on a worker, with files in a directory of the run's name.
+
+    A worker may have several runs at once.
     """
 
     def __init__(self, name: str, work: Work, time_limit: float) -> None:
@@ -230,8 +235,7 @@ class _WorkPlugin(distributed.WorkerPlugin):
 
     def run(self, task: Task) -> Result:
         with _FLYING:
-            # This timer ends the worker without Python's interpreter lock, which a flight that
-            # hangs in C++ may hold.
+            # This timer needs no interpreter lock, which a flight that hangs in C++ may hold.
             faulthandler.dump_traceback_later(self._time_limit, exit=True)
             try:
                 return self._work.run(task)

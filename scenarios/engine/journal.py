@@ -1,9 +1,8 @@
-"""The journal: results of a study, stored on disk as they arrive.
+"""The journal: a database with the results of a study, stored as they arrive.
 
-A result is either in the journal or not: whenever and however the program ends, the next one finds
-every result that was added. Tables are written from the journal in the order of the tasks, one row
-at a time: a study may have more rows than fit into memory. Every result has a checksum; a journal
-in which one does not agree is refused.
+However the program ends, the next program finds every result that was added. Tables are written
+from the journal in the order of the tasks, one row at a time, because a study may have more rows
+than fit into memory. Every result has a checksum; a journal with a wrong checksum is refused.
 """
 
 import csv
@@ -25,44 +24,42 @@ _LARGEST = 2**63 - 1
 """SQLite's largest integer."""
 
 _BUSY = (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED, sqlite3.SQLITE_PROTOCOL)
-"""SQLite's codes of a file that another connection has."""
+"""SQLite's error codes for a file that another connection uses."""
 
 _ATTEMPTS = 6
-"""Attempts to open a journal: of two programs that open one in the same millisecond, SQLite may
-refuse both.
-"""
+"""Attempts to open a journal: SQLite may refuse two programs that open it at the same time."""
 
 _WAIT = 0.05
-"""Longest wait between two attempts [s]; drawn at random, so that the two do not meet again."""
+"""Longest wait between attempts [s]; it is random, so that two programs do not collide again."""
 
 CONTINUE = "continue with --resume"
-"""What to do once a run can be written again."""
+"""Remedy once a run can be written again."""
 
 _COLUMNS = ("number", "point", "items", "lost", "tables", "checksum")
 
 _SCHEMA = (
     "CREATE TABLE IF NOT EXISTS results"
-    " (number INTEGER PRIMARY KEY, point TEXT, items INTEGER, lost INTEGER, tables TEXT, checksum TEXT)"
+    " (number INTEGER PRIMARY KEY, point TEXT, items INTEGER, lost INTEGER, tables TEXT,"
+    " checksum TEXT)"
 )
 
 
 class Journal:
-    """Results of a study, by the numbers of their tasks.
+    """Results of a study by task number.
 
     Parameters
     ----------
-    path : path of the file; created if it does not exist
-    reading : whether results are read alone: then nothing is written beside somebody else's run
+    path : path of the file, which is created if it does not exist
+    reading : whether the journal is only read, so that nothing is written into somebody else's run
 
     Raises
     ------
-    InputError : another program is writing to it, it is damaged, or it cannot be used
+    InputError : another program is writing the journal, or it is damaged or unusable
     """
 
     def __init__(self, path: Path, *, reading: bool = False) -> None:
         self._path = path
-        # A log beside it is of a program that was killed, or that is writing now: SQLite has to see
-        # to it.
+        # A write-ahead log shows that a program was killed or is writing: SQLite has to handle it.
         closed = reading and not path.with_name(f"{path.name}-wal").exists()
         for attempt in range(1, _ATTEMPTS + 1):
             try:
@@ -73,7 +70,8 @@ class Journal:
                     raise self._explained(error, reading=reading) from None
                 if attempt == _ATTEMPTS:
                     raise InputError(
-                        f"another program is writing to '{path.parent}'; wait until it has ended, or choose another --out"
+                        f"another program is writing to '{path.parent}'; wait until it has"
+                        " ended, or choose another --out"
                     ) from None
                 time.sleep(random.SystemRandom().uniform(0.0, _WAIT))
         try:
@@ -86,13 +84,13 @@ class Journal:
             raise
 
     def _explained(self, error: sqlite3.DatabaseError, *, reading: bool) -> Exception:
-        """Return the error to raise for one of SQLite; that of a full disk as it is."""
+        """Return the error to raise for an error of SQLite; that of a full disk stays unchanged."""
         if is_full(error) and not reading:
             return error
         return unusable(self._path, error, then="try again" if reading else CONTINUE)
 
     def _check(self) -> None:
-        """Raise an InputError if a result is not as it was added."""
+        """Raise an InputError if the journal or one of its results is damaged."""
         columns = tuple(
             name for _, name, *_ in self._database.execute("PRAGMA table_info(results)")
         )
@@ -113,9 +111,7 @@ class Journal:
         self._database.close()
 
     def add(self, result: Result) -> None:
-        """Store a result, replacing an earlier one of its task; from then on it survives any end of
-        the program.
-        """
+        """Store a result durably, replacing an earlier one of its task."""
         fields = (
             result.task.number,
             json.dumps(result.task.point),
@@ -129,11 +125,11 @@ class Journal:
         )
 
     def is_empty(self) -> bool:
-        """Return whether it has no results."""
+        """Return whether the journal has no results."""
         return self._database.execute("SELECT 1 FROM results LIMIT 1").fetchone() is None
 
     def done(self) -> set[int]:
-        """Return the numbers of the tasks that are done; tasks whose process was lost are not."""
+        """Return the numbers of the tasks that are done, without those whose process was lost."""
         return {
             number
             for (number,) in self._database.execute("SELECT number FROM results WHERE NOT lost")
@@ -147,7 +143,7 @@ class Journal:
         return Task(number=number, point=tuple(json.loads(point)))
 
     def items(self) -> int:
-        """Return the number of items that are done."""
+        """Return the number of items in the results that are done."""
         return int(
             self._database.execute(
                 "SELECT COALESCE(SUM(items), 0) FROM results WHERE NOT lost"
@@ -155,7 +151,7 @@ class Journal:
         )
 
     def without_items(self) -> int:
-        """Return the number of results that are done and count no item."""
+        """Return the number of results that are done and have no item."""
         return int(
             self._database.execute(
                 "SELECT COUNT(*) FROM results WHERE NOT lost AND items = 0"
@@ -165,9 +161,7 @@ class Journal:
     def numbered(
         self, table: str, *, first: int = 0, below: int = _LARGEST
     ) -> Iterator[tuple[int, Row]]:
-        """Yield task number and row of a table, by ascending task number from ``first`` to below
-        ``below``.
-        """
+        """Yield task number and row of a table, for tasks from ``first`` to below ``below``."""
         query = (
             "SELECT number, tables FROM results WHERE number >= ? AND number < ? ORDER BY number"
         )
@@ -177,12 +171,13 @@ class Journal:
                 yield number, row
 
     def rows(self, table: str, *, first: int = 0, below: int = _LARGEST) -> Iterator[Row]:
-        """Yield the rows of a table, by ascending task number from ``first`` to below ``below``."""
+        """Yield the rows of a table, for tasks in order from ``first`` to below ``below``."""
         return (row for _, row in self.numbered(table, first=first, below=below))
 
     def export(self, table: str, columns: tuple[str, ...], file: IO[str]) -> int:
-        """Write a table as CSV with exactly ``columns``, missing values empty; return the number of
-        rows.
+        """Write a table as CSV with exactly ``columns``; return the number of rows.
+
+        Missing values are empty.
         """
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(columns)
@@ -193,7 +188,7 @@ class Journal:
 
 
 def _opened(path: Path, *, writing: bool) -> sqlite3.Connection:
-    """Return a connection to a journal, which no other program can open while it is writing."""
+    """Return a connection to a journal; a writing one excludes all other programs."""
     try:
         database = sqlite3.connect(
             path if writing else f"{path.absolute().as_uri()}?immutable=1",
@@ -203,11 +198,11 @@ def _opened(path: Path, *, writing: bool) -> sqlite3.Connection:
         )
     except sqlite3.Error as error:
         raise InputError(f"'{path}' cannot be opened: {error}; choose another --out") from None
-    # What is not text is found by its checksum.
+    # Invalid text is found later, by its checksum.
     database.text_factory = lambda text: text.decode(errors="replace")
     if writing:
         try:
-            # Exclusive: two programs that fly the same study would overwrite each other's results.
+            # Two programs that fly the same study would overwrite each other's results.
             database.execute("PRAGMA locking_mode = EXCLUSIVE")
             database.execute("PRAGMA journal_mode = WAL")
             database.execute("PRAGMA synchronous = NORMAL")
@@ -219,12 +214,12 @@ def _opened(path: Path, *, writing: bool) -> sqlite3.Connection:
 
 
 def is_full(error: sqlite3.DatabaseError) -> bool:
-    """Return whether the disk was full."""
+    """Return whether an error of SQLite says that the disk is full."""
     return _code(error) == sqlite3.SQLITE_FULL
 
 
 def is_damaged(error: sqlite3.DatabaseError) -> bool:
-    """Return whether the file is damaged, or not a journal."""
+    """Return whether an error of SQLite says that the file is damaged or not a journal."""
     return _code(error) in (
         sqlite3.SQLITE_CORRUPT,
         sqlite3.SQLITE_NOTADB,
@@ -234,9 +229,7 @@ def is_damaged(error: sqlite3.DatabaseError) -> bool:
 
 
 def unusable(path: Path, error: sqlite3.DatabaseError, *, then: str = CONTINUE) -> InputError:
-    """Return the error to raise for a journal that SQLite cannot use; ``then`` is what to do once
-    it can.
-    """
+    """Return the error to raise for a journal that SQLite cannot use; ``then`` ends the remedy."""
     if is_damaged(error):
         return damaged(path)
     return InputError(
@@ -245,12 +238,12 @@ def unusable(path: Path, error: sqlite3.DatabaseError, *, then: str = CONTINUE) 
 
 
 def damaged(path: Path, what: str = "") -> InputError:
-    """Return the error to raise for a damaged journal."""
+    """Return the error to raise for a damaged journal; ``what`` may say what is damaged."""
     return InputError(f"'{path}' is damaged{what}; start a new run in another --out")
 
 
 def _code(error: sqlite3.DatabaseError) -> int:
-    """Return the primary error code of SQLite."""
+    """Return the primary code of an error of SQLite."""
     return int(getattr(error, "sqlite_errorcode", sqlite3.SQLITE_ERROR)) & 0xFF
 
 
@@ -259,7 +252,7 @@ def _checksum(*fields: object) -> str:
 
 
 def _is_tables(text: object) -> bool:
-    """Return whether a text has lists of rows by the names of their tables."""
+    """Return whether a text is JSON with lists of rows by name of table."""
     try:
         tables = json.loads(str(text))
     except (ValueError, RecursionError):

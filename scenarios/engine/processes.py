@@ -1,9 +1,8 @@
-"""Executes tasks: in processes of this machine, on a Dask cluster, or in the caller's process.
+"""Execute tasks in processes of this machine, or in the caller's process.
 
-Every process of this machine has its own pipe and shares no lock with the others, so that a
-process that dies at any moment loses its current task and nothing else. (Pools that share one
-channel do not survive that: github.com/noxdafox/pebble/issues/163; the pool of the standard
-library stops altogether.)
+Every process has its own pipe and shares no lock with the others, so a process that dies loses its
+current task and nothing else. Pools with a shared channel do not survive the death of a process
+(github.com/noxdafox/pebble/issues/163), and the pool of the standard library stops.
 """
 
 import multiprocessing
@@ -27,22 +26,20 @@ if sys.platform != "win32":
     import resource
 
 MAX_ATTEMPTS = 2
-"""How often a task is tried if its process is lost."""
+"""Number of attempts at a task whose process is lost."""
 
 QUEUE_DEPTH = 2
-"""Tasks that a process holds at most: the current one and the next, so that it need not wait for
-it.
-"""
+"""Largest number of tasks in a process: the current one, and the next to avoid waiting."""
 
 JOIN_TIMEOUT = 5.0
-"""Time that an idle process has to end by itself before it is killed [s]; it takes milliseconds."""
+"""Time limit for an idle process to end before it is killed [s]; ending takes milliseconds."""
 
 
 class Executor(Protocol):
-    """Executes tasks in processes that have their work; leaving its context ends them."""
+    """Executes tasks; the end of its context ends its processes."""
 
     def __enter__(self) -> Self:
-        """Start."""
+        """Start the executor."""
 
     def __exit__(
         self,
@@ -50,18 +47,19 @@ class Executor(Protocol):
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """End every process; after an error at once."""
+        """End every process, after an error at once."""
 
     def fly(self, tasks: Iterable[Task]) -> Iterator[Result]:
         """Yield the result of every task as it arrives, in any order.
 
-        Tasks are taken from the iterable only when a process has room for one: it may be long.
+        Tasks are taken from the iterable only when a process has room, because there may be many.
         """
 
 
 class InProcessExecutor:
-    """For one flight, where a process of its own would be the greater part of the time; without
-    limits of time and memory.
+    """Executes tasks in the caller's process, without limits of time and memory.
+
+    For a single flight, starting a process would take most of the time.
 
     Parameters
     ----------
@@ -72,7 +70,7 @@ class InProcessExecutor:
         self._work = work
 
     def __enter__(self) -> Self:
-        """Do nothing: there is no process to start."""
+        """Do nothing, because there is no process to start."""
         return self
 
     def __exit__(
@@ -81,10 +79,10 @@ class InProcessExecutor:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """Do nothing: there is no process to end."""
+        """Do nothing, because there is no process to end."""
 
     def fly(self, tasks: Iterable[Task]) -> Iterator[Result]:
-        """Yield the result of every task, in their order."""
+        """Return the results of the tasks in order."""
         return map(self._work.run, tasks)
 
 
@@ -93,7 +91,7 @@ class LocalExecutor:
 
     Parameters
     ----------
-    work : what each process does with a task
+    work : work to be done on each task
     jobs : number of processes
     limits : time and memory limits of a task
     """
@@ -107,7 +105,7 @@ class LocalExecutor:
         self._attempts: Counter[int] = Counter()
 
     def __enter__(self) -> Self:
-        """Check the memory limit; processes are started when there is work for them.
+        """Check the memory limit; processes are started later, when there is work.
 
         Raises
         ------
@@ -116,7 +114,8 @@ class LocalExecutor:
         memory, needed = self._limits.memory, data_memory()
         if memory is not None and memory < needed:
             raise InputError(
-                f"--memory-limit is {memory / 2**30:.2f} GiB; a process uses {needed / 2**30:.2f} GiB before its first flight:"
+                f"--memory-limit is {memory / 2**30:.2f} GiB; a process uses"
+                f" {needed / 2**30:.2f} GiB before its first flight:"
                 " raise the limit"
             )
         return self
@@ -127,15 +126,13 @@ class LocalExecutor:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """End every process; after an error kill it."""
+        """End every process; after an error, kill them."""
         for worker in self._workers:
             worker.end(at_once=kind is not None)
         self._workers.clear()
 
     def fly(self, tasks: Iterable[Task]) -> Iterator[Result]:
-        """Yield the result of every task as it arrives; a task whose process is lost is tried once
-        more.
-        """
+        """Yield every result as it arrives; a task whose process is lost is tried again."""
         waiting = iter(tasks)
         while self._dispatch(waiting):
             ready = wait(
@@ -179,12 +176,13 @@ class LocalExecutor:
         return max(0.0, deadline - time.monotonic())
 
     def _handle_lost_worker(self, worker: "WorkerProcess", reason: str) -> Iterator[Result]:
-        """Queue the tasks of a lost process again; yield the result of its current task after the
-        last attempt.
+        """Queue the tasks of a lost process again.
+
+        After the last attempt at its current task, yield a result instead.
         """
         worker.end(at_once=True)
         current, *queued = worker.tasks
-        # The queued tasks had not been started: they do not count as attempted.
+        # The queued tasks had not been started, so they do not count as attempted.
         self._retries.extendleft(reversed(queued))
         self._workers.remove(worker)
         self._attempts[current.number] += 1
@@ -197,19 +195,19 @@ class LocalExecutor:
 
 
 class WorkerProcess:
-    """One process and the tasks that were sent to it.
+    """A process and the tasks that were sent to it.
 
     Attributes
     ----------
     connection : pipe to the process
-    tasks : the current task, then those that are queued in the pipe
-    task_started : when the current task was started [s]
+    tasks : the current task, then the tasks queued in the pipe
+    task_started : start time of the current task [s]
     """
 
     def __init__(self, work: Work, limits: Limits, others: Sequence[Connection]) -> None:
         self.connection, theirs = multiprocessing.Pipe()
-        # A forked process inherits the ends of all pipes; if it kept them open, no process would
-        # see this program end.
+        # A forked process inherits the ends of all pipes. If they stayed open, no process would
+        # notice the end of this program.
         inherited = [*others, self.connection]
         self._process: BaseProcess = multiprocessing.Process(
             target=_serve, args=(theirs, inherited, work, limits.memory), daemon=True
@@ -227,7 +225,7 @@ class WorkerProcess:
         try:
             self.connection.send(task)
         except (BrokenPipeError, ConnectionResetError):
-            # The process is dead; receive() will say so.
+            # The process is dead; receive() reports it.
             return
 
     def is_overdue(self, limit: float) -> bool:
@@ -235,7 +233,7 @@ class WorkerProcess:
         return bool(self.tasks) and time.monotonic() - self.task_started > limit
 
     def receive(self) -> Result | str:
-        """Return the result of the current task, or how the process was lost."""
+        """Return the result of the current task, or the reason why the process was lost."""
         try:
             answer: Result | str = self.connection.recv()
         except (EOFError, OSError):
@@ -251,9 +249,7 @@ class WorkerProcess:
         self._process.kill()
 
     def end(self, *, at_once: bool) -> None:
-        """Close the pipe and wait until the process has ended; kill it first if ``at_once``, or if
-        it does not end.
-        """
+        """End the process by closing its pipe; kill it if ``at_once``, or if it does not end."""
         self.connection.close()
         if at_once:
             self._process.kill()
@@ -267,7 +263,7 @@ def _exit_reason(code: int | None) -> str:
     if code is None:
         return "closed its connection"
     if code < 0:
-        # Of real-time signals only the first and the last have a name.
+        # Only the first and the last real-time signal have a name.
         name = signal.Signals(-code).name if -code in list(signal.Signals) else f"signal {-code}"
         return f"was ended by {name}" + (
             ", possibly for lack of memory" if name == "SIGKILL" else ""
@@ -297,10 +293,9 @@ def _serve(
 
 
 def limit_memory(limit: int | None) -> None:
-    """Limit the data memory of this process to ``limit`` [bytes]; allocations beyond it raise
-    MemoryError.
+    """Limit the data memory of this process to ``limit`` [bytes].
 
-    Without effect on systems that have no such limit.
+    Allocations beyond the limit raise MemoryError. Some systems have no such limit.
     """
     if limit is not None and sys.platform != "win32":
         _, hard = resource.getrlimit(resource.RLIMIT_DATA)
@@ -311,7 +306,7 @@ def limit_memory(limit: int | None) -> None:
 
 
 def data_memory() -> int:
-    """Return the data memory of this process [bytes]; 0 if the system does not report it."""
+    """Return the data memory of this process [bytes]; 0 if it is not reported."""
     try:
         status = Path("/proc/self/status").read_text(encoding="ascii")
     except OSError:
@@ -321,7 +316,7 @@ def data_memory() -> int:
 
 
 def peak_memory() -> float:
-    """Return the peak resident memory of this process [bytes]; 0 if the system does not report it."""
+    """Return the peak resident memory of this process [bytes]; 0 if it is not reported."""
     if sys.platform == "win32":
         return 0.0
     unit = 1 if sys.platform == "darwin" else 1024

@@ -1,5 +1,7 @@
-"""The run directory: its files, each written completely or not at all, and what has to agree with a run
-that is resumed: its configuration, and the software that results depend on.
+"""The run directory: writing its files, and checking a run that is resumed.
+
+Files are written completely or not at all. A run is resumed only with the same configuration and
+the same software.
 """
 
 import functools
@@ -31,38 +33,36 @@ from common.text import cell
 from scenarios.errors import InputError
 
 if TYPE_CHECKING:
-    # Commands that only list or refuse something need not wait for it.
+    # Commands that only list or refuse something do not wait for the import.
     import pandas as pd
 
 
 _BEGUN = re.compile(
     rf"{re.escape(JOURNAL)}(-.*)?|\.probe-[0-9a-f]*\.part|\.{re.escape(MANIFEST)}\.\d+\.part"
 )
-"""Files of a run that was killed before it had a manifest."""
+"""Files of a run that was killed before its manifest was written."""
 
 _PARQUET_END = b"PAR1"
-"""How a Parquet file ends (Apache Parquet, file format)."""
+"""End of a Parquet file (Apache Parquet, file format)."""
 
 _PATH_SHOWN = 120
-"""Letters of a path that a message shows at most: what is refused may be too long."""
+"""Largest number of characters of a path in a message."""
 
 _PACKAGES = ("jsbsim", "numpy", "scipy", "control", "slycot", "pydantic", "cma")
 SOURCE = ("aircraft", "common", "extensions", "gnc", "innerloop", "measurement", "scenarios")
-"""Packages of the project that results depend on: all that flies or measures; ``reports`` only
-shows it.
-"""
+"""Packages of the project that results depend on, which is all but ``reports``."""
 
 _SUFFIXES = (".json", ".py", ".toml", ".xml")
-"""Source, and the data that it reads: aircraft models, presets and tables."""
+"""Suffixes of source and of the data that it reads: aircraft models, presets and tables."""
 
 _CATALOG = "catalog"
-"""Folders that are left out: a run is compared by what its scenario contains, wherever that was read from."""
+"""Folders left out of the source's hash, because a run has its scenario in its configuration."""
 
 _KEYS_NAMED = 3
-"""Keys that are named, at most."""
+"""Largest number of differing keys in a message."""
 
 _VALUE_SHOWN = 60
-"""Letters of a value that are shown, at most."""
+"""Largest number of characters of a value in a message."""
 
 
 class RunDirectory:
@@ -70,12 +70,12 @@ class RunDirectory:
 
     Parameters
     ----------
-    path : the directory; created by ``open``
+    path : the directory, which ``open`` creates
 
     Attributes
     ----------
-    missing_files : files that the run had when it ended, and that are deleted or cut since; known once it
-        has been opened to be resumed
+    missing_files : files of the finished run that are now deleted or truncated; known after
+        ``open`` with ``resume``
     """
 
     def __init__(self, path: Path) -> None:
@@ -95,23 +95,22 @@ class RunDirectory:
         resume: bool,
         manifest: Callable[[], Mapping[str, Any]] | None = None,
     ) -> dict[str, Any]:
-        """Open the directory and return the manifest of the run that is resumed, empty for a new
-        one.
+        """Open the directory; return the manifest of a resumed run, empty for a new run.
 
         Parameters
         ----------
-        config_hash : of the configuration that is to be flown
-        resume : continue the run that is there
-        manifest : returns that of what is to be flown, by which an error names the keys that differ
+        config_hash : hash of the configuration to be flown
+        resume : whether to continue an existing run
+        manifest : function that returns the manifest of the study to be flown, for error messages
+            about differing keys
 
         Raises
         ------
-        InputError : the directory cannot be written; it is to be resumed and holds no run of this
-            configuration and software, or it is to be new and holds something
+        InputError : the directory cannot be written; to be resumed, it holds no run of this
+            configuration and software; or to be new, it is not empty
         """
         try:
-            # A run that was killed before it had a manifest has nothing to continue, and is begun
-            # anew.
+            # A run that was killed before its manifest was written is started again.
             if resume and (self.manifest.exists() or not self._is_begun()):
                 return self._open_existing(config_hash, manifest)
             self.refuse_taken()
@@ -121,27 +120,24 @@ class RunDirectory:
         return {}
 
     def plugins(self) -> dict[str, str]:
-        """Return the hash of each file that the run took parts from; none if it has no manifest
-        that can be read.
-        """
+        """Return the hash of each file with parts of the run; empty without a readable manifest."""
         try:
             return dict(json.loads(self.manifest.read_text(encoding="utf-8")).get("plugins", {}))
         except (ValueError, TypeError, AttributeError, OSError, RecursionError):
             return {}
 
     def _is_begun(self) -> bool:
-        """Return whether it has nothing but the first files of a run."""
+        """Return whether the directory has only the first files of a killed run."""
         names = [path.name for path in self.path.iterdir()] if self.path.is_dir() else []
         return bool(names) and all(_BEGUN.fullmatch(name) for name in names)
 
     def refuse_taken(self) -> None:
-        """Raise an InputError if the directory holds anything but the first files of a run that was
-        killed.
-        """
+        """Raise an InputError if the directory has more than the first files of a killed run."""
         try:
             if self.manifest.exists():
                 raise InputError(
-                    f"output directory '{self.path}' holds another run; choose another --out, or continue it with --resume"
+                    f"output directory '{self.path}' holds another run; choose another --out,"
+                    " or continue it with --resume"
                 )
             if self.path.is_dir() and any(self.path.iterdir()) and not self._is_begun():
                 raise InputError(
@@ -167,7 +163,8 @@ class RunDirectory:
         if found != config_hash:
             keys = changed_keys(manifest, ours()) if ours else ""
             raise InputError(
-                f"'{self.path}' was run with another configuration{f': {keys}' if keys else ''}; resume it with the same scenario,"
+                f"'{self.path}' was run with another"
+                f" configuration{f': {keys}' if keys else ''}; resume it with the same scenario,"
                 " --seed and --set values"
             )
         self._refuse_other_software(theirs)
@@ -182,7 +179,8 @@ class RunDirectory:
         for name in differences(theirs)[:1]:
             before, now = theirs.get(name, "unknown"), fingerprint()[name]
             raise InputError(
-                f"'{self.path}' was started with {name} {before}, now it is {now}: results would not be comparable;"
+                f"'{self.path}' was started with {name} {before}, now it is {now}: results"
+                " would not be comparable;"
                 f" resume it with the same {name}, or start a new run in another --out"
             )
 
@@ -190,20 +188,17 @@ class RunDirectory:
         for path in self.path.iterdir():
             if path.is_symlink():
                 raise InputError(
-                    f"'{path}' is a link; results are written into '{self.path}' alone: replace it by what it links to"
+                    f"'{path}' is a link; results are written into '{self.path}' alone: replace"
+                    " it by what it links to"
                 )
 
     def remove_partial_files(self) -> None:
-        """Remove partly written files of a program that was killed. No other program may be
-        writing.
-        """
+        """Remove partly written files of a killed program; no other program may be writing."""
         for part in self.path.rglob(".*.part"):
             part.unlink()
 
     def files(self) -> list[str]:
-        """Return the files of the run by their paths in the directory, without journal, manifest,
-        reports and exports.
-        """
+        """Return the paths of the run's files, without journal, manifest, reports and exports."""
         names = (
             path.relative_to(self.path).as_posix()
             for path in self.path.rglob("*")
@@ -226,7 +221,7 @@ class RunDirectory:
         )
 
     def _inside(self, name: str) -> Path:
-        """Return the path of a file of the run, after making the directory that it is in.
+        """Return the path of a file of the run; create its directory.
 
         Raises
         ------
@@ -241,7 +236,7 @@ class RunDirectory:
         return path
 
     def write_json(self, path: Path, value: Mapping[str, Any], *, indent: int | None = 1) -> None:
-        """Write a JSON file, completely or not at all; with an ``indent`` of None on one line."""
+        """Write a JSON file, completely or not at all; an ``indent`` of None gives one line."""
         write_json(path, value, indent=indent)
 
     def write_text(self, path: Path, text: str) -> None:
@@ -249,7 +244,7 @@ class RunDirectory:
         write_text(path, text)
 
     def write_frame(self, name: str, frame: "pd.DataFrame") -> None:
-        """Write a table to ``name``, a CSV or Parquet file by its suffix, completely or not at all."""
+        """Write a table to a CSV or Parquet file, by its suffix, completely or not at all."""
         path = self._inside(name)
         if name.endswith(HISTORY_SUFFIX):
             write_whole(path, lambda part: frame.to_parquet(part, index=False))
@@ -264,7 +259,7 @@ class RunDirectory:
 
 
 def _is_whole(path: Path) -> bool:
-    """Return whether there is a file that, as far as its kind shows it, is not cut."""
+    """Return whether a file exists and, if it is a Parquet file, is not truncated."""
     try:
         if path.suffix == HISTORY_SUFFIX:
             with path.open("rb") as file:
@@ -279,9 +274,7 @@ def _is_whole(path: Path) -> bool:
 
 @functools.cache
 def fingerprint() -> dict[str, str]:
-    """Return the versions of Python and of the packages that results depend on, and a hash of the
-    project's source.
-    """
+    """Return versions of Python and of packages that results depend on, and the source's hash."""
     versions = {package: importlib.metadata.version(package) for package in _PACKAGES}
     return {
         "python": platform.python_version(),
@@ -291,9 +284,7 @@ def fingerprint() -> dict[str, str]:
 
 
 def source_hash(project: Path) -> str:
-    """Return a hash of the files of a project that results depend on, by their paths in it and
-    their contents.
-    """
+    """Return a hash of the paths and contents of a project's files that results depend on."""
     found = (
         path
         for package in SOURCE
@@ -305,19 +296,16 @@ def source_hash(project: Path) -> str:
 
 
 def differences(theirs: Mapping[str, str]) -> list[str]:
-    """Return the names of the entries in which another fingerprint differs from that of this
-    program.
-    """
+    """Return the names of entries in which a fingerprint differs from this program's."""
     return [name for name, mine in fingerprint().items() if theirs.get(name) != mine]
 
 
 def changed_keys(before: Mapping[str, Any], now: Mapping[str, Any]) -> str:
-    """Return the first keys that differ, each with both values, in words; nothing if the manifests
-    do not say which.
+    """Return the first differing keys with both values, in words; empty if none is found.
 
     Parameters
     ----------
-    before, now : manifests of the run, and of the study that is to continue it
+    before, now : manifest of the run, and manifest of the study that continues it
     """
     if not isinstance(before.get("config"), dict):
         return ""
@@ -335,7 +323,7 @@ def _values(manifest: Mapping[str, Any]) -> Iterator[tuple[str, object]]:
     yield "the scenario's name", manifest.get("name")
     yield from _flat(config := manifest.get("config"), "")
     if isinstance(config, dict) and config.get("study") == "trials":
-        # A list says nothing of the keys of its trials.
+        # The list of trials in the configuration does not contain their keys.
         yield from _flat(manifest.get("trials"), "")
     yield from _flat(manifest.get("plugins"), "the hash of ")
 

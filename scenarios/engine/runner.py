@@ -1,5 +1,6 @@
-"""The interface of a study, and its execution with an executor, a journal and a run directory; the
-progress bar.
+"""The Protocol of a study, its execution, and the progress bar.
+
+A study is executed with an executor, a journal and a run directory.
 """
 
 import contextlib
@@ -25,22 +26,18 @@ from scenarios.engine.task import Limits, Task, Work
 from scenarios.errors import InputError
 
 Progress = Callable[[str, int, int], None]
-"""Called with the current activity, the number of items that are done and the total number of
-items.
-"""
+"""Function called with the current activity, the number of done items and their total number."""
 
 LOCAL, DASK = "local", "dask"
 """Names of the executors."""
 
 REFRESH_INTERVAL = 0.1
-"""Shortest time between two updates of the progress bar [s]: results may arrive faster than a terminal
-can show them.
-"""
+"""Shortest time between updates of the progress bar [s]: a terminal can be slower than results."""
 
 _COMPLETE, _INTERRUPTED = "complete", "interrupted"
 
 Fly = Callable[[Iterable[Task]], None]
-"""Executes tasks and returns when their results are in the journal."""
+"""Function that executes tasks and returns when their results are in the journal."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,9 +46,9 @@ class StudySummary:
 
     Attributes
     ----------
-    verdict : what it has shown; it becomes ``verdict.json``
-    lines : the same in lines of text, for the console
-    manifest : entries for the manifest of the run
+    verdict : verdict on the run, for ``verdict.json``
+    lines : the verdict in lines of text, for the console
+    manifest : entries for the run's manifest
     """
 
     verdict: RunVerdict
@@ -61,13 +58,13 @@ class StudySummary:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Launch:
-    """What there is to do as a study is launched or resumed.
+    """Amount of work when a study is started or resumed.
 
     Attributes
     ----------
-    what : name of the items that the study counts, in the plural
-    planned, done : largest possible number of items, and the number of those that are done
-    comparisons_left : number of items of comparisons that are not done
+    what : name of the study's items, in the plural
+    planned, done : largest possible number of items, and number of done items
+    comparisons_left : number of comparisons that are still to be flown
     resumed : whether the run had begun before
     """
 
@@ -79,11 +76,11 @@ class Launch:
 
 
 class Study(Protocol):
-    """A set of tasks, the work to be done on each, and the evaluation of their results.
+    """A set of tasks, the work to be done on each, and the evaluation of the results.
 
     Attributes
     ----------
-    what : name of the items that the study counts, in the plural, such as "flights"
+    what : name of the study's items, in the plural, such as "flights"
     config_hash : hash of the configuration that results depend on
     """
 
@@ -96,32 +93,29 @@ class Study(Protocol):
 
     @property
     def comparisons(self) -> int:
-        """Return the number of results of comparisons, which are no items; progress counts them,
-        too.
-        """
+        """Return the number of comparisons, which are not items but count for the progress."""
 
     def initial_manifest(self) -> dict[str, Any]:
-        """Return the manifest as written before the first task."""
+        """Return the manifest that is written before the first task."""
 
     def work(self, run: RunDirectory) -> Work:
-        """Return the work, after writing the files that it needs into the run directory."""
+        """Write the files that the work needs into the run directory; return the work."""
 
     def run(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
-        """Execute tasks, in one or several calls of ``fly``: their results are in the journal when
-        it returns.
+        """Execute tasks, in one or several calls of ``fly``.
 
-        Tasks whose results are in the journal are skipped, unless they are ``recorded``: those are
-        repeated for their files.
+        When ``fly`` returns, the results are in the journal. Tasks with a result in the journal are
+        skipped, except ``recorded`` ones, which are repeated for their files.
         """
 
     def postprocess(self, run: RunDirectory, journal: Journal, progress: Progress) -> None:
-        """Write the files of the run beside its tables, when every task is done."""
+        """Write the run's files other than tables, after the last task."""
 
     def export(self, run: RunDirectory, journal: Journal) -> None:
-        """Write the tables of the results so far."""
+        """Write the tables from the results so far."""
 
     def summary(self, journal: Journal) -> StudySummary:
-        """Return the result so far."""
+        """Return the study's result so far."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -131,9 +125,9 @@ class RunResult:
     Attributes
     ----------
     directory : the run directory
-    verdict : what it has shown
-    lines : the same in lines of text
-    changed : whether anything was written; a resumed run may have had nothing to do
+    verdict : verdict on the run
+    lines : the verdict in lines of text
+    changed : whether anything was written; a complete run that is resumed may stay unchanged
     """
 
     directory: Path
@@ -143,7 +137,7 @@ class RunResult:
 
     @property
     def all_met(self) -> bool:
-        """Whether everything that was planned is done, and is as required."""
+        """Whether everything planned is done and met its requirement."""
         return self.verdict.exit_status == MET
 
 
@@ -157,17 +151,17 @@ def fly_study(
     command: str = "",
     launched: Callable[[Launch], None] = lambda _: None,
 ) -> RunResult:
-    """Fly a study, or the unfinished part of it, into a run directory.
+    """Fly a study, or its unfinished part, into a run directory.
 
     Parameters
     ----------
     study : the study
     directory : the run directory
-    executor_factory : makes the executor
-    resume : continue the unfinished run in ``directory``
+    executor_factory : function that creates the executor
+    resume : whether to continue the unfinished run in ``directory``
     progress : called as the study advances
-    command : the command line, for the manifest; none if a program flies the study
-    launched : called once, before anything is flown
+    command : the command line, for the manifest; empty if a program flies the study
+    launched : called once before the first task
 
     Raises
     ------
@@ -195,7 +189,8 @@ def fly_study(
             raise
         what = f"{type(error).__name__}: {error}".splitlines()[0]
         raise InputError(
-            f"'{run.path}' has results that do not fit its study ({what}); start a new run in another --out"
+            f"'{run.path}' has results that do not fit its study ({what}); start a new run in"
+            " another --out"
         ) from error
 
 
@@ -204,8 +199,8 @@ class _Execution:
 
     Parameters
     ----------
-    study, run, journal : of the run
-    before : manifest of the run that is resumed, empty for a new one
+    study, run, journal : the study, and its run directory and journal
+    before : manifest of a resumed run, empty for a new run
     progress : called as the study advances
     command : the command line
     """
@@ -224,8 +219,7 @@ class _Execution:
         self._journal = journal
         self._before = before
         self._progress = progress
-        # A run that is resumed is as old as its first flight, and has taken as long as all of its
-        # sessions.
+        # A resumed run began with its first session, and its time is the sum of all sessions.
         began = before.get("begun_utc") or f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ}"
         first = {"command": before.get("command") or command, "begun_utc": began}
         self._wall_time = float(before.get("wall_time_s", 0.0))
@@ -250,14 +244,14 @@ class _Execution:
         except KeyboardInterrupt:
             interrupted = True
         except Exception:
-            # Results so far can be read whatever went wrong after them.
+            # After an error, the results so far stay readable.
             if not journal.is_empty():
                 study.export(run, journal)
                 self._write(study.summary(journal).verdict, interrupted=True)
             raise
         changed = not self._is_as_before()
-        # Always: tables may have been changed by others, and those that have not are left as they
-        # are.
+        # Tables are always written, because others may have changed them; equal files stay
+        # untouched.
         study.export(run, journal)
         summary = study.summary(journal)
         verdict = self._write(summary.verdict, interrupted=interrupted)
@@ -266,12 +260,12 @@ class _Execution:
                 "state": _INTERRUPTED if interrupted else _COMPLETE,
                 "wall_time_s": self._wall_time + time.perf_counter() - began,
                 "peak_memory_mib": round(peak_memory() / 2**20, 1),
-                # What was deleted and is not made again is still missed.
+                # A deleted file that is not written again is still missing.
                 FILES: sorted({*run.files(), *run.missing_files}),
             }
             run.write_json(run.manifest, self._manifest | closing | summary.manifest)
         elif self._before.get("report") != self._manifest.get("report"):
-            # Nothing was flown, but the reports are to say something else of themselves.
+            # Nothing was flown, but the settings of the reports have changed.
             changed = True
             report = {
                 "report": self._manifest.get("report"),
@@ -281,7 +275,7 @@ class _Execution:
         return RunResult(directory=run.path, verdict=verdict, lines=summary.lines, changed=changed)
 
     def _write(self, verdict: RunVerdict, *, interrupted: bool) -> RunVerdict:
-        """Write the verdict of what is done, and return it."""
+        """Write the verdict on the results so far; return it."""
         verdict = verdict.once_interrupted(interrupted=interrupted)
         self._run.write_json(self._run.path / VERDICT, verdict.to_json())
         return verdict
@@ -298,20 +292,21 @@ class _Execution:
         )
 
     def _begin(self) -> None:
-        """Say in the manifest that the run goes on, and remove what will be untrue; once, before
-        anything is added.
+        """Mark the run as running in its manifest, and remove reports that will be outdated.
+
+        This happens once, before the first result is added.
         """
         if not self._begun:
             self._begun = True
             remove_reports(self._run.path)
             (self._run.path / VERDICT).unlink(missing_ok=True)
-            # What a session takes that is killed nobody knows; what those before it took is kept.
+            # The time of a killed session is unknown; the time of earlier sessions is kept.
             took = {"wall_time_s": self._wall_time} if self._wall_time else {}
             running = {"state": "running", **took, FILES: self._before.get(FILES, [])}
             self._run.write_json(self._run.manifest, self._manifest | running)
 
     def _is_as_before(self) -> bool:
-        """Return whether the run was complete, nothing was added, and nothing is missing."""
+        """Return whether the run was complete, without new results and missing files."""
         return (
             not self._begun
             and self._before.get("state") == _COMPLETE
@@ -326,7 +321,7 @@ class _Execution:
         )
 
         def report() -> None:
-            # What tunes a law before its flights is neither an item nor beside them.
+            # Results that tune a law before the flights are neither items nor comparisons.
             possible = self._study.comparisons
             self._progress("flying", done + min(beside, possible), self._study.planned + possible)
 
@@ -341,7 +336,7 @@ class _Execution:
         def fly(tasks: Iterable[Task]) -> None:
             nonlocal done, beside
             for result in executor.fly(waiting(tasks)):
-                # Files first: a result counts as done when it is in the journal.
+                # Files are written first, because a result in the journal counts as done.
                 for name, content in result.files.items():
                     self._run.write_bytes(name, content)
                 if not result.task.recorded:
@@ -354,18 +349,18 @@ class _Execution:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExecutorFactory:
-    """Makes executors of one kind.
+    """Creates executors of one kind.
 
     Attributes
     ----------
-    jobs : number of processes to start; unused with a scheduler, whose workers are running already
+    jobs : number of processes to start; unused with a scheduler, whose workers are running
     executor : ``LOCAL`` or ``DASK``
-    scheduler : address of a Dask scheduler; without one a cluster is started on this machine
+    scheduler : address of a Dask scheduler; None to start a cluster on this machine
     limits : time and memory limits of a task
 
     Raises
     ------
-    InputError : a scheduler without Dask, or Dask is not installed
+    InputError : a scheduler is given without Dask, or Dask is not installed
     """
 
     jobs: int = 1
@@ -376,15 +371,17 @@ class ExecutorFactory:
     def __post_init__(self) -> None:
         if self.scheduler is not None and self.executor != DASK:
             raise InputError(
-                f"--scheduler is {self.scheduler} with --executor {self.executor}; add --executor dask"
+                f"--scheduler is {self.scheduler} with --executor {self.executor}; add"
+                " --executor dask"
             )
         if self.executor == DASK and find_spec("distributed") is None:
             raise InputError(
-                f"--executor is dask, which is not installed; install the extra: {install_words('dask')}"
+                "--executor is dask, which is not installed; install the extra:"
+                f" {install_words('dask')}"
             )
 
     def __call__(self, work: Work) -> Executor:
-        """Return an executor for some work."""
+        """Return an executor for the work."""
         if self.executor == LOCAL:
             return LocalExecutor(work, jobs=self.jobs, limits=self.limits)
         from scenarios.engine.dask_executor import DaskExecutor
@@ -393,9 +390,7 @@ class ExecutorFactory:
 
 
 def write_tables(run: RunDirectory, journal: Journal, tables: Mapping[str, Table]) -> None:
-    """Write tables from the journal into the run directory; ``tables`` gives the columns of each
-    file.
-    """
+    """Write tables from the journal into the run directory; ``tables`` has columns by file."""
     for name, columns in tables.items():
 
         def write(path: Path, name: str = name, columns: Table = columns) -> None:
@@ -406,7 +401,7 @@ def write_tables(run: RunDirectory, journal: Journal, tables: Mapping[str, Table
 
 
 def write_columns(run: RunDirectory, tables: Mapping[str, Table]) -> None:
-    """Write what the columns of a run's tables are."""
+    """Write ``columns.json``, the description of the tables' columns."""
     run.write_json(run.path / COLUMNS, to_json(tables))
 
 
@@ -419,7 +414,8 @@ def _explained(error: OSError | sqlite3.DatabaseError, run: RunDirectory) -> Inp
     )
     if full:
         return InputError(
-            f"the disk of '{run.path}' is full; finished results are kept: free some space and {CONTINUE}"
+            f"the disk of '{run.path}' is full; finished results are kept: free some space and"
+            f" {CONTINUE}"
         )
     if isinstance(error, OSError):
         where = error.filename or run.path
@@ -431,11 +427,10 @@ def _explained(error: OSError | sqlite3.DatabaseError, run: RunDirectory) -> Inp
 
 @contextlib.contextmanager
 def progress_bar() -> Iterator[Progress]:
-    """Yield a function to call with the current activity, the number of finished items and their
-    total.
+    """Show a progress bar in this context; yield the function that updates it.
 
-    The bar appears at the first call. If the input is refused it is removed, so that only the
-    message is left.
+    The bar appears at the first call. If the input is refused, the bar is removed, so that only the
+    error message is visible.
     """
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
@@ -464,7 +459,7 @@ def progress_bar() -> Iterator[Progress]:
     try:
         yield report
     except InputError:
-        # This erases the bar from a terminal; to anything else nothing has been written yet.
+        # This erases the bar from a terminal; any other output has not been written yet.
         bar.live.transient = True
         bar.console.quiet = not bar.console.is_terminal
         raise

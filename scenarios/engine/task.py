@@ -1,4 +1,4 @@
-"""Tasks, the work that is done on them, and their results."""
+"""Tasks, the work to be done on them, and their results."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -7,16 +7,18 @@ from typing import Any, Protocol, Self
 from scenarios.errors import InputError
 
 Row = dict[str, Any]
-"""A row of a table: values by column."""
+"""A row of a table: values by column name."""
 
 TIME_RANGE = 1.0, 1e6
-"""Least and largest time limit of a task [s]: eleven days, which the clock of a wait can still
-count in milliseconds.
+"""Least and largest time limit of a task [s].
+
+The largest is eleven days, so that a wait in milliseconds does not overflow.
 """
 
 MEMORY_RANGE = 0.25, 1e6
-"""Least and largest memory limit of a process [GiB]: about a pebibyte, beyond what processors can
-address.
+"""Least and largest memory limit of a process [GiB].
+
+The largest, about a pebibyte, is more than processors can address.
 """
 
 
@@ -26,12 +28,12 @@ class Task:
 
     Attributes
     ----------
-    number : its index in the study, from 0
-    point : coordinates of its random variables in the unit cube, if the study chooses them;
+    number : index in the study, from 0
+    point : coordinates of the random variables in the unit cube, if the study chooses them;
         otherwise they follow from the number
-    recorded : whether its time history is written in any case
+    recorded : whether the time history is written in any case
     every_step : whether the time history has every step of the guidance
-    seed : of its noise, if the study chooses it; otherwise it follows from the number and the
+    seed : seed of the noise, if the study chooses it; otherwise it follows from the number and the
         random variables
     labels : columns and values that the study adds to the table of inputs
     """
@@ -51,10 +53,10 @@ class Result:
     Attributes
     ----------
     task : the task
-    tables : rows by the file name of their table
-    files : contents of files by their paths in the run directory
-    items : number of items of the study in this result
-    lost : whether its process was lost, so that the task is tried again by ``--resume``
+    tables : rows by file name of the table
+    files : contents of files by path in the run directory
+    items : number of the study's items in this result
+    lost : whether the process was lost, so that ``--resume`` repeats the task
     """
 
     task: Task
@@ -65,9 +67,10 @@ class Result:
 
 
 class Work(Protocol):
-    """What a study does with each task. It is sent to every process once, so it must be picklable.
+    """The work that a study does on each task.
 
-    A result depends on the work and the task alone, not on what the process did before.
+    Work is sent to every process once, so it must be picklable. A result depends on the work and
+    the task only, not on earlier tasks of the process.
 
     Attributes
     ----------
@@ -82,9 +85,7 @@ class Work(Protocol):
         """Return the same work with its files in another directory."""
 
     def run(self, task: Task) -> Result:
-        """Do a task. Every failure becomes a row with its reason, except MemoryError, which is
-        raised.
-        """
+        """Do a task; a failure becomes a row with its reason, but MemoryError is raised."""
 
     def lost(self, task: Task, reason: str) -> Result:
         """Return the result of a task whose process was lost."""
@@ -92,7 +93,7 @@ class Work(Protocol):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
-    """Limits of a task; beyond them its process is killed and the task is tried once more.
+    """Limits of a task; if one is exceeded, the process is killed and the task is tried again.
 
     Attributes
     ----------
@@ -105,15 +106,15 @@ class Limits:
 
     @classmethod
     def given(cls, time_s: float, memory_gib: float | None) -> Self:
-        """Return the limits of a command line.
+        """Return the limits from the options of a command line.
 
         Parameters
         ----------
-        time_s, memory_gib : ``--time-limit`` and ``--memory-limit``
+        time_s, memory_gib : ``--time-limit`` [s] and ``--memory-limit`` [GiB]
 
         Raises
         ------
-        InputError : out of range, or not a number
+        InputError : a limit is out of range or NaN
         """
         _check("--time-limit", time_s, "s", TIME_RANGE)
         if memory_gib is None:
@@ -123,8 +124,9 @@ class Limits:
 
 
 def _check(name: str, value: float, unit: str, limits: tuple[float, float]) -> None:
-    # Neither comparison holds for what is not a number.
+    # Both comparisons are false for NaN.
     if not limits[0] <= value <= limits[1]:
         raise InputError(
-            f"{name} is {value:g} {unit}; it must lie between {limits[0]:g} and {limits[1]:g} {unit}"
+            f"{name} is {value:g} {unit}; it must lie between {limits[0]:g} and {limits[1]:g}"
+            f" {unit}"
         )

@@ -1,3 +1,4 @@
-"""Search for the point of the unit cube with the least clearance: methods that propose points and
-receive the clearances.
+"""Search for the point of the unit cube with the least clearance.
+
+Search methods propose points and receive their clearances.
 """

@@ -16,22 +16,22 @@ from scenarios.search.method import (
 )
 
 _SHARES_AT_END = (1.0, 0.8, 0.6)
-"""Shares of the quantities that are put at an end of their range [-]; one of them for each point.
-"""
+"""Fractions of the quantities at an end of their range, one fraction for each point [-]."""
 
 _CORNERS_AT_ONE_TIME = 0.5
-"""Share of the points that have two events at the same time [-]."""
+"""Fraction of the points with two events at the same time [-]."""
 
 
 @search_method("corners")
 class Corners:
-    """Points at random corners of the cube: most quantities at an end of their range, every choice
-    equally often, two events at the same time. Times and courses, whose ends mean nothing, lie
-    anywhere in their range.
+    """Tries random corners of the cube.
+
+    Most quantities are at an end of their range, every choice occurs equally often, and two events
+    may be at the same time. Times and courses, whose ends are not extremes, are random.
 
     Parameters
     ----------
-    space, settings, generator : same as ``SEARCH_METHODS``
+    space, settings, generator : as in ``SEARCH_METHODS``
     """
 
     exhausted = False
@@ -44,17 +44,17 @@ class Corners:
         self._with_ends = np.array([of.has_ends for of in space.coordinates])
 
     def ask(self, _found: Found, room: int) -> Array:
-        """Return as many corners as a turn has."""
+        """Return the corners of one turn."""
         return np.array([self._corner() for _ in range(min(room, self._population))]).reshape(
             -1, self._space.dimension
         )
 
     def tell(self, _clearances: Array) -> None:
-        """Learn nothing: no corner depends on another."""
+        """Do nothing, because no corner depends on another."""
 
     def _corner(self) -> Array:
         choices = {i: self._next_choice(i) for i in self._space.chosen}
-        return self._space.tried(lambda: self._proposed(choices))
+        return self._space.first_allowed(lambda: self._proposed(choices))
 
     def _proposed(self, choices: dict[int, float]) -> Array:
         generator, dimension = self._generator, self._space.dimension
@@ -64,13 +64,13 @@ class Corners:
         for i, value in choices.items():
             point[i] = value
         return (
-            self._space.at_one_time(point, generator)
+            self._space.with_equal_times(point, generator)
             if generator.random() < _CORNERS_AT_ONE_TIME
             else point
         )
 
     def _next_choice(self, i: int) -> float:
-        """Return the next choice of a coordinate: each comes once before any comes again."""
+        """Return the next choice of a coordinate; none is repeated before all have come."""
         deck = self._decks[i]
         if not deck:
             deck += self._generator.permutation(self._space.coordinates[i].values).tolist()
@@ -78,23 +78,22 @@ class Corners:
 
 
 _BATCH = 8
-"""Points that are tried from one place, before the step follows from what came of them."""
+"""Number of points tried around the best one before the step is adapted."""
 
 _CLIMB_FIRST_STEP, _CLIMB_LONGEST_STEP, _CLIMB_SHORTEST_STEP = 0.2, 0.4, 0.01
-"""Steps, one sigma of each coordinate [-]; a climb ends below the shortest."""
+"""Step sizes, as sigma of each coordinate [-]; a climb ends below the shortest."""
 
 _LONGER, _SHORTER = 1.3, 0.75
-"""Factors of the step after a batch with a point that is better by a worthwhile amount, and after
-one without.
-"""
+"""Factors of the step size after a batch with a worthwhile improvement, and without one [-]."""
 
 _MOVED = 0.25
-"""Share of the coordinates that a step changes [-]: a few at a time, or one that matters is lost
-among those that do not.
+"""Fraction of the coordinates that a step changes [-].
+
+With more coordinates, irrelevant changes would hide a relevant one.
 """
 
 _CHOSEN_ANEW = 0.05
-"""Probability that a step takes a choice anew [-]."""
+"""Probability that a step draws a new choice [-]."""
 
 _STEPS_AT_ONE_TIME = 0.05
 """Probability that a step makes two times equal [-]."""
@@ -102,12 +101,14 @@ _STEPS_AT_ONE_TIME = 0.05
 
 @search_method("local")
 class LocalClimb:
-    """Climbs to a violation, one after the other: random steps from one of the worst points, longer
-    after a success, shorter after a failure. A climb ends at a violation, or with short steps.
+    """Climbs to violations by random steps from the worst points, one climb after the other.
+
+    Steps get longer after a success and shorter after a failure. A climb ends at a violation, or
+    when its steps are short.
 
     Parameters
     ----------
-    space, settings, generator : same as ``SEARCH_METHODS``
+    space, settings, generator : as in ``SEARCH_METHODS``
     """
 
     def __init__(
@@ -125,14 +126,14 @@ class LocalClimb:
         return self._best is None and self._starts.exhausted
 
     def ask(self, found: Found, room: int) -> Array:
-        """Return points about the best one of this climb."""
+        """Return points near the best point of this climb."""
         if self.exhausted or room < _BATCH:
             return np.empty((0, self._space.dimension))
         if self._best is None:
             self._best, self._least = self._starts.next(found)
             self._step = _CLIMB_FIRST_STEP
         best = self._best
-        steps = [self._space.tried(lambda: self._stepped(best)) for _ in range(_BATCH)]
+        steps = [self._space.first_allowed(lambda: self._stepped(best)) for _ in range(_BATCH)]
         if math.isinf(self._least):
             steps[0] = best.copy()
         self._proposed = np.array(steps)
@@ -150,15 +151,13 @@ class LocalClimb:
             elif generator.random() < _CHOSEN_ANEW / _MOVED:
                 point[i] = generator.choice(of.values)
         return (
-            self._space.at_one_time(point, generator)
+            self._space.with_equal_times(point, generator)
             if generator.random() < _STEPS_AT_ONE_TIME
             else point
         )
 
     def tell(self, clearances: Array) -> None:
-        """Go to the best of them if it is better; end the climb at a violation, or where steps have
-        become short.
-        """
+        """Move to the best point if it is better; end a climb that has succeeded or is stuck."""
         i = int(np.argmin(clearances))
         worthwhile = bool(clearances[i] < self._least - WORTHWHILE)
         if clearances[i] < self._least:
@@ -170,26 +169,25 @@ class LocalClimb:
 
 
 _CMA_FIRST_STEP, _CMA_SHORTEST_STEP = 0.15, 0.005
-"""Steps, one sigma of each coordinate [-]; a search ends below the shortest."""
+"""Step sizes, as sigma of each coordinate [-]; a search ends below the shortest."""
 
 _CMA_GENERATIONS_STUCK = 12
-"""Generations in a row without a point that is better by a worthwhile amount, after which it begins
-anew.
-"""
+"""Number of generations without a worthwhile improvement after which a search restarts."""
 
 _LEAST_COORDINATES = 2
-"""Of a space that CMA-ES can search."""
+"""Least number of continuous coordinates that CMA-ES can search."""
 
 
 @search_method("cma")
 class CovarianceMatrixAdaptation:
-    """CMA-ES (Hansen, arXiv:1604.00772), by the package ``cma``: steps whose covariance follows from
-    those that succeeded. It goes over the coordinates that take any value; choices stay those of the
-    point from which it began.
+    """CMA-ES (Hansen, arXiv:1604.00772) by the package ``cma``.
+
+    The covariance of the steps follows from successful steps. Only continuous coordinates are
+    searched; choices keep their values at the start point.
 
     Parameters
     ----------
-    space, settings, generator : same as ``SEARCH_METHODS``
+    space, settings, generator : as in ``SEARCH_METHODS``
     """
 
     def __init__(
@@ -201,25 +199,25 @@ class CovarianceMatrixAdaptation:
         self._starts = Starts(space, settings.restarts, generator)
         self._strategy: Any = None
         self._start = self._best = np.empty(0)
-        self._asked: list[Array] = []
+        self._sample: list[Array] = []
         self._least, self._stale = math.inf, 0
 
     @property
     def exhausted(self) -> bool:
-        """Return whether every search has ended, or there is nothing that it could search."""
+        """Return whether every search has ended, or there are too few continuous coordinates."""
         return len(self._free) < _LEAST_COORDINATES or (
             self._strategy is None and self._starts.exhausted
         )
 
     def ask(self, found: Found, room: int) -> Array:
-        """Return a sample of its distribution."""
+        """Return a sample of the search distribution."""
         if self.exhausted or room < self._size:
             return np.empty((0, self._space.dimension))
         if self._strategy is None:
             self._begin(found)
-        self._asked = self._strategy.ask()
-        points = np.tile(self._start, (len(self._asked), 1))
-        points[:, self._free] = np.clip(self._asked, 0.0, 1.0)
+        self._sample = self._strategy.ask()
+        points = np.tile(self._start, (len(self._sample), 1))
+        points[:, self._free] = np.clip(self._sample, 0.0, 1.0)
         return points
 
     def _begin(self, found: Found) -> None:
@@ -231,7 +229,7 @@ class CovarianceMatrixAdaptation:
             "bounds": [0.0, 1.0],
             "popsize": self._size,
             "randn": lambda *shape: self._generator.standard_normal(shape),
-            # The package's own generator is global; this one is the search's.
+            # NaN keeps the package from seeding NumPy's global generator.
             "seed": math.nan,
             "verbose": -9,
         }
@@ -240,16 +238,14 @@ class CovarianceMatrixAdaptation:
         )
 
     def tell(self, clearances: Array) -> None:
-        """Move and shape the distribution; begin anew after a violation, or where it is narrow or
-        nothing gets better.
-        """
-        self._strategy.tell(self._asked, clearances.tolist())
+        """Update the distribution; restart after a violation, or if it is narrow or stuck."""
+        self._strategy.tell(self._sample, clearances.tolist())
         i = int(np.argmin(clearances))
         self._stale = 0 if clearances[i] < self._least - WORTHWHILE else self._stale + 1
         if clearances[i] < self._least:
             self._least = float(clearances[i])
             self._best = self._start.copy()
-            self._best[self._free] = self._asked[i]
+            self._best[self._free] = self._sample[i]
         stuck = self._stale >= _CMA_GENERATIONS_STUCK or self._strategy.sigma < _CMA_SHORTEST_STEP
         if self._least < 0.0 or stuck or self._strategy.stop():
             self._starts.ended(self._best)
@@ -257,18 +253,19 @@ class CovarianceMatrixAdaptation:
 
 
 _DE_GENERATIONS_STUCK = 15
-"""Generations in a row whose best is no better, after which a new population begins."""
+"""Number of generations without improvement after which a new population begins."""
 
 
 @search_method("differential_evolution")
 class DifferentialEvolution:
-    """A population that is recombined with its best (Storn and Price, J. Glob. Optim. 11, 1997): the
-    strategy best/1/bin, with a differential weight that is sampled for each generation. It begins
-    with a Sobol sequence.
+    """Differential evolution (Storn and Price, J. Glob. Optim. 11, 1997), strategy best/1/bin.
+
+    The differential weight is sampled for each generation. A population begins with a Sobol
+    sequence.
 
     Parameters
     ----------
-    space, settings, generator : same as ``SEARCH_METHODS``
+    space, settings, generator : as in ``SEARCH_METHODS``
     """
 
     def __init__(
@@ -280,7 +277,7 @@ class DifferentialEvolution:
         self.exhausted = False
 
     def _first(self) -> Array:
-        """Return a Sobol sequence, in which random points replace those beyond the declared ranges."""
+        """Return a Sobol sequence; random points replace points beyond the declared ranges."""
         from scipy.stats import qmc
 
         population = self._settings.population
@@ -309,11 +306,11 @@ class DifferentialEvolution:
         mutants = best + weight * (self._points[others[:, 0]] - self._points[others[:, 1]])
         taken = generator.random((population, dimension)) < self._settings.recombination
         taken[np.arange(population), generator.integers(dimension, size=population)] = True
-        # What leaves the cube is put on its surface: the worst often lies at the end of a range.
+        # Points outside are moved to the cube's surface: the worst often is at the end of a range.
         return np.clip(np.where(taken, mutants, self._points), 0.0, 1.0)
 
     def tell(self, clearances: Array) -> None:
-        """Keep of each member and its offspring the one with the smaller clearance."""
+        """Keep the one with the smaller clearance of each member and its offspring."""
         better, least = clearances < self._clearances, self._clearances.min()
         self._points = np.where(better[:, None], self._proposed, self._points)
         self._clearances = np.where(better, clearances, self._clearances)
@@ -330,6 +327,6 @@ class DifferentialEvolution:
 
 
 def _two_others(generator: np.random.Generator, population: int, i: int) -> Array:
-    """Return two different members of a population, neither of them ``i``."""
+    """Return two different members of a population other than ``i``."""
     found = generator.choice(population - 1, size=2, replace=False)
     return np.where(found >= i, found + 1, found)

@@ -1,6 +1,4 @@
-"""The search for the point of the unit cube with the least clearance: the space, the interface of a
-search method and how to add one, and how several of them take turns.
-"""
+"""The search space, the Protocol of a search method, and a search by several methods in turns."""
 
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -21,11 +19,11 @@ class Coordinate:
 
     Attributes
     ----------
-    choices : of a choice, where each of its values begins and, last, 1; empty for a coordinate that
-        takes any value
-    time_range : of a time, its first and its last moment [s]; None for anything else
-    circle : whether 0 and 1 are the same, as in a course
-    noise : whether it is the choice of a realisation of noise
+    choices : lower limit of each value of a choice, followed by 1; empty for a continuous
+        coordinate
+    time_range : first and last moment of a time [s]; None for anything else
+    circle : whether 0 and 1 are the same, as for a course
+    noise : whether the coordinate selects a realisation of noise
     """
 
     choices: tuple[float, ...] = ()
@@ -35,14 +33,12 @@ class Coordinate:
 
     @property
     def has_ends(self) -> bool:
-        """Return whether 0 and 1 are extremes of the quantity: not those of a time, a circle or a
-        choice.
-        """
+        """Return whether 0 and 1 are extremes, unlike those of a time, a circle or a choice."""
         return not (self.choices or self.circle or self.time_range)
 
     @property
     def values(self) -> tuple[float, ...]:
-        """Return a coordinate of each choice that has any weight, in the middle of its interval."""
+        """Return the middle of each choice's interval; choices without weight are left out."""
         return tuple(
             0.5 * (low + high)
             for low, high in zip(self.choices, self.choices[1:], strict=False)
@@ -50,9 +46,7 @@ class Coordinate:
         )
 
     def difference(self, one: float, other: float) -> float:
-        """Return how much two values differ, from 0 to 1: of a choice, wholly or not at all; of
-        noise, not at all.
-        """
+        """Return the difference of two values: 0 or 1 for a choice, 0 for noise, else 0 to 1."""
         if self.noise:
             return 0.0
         if self.choices:
@@ -83,7 +77,8 @@ class Space:
     Attributes
     ----------
     coordinates : one for each quantity
-    beyond : how far beyond the declared ranges a point gets; 0 for one that can be tried [-]
+    beyond : function that returns how far a point is beyond the declared ranges; 0 if it is allowed
+        [-]
     """
 
     coordinates: tuple[Coordinate, ...]
@@ -96,17 +91,17 @@ class Space:
 
     @cached_property
     def continuous(self) -> tuple[int, ...]:
-        """Return which coordinates take any value."""
+        """Return the indices of continuous coordinates."""
         return tuple(i for i, of in enumerate(self.coordinates) if not of.choices)
 
     @cached_property
     def chosen(self) -> tuple[int, ...]:
-        """Return which coordinates are choices."""
+        """Return the indices of choices."""
         return tuple(i for i, of in enumerate(self.coordinates) if of.choices)
 
     @cached_property
     def time_pairs(self) -> tuple[tuple[int, int], ...]:
-        """Return the pairs of coordinates that are times whose ranges overlap."""
+        """Return the pairs of times whose ranges overlap, as indices of coordinates."""
         times = [
             (i, of.time_range) for i, of in enumerate(self.coordinates) if of.time_range is not None
         ]
@@ -120,13 +115,11 @@ class Space:
     def random(self, generator: np.random.Generator, number: int) -> Array:
         """Return random points within the declared ranges, shape (number, dimension)."""
         return np.array(
-            [self.tried(lambda: generator.random(self.dimension)) for _ in range(number)]
+            [self.first_allowed(lambda: generator.random(self.dimension)) for _ in range(number)]
         )
 
-    def tried(self, propose: Callable[[], Array]) -> Array:
-        """Return the first of some proposals that lies within the declared ranges; after many, the
-        last.
-        """
+    def first_allowed(self, propose: Callable[[], Array]) -> Array:
+        """Return the first proposal within the declared ranges; after many tries, the last one."""
         point = propose()
         for _ in range(_TRIES):
             if not self.beyond(point):
@@ -134,10 +127,8 @@ class Space:
             point = propose()
         return point
 
-    def at_one_time(self, point: Array, generator: np.random.Generator) -> Array:
-        """Return the point with two of its times made equal, at a random time; unchanged where none
-        overlap.
-        """
+    def with_equal_times(self, point: Array, generator: np.random.Generator) -> Array:
+        """Return a point with two of its times equal, at a random time, if any of them overlap."""
         if not self.time_pairs:
             return point
         pair = self.time_pairs[int(generator.integers(len(self.time_pairs)))]
@@ -151,19 +142,17 @@ class Space:
         return moved
 
     def alike(self, one: Array, other: Array) -> bool:
-        """Return whether two points are so close that they show the same; a realisation of noise
-        does not count.
-        """
+        """Return whether two points are close to each other; noise does not count."""
         pairs = zip(self.coordinates, one.tolist(), other.tolist(), strict=True)
         return sum(of.difference(a, b) ** 2 for of, a, b in pairs) < ALIKE**2 * self.dimension
 
 
 class Found:
-    """The points that were tried, and their clearances.
+    """The points that have been tried, and their clearances.
 
     Parameters
     ----------
-    space : that is searched
+    space : search space
     """
 
     def __init__(self, space: Space) -> None:
@@ -181,15 +170,14 @@ class Found:
         self._clearances += np.asarray(clearances, dtype=np.float64).tolist()
 
     def worst(self, apart_from: Sequence[Array] = ()) -> tuple[Array, float] | None:
-        """Return the point from which another violation may be near, and its clearance; None
-        without one.
+        """Return the most promising start point and its clearance, or None.
 
-        That is the one of least clearance that neither violates nor is like a point that does: what
-        is found there is known.
+        It is the point of least clearance that is neither a violation nor close to one, because
+        known violations need no further search.
 
         Parameters
         ----------
-        apart_from : points that it must not be like either
+        apart_from : further points to which it must not be close
         """
         violating = [
             point
@@ -209,14 +197,14 @@ class Found:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SearchSettings:
-    """What a scenario says of its search, as far as methods need it.
+    """Settings of a scenario's search for search methods.
 
     Attributes
     ----------
-    population : points of a turn
-    mutation : range of the differential weight of differential evolution
-    recombination : probability with which it takes a coordinate from the mutant
-    restarts : how often a method that is stuck may begin anew
+    population : number of points per turn
+    mutation : range of the weight of differential evolution
+    recombination : probability of taking a coordinate from the mutant in differential evolution
+    restarts : number of restarts of a method that is stuck
     """
 
     population: int
@@ -226,58 +214,58 @@ class SearchSettings:
 
 
 class SearchMethod(Protocol):
-    """Proposes points of the unit cube, in batches, and learns from their clearances.
+    """Proposes points of the unit cube in batches, and receives their clearances.
 
     Attributes
     ----------
-    exhausted : whether it has nothing more to propose, ever
+    exhausted : whether the method has no further points to propose
     """
 
     exhausted: bool
 
     def ask(self, found: Found, room: int) -> Array:
-        """Return the points of its next batch, shape (n, dimension), at most ``room``.
+        """Return the points of the next batch, shape (n, dimension), with n up to ``room``.
 
-        None, shape (0, dimension), where its next batch needs more room, or where it is exhausted.
+        n is 0 if the next batch needs more room, or if the method is exhausted.
 
         Parameters
         ----------
-        found : what all methods together have tried
-        room : number of points that there is room for in this turn
+        found : points that all methods have tried
+        room : largest number of points in this turn
         """
 
     def tell(self, clearances: Array) -> None:
-        """Take the clearances of the points of the last batch, shape (n,), in their order [m]."""
+        """Receive the clearances of the last batch's points in their order, shape (n,) [m]."""
 
 
 SEARCH_METHODS: Registry[Callable[..., Any]] = Registry(
     "search_method", folder="scenarios.search", methods=("ask", "tell")
 )
-"""Search methods by name. Each is called with the space, the settings and a random generator, and
-returns a ``SearchMethod``.
+"""Search methods by name.
+
+Each is called with the space, the settings and a random generator, and returns a ``SearchMethod``.
 """
 
 search_method = SEARCH_METHODS.register
-"""Decorator that registers a search method by a name."""
+"""Decorator that registers a search method under a name."""
 
 
 _RANDOM_EVERY = 4
-"""One start of so many is a random point: what no method has found yet is found from there alone."""
+"""Interval of random start points: only they lead to regions that no method has found yet."""
 
 
 WORTHWHILE = 0.1
-"""Improvement below which a search around a point counts as stuck, and looks for another place [m].
-"""
+"""Least improvement with which a local search does not count as stuck [m]."""
 
 
 class Starts:
-    """The starting points of a method, one after the other.
+    """The start points of a method, one after the other.
 
     Parameters
     ----------
-    space : that is searched
+    space : search space
     restarts : number of starts after the first
-    generator : of the random points
+    generator : random generator of random start points
     """
 
     def __init__(self, space: Space, restarts: int, generator: np.random.Generator) -> None:
@@ -287,11 +275,11 @@ class Starts:
 
     @property
     def exhausted(self) -> bool:
-        """Return whether there are no more."""
+        """Return whether no start is left."""
         return self._left <= 0
 
     def next(self, found: Found) -> tuple[Array, float]:
-        """Return the next start and its clearance, infinite where it is not known yet [m]."""
+        """Return the next start point and its clearance, infinite if it is unknown [m]."""
         self._left -= 1
         self._number += 1
         worst = None if self._number % _RANDOM_EVERY == 0 else found.worst(apart_from=self._used)
@@ -300,27 +288,25 @@ class Starts:
         return point.copy(), clearance
 
     def ended(self, point: Array) -> None:
-        """Take the point at which the search from the last start ended: none begins there again."""
+        """Store the point at which a search ended, so that no other search starts there."""
         self._used.append(point)
 
 
 Try = Callable[[str, Array], Array]
-"""Called with the name of a method and its points, shape (n, dimension); returns their clearances,
-shape (n,).
-"""
+"""Function from a method's name and points, shape (n, dimension), to clearances, shape (n,)."""
 
 _ROUNDING = 1e-9
-"""By how much a coordinate may lie outside of the unit cube [-]."""
+"""Tolerance of coordinates outside of the unit cube [-]."""
 
 
 def methods_named(
     names: tuple[str, ...], space: Space, settings: SearchSettings, seed: int
 ) -> dict[str, SearchMethod]:
-    """Return search methods by name, each with a random generator of its own.
+    """Return search methods by name, each with its own random generator.
 
     Raises
     ------
-    PluginError : there is no such method, or it cannot be made
+    PluginError : a method does not exist or cannot be created
     """
     methods: dict[str, SearchMethod] = {}
     for name, of in zip(names, np.random.SeedSequence(seed).spawn(len(names)), strict=True):
@@ -339,23 +325,22 @@ def search_in_turns(
     turns: int | None,
     within_time: Callable[[], bool] = lambda: True,
 ) -> Found:
-    """Search until the budget is spent or every method is exhausted.
+    """Search until the turns or the time are used up, or every method is exhausted.
 
-    Each turn adds ``population`` points to the budget of the method whose turn it is; what a batch
-    of fixed size leaves of that stays for the method's next turn.
+    In each turn the budget of one method grows by ``population`` points. A remainder that is too
+    small for a batch stays for the method's next turn.
 
     Parameters
     ----------
-    methods, space : by name, and the space that they were made for
-    attempt : tries points
-    population : points of a turn
+    methods, space : methods by name, and their search space
+    attempt : function that flies points and returns clearances
+    population : number of points per turn
     turns : number of turns; None for no limit
-    within_time : whether there is time for another batch
+    within_time : function that returns whether there is time for another batch
 
     Raises
     ------
-    PluginError : a method raised an error, or proposed what are no points of the unit cube, or more
-        than it was asked for
+    PluginError : a method raised an error, or proposed invalid or too many points
     """
     found, budgets, turn = Found(space), dict.fromkeys(methods, 0), 0
     left = list(methods)
@@ -364,7 +349,11 @@ def search_in_turns(
         budgets[name] += population
         turn += 1
         while (
-            len(points := _asked(name, methods[name], found, budgets[name], space.dimension))
+            len(
+                points := _proposed_points(
+                    name, methods[name], found, budgets[name], space.dimension
+                )
+            )
             and within_time()
         ):
             clearances = attempt(name, points)
@@ -376,7 +365,9 @@ def search_in_turns(
     return found
 
 
-def _asked(name: str, method: SearchMethod, found: Found, room: int, dimension: int) -> Array:
+def _proposed_points(
+    name: str, method: SearchMethod, found: Found, room: int, dimension: int
+) -> Array:
     """Return the points that a method proposes, shape (n, dimension), at most ``room``."""
 
     def points(proposed: Any) -> Array:
@@ -388,7 +379,7 @@ def _asked(name: str, method: SearchMethod, found: Found, room: int, dimension: 
             return np.empty((0, dimension))
         if of.ndim != 2 or of.shape[1] != dimension or len(of) > room:
             raise ValueError(f"up to {room} points, an array of shape (n, {dimension})")
-        # NaN is outside, too.
+        # NaN counts as outside as well.
         if not ((of >= -_ROUNDING) & (of <= 1.0 + _ROUNDING)).all():
             raise ValueError(
                 "points whose coordinates lie from 0 to 1, over the range of a variable"
@@ -399,7 +390,7 @@ def _asked(name: str, method: SearchMethod, found: Found, room: int, dimension: 
 
 
 def exhausted(method: SearchMethod) -> bool:
-    """Return whether a method has nothing left to propose."""
+    """Return whether a method has no further points to propose."""
     return method.exhausted
 
 

@@ -1,24 +1,25 @@
-"""Estimates of a Monte Carlo study and their confidence intervals: ``statistics.json``; when the study
-may stop; and how the premises of the keep-out guard held.
+"""Estimates of a Monte Carlo study with confidence intervals, and its stopping rule.
 
-Intervals assume independent flights. Noise, turbulence and sensors are independent, because every
-flight has its own seeds; the random variables are independent in plain sampling only. In a Latin
-hypercube they are not, but the mean of a figure over n of its flights has at most n/(n - 1) times
-the variance of the mean over n independent flights, and usually less: A. B. Owen, "Monte Carlo
-variance of scrambled net quadrature", SIAM Journal on Numerical Analysis 34 (1997). That covers
-probabilities, and quantiles, which are probabilities of lying below a value. So the same intervals
-are used for Latin hypercubes and tend to be too wide. A bound on a variance is not a bound on the
-tails of an interval: this is an argument, not a proof. For a scrambled Sobol' sequence the same
-paper bounds the ratio of the variances by e = 2.72, whatever the figure.
+The intervals assume independent flights. Noise, turbulence and sensors are independent, because
+every flight has its own seeds. The random variables are independent in plain sampling only.
 
-A study that evaluates its intervals repeatedly, and stops as soon as they look good, is wrong more
+In a Latin hypercube, the mean of a figure over n flights has at most n/(n - 1) times the variance
+of the mean over n independent flights, and usually less: A. B. Owen, "Monte Carlo variance of
+scrambled net quadrature", SIAM Journal on Numerical Analysis 34 (1997). This holds for
+probabilities, and for quantiles, which are found from probabilities of lying below a value. The
+same intervals are therefore used for Latin hypercubes, where they tend to be too wide. This is an
+argument and not a proof, because a bound on a variance is not a bound on the tails of an interval.
+For a scrambled Sobol' sequence the same paper bounds the ratio of the variances by e = 2.72 for any
+figure.
+
+A study that evaluates its intervals repeatedly and stops as soon as they are narrow is wrong more
 often than their confidence says. Here intervals are evaluated only after fixed numbers of flights
 (looks), and the intervals of look k may be wrong with probability alpha/(k (k + 1)), where alpha is
-one minus the confidence. The sum over all looks is alpha, however many there are: with the stated
-confidence no look is wrong, and so neither is the one at which the study stops. The union bound
-over looks at geometrically growing numbers of flights is that of V. Mnih, C. Szepesvari and J.-Y.
-Audibert, "Empirical Bernstein stopping", ICML 2008; spending alpha over looks is that of K. K. G.
-Lan and D. L. DeMets, "Discrete sequential boundaries for clinical trials", Biometrika 70 (1983).
+one minus the confidence. The sum over any number of looks is at most alpha, so with the stated
+confidence no look is wrong, including the one at which the study stops. Sources: the union bound
+over looks at geometrically growing numbers of flights, V. Mnih, C. Szepesvari and J.-Y. Audibert,
+"Empirical Bernstein stopping", ICML 2008; spending alpha over looks, K. K. G. Lan and D. L. DeMets,
+"Discrete sequential boundaries for clinical trials", Biometrika 70 (1983).
 """
 
 import math
@@ -48,8 +49,8 @@ class Violations:
     flights : number of all flights
     measured : number of flights with a measured distance
     events : number of measured flights with a keep-out violation
-    unknown : names of the flights without a recorded violation that were not measured to their end,
-        by outcome: flights without any measurement, and flights that went out of control
+    unknown : names, by outcome, of flights without a recorded violation that were not measured to
+        their end, such as flights that went out of control
     """
 
     flights: int
@@ -59,12 +60,12 @@ class Violations:
 
     @property
     def events_at_most(self) -> int:
-        """Number of flights with a violation, if every unknown flight had one."""
+        """Number of flights with a violation if every unknown flight counts as one."""
         return self.events + sum(len(flights) for flights in self.unknown.values())
 
 
 def count_violations(rows: pd.DataFrame) -> Violations:
-    """Count the flights of a summary that violated the keep-out area at any time, each once.
+    """Count the flights of a summary that violated the keep-out area at any time.
 
     Parameters
     ----------
@@ -90,11 +91,10 @@ FIRST_LOOK = 256
 
 
 def looks(planned: int) -> list[int]:
-    """Return the numbers of flights at which a study is evaluated: 256, doubled each time, and all
-    that are planned.
+    """Return the numbers of flights at which a study is evaluated: 256, 512, ..., and all planned.
 
-    A look evaluates the first flights of the plan, not those that happened to be done first: the
-    result does not depend on the number of processes.
+    A look evaluates the first flights of the plan, not the first finished ones, so the result does
+    not depend on the number of processes.
 
     Parameters
     ----------
@@ -109,10 +109,9 @@ def looks(planned: int) -> list[int]:
 
 
 def confidence_at(look_number: int, confidence: float) -> float:
-    """Return the confidence of the intervals of one look, such that all looks together hold with
-    ``confidence``.
+    """Return the confidence of one look, such that all looks together have ``confidence``.
 
-    A study without a stopping rule is evaluated once, at its end, with all of ``confidence``.
+    A study without a stopping rule is evaluated only at its end, with ``confidence`` itself.
 
     Parameters
     ----------
@@ -131,14 +130,14 @@ def tight_enough(
     distance_quantile_width_m: float | None = None,
     distance_quantile: float = 0.01,
 ) -> bool:
-    """Return whether a study may stop at a look: every demanded interval is narrow enough.
+    """Return whether a study may stop at a look, because every demanded interval is narrow enough.
 
     Parameters
     ----------
     rows : rows of the summary of the first flights of the plan
     look_number, confidence : as in ``confidence_at``
     violation_upper : demanded one-sided upper bound of the probability of a keep-out violation;
-        flights for which that is unknown count as violations [-]
+        unknown flights count as violations [-]
     distance_quantile_width_m : demanded width of the two-sided interval of a quantile of the
         closest approach [m]
     distance_quantile : probability of that quantile
@@ -151,21 +150,22 @@ def tight_enough(
     if distance_quantile_width_m is not None:
         distances = _numbers(rows, "min_distance_m")
         interval = quantile_interval(distances[np.isfinite(distances)], distance_quantile, level)
-        # If a limit is missing the width is NaN, and this comparison is false.
+        # If a limit is missing, the width is NaN and the comparison is false.
         return interval.width <= distance_quantile_width_m
     return True
 
 
 PROBABILITIES = (0.01, 0.05, 0.5, 0.95, 0.99)
-"""Probabilities of the quantiles that are given for every figure."""
+"""Probabilities of the quantiles that are estimated for every figure."""
 
 EXTREMES = (0.001, 0.999)
-"""Probabilities of quantiles that are given if their interval exists: from 3,688 flights at a
-confidence of 0.95.
+"""Probabilities of quantiles that are estimated if their interval exists.
+
+At a confidence of 0.95 this takes 3,688 flights.
 """
 
 NAMED_MAX = 10
-"""Largest number of flights that are named for each outcome; ``summary.csv`` has all."""
+"""Largest number of listed flights per outcome; ``summary.csv`` has all flights."""
 
 COLUMNS = (
     "flight_id",
@@ -203,29 +203,32 @@ def study_statistics(
 
     Parameters
     ----------
-    rows : columns ``COLUMNS`` of the summary, a row per flight that is done, failed flights
-        included, one point after the other
-    inputs : of ``draws.csv`` ``flight_id`` and a column per random variable or swept key
-    confidence : confidence of each interval, between 0 and 1; not of all of them together
+    rows : columns ``COLUMNS`` of the summary, a row per done flight, failed flights included, in
+        the order of points
+    inputs : ``flight_id`` and a column per random variable or swept key, from ``draws.csv``
+    confidence : confidence of each single interval, between 0 and 1
     seed : seed of the random numbers for the sensitivity indices
-    look_number : number of the look at which the study stopped, from 1; intervals are widened for
-        the looks before it (``scenarios.statistics.estimates``). None for a study that is evaluated
-        only at its end
-    per_sample : flights that share what is random, as those of the points of a sweep do [-]
+    look_number : number of the look at which the study stopped, from 1, because earlier looks widen
+        the intervals; None for a study that is evaluated only at its end
+    per_sample : number of flights with the same random sample, as at the points of a sweep [-]
     """
     level = interval_confidence(confidence, look_number)
     found = count_violations(rows)
     figures = study_figures(rows)
     drawn = inputs.set_index("flight_id").reindex(rows["flight_id"])
-    # In a single sample nothing random differs, and what is swept is all that there is to judge.
+    # With a single sample nothing is random, and each point of the sweep counts.
     samples = np.arange(len(rows)) % count if (count := len(rows) // per_sample) > 1 else None
     statistics = {
         "confidence": confidence,
         "look_number": look_number,
         "interval_confidence": level,
-        "flights": {"done": found.flights, "measured": found.measured, "unknown": named(found)},
-        "outcomes": counted(rows["outcome"]),
-        "modes_at_end": counted(rows["mode_at_end"]),
+        "flights": {
+            "done": found.flights,
+            "measured": found.measured,
+            "unknown": unknown_flights(found),
+        },
+        "outcomes": word_counts(rows["outcome"]),
+        "modes_at_end": word_counts(rows["mode_at_end"]),
         "violation": {
             "measured": share(found.events, found.measured, level, per_sample=per_sample),
             "pessimistic": pessimistic_share(found, level, per_sample=per_sample),
@@ -247,26 +250,21 @@ def study_statistics(
 
 
 def interval_confidence(confidence: float, look_number: int | None) -> float:
-    """Return the confidence of each interval, by that of the study and its look, same as
-    ``study_statistics``.
-    """
+    """Return the confidence of each interval; parameters are as in ``study_statistics``."""
     return confidence if look_number is None else confidence_at(look_number, confidence)
 
 
 def pessimistic_share(found: Violations, level: float, *, per_sample: int) -> Json:
-    """Return the share of flights with a keep-out violation as ``share`` does, if every unknown
-    flight had one.
-    """
+    """Return ``share`` of keep-out violations if every unknown flight counts as a violation."""
     return share(found.events_at_most, found.flights, level, per_sample=per_sample)
 
 
 def study_figures(rows: pd.DataFrame) -> dict[str, Array]:
-    """Return the figures of each flight, shape (n,); NaN where a flight has no such
-    figure.
+    """Return the figures of each flight by name, shape (n,); NaN if a flight has no such figure.
 
-    Distances are in metres, and clearances are measured from r_min; the error of the mean crossing
-    interval is relative to the predicted interval [-]; the settling time is in seconds, and a
-    flight that never settled has none.
+    Distances are in metres, and clearances are measured from r_min. The error of the mean crossing
+    interval is relative to the predicted interval [-]. A flight that never settled has no settling
+    time [s].
     """
     distance = _numbers(rows, "min_distance_m")
     interval = _numbers(rows, "crossing_interval_mean_s")
@@ -283,31 +281,28 @@ def study_figures(rows: pd.DataFrame) -> dict[str, Array]:
 
 
 def _numbers(rows: pd.DataFrame, name: str) -> Array:
-    """Return a column as numbers; NaN where a flight has none."""
+    """Return a column as numbers; NaN for a missing value."""
     return pd.to_numeric(rows[name], errors="coerce").to_numpy(dtype=np.float64)
 
 
-def named(found: Violations) -> Json:
-    """Return the flights of unknown end by their outcome."""
+def unknown_flights(found: Violations) -> Json:
+    """Return number and names of the unknown flights by outcome."""
     return {
         outcome: {"flights": len(flights), "flight_ids": flights[:NAMED_MAX]}
         for outcome, flights in sorted(found.unknown.items())
     }
 
 
-def counted(words: "pd.Series[str]") -> dict[str, int]:
-    """Return how often each word occurs, the most frequent first; flights without a word are left
-    out.
-    """
+def word_counts(words: "pd.Series[str]") -> dict[str, int]:
+    """Return the number of occurrences of each word, the most frequent first."""
     return dict(Counter(str(word) for word in words.dropna()).most_common())
 
 
 def share(events: int, flights: int, level: float, *, per_sample: int = 1) -> Json:
     """Return the share of flights with an event, and the intervals of its probability.
 
-    Of flights that share what is random, so many ``per_sample``, each event may be of another
-    sample, or all events of samples that have nothing else: what does not make up a whole one says
-    nothing of the lower limit.
+    If ``per_sample`` flights share a random sample, the upper limits assume that every event is in
+    a different sample, and the lower limit that events fill whole samples.
     """
     samples = flights // per_sample
     most, least = min(events, samples), events // per_sample
@@ -322,9 +317,7 @@ def share(events: int, flights: int, level: float, *, per_sample: int = 1) -> Js
 
 
 def _figure(values: Array, level: float, *, apart: bool) -> Json:
-    """Return the quantiles of a figure, with their intervals if every flight is a sample of its
-    own.
-    """
+    """Return the quantiles of a figure, with intervals if flights do not share samples."""
     known = values[np.isfinite(values)]
     quantiles = []
     for probability in sorted((*PROBABILITIES, *EXTREMES)):
@@ -345,9 +338,7 @@ def _figure(values: Array, level: float, *, apart: bool) -> Json:
 
 
 def without_nan(value: Any) -> Any:
-    """Return a nested value with None in place of every number that is not finite, which JSON
-    cannot express.
-    """
+    """Return a nested value with None in place of NaN and infinity, for JSON."""
     if isinstance(value, dict):
         return {key: without_nan(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
@@ -364,24 +355,25 @@ TABLE_COLUMNS = described(
         "ratio_max": "largest ratio of all flights",
         "flight_id": Column("flight of the largest ratio", title="Flight", kind="text"),
         "flights_above": Column("flights with a ratio above 1", digits=0),
-        "flights_above_expected": "flights above 1 that the rate of the budget lets expect at most:"
-        " of processes in turbulence; none of a term that is a bound",
+        "flights_above_expected": "largest expected number of flights above 1, from the"
+        " budget's"
+        " rate, for processes in turbulence; none for a term that is a bound",
     }
 )
-"""Of ``premises.csv``: a row per case and term."""
+"""Columns of ``premises.csv``, which has a row per case and term."""
 
 _PROCESSES = ("wind", "turning", "drift")
-"""Terms that are processes in turbulence: each exceeds its budget at the budget's rate."""
+"""Terms that are processes in turbulence, which may exceed their budget at a known rate."""
 
 
 def premise_table(rows: pd.DataFrame, cases: Sequence[str], per_hour: float) -> pd.DataFrame:
-    """Return median and largest ratio of each term and case, and how many flights are above 1.
+    """Return median and largest ratio of each term and case, and the number of flights above 1.
 
     Parameters
     ----------
     rows : a row per flight, with the columns of the summary
-    cases : of each flight
-    per_hour : rate at which a process exceeds what is reckoned with [1/h]
+    cases : case of each flight
+    per_hour : rate at which a process may exceed its budget [1/h]
     """
     found = []
     for case, of_case in rows.groupby(np.asarray(cases), sort=False):
@@ -409,7 +401,7 @@ def premise_table(rows: pd.DataFrame, cases: Sequence[str], per_hour: float) -> 
 
 
 def premise_lines(table: pd.DataFrame) -> list[str]:
-    """Return the table for the console: for each case a line, for each term a column."""
+    """Return lines of text for the console, with a line per case and a column per term."""
     terms = [term for term in TERMS if term in set(table["term"])]
     width = max([len("case"), *map(len, table["case"])]) if len(table) else 0
     lines = [f"  {'case':{width}}" + "".join(f"  {term:>14}" for term in terms)]

@@ -1,43 +1,42 @@
 """Sensitivity of a figure to the random variables: Borgonovo's delta and the first-order index.
 
 Delta is half the mean distance between the figure's density and its density for a known input: 0 if
-the input does not matter, 1 if it determines the figure, in whatever form. E. Borgonovo, "A new
-uncertainty importance measure", Reliability Engineering & System Safety 92 (2007). The first-order
-index S1 is the fraction of the figure's variance that the input explains by itself. Delta is
-estimated by SALib from given data: E. Plischke, E. Borgonovo and C. L. Smith, "Global sensitivity
-measures from given data", European Journal of Operational Research 226 (2013). S1 is not: within
-SALib's classes of an input its mean is taken to be constant, so that a dominant input comes out too
-low by more than its interval; ``first_order`` has no such classes.
+the input does not matter, 1 if it determines the figure. E. Borgonovo, "A new uncertainty
+importance measure", Reliability Engineering & System Safety 92 (2007). The first-order index S1 is
+the fraction of the figure's variance that the input explains by itself. Delta is estimated by SALib
+from given data: E. Plischke, E. Borgonovo and C. L. Smith, "Global sensitivity measures from given
+data", European Journal of Operational Research 226 (2013). S1 is not estimated by SALib, which
+assumes a constant mean within classes of an input, so that the index of a dominant input is too low
+by more than its interval; ``first_order_index`` has no classes.
 
-In a finite sample the indices of an input without any effect are not 0. So the indices of some
-random inputs without effect are estimated as well, and the largest of them is the noise floor.
-Flights of one sample, as those at the points of a sweep are, have the same inputs and much the same
-figure: they share the values of these random inputs, too, and are resampled together.
+In a finite sample the indices of an input without effect are not 0. Indices of some random inputs
+without effect are therefore estimated as well, and the largest of them is the noise floor. Flights
+of one sample, such as those at the points of a sweep, have the same inputs and similar figures.
+They also share the values of these random inputs, and are resampled together.
 
-First-order index S1: the share of a figure's variance that one input explains by itself.
-
-S1 = Var(E[Y | X]) / Var(Y) = 1 - E[Var(Y | X)] / Var(Y), from flights whose inputs were sampled at
-random. Nothing else is assumed of the figure Y than that its mean over X is fairly smooth.
+First-order index S1 = Var(E[Y | X]) / Var(Y) = 1 - E[Var(Y | X)] / Var(Y): the fraction of the
+variance of a figure Y that one input X explains, from flights with random inputs. The only
+assumption is that the mean of Y over X is fairly smooth.
 
 Unexplained variance
-    A cubic spline in X with knots at its quantiles fits E[Y | X], or a mean per value where X has
-    few. The residual of a flight is too small, as the fit follows that flight; its prediction error
-    by a fit without its sample is too large. Their product has the residual variance as its
-    mean, to the first order in the leverage, whatever that variance is at each X (J. G. MacKinnon
-    and H. White, "Some heteroskedasticity-consistent covariance matrix estimators", Journal of
-    Econometrics 29 (1985), their HC2). So a spline may have many functions, which
-    keeps what it cannot follow small, and they do not raise the index as classes or a
-    series without this correction do. Var(Y) is the same product for a fit by the mean alone.
+    A cubic spline in X with knots at quantiles fits E[Y | X], or a mean per value if X has few
+    values. The residual of a flight is too small, because the fit follows the flight. Its
+    prediction error by a fit without its sample is too large. The mean of their product is the
+    residual variance, to the first order in the leverage, also if that variance depends on X (J. G.
+    MacKinnon and H. White, "Some heteroskedasticity-consistent covariance matrix estimators",
+    Journal of Econometrics 29 (1985), their HC2). A spline may therefore have many functions
+    without raising the index, unlike classes or a series without this correction. Var(Y) is the
+    same product for a fit by the mean alone.
 Interval
-    S1 = 1 - R/T, with R and T the means of these products, R_i and T_i. A flight's influence on
-    it is (R_i - (1 - S1) T_i)/T, that of the efficient estimator (S. Da Veiga and F. Gamboa,
-    "Efficient estimation of sensitivity indices", Journal of Nonparametric Statistics 25 (2013)),
-    and the sum of squares of the influences is the variance of the index. A figure with a heavy tail
-    has few flights that decide on it: Student's t has as many degrees of freedom as flights of
-    equal influence would have the same sum of squares and of fourth powers.
-What the spline cannot follow
-    A spline with half as many functions has a larger error of this kind. How far the two indices
-    are apart is taken for a further standard deviation.
+    S1 = 1 - R/T, with the means R and T of these products R_i and T_i. A flight's influence on S1
+    is (R_i - (1 - S1) T_i)/T, as for the efficient estimator (S. Da Veiga and F. Gamboa, "Efficient
+    estimation of sensitivity indices", Journal of Nonparametric Statistics 25 (2013)), and the sum
+    of squares of the influences is the variance of the index. If a figure has a heavy tail, few
+    flights determine the index. Student's t therefore has as many degrees of freedom as there would
+    be flights of equal influence with the same sums of squares and of fourth powers.
+Error of the spline
+    A spline with half as many functions has a larger error. The difference of the two indices is
+    added as a further standard deviation.
 """
 
 import math
@@ -50,25 +49,25 @@ import numpy.typing as npt
 import pandas as pd
 
 SAMPLES_PER_FUNCTION = 10
-"""Samples for each function of a spline: the correction then costs 5 % of the interval's width."""
+"""Samples per function of a spline: the correction then widens the interval by 5 %."""
 
 FUNCTIONS_MAX = 60
-"""Largest number of functions: 60 leave a jump's hundredth unexplained at most."""
+"""Largest number of functions: 60 leave at most a hundredth of a jump unexplained."""
 
 _DEGREE = 3
 """Degree of the spline."""
 
 _FUNCTIONS_MIN = _DEGREE + 2
-"""Least number of functions of the spline: two cubics that meet."""
+"""Least number of functions of the spline: two joined cubics."""
 
 _DEPENDENT = 1e-10
-"""Eigenvalue of functions' products, over the largest, of a function that depends on others [-]."""
+"""Eigenvalue over the largest one below which functions count as dependent [-]."""
 
 _OWN_FIT = 1e-8
-"""Share of a flight's deviation that its own fit leaves, below which nothing else predicts it [-]."""
+"""Residual over deviation below which only the flight's own sample predicts it [-]."""
 
 _ROUNDING = 1e-9
-"""Least half width, as the index of an input that determines the figure has errors of rounding."""
+"""Least half-width [-], for rounding errors of the index of an input that determines a figure."""
 
 Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
@@ -76,12 +75,12 @@ Indices = npt.NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FirstOrderIndex:
-    """Share of a figure's variance that an input explains.
+    """Fraction of a figure's variance that an input explains.
 
     Attributes
     ----------
-    index : estimate [-]; scatter may make it negative
-    half_width : of its interval, 1 at most [-]
+    index : estimate, which scatter may make negative [-]
+    half_width : half-width of the interval, at most 1 [-]
     """
 
     index: float
@@ -89,7 +88,7 @@ class FirstOrderIndex:
 
 
 def functions_for(samples: int) -> int:
-    """Return how many functions fit a figure over an input of so many samples."""
+    """Return the number of functions that fit a figure over an input, by number of samples."""
     return max(_FUNCTIONS_MIN, min(samples // SAMPLES_PER_FUNCTION, FUNCTIONS_MAX))
 
 
@@ -102,9 +101,9 @@ def first_order_index(
     ----------
     values : input of each flight, shape (n,)
     figure : figure of each flight, shape (n,), not the same in all
-    confidence : of the interval, between 0 and 1
-    samples : sample that each flight is of, from 0 without a gap, shape (n,); flights of one sample
-        count together. Each flight is a sample of its own if not given.
+    confidence : confidence of the interval, between 0 and 1
+    samples : number of each flight's sample, from 0 without a gap, shape (n,); by default every
+        flight is its own sample
     """
     from scipy.stats import t as student
 
@@ -116,7 +115,7 @@ def first_order_index(
 
     def unexplained(functions: int) -> Array:
         products = _residual_products(_basis(values, functions), figure, of)
-        # No other flight predicts this one: nothing of it is explained.
+        # Without a prediction by other flights, nothing of a flight's variance is explained.
         return np.where(np.isnan(products), variance, products)
 
     residual = unexplained(functions)
@@ -135,10 +134,10 @@ def first_order_index(
 
 
 def _basis(values: Array, count: int) -> Array:
-    """Return the functions of an input at each flight, shape (n, count at most).
+    """Return the fit functions of an input at each flight, shape (n, up to ``count``).
 
-    One per value if there are few values; otherwise a cubic spline's, with as many flights between
-    one knot and the next.
+    An input with few values has one function per value. Otherwise they are those of a cubic spline,
+    with equal numbers of flights between its knots.
     """
     distinct = np.unique(values)
     if len(distinct) <= count:
@@ -146,7 +145,7 @@ def _basis(values: Array, count: int) -> Array:
     from scipy.interpolate import BSpline
 
     scaled = (values - distinct[0]) / (distinct[-1] - distinct[0])
-    # Values that occur, so that a flight which is there twice does not move them.
+    # Knots are existing values, so that repeated flights do not move them.
     shares = np.linspace(0.0, 1.0, count - _DEGREE + 1)
     inner = np.unique(np.quantile(scaled, shares, method="inverted_cdf"))
     knots = np.concatenate([np.zeros(_DEGREE), inner, np.ones(_DEGREE)])
@@ -157,17 +156,16 @@ def _basis(values: Array, count: int) -> Array:
 def _residual_products(functions: Array, figure: Array, of: Indices) -> Array:
     """Return each flight's residual times its prediction error by a fit without its sample.
 
-    With the hat matrix H of the fit and e its residuals, the prediction errors of a sample are
-    (I - H_cc)^-1 e_c, of the block of its flights. NaN for flights that only their own sample
-    predicts.
+    With the hat matrix H and the residuals e of the fit, the prediction errors of a sample c are (I
+    - H_cc)^-1 e_c. The product is NaN for flights that only their own sample predicts.
 
     Parameters
     ----------
-    functions : shape (n, p)
-    figure : shape (n,)
+    functions : fit functions at each flight, shape (n, p)
+    figure : figure of each flight, shape (n,)
     of : sample of each flight, shape (n,)
     """
-    # Splines are near to orthogonal, so that their products keep the digits that a fit needs.
+    # Splines are nearly orthogonal, so the normal equations are accurate enough.
     size, directions = np.linalg.eigh(functions.T @ functions)
     kept = size > _DEPENDENT * size[-1]
     basis = functions @ (directions[:, kept] / np.sqrt(size[kept]))
@@ -189,22 +187,19 @@ def _residual_products(functions: Array, figure: Array, of: Indices) -> Array:
 
 
 FLIGHTS_MIN = 200
-"""Least number of flights: with fewer, the classes of an input hold fewer than 50 each, too few for
-a density.
-"""
+"""Least number of flights: with fewer, classes of an input have too few flights for a density."""
 
 FLIGHTS_MAX = 2000
-"""Largest number of flights that are used, sampled at random from more: an index then takes a tenth
-of a second.
+"""Largest number of flights in use, so that an index takes a tenth of a second.
+
+More flights are sampled at random.
 """
 
 RESAMPLES = 20
-"""Bootstrap samples for the interval of delta: they give its width to 16 %, 1/sqrt(2 19) for 20
-values.
-"""
+"""Bootstrap samples for the interval of delta: 20 give its width to 16 %, 1/sqrt(2 19)."""
 
 DUMMIES = 5
-"""Random inputs without effect: another one would exceed all of them one time in six."""
+"""Number of random inputs without effect: a further one exceeds all of them one time in six."""
 
 _GRID = 100
 """Number of points at which densities are compared, as in SALib."""
@@ -220,7 +215,7 @@ class InputIndices:
     Attributes
     ----------
     key : key of the input
-    delta, first_order : the indices [-]
+    delta, first_order : indices [-]
     delta_error, first_order_error : half-widths of their intervals [-]
     """
 
@@ -237,10 +232,10 @@ class Sensitivity:
 
     Attributes
     ----------
-    flights : number of flights that were used
+    flights : number of flights in use
     known : number of flights that have the figure
     inputs : indices of the inputs, the largest delta first
-    delta_floor, first_order_floor : the noise floors [-]; NaN without indices
+    delta_floor, first_order_floor : noise floors [-]; NaN without indices
     left_out : reasons why other inputs have no indices
     message : reason why no input has indices; empty if some do
     """
@@ -266,19 +261,18 @@ def sensitivity_indices(
 
     Parameters
     ----------
-    inputs : a row per flight, a column per input; numbers, or words, which are categories without
-        an order
-    figure : figure of each flight, shape (n,); flights where it is NaN are left out
-    confidence : confidence of the intervals, between 0 and 1; that of delta is of a normal
-        distribution with the bootstrap's deviation
+    inputs : a row per flight and a column per input, with numbers, or words for unordered
+        categories
+    figure : figure of each flight, shape (n,); flights with NaN are left out
+    confidence : confidence of the intervals, between 0 and 1; for delta a normal distribution with
+        the bootstrap's standard deviation is assumed
     seed : seed of the choice of flights, the noise floor and the bootstrap
-    samples : number of the sample that each flight is of, shape (n,); each is one of its own if not
-        given
+    samples : number of each flight's sample, shape (n,); by default every flight is its own sample
     """
     generator = np.random.default_rng(seed)
     known = np.flatnonzero(np.isfinite(figure))
-    # In random order even if all are used: flights with equal inputs are put into classes by their
-    # order.
+    # The order is random even if all are used, because it assigns flights with equal inputs to
+    # classes.
     chosen = generator.permutation(known)[:FLIGHTS_MAX]
     of, distinct = pd.factorize(chosen if samples is None else samples[chosen])
     left_out = {
@@ -319,7 +313,7 @@ def sensitivity_indices(
 
 
 def _resampled(of: Indices, picked: Indices) -> Indices:
-    """Return the flights of the samples that were picked, by the sample that each flight is of."""
+    """Return the indices of the flights in the picked samples; ``of`` has each flight's sample."""
     members = np.split(np.argsort(of, kind="stable"), np.cumsum(np.bincount(of))[:-1])
     return np.concatenate([members[sample] for sample in picked])
 
@@ -339,14 +333,14 @@ def _reason_for_no_indices(figure: Array, inputs: dict[str, Array]) -> str:
         return f"{len(figure)} flights have this figure; indices take {FLIGHTS_MIN} at least"
     if not inputs:
         return "no input differs between flights"
-    # A spread near the limit of double precision is rounding, which has no density.
+    # A spread near the limit of double precision is only rounding.
     if np.ptp(figure) <= 1e-12 * np.max(np.abs(figure)):
         return "the figure is the same in every flight"
     return ""
 
 
 def _coded(values: "pd.Series[float]") -> Array:
-    """Return an input as numbers, a different one for each category."""
+    """Return an input as numbers; every category gets its own number."""
     coded = values if pd.api.types.is_numeric_dtype(values) else pd.factorize(values.astype(str))[0]
     return np.asarray(coded, dtype=np.float64)
 
@@ -359,9 +353,7 @@ def _indices(
     resamples: Sequence[Indices],
     confidence: float,
 ) -> InputIndices:
-    """Return the indices of one input, delta corrected for its bootstrap bias (Plischke et al., eq.
-    30).
-    """
+    """Return the indices of one input; delta is corrected for bias (Plischke et al., eq. 30)."""
     from scipy.special import ndtri
 
     delta = _delta(values, figure)
@@ -379,9 +371,9 @@ def _indices(
 def _delta(values: Array, figure: Array) -> float:
     """Return SALib's estimate of delta (Plischke et al., eq. 26).
 
-    ``SALib.analyze.delta.analyze`` uses the same function. But its classes have equal size whatever
-    the input, so that some hold two categories and an input of two categories loses a fifth of its
-    index; and it uses numpy's global generator.
+    ``SALib.analyze.delta.analyze`` uses the same function, but with classes of equal size for any
+    input. Some classes then hold two categories, and an input of two categories loses a fifth of
+    its index. It also uses NumPy's global generator.
 
     Raises
     ------
@@ -391,15 +383,17 @@ def _delta(values: Array, figure: Array) -> float:
 
     grid = np.linspace(figure.min(), figure.max(), _GRID)
     with warnings.catch_warnings():
-        # SALib warns of classes with a single figure, such as a rare category; they add nothing to
-        # delta.
+        # SALib warns of classes with a single figure, such as a rare category, which add nothing.
         warnings.simplefilter("ignore")
         return float(calc_delta(figure, grid, values, _class_bounds(values)))
 
 
 def _class_bounds(values: Array) -> Array:
-    """Return the number of flights below each class of an input, and of all flights: one class per
-    value if there are few values, else classes of equal size, as many as SALib uses."""
+    """Return the number of flights below each class of an input, followed by the number of all.
+
+    An input with few values has a class per value. Otherwise classes have equal size, and are as
+    many as in SALib.
+    """
     count = len(values)
     classes = min(
         math.ceil(count ** (2.0 / (7.0 + math.tanh((1500.0 - count) / 500.0)))), _CLASSES_MAX

@@ -1,70 +1,67 @@
-"""Subset simulation: the probability of a rare event as a product of probabilities that are not
-rare.
+"""Subset simulation: the probability of a rare event as a product of larger probabilities.
 
 S.-K. Au and J. L. Beck, "Estimation of small failure probabilities in high dimensions by subset
 simulation", Probabilistic Engineering Mechanics 16 (2001). The event is that a value, here the
-distance kept beyond r_min, is below
-0. The first level is a plain random sample. Its lowest tenth (``conditional_probability``) gives
-the threshold of the next level, whose sample are Markov chains that start there and never leave
-what lies at or below the threshold; and so on, until a tenth of a level is below 0. The probability
-is the product of the fractions that passed each threshold.
+distance kept beyond r_min, is below 0. The first level is a plain random sample. Its lowest tenth
+(``conditional_probability``) gives the threshold of the next level. The sample of the next level
+consists of Markov chains that start in this tenth and stay at or below the threshold. Levels follow
+until a tenth of a level is below 0. The probability is the product of the fractions that passed
+each threshold.
 
 The chains move in standard normal space by conditional sampling with adaptive steps: I.
 Papaioannou, W. Betz, K. Zwirglmaier, D. Straub, "MCMC algorithms for subset simulation",
-Probabilistic Engineering Mechanics 41 (2015). A proposal is distributed as declared, given the
-state; it is accepted if its value is at or below the threshold. Steps adapt after every wave of
-proposals to the acceptance rate that the same paper recommends, ever less: they depend on the
-chains' past, but the less the longer.
+Probabilistic Engineering Mechanics 41 (2015). A proposal has the declared distribution, given the
+state, and is accepted if its value is at or below the threshold. After every wave of proposals the
+steps adapt to the acceptance rate that the same paper recommends. The adaptation decreases from
+wave to wave, so the steps depend less and less on the chains' past.
 
-Noise within a flight follows from seeds. If every proposal had others, the same point would have
-another value each time, and no chain could stay below a threshold. So the noise is part of the
-state, the event is one of inputs and noise together, and its probability is that of the plain
-study. It has two parts:
+Noise within a flight follows from seeds. If every proposal had new seeds, the same point would have
+another value each time, and no chain could stay below a threshold. The noise is therefore part of
+the state. The event is one of inputs and noise together, with the same probability as in a plain
+study. The noise has two parts:
 
-- a blend: (seed, weight) pairs. Each seed stands for a whole series of independent standard normal
-  numbers, and the noise is their weighted sum. The squares of the weights add up to 1, so that the
-  sum is standard normal, too. A move takes all weights times sqrt(1 - step^2), and adds a new seed
-  with the weight step: the same small steps as those of the inputs, in as many dimensions as a
-  flight has random numbers, at the price of one seed (preconditioned Crank-Nicolson; S. L. Cotter,
-  G. O. Roberts, A. M. Stuart, D. White, "MCMC methods for functions: modifying old algorithms to
-  make them faster", Statistical Science 28 (2013)).
-- a seed of its own, for what cannot be blended: JSBSim makes its turbulence from a seed alone. It
-  is kept while the others move (common random numbers), and some of the moves renew it alone, as
-  one coordinate without neighbours, sampled anew and accepted by the same rule. Where it decides,
-  renewals are seldom accepted (``Level.renewed_accepted`` says how often), chains depend on the few
-  seeds that they began with, and the estimates of repeated simulations scatter more, which their
-  interval shows.
+- a blend: (seed, weight) pairs. Each seed stands for a series of independent standard normal
+  numbers, and the noise is their weighted sum. The squares of the weights add up to 1, so the sum
+  is standard normal as well. A move multiplies all weights by sqrt(1 - step^2), and adds a new seed
+  with the weight ``step``. This is a small step in as many dimensions as a flight has random
+  numbers, and takes only one seed (preconditioned Crank-Nicolson; S. L. Cotter, G. O. Roberts, A.
+  M. Stuart, D. White, "MCMC methods for functions: modifying old algorithms to make them faster",
+  Statistical Science 28 (2013)).
+- a single seed, for noise that cannot be blended: JSBSim computes its turbulence from one seed. The
+  seed is kept while the other parts move (common random numbers). Some moves renew only the seed;
+  they are accepted by the same rule. If the event depends strongly on this seed, renewals are
+  seldom accepted (``Counts.renewed_accepted``), chains depend on the few seeds that they began
+  with, and estimates of repeated simulations scatter more, which widens the interval.
 
-Each move is one of the inputs, the blend or the seed, the others being kept: a flight bears steps
-of its wind or start that are many times as large as those of all its noise at once. Steps of inputs
-and blend adapt apart, and are never smaller than ``SCALE_MIN``. How near a flight comes is a rugged
-function of them, of which smaller steps are accepted hardly more often, and lead nowhere.
+Each move changes either the inputs, the blend or the seed, because steps of wind or start can be
+many times as large as steps of all the noise at once. The steps of inputs and blend adapt
+separately, and are never smaller than ``SCALE_MIN``: the closest approach is a rugged function, for
+which smaller steps are hardly accepted more often and make no progress.
 
-A simulation is a generator: it yields the points of a whole wave, and is sent their values. So any
-number of processes can evaluate them, several simulations can go in step, and the result depends on
-the generator of the random numbers alone.
+A simulation is a Python generator that yields the points of a wave and is sent their values. Any
+number of processes can evaluate the points, and several simulations can run together. The result
+depends on the random generator only.
 
-What several subset simulations say together: probability and interval, the same over the
-threshold, and the inputs' shares.
+Several simulations together give the probability and its interval, the same as a function of the
+threshold, and the influence of the inputs. Estimates of single simulations are skewed,
+approximately log-normal. The mean is estimated from their logarithms, with the interval of Cox for
+the mean of a log-normal distribution, which uses Student's t for few values: U. Olsson, "Confidence
+intervals for the mean of a log-normal distribution", Journal of Statistics Education 13 (2005). The
+standard deviation is the larger of two: the one between the repeats, and the one within them by Au
+and Beck's formula (for correlated chains and independent levels). Thus neither a chance agreement
+of few repeats nor hidden correlation makes the interval narrow. Tests measure the coverage of the
+interval.
 
-Estimates of a simulation are skewed, about log-normal. So the mean of the distribution is estimated
-from their logarithms, with the interval of Cox for the mean of a log-normal distribution, which for
-few values takes Student's t: U. Olsson, "Confidence intervals for the mean of a log-normal
-distribution", Journal of Statistics Education 13 (2005). Its deviation is that between the repeats,
-or that which Au and Beck's formula gives within them (for correlated chains, levels independent),
-whichever is larger: neither a lucky agreement of few repeats nor chains that hide their correlation
-makes it narrow. Tests measure how often it holds what is true.
+If a simulation has not reached the event, its estimate is 0 and the logarithm does not exist. An
+upper bound remains: with 0 of n chains of the last level in the event, 1 - (1 - confidence)^(1/n)
+of that level's probability (Clopper and Pearson). States of one chain are correlated, and so are
+chains that began at copies of one state, so n is the number of different initial states. If no
+simulation has reached the event, the bound is computed at the lowest threshold that all of them
+have reached. If some came much nearer than others, the probability of that threshold scatters, and
+the bound is larger.
 
-Where a simulation has reached no event, its estimate is 0 and its logarithm does not exist. There
-the upper end is what it leaves open: with 0 of n chains of its last level in the event, 1 - (1 -
-confidence)^(1/n) of that level's probability, as Clopper and Pearson have it. States of one chain
-are alike, and so are chains that began at copies of one state: n is the number of different states
-that they began at. If no simulation has reached any, all are judged at the threshold that even the
-least of them has reached: where some came much nearer than others, the probability of that
-threshold scatters, and the bound is the larger.
-
-What all simulations have in their first levels needs none of that: together these are a plain
-sample (Clopper and Pearson).
+The first levels of all simulations together are a plain sample, with the interval of Clopper and
+Pearson.
 """
 
 import math
@@ -80,10 +77,10 @@ from common.intervals import clopper_pearson, upper_bound
 from scenarios.statistics.estimates import (
     Json,
     count_violations,
-    counted,
-    named,
     share,
+    unknown_flights,
     without_nan,
+    word_counts,
 )
 
 Array = npt.NDArray[np.float64]
@@ -93,15 +90,14 @@ Indices = npt.NDArray[np.int64]
 
 @dataclass(slots=True, kw_only=True)
 class Counts:
-    """What was tried for the sample of a level.
+    """Numbers of evaluations and moves for the sample of a level.
 
     Attributes
     ----------
-    evaluated : number of points whose values were asked for
-    moved, accepted : moves of the inputs, and those that were accepted
-    blended, blended_accepted : moves of the blended noise, and those that were accepted
-    renewed, renewed_accepted : renewals of a seed on which the value depends, and those that were
-        accepted
+    evaluated : number of evaluated points
+    moved, accepted : moves of the inputs, and accepted ones
+    blended, blended_accepted : moves of the blended noise, and accepted ones
+    renewed, renewed_accepted : renewals of a seed on which the value depends, and accepted ones
     outside : moves to points that are not allowed, which were not evaluated
     """
 
@@ -121,17 +117,16 @@ class Level:
 
     Attributes
     ----------
-    below : values of the sample are at or below this; infinite for the first level
-    threshold : that of the next level; 0 for the last one
-    probability : fraction of the sample that passes ``threshold``: at or below it, and for the last
-        level below 0 [-]
+    below : upper limit of the sample's values; infinite for the first level
+    threshold : threshold of the next level; 0 for the last level
+    probability : fraction of the sample at or below ``threshold``; in the last level, below 0 [-]
     variation : coefficient of variation of ``probability``, with the correlation within chains [-]
-    points : shape (n, inputs), in the unit cube: positions of the inputs in their distributions
-    dummies : shape (n, ``DUMMIES``), likewise
-    values : shape (n,); infinite where there is none
-    chains : number of the chain of each, shape (n,)
-    counts : of what was tried
-    scale, noise_scale : of the steps of inputs and of the blend at the end of the level [-]
+    points : cumulative probabilities of the inputs, in the unit cube, shape (n, inputs)
+    dummies : the same of inputs without effect, shape (n, ``DUMMIES``)
+    values : values of the points, infinite if missing, shape (n,)
+    chains : number of each point's chain, shape (n,)
+    counts : numbers of evaluations and moves
+    scale, noise_scale : scales of the steps of inputs and blend at the end of the level [-]
     """
 
     below: float
@@ -148,9 +143,7 @@ class Level:
 
     @property
     def beginnings(self) -> int:
-        """Return from how many different states its chains began: of states that passed, some are
-        copies of one that stayed.
-        """
+        """Return the number of different initial states of the chains; copies count once."""
         _, first = np.unique(self.chains, return_index=True)
         return len(np.unique(np.column_stack([self.points[first], self.values[first]]), axis=0))
 
@@ -161,9 +154,8 @@ class Simulation:
 
     Attributes
     ----------
-    levels : the first of them plain
-    stalled : whether no threshold below the last one could be found, because all of a level has one
-        value
+    levels : levels in order; the first is a plain sample
+    stalled : whether no lower threshold was found, because a level has a single value
     """
 
     levels: tuple[Level, ...]
@@ -171,7 +163,7 @@ class Simulation:
 
     @property
     def reached(self) -> float:
-        """Return the estimate of the probability of the last level [-]."""
+        """Return the estimated probability of the last level [-]."""
         return math.prod(level.probability for level in self.levels[:-1])
 
     @property
@@ -180,11 +172,10 @@ class Simulation:
         return math.sqrt(sum(level.variation**2 for level in self.levels[:-1]))
 
     def below(self, value: float) -> tuple[float, float]:
-        """Return the estimate of the probability of values below ``value``, and its coefficient of
-        variation [-].
+        """Return the estimated probability of values below ``value``, and its variation [-].
 
-        The coefficient is that of Au and Beck (2001), as if levels were independent; infinite where
-        none is below.
+        The coefficient of variation is Au and Beck's (2001) for independent levels; it is infinite
+        if no value is below.
         """
         reached, squares = 1.0, 0.0
         for level in self.levels:
@@ -199,13 +190,12 @@ class Simulation:
 
 
 def variation(event: Mask, chains: Indices) -> float:
-    """Return the coefficient of variation of the fraction of a level that has an event [-], by Au
-    and Beck (2001).
+    """Return the coefficient of variation of an event's fraction in a level, by Au and Beck [-].
 
     Parameters
     ----------
-    event : which states have it, shape (n,), those of each chain in their order
-    chains : number of the chain of each state, shape (n,)
+    event : whether each state has the event, in the order of each chain, shape (n,)
+    chains : number of each state's chain, shape (n,)
 
     Returns
     -------
@@ -220,7 +210,7 @@ def variation(event: Mask, chains: Indices) -> float:
     for lag in range(1, int(np.bincount(chains).max())):
         together = chain[lag:] == chain[:-lag]
         if every and together.any():
-            # Twice the covariance at this lag, by the number of pairs that have it.
+            # Twice the covariance at this lag, weighted by the number of its pairs.
             factor += (
                 2.0
                 * float(np.sum(centred[lag:][together] * centred[:-lag][together]))
@@ -230,49 +220,45 @@ def variation(event: Mask, chains: Indices) -> float:
 
 
 ACCEPTANCE = 0.44
-"""Acceptance rate that steps adapt to: Papaioannou et al. (2015)."""
+"""Acceptance rate to which steps adapt [-]: Papaioannou et al. (2015)."""
 
 FIRST_SCALE = 0.6
-"""Scale of the steps before any adaptation, as in the same paper."""
+"""Initial scale of the steps [-], from the same paper."""
 
 SCALE_MIN = 0.2
-"""Least scale of the steps: in 3,400 flights without a limit it fell to 0.01, and chains stood
-still at about 0.3 m.
+"""Least scale of the steps [-].
+
+Without a limit it fell to 0.01 in 3,400 flights, and chains made no progress at about 0.3 m.
 """
 
 SCALE_MAX = 1e3
-"""Where all proposals are accepted the scale would grow without end; every step is at its largest,
-1, long before.
-"""
+"""Largest scale of the steps [-]; the steps reach their limit of 1 at smaller scales."""
 
 RENEWALS, BLENDS = 0.2, 0.3
-"""Fractions of the moves that renew the seed, and that move the blend: of the nine of a chain about
-two, and three.
+"""Fractions of moves that renew the seed and that move the blend [-].
+
+Of the nine moves of a chain they are about two and three.
 """
 
 DUMMIES = 5
-"""Coordinates without any effect beside those of the inputs: what their distribution seems to show
-is chance.
-"""
+"""Number of additional coordinates without effect: any shift of their distribution is chance."""
 
 SEEDS = 2**32
-"""Number of different seeds, as many as other flights have."""
+"""Number of different seeds, as in other studies."""
 
 Point = tuple[float, ...]
-"""Positions of the inputs in their distributions, from 0 to 1; then, with noise, the seed, and seed
-and weight of each part of the blend."""
+"""Cumulative probabilities of the inputs, from 0 to 1, and the noise.
+
+The noise is the single seed, followed by seed and weight of each part of the blend.
+"""
 
 Simulating = Generator[list[Point], Array, Simulation]
-"""A simulation that runs: it yields points to be evaluated, is sent their values, and returns its
-result.
-"""
+"""A running simulation: it yields points, is sent their values, and returns its result."""
 
 
 @dataclass(slots=True, kw_only=True)
 class _States:
-    """States of chains: normal coordinates of inputs and dummies, what follows them in a point, and
-    values.
-    """
+    """States of chains: normal coordinates of inputs and dummies, noise, and values."""
 
     normal: Array
     noise: list[Point]
@@ -302,19 +288,19 @@ class _Scales:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SubsetSimulation:
-    """What a subset simulation is made of.
+    """Settings of a subset simulation, and its execution.
 
     Attributes
     ----------
     dimension : number of inputs
     noise : whether points have noise
-    flights : points of each level
-    conditional_probability : fraction of a level that passes its threshold, about [-]
-    levels_max : levels at most, the first one among them
-    allowed : whether inputs, shape (dimension,) in the unit cube, can be sampled: the distribution
-        is the declared one among these
-    seeded : whether the value at such inputs depends on the seed; where it does not, a new seed is
-        taken without an evaluation
+    flights : number of points per level
+    conditional_probability : approximate fraction of a level that passes its threshold [-]
+    levels_max : largest number of levels, including the first one
+    allowed : function that returns whether inputs, shape (dimension,) in the unit cube, are
+        allowed; the distribution is the declared one, restricted to allowed inputs
+    seeded : function that returns whether the value at such inputs depends on the seed; if not, a
+        new seed is accepted without an evaluation
     """
 
     dimension: int
@@ -326,9 +312,7 @@ class SubsetSimulation:
     seeded: Callable[[Array], bool] = field(default=lambda _: True)
 
     def run(self, generator: np.random.Generator) -> Simulating:
-        """Yield the points of a wave, take their values; infinite for a point that has none, which
-        passes no threshold.
-        """
+        """Yield the points of each wave and receive their values; a missing value is infinity."""
         counts, levels = Counts(), list[Level]()
         states, chains = (yield from self._first(generator, counts)), np.arange(self.flights)
         below, scales = math.inf, _Scales()
@@ -363,7 +347,7 @@ class SubsetSimulation:
     def _first(
         self, generator: np.random.Generator, counts: Counts
     ) -> Generator[list[Point], Array, _States]:
-        """Have a plain random sample evaluated."""
+        """Evaluate a plain random sample."""
         found: list[Array] = []
         while len(found) < self.flights:
             normal = generator.standard_normal(self.dimension + DUMMIES)
@@ -387,11 +371,9 @@ class SubsetSimulation:
         generator: np.random.Generator,
         counts: Counts,
     ) -> Generator[list[Point], Array, tuple[_States, Indices]]:
-        """Grow a chain from each seed, all in step, until they are as many states as a level has;
-        return these and their chains.
-        """
-        # In random order: the chains that get one state more than others are not always those of
-        # the same seeds.
+        """Extend chains from the seeds until a level is complete; return states and chains."""
+        # The order is random, so that the chains with an additional state do not always have the
+        # same seeds.
         states = seeds.at(generator.permutation(len(seeds.values)))
         spread = states.normal.std(axis=0)
         parts, missing = [states], self.flights - len(states.values)
@@ -420,7 +402,7 @@ class SubsetSimulation:
         generator: np.random.Generator,
         counts: Counts,
     ) -> Generator[list[Point], Array, _States]:
-        """Propose a move of each chain; return the states after it."""
+        """Propose a move of each chain; return the new states."""
         count = len(states.values)
         kind = generator.random(count) if self.noise else np.ones(count)
         renewed = kind < RENEWALS
@@ -445,15 +427,15 @@ class SubsetSimulation:
             [new and not self.seeded(at) for new, at in zip(renewed, inputs, strict=True)]
         )
         renewed &= ~known
-        asked = np.flatnonzero(
+        evaluated = np.flatnonzero(
             renewed | blended | (moved & np.array([self.allowed(at) for at in inputs]))
         )
         values = np.where(known, states.values, math.inf)
-        if len(asked):
-            values[asked] = yield self._points(normal[asked], [noise[i] for i in asked])
+        if len(evaluated):
+            values[evaluated] = yield self._points(normal[evaluated], [noise[i] for i in evaluated])
         accepted = values <= threshold
-        counts.evaluated += len(asked)
-        counts.outside += count - len(asked) - int(np.count_nonzero(known))
+        counts.evaluated += len(evaluated)
+        counts.outside += count - len(evaluated) - int(np.count_nonzero(known))
         counts.moved += int(np.count_nonzero(moved))
         counts.accepted += int(np.count_nonzero(accepted & moved))
         counts.blended += int(np.count_nonzero(blended))
@@ -481,15 +463,15 @@ class SubsetSimulation:
 
 
 def _threshold(values: Array, passing: int) -> float:
-    """Return what so many values are at or below, half way to the next greater one.
+    """Return the threshold that ``passing`` values are at or below.
 
-    Chains repeat states. A threshold at one of them, all of whose repetitions pass, would be too
-    low for the fraction that passes, by half of these.
+    It lies half way to the next greater value. Chains repeat states: a threshold at a repeated
+    value would let all repetitions pass, and be biased by half of them.
     """
     least = float(np.sort(values)[passing - 1])
     above = float(np.min(values[values > least], initial=math.inf))
     between = 0.5 * (least + above)
-    # An event begins at 0: from a value that has it there is no half way to one that has not.
+    # The event begins at 0, so a threshold must not lie half way across 0.
     return between if math.isfinite(above) and (least < 0.0) == (between < 0.0) else least
 
 
@@ -499,7 +481,7 @@ def _seeds(generator: np.random.Generator, count: int) -> list[float]:
 
 
 def _adapted(scale: float, moved: int, accepted: int, wave: int) -> float:
-    """Return the scale of steps after a wave of them."""
+    """Return the scale of steps after a wave, adapted to the acceptance rate."""
     if not moved:
         return scale
     return float(
@@ -512,17 +494,17 @@ def _adapted(scale: float, moved: int, accepted: int, wave: int) -> float:
 
 
 def _blended(noise: Point, seed: float, step: float) -> Point:
-    """Return noise whose blend has moved by a step towards that of a new seed."""
+    """Return noise whose blend has moved by a step towards a new seed."""
     kept = math.sqrt(1.0 - step**2)
     parts = [(noise[i], kept * noise[i + 1]) for i in range(1, len(noise), 2)] if kept else []
     return (noise[0], *(number for part in parts for number in part), seed, step)
 
 
 CURVE_POINTS = 80
-"""Thresholds at which the probability is given."""
+"""Number of thresholds at which the probability is computed."""
 
 BINS = 20
-"""Classes of the histogram of an input."""
+"""Number of classes of an input's histogram."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -531,9 +513,9 @@ class RareProbability:
 
     Attributes
     ----------
-    estimate : [-]; the mean of the estimates where some of them are 0
+    estimate : estimated probability; the plain mean if some simulations' estimates are 0 [-]
     low, high : two-sided interval [-]
-    upper : one-sided bound [-]
+    upper : one-sided upper bound [-]
     reached : number of simulations that have reached the event
     """
 
@@ -546,15 +528,15 @@ class RareProbability:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class InputShift:
-    """How an input is distributed near the event, against how it is declared.
+    """Distribution of an input near the event, compared with the declared distribution.
 
     Attributes
     ----------
-    key : of the input
-    distance : largest difference of the two cumulative distributions, of Kolmogorov [-]
+    key : key of the input
+    distance : Kolmogorov distance, the largest difference of the cumulative distributions [-]
     median, median_near : medians as declared and near the event; None for words
-    edges : of the classes, one more than there are; empty for words
-    names : of the classes, for words; otherwise empty
+    edges : edges of the classes, one more than classes; empty for words
+    names : names of the classes for words; otherwise empty
     declared, near : fraction in each class [-]
     """
 
@@ -571,13 +553,13 @@ class InputShift:
 def rare_probability(
     simulations: Sequence[Simulation], confidence: float, *, value: float = 0.0
 ) -> RareProbability:
-    """Return the probability of values below ``value``, by all simulations together.
+    """Return the probability of values below ``value``, from all simulations together.
 
     Parameters
     ----------
-    simulations : repeats, three at least, with their own random numbers
-    confidence : of the interval, and of the one-sided bound, between 0 and 1
-    value : below 0 there is no level, and the last one gives what it has
+    simulations : at least three repeats with different random numbers
+    confidence : confidence of the interval and of the one-sided bound, between 0 and 1
+    value : limit of the values; below 0 the last level is used, as there are no further levels
     """
     found = np.array([simulation.below(value) for simulation in simulations])
     estimates, reached = found[:, 0], found[:, 0] > 0.0
@@ -617,9 +599,7 @@ def rare_probability(
 def _of_plain_samples(
     event: npt.NDArray[np.bool_], reached: int, confidence: float
 ) -> RareProbability:
-    """Return a probability that is not rare: first levels are plain samples, of which there is an
-    exact interval.
-    """
+    """Return a probability that is not rare, with the exact interval of the plain first levels."""
     events, trials = int(np.count_nonzero(event)), len(event)
     interval = clopper_pearson(events, trials, confidence)
     return RareProbability(
@@ -634,21 +614,21 @@ def _of_plain_samples(
 def _left_open(
     simulations: Sequence[Simulation], estimates: Array, variations: Array, confidence: float
 ) -> float:
-    """Return an upper bound where some simulations have not reached the event.
+    """Return an upper bound if some simulations have not reached the event.
 
-    What may go wrong is shared equally between the probability of the last levels and the fraction
-    of these.
+    The error probability is divided equally between the probability of the last levels and the
+    fraction of events in them.
     """
     half = 0.5 + 0.5 * confidence
     chains = [simulation.levels[-1].beginnings for simulation in simulations]
     if not estimates.any():
         common = max(simulation.levels[-1].below for simulation in simulations)
         if math.isinf(common):
-            # A simulation has a plain sample alone; all together have at least these.
+            # If a simulation has only its plain sample, all plain samples together give the bound.
             return upper_bound(
                 0, sum(len(simulation.levels[0].values) for simulation in simulations), confidence
             )
-        # The next number above it: states at the threshold belong to it.
+        # The next greater number is used, because states at the threshold belong to the level.
         levels, within = np.array(
             [simulation.below(math.nextafter(common, math.inf)) for simulation in simulations]
         ).T
@@ -670,9 +650,7 @@ def _left_open(
 
 
 def _at_most_one(logarithm: float) -> float:
-    """Return the probability with this logarithm; estimates that scatter by decades have means and
-    bounds beyond any number.
-    """
+    """Return the probability with this logarithm, at most 1; a large scatter would overflow."""
     return math.exp(min(0.0, logarithm))
 
 
@@ -693,9 +671,7 @@ def _t_quantile(probability: float, count: int) -> float:
 def curve(
     simulations: Sequence[Simulation], confidence: float
 ) -> list[tuple[float, RareProbability]]:
-    """Return the probability of values below each of some thresholds, from the lowest that all
-    simulations have reached.
-    """
+    """Return probabilities over thresholds, from the lowest that all simulations have reached."""
     lowest = max(float(simulation.levels[-1].values.min()) for simulation in simulations)
     first = np.concatenate([simulation.levels[0].values for simulation in simulations])
     known = first[np.isfinite(first)]
@@ -719,8 +695,9 @@ def curve(
 
 
 def near_event(simulations: Sequence[Simulation]) -> list[tuple[Simulation, Indices]]:
-    """Return of each simulation the indices of what its last level has below 0, or of all of it, if
-    no simulation has any.
+    """Return each simulation with the indices of its last level's states below 0.
+
+    If no simulation has such states, the indices of the whole last level are returned.
     """
     inside = [np.flatnonzero(simulation.levels[-1].values < 0.0) for simulation in simulations]
     every = [np.arange(len(simulation.levels[-1].values)) for simulation in simulations]
@@ -732,14 +709,12 @@ def near_event(simulations: Sequence[Simulation]) -> list[tuple[Simulation, Indi
 def input_shifts(
     declared: pd.DataFrame, near: pd.DataFrame, at: tuple[Array, Array]
 ) -> list[InputShift]:
-    """Return how the inputs near the event differ from those that are declared, the largest
-    distance first.
+    """Return the shift of each input's distribution near the event, the largest distance first.
 
     Parameters
     ----------
-    declared, near : values of the inputs of the first levels and of those near the event, a column
-        per input
-    at : the same in the unit cube, shapes (n, inputs)
+    declared, near : values of the inputs in the first levels and near the event, a column per input
+    at : the same values in the unit cube, shapes (n, inputs)
     """
     shifts = [
         _shift(str(key), declared[key], near[key], distance(at[0][:, i], at[1][:, i]))
@@ -749,9 +724,7 @@ def input_shifts(
 
 
 def noise_floor(simulations: Sequence[Simulation]) -> float:
-    """Return the largest distance of what has no effect at all: that of the dummies, which move
-    with the same chains.
-    """
+    """Return the largest distance of the dummies, which move with the chains but have no effect."""
     first = np.concatenate([simulation.levels[0].dummies for simulation in simulations])
     last = np.concatenate(
         [simulation.levels[-1].dummies[chosen] for simulation, chosen in near_event(simulations)]
@@ -760,7 +733,7 @@ def noise_floor(simulations: Sequence[Simulation]) -> float:
 
 
 def distance(one: Array, other: Array) -> float:
-    """Return the largest difference of two cumulative distributions, of Kolmogorov and Smirnov [-]."""
+    """Return the Kolmogorov-Smirnov distance of two samples [-]."""
     every = np.sort(np.concatenate([one, other]))
     shares = [
         np.searchsorted(np.sort(values), every, side="right") / len(values)
@@ -794,7 +767,7 @@ def _shift(
         )
     words = [declared.astype(str), near.astype(str)]
     names = tuple(dict.fromkeys([*sorted(words[0].unique()), *words[1].unique()]))
-    counted = [tuple(float((values == name).mean()) for name in names) for values in words]
+    fractions = [tuple(float((values == name).mean()) for name in names) for values in words]
     return InputShift(
         key=key,
         distance=found,
@@ -802,8 +775,8 @@ def _shift(
         median_near=None,
         edges=(),
         names=names,
-        declared=counted[0],
-        near=counted[1],
+        declared=fractions[0],
+        near=fractions[1],
     )
 
 
@@ -816,17 +789,15 @@ def subset_statistics(
 ) -> Json:
     """Return the content of ``statistics.json``; NaN becomes None.
 
-    Flights of the first levels are a plain random sample, which gives a bound by itself. Of those
-    that have no measurement, or were lost without a violation, nobody knows where they would have
-    gone: the pessimistic bound takes their probability as that of violations, too.
+    Flights of the first levels are a plain random sample with its own bound. The pessimistic bound
+    counts flights without a measurement, and flights lost without a violation, as violations.
 
     Parameters
     ----------
-    rows : columns ``COLUMNS`` of the summary, a row per flight in the order in which they were
-        flown
+    rows : columns ``COLUMNS`` of the summary, a row per flight in the order of flights
     simulations : the repeats, at least three
-    shifts : of the inputs
-    confidence : of each interval, between 0 and 1
+    shifts : shifts of the inputs' distributions
+    confidence : confidence of each interval, between 0 and 1
     """
     plain = count_violations(
         rows.head(sum(len(simulation.levels[0].values) for simulation in simulations))
@@ -837,9 +808,13 @@ def subset_statistics(
         {
             "method": "subset",
             "confidence": confidence,
-            "flights": {"done": every.flights, "measured": every.measured, "unknown": named(every)},
-            "outcomes": counted(rows["outcome"]),
-            "modes_at_end": counted(rows["mode_at_end"]),
+            "flights": {
+                "done": every.flights,
+                "measured": every.measured,
+                "unknown": unknown_flights(every),
+            },
+            "outcomes": word_counts(rows["outcome"]),
+            "modes_at_end": word_counts(rows["mode_at_end"]),
             "violation": {
                 **asdict(found),
                 "repeats": len(simulations),
@@ -875,8 +850,9 @@ def pessimistic_upper(
     flights: int,
     confidence: float,
 ) -> float:
-    """Return the bound if flights of unknown end were violations; what may go wrong is shared
-    equally between the two.
+    """Return the bound if unknown flights count as violations.
+
+    The error probability is divided equally between the two bounds that are added.
     """
     if not unknown:
         return found.upper

@@ -1,9 +1,7 @@
-"""What flights with a sniffer show of the method: bias, spread, coverage of what is stated, and how
-ships are called.
+"""Statistics of flights with a sniffer: bias, spread, coverage, and calls of ships.
 
-Flights of one seed, such as those at the points of a sweep, have the same sniffer in the same air:
-intervals and standard errors are those of as many samples as there are seeds, each with the mean
-over its flights.
+Flights with the same seed, such as those at the points of a sweep, have the same sniffer in the
+same air. Each seed therefore counts as one sample, with the mean over its flights.
 """
 
 from collections.abc import Iterator
@@ -16,12 +14,10 @@ import pandas as pd
 from common.intervals import shared_interval
 
 METHODS = {"regression": "fsc", "areas": "areas_fsc"}
-"""Methods, and what the columns of their figures begin with."""
+"""Evaluation methods, with the prefix of their columns."""
 
 _FIGURES = ("", "low_", "high_", "uncertainty_", "noise_", "separate_")
-"""Of a result: what it is, its bounds, its parts, and what areas would read of passes that do not
-overlap.
-"""
+"""Column prefixes of a result: estimate, bounds, parts of the uncertainty, separate passes."""
 
 COLUMNS = (
     "flight_id",
@@ -43,7 +39,7 @@ COLUMNS = (
 """Columns of the summary that these statistics use."""
 
 _CALLED_BY = ["sensor", "sulphur_limit_percent", "fsc_fuel_percent"]
-"""Flights that are alike in these are a point of the operating curve."""
+"""Columns that define a point of the operating curve."""
 
 Array = npt.NDArray[np.float64]
 Json = dict[str, Any]
@@ -55,7 +51,7 @@ def sulphur_statistics(rows: pd.DataFrame, *, confidence: float) -> Json:
     Parameters
     ----------
     rows : columns ``COLUMNS`` of the summary, a row per flight
-    confidence : of each interval, between 0 and 1
+    confidence : confidence of each interval, between 0 and 1
     """
     rows = rows.reset_index(drop=True)
     return {
@@ -71,9 +67,7 @@ def sulphur_statistics(rows: pd.DataFrame, *, confidence: float) -> Json:
 
 
 def _accuracy_groups(rows: pd.DataFrame) -> Iterator[tuple[Json, pd.DataFrame]]:
-    """Yield the flights by sensor and method; and by the fuel's sulphur, where several flights
-    share it.
-    """
+    """Yield flights by sensor and method, and by sulphur content that several flights share."""
     for sensor, of_sensor in rows.groupby("sensor"):
         for method, prefix in METHODS.items():
             figures = {f"{prefix}_{of}percent": f"{of}percent" for of in _FIGURES}
@@ -82,7 +76,7 @@ def _accuracy_groups(rows: pd.DataFrame) -> Iterator[tuple[Json, pd.DataFrame]]:
                 for name in ("fsc_fuel_percent", "fsc_expected_percent", *figures)
                 if name in of_sensor
             ]
-            # A flight without a result, or without its uncertainty, says nothing of either.
+            # A flight without a result or its uncertainty is left out.
             named = (
                 of_sensor[known]
                 .rename(columns=figures)
@@ -136,22 +130,18 @@ def _by_seed(values: "pd.Series[Any]", flights: pd.DataFrame) -> Array:
 
 
 def _interval(events: "pd.Series[bool]", flights: pd.DataFrame, confidence: float) -> list[float]:
-    """Return the interval of the probability of an event, of which flights of one seed have a share
-    together.
-    """
+    """Return the interval of an event's probability; flights of one seed count as one."""
     found = shared_interval(events.to_numpy(dtype=np.bool_), flights["seed"].to_numpy(), confidence)
     return [found.low, found.high]
 
 
 def _share(part: Array, whole: Array) -> float | None:
-    """Return the mean of one over that of the other; none of nothing, as of a fuel without sulphur."""
+    """Return the ratio of two means, or None if the denominator is 0, as without sulphur."""
     return float(np.mean(part) / np.mean(whole)) if np.mean(whole) > 0.0 else None
 
 
 def _calls(flights: pd.DataFrame, confidence: float) -> Json:
-    """Return how often ships of one fuel were called above one limit: at the end, and after two
-    minutes.
-    """
+    """Return how often ships with one fuel were called above a limit, finally and after 2 min."""
     called: Json = {}
     for name, column in (("above", "sulphur_verdict"), ("above_2min", "verdict_2min")):
         above = flights[column] == "above"
@@ -168,5 +158,5 @@ def _calls(flights: pd.DataFrame, confidence: float) -> Json:
 
 
 def _fuel(flights: pd.DataFrame) -> float:
-    """Return the sulphur content that flights share [% m/m]."""
+    """Return the common sulphur content of flights [% m/m]."""
     return float(flights["fsc_fuel_percent"].iloc[0])

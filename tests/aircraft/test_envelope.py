@@ -51,7 +51,7 @@ def test_a_stated_envelope_has_a_note_where_an_equilibrium_lacks_a_reserve_and_n
     assert replace(noted, notes=(), stall=0.0) == replace(X8.envelope, stall=0.0)
     (note,) = noted.notes
     elevator = slow[1].inputs["elevator"]
-    assert "a reserve is lacking at 1 of 2 equilibria" in note
+    assert "no control reserve at 1 of 2 equilibria" in note
     assert f"11 m/s and 55 deg of bank take {elevator:.2f} of elevator; -0.9 to 0.9" in note
 
 

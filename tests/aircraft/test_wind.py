@@ -150,11 +150,11 @@ def test_a_roughness_that_has_no_profile_is_refused(roughness):
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        ({"velocity": [math.nan, 0.0]}, "a wind of nan m/s"),
-        ({"velocity": np.zeros((2, 1, 2)), "times": (5.0, 5.0)}, "times of the wind do not rise"),
+        ({"velocity": [math.nan, 0.0]}, "wind is nan m/s"),
+        ({"velocity": np.zeros((2, 1, 2)), "times": (5.0, 5.0)}, "times of the wind do not ascend"),
         (
             {"velocity": np.zeros((1, 2, 2)), "heights": (20.0, 10.0)},
-            "heights of the wind do not rise",
+            "heights of the wind do not ascend",
         ),
     ],
 )

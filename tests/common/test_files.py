@@ -25,5 +25,5 @@ def test_numbers_of_numpys_are_written_as_numbers():
 def test_what_json_cannot_express_is_an_error():
     with pytest.raises(ValueError, match="JSON compliant"):
         json_text({"speed": np.float32(np.nan)}, indent=1)
-    with pytest.raises(TypeError, match="JSON has nothing for set"):
+    with pytest.raises(TypeError, match="JSON cannot express set"):
         json_text({"speed": {1.0}}, indent=1)

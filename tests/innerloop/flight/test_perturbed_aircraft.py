@@ -9,7 +9,7 @@ from aircraft.fleet.find import find_spec
 from aircraft.fleet.x8 import X8
 from aircraft.model import copy_model, perturb
 from aircraft.state import RigidBodyState
-from innerloop.flight.turn_reversal import AIRCRAFT, perturbed_aircraft
+from innerloop.flight.turn_reversal import REVERSAL_PERTURBATIONS, perturbed_aircraft
 from tests.aircraft.split_model import split_model
 
 
@@ -17,7 +17,9 @@ from tests.aircraft.split_model import split_model
 def flown(x8_root, x8_schedule):
     """Return the X8 of each case, a tenth of a second into a turn."""
     level = x8_schedule.level(x8_schedule.middle)
-    aircraft = {name: perturbed_aircraft(X8, x8_root, by) for name, by in AIRCRAFT.items()}
+    aircraft = {
+        name: perturbed_aircraft(X8, x8_root, by) for name, by in REVERSAL_PERTURBATIONS.items()
+    }
     for each in aircraft.values():
         each.release(level.state(), airspeed=level.airspeed, altitude=level.altitude)
         each.command_heading_rate(0.3)
@@ -32,9 +34,9 @@ def value(aircraft, name):
 
 # Of the model file: 3.364 kg and 0.335, 0.140, 0.400 kg m^2; a kilogram weighs 2.2046226 lb, and 1
 # slug ft^2 is 1.3558179 kg m^2, but by 9e-5 in JSBSim.
-@pytest.mark.parametrize("case", AIRCRAFT)
+@pytest.mark.parametrize("case", REVERSAL_PERTURBATIONS)
 def test_mass_and_inertia_are_as_modelled_times_the_factor(flown, case):
-    by = AIRCRAFT[case]
+    by = REVERSAL_PERTURBATIONS[case]
     assert value(flown[case], "inertia/weight-lbs") == pytest.approx(
         3.364 * 2.2046226 * by.mass, rel=1e-6
     )
@@ -44,7 +46,7 @@ def test_mass_and_inertia_are_as_modelled_times_the_factor(flown, case):
         )
 
 
-@pytest.mark.parametrize("case", AIRCRAFT)
+@pytest.mark.parametrize("case", REVERSAL_PERTURBATIONS)
 def test_what_a_deflection_does_is_as_modelled_times_the_factor(flown, case):
     def of(name):
         return value(flown[case], name)
@@ -56,10 +58,12 @@ def test_what_a_deflection_does_is_as_modelled_times_the_factor(flown, case):
     aileron = of("fcs/aileron-pos-rad")
     assert abs(aileron) > 1e-3
     # Properties are of two neighbouring steps: a tenth of what a fifth of the effectiveness makes.
-    assert rolled == pytest.approx(0.12019 * AIRCRAFT[case].effectiveness * aileron, rel=0.02)
+    assert rolled == pytest.approx(
+        0.12019 * REVERSAL_PERTURBATIONS[case].effectiveness * aileron, rel=0.02
+    )
 
 
-@pytest.mark.parametrize("case", AIRCRAFT)
+@pytest.mark.parametrize("case", REVERSAL_PERTURBATIONS)
 def test_sections_in_files_of_their_own_are_perturbed_as_those_of_the_model_file_are(
     tmp_path, case
 ):
@@ -74,7 +78,7 @@ def test_sections_in_files_of_their_own_are_perturbed_as_those_of_the_model_file
     moved = []
     for spec in (find_spec("c172p"), find_spec(str(split_model("c172p", tmp_path)))):
         root = tmp_path / f"copy{len(moved)}"
-        perturb(copy_model(spec.files, root), AIRCRAFT[case])
+        perturb(copy_model(spec.files, root), REVERSAL_PERTURBATIONS[case])
         fdm = Fdm(spec, root)
         fdm.command({"elevator": -0.1, "aileron": 0.2, "rudder": 0.1, "throttle": 0.5})
         fdm.hold(state, 240)
@@ -86,7 +90,7 @@ def test_sections_in_files_of_their_own_are_perturbed_as_those_of_the_model_file
 
 def test_the_deflections_of_jsbsims_short_s23_are_scaled(tmp_path):
     copy = copy_model(find_spec("Short_S23").files, tmp_path)
-    perturb(copy, AIRCRAFT["control effectiveness +20 %"])
+    perturb(copy, REVERSAL_PERTURBATIONS["control effectiveness +20 %"])
     products = ET.parse(copy).getroot().find("aerodynamics").iter("product")
     scaled = [
         product.findtext("property").strip()

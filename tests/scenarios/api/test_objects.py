@@ -184,7 +184,7 @@ def local_law():
     [
         (
             {"law": object()},
-            "guidance.law is an object of class object, which is no dataclass; write @dataclass(frozen=True)",
+            "guidance.law is an object of class object, which is not a dataclass; write @dataclass(frozen=True)",
         ),
         ({"law": Clock}, "steering law 'Clock' has no method heading_rate()"),
         ({"law": lambda: None}, "has no name; define it by class or def"),
@@ -195,11 +195,11 @@ def local_law():
         ),
         (
             {"aircraft": replace(X8, title="Mine")},
-            "aircraft 'x8' is known already, and is not the object that was given",
+            "aircraft 'x8' exists already and is another object",
         ),
         (
             {"aircraft": replace(X8, name="737")},
-            "aircraft is an object called '737', as one of JSBSim's own is",
+            "aircraft is an object called '737', the name of one of JSBSim's own",
         ),
         (
             {"aircraft": X8.envelope},

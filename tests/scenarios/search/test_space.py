@@ -46,7 +46,7 @@ def test_two_times_are_made_equal_within_both_ranges():
     assert space.time_pairs == ((0, 2),)
     generator = np.random.default_rng(1)
     for _ in range(20):
-        moved = space.at_one_time(point(0.9, 0.3, 0.9, 0.9), generator)
+        moved = space.with_equal_times(point(0.9, 0.3, 0.9, 0.9), generator)
         assert 100.0 * moved[0] == pytest.approx(50.0 + 200.0 * moved[2])
         assert 50.0 <= 100.0 * moved[0] <= 100.0
         assert moved[[1, 3]].tolist() == [0.3, 0.9]
