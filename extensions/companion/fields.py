@@ -218,7 +218,6 @@ class VesselState:
     def adsb(self) -> Any:
         """Return ADSB_VEHICLE, for ground stations that show no AIS: a vehicle on the surface."""
         speed = math.hypot(self.velocity_north, self.velocity_east)
-        course = math.atan2(self.velocity_east, self.velocity_north)
         flags = (
             mavlink.ADSB_FLAGS_VALID_COORDS
             | mavlink.ADSB_FLAGS_VALID_ALTITUDE
@@ -231,7 +230,7 @@ class VesselState:
             degrees_e7(self.longitude),
             mavlink.ADSB_ALTITUDE_TYPE_GEOMETRIC,
             0,
-            centidegrees(course),
+            centidegrees(self.bow),
             min(_UNKNOWN_16, round(100.0 * speed)),
             0,
             self.name.encode("ascii", "replace")[:8],

@@ -1,6 +1,7 @@
 """A scenario's aircraft as a MAVLink vehicle: what it tells, what it takes, and its clock."""
 
 import math
+import threading
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -51,6 +52,9 @@ _NUMBERS = {
     for number, message in mavlink.mavlink_map.items()
     if message.msgname in _STREAMS
 }
+
+_IDLE = 0.2
+"""Longest wait for a message [s]."""
 
 _FASTEST_STREAM = 0.005
 """Shortest interval between messages of a kind [s]."""
@@ -272,7 +276,12 @@ class Simulation:
 
     def vessels(self) -> Iterator[Any]:
         """Yield the messages of the reports that have been received since the last call."""
-        while self._next_report is not None and self._next_report[0] <= self.time + 1e-6:
+        world = self._plan.world
+        while (
+            world is not None
+            and self._next_report is not None
+            and self._next_report[0] <= self.time + 1e-6
+        ):
             _, report = self._next_report
             self._next_report = next(self._reports, None)
             latitude, longitude = self.plane.frame.to_geodetic(report.north, report.east)
@@ -285,7 +294,7 @@ class Simulation:
                 longitude=float(longitude),
                 velocity_north=north,
                 velocity_east=east,
-                bow=math.atan2(east, north),
+                bow=world.vessel.course(report.time) - turned,
                 age=max(0.0, self.time - report.time),
             )
             yield vessel.ais()
@@ -305,11 +314,16 @@ class Server:
     ----------
     simulation, port : what is served, and where
     lockstep : whether the clock waits for the SYSTEM_TIME of a companion
+
+    Attributes
+    ----------
+    stopping : ends the flight when it is set
     """
 
     def __init__(self, simulation: Simulation, port: Port, *, lockstep: bool) -> None:
         self._simulation, self._plane, self._port = simulation, simulation.plane, port
         self._lockstep = lockstep
+        self.stopping = threading.Event()
         self._intervals = dict(_STREAMS)
         if lockstep:
             # The clock comes last: it says that everything before it has been sent.
@@ -320,9 +334,9 @@ class Server:
     def run(self, duration: float) -> str:
         """Fly until a time [s] is over or the aircraft is lost; return why it ended, in words."""
         simulation, began = self._simulation, time.monotonic()
-        while simulation.time < duration:
+        while simulation.time < duration and not self.stopping.is_set():
             if self._lockstep:
-                self._serve(1.0)
+                self._serve(_IDLE)
                 until = self._asked_for
             else:
                 ahead = simulation.time + simulation.plane.time_step - (time.monotonic() - began)

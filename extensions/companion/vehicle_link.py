@@ -187,7 +187,7 @@ class VehicleLink:
                 self._port.send(mavlink.MAVLink_system_time_message(0, milliseconds))
             for _, message in self._port.receive(_IDLE):
                 self._receive(message, at=until)
-            if round(1e3 * self._reached) >= milliseconds:
+            if 1e3 * self._reached >= milliseconds - 0.5:
                 self._reached = max(self._reached, until)
                 return
             if clock - began >= _GIVE_UP:
@@ -214,7 +214,11 @@ class VehicleLink:
             return
         if kind == "GLOBAL_POSITION_INT":
             self._check_clock(1e-3 * message.time_boot_ms)
-        self._down.put(self._estimate() if at is None else at, message)
+        if at is None and self._offset is None:
+            # Its clock is not known yet.
+            self._take(message)
+        else:
+            self._down.put(self._estimate() if at is None else at, message)
 
     def _check_clock(self, stamp: float) -> None:
         """Estimate the vehicle's clock by a time stamp [s], and notice where it jumps."""
