@@ -6,6 +6,7 @@ that time is there, or has had the time that the link is declared to need; telem
 is extrapolated from the last. So the loop has one dead time, which guard and preview know.
 """
 
+import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -54,6 +55,9 @@ SILENT_AFTER = 1.0
 
 _BEARINGS = 36
 """Directions from the vessel in which a place to retreat to is looked for [-]."""
+
+_DISTANCES = (1.0, 1.5, 2.0, 3.0)
+"""Distances there, over the one that is kept [-]: from ahead of her a near one leads past her."""
 
 _SPARE_RADII = 2.0
 """Turn radii between the keep-out area and the circle of a retreat [-]."""
@@ -443,9 +447,9 @@ def retreat(
     """
     best, found = -math.inf, own
     her_speed = math.hypot(*vessel)
-    for k in range(_BEARINGS):
-        bearing = math.tau * k / _BEARINGS
-        place = keep * math.cos(bearing), keep * math.sin(bearing)
+    for k, factor in itertools.product(range(_BEARINGS), _DISTANCES):
+        bearing, distance = math.tau * k / _BEARINGS, factor * keep
+        place = distance * math.cos(bearing), distance * math.sin(bearing)
         if her_speed > 0.0:
             ahead = (place[0] * vessel[0] + place[1] * vessel[1]) / her_speed
             across = abs(place[0] * vessel[1] - place[1] * vessel[0]) / her_speed
