@@ -13,6 +13,7 @@ import socket
 import termios
 import time
 import tty
+from collections.abc import Sequence
 from pathlib import Path
 from typing import IO, Any, Protocol, Self
 
@@ -42,6 +43,9 @@ class Line(Protocol):
 
     def send(self, data: bytes, peer: Peer) -> None:
         """Send to a peer; one that is gone gets nothing."""
+
+    def connected(self) -> Sequence[Peer]:
+        """Return the peers that are known although they may have said nothing yet."""
 
     def close(self) -> None:
         """Let the line go."""
@@ -79,6 +83,10 @@ class Udp:
         with contextlib.suppress(OSError):
             self._socket.sendto(data, peer)
 
+    def connected(self) -> Sequence[Peer]:
+        """Return the one to which is sent, if this does not listen."""
+        return [self.other] if self.other is not None else []
+
     def close(self) -> None:
         """Let the line go."""
         self._socket.close()
@@ -96,14 +104,12 @@ class Tcp:
     def __init__(self, host: str, port: int, *, listening: bool) -> None:
         self._server: socket.socket | None = None
         self._streams: dict[Peer, socket.socket] = {}
-        self.other: Peer | None = None
         if listening:
             self._server = socket.create_server((host, port))
             self._server.setblocking(False)
             return
         stream = socket.create_connection((host, port), timeout=5.0)
         peer: Peer = stream.getpeername()
-        self.other = peer
         self._take(stream, peer)
 
     def _take(self, stream: socket.socket, peer: Peer) -> None:
@@ -154,6 +160,10 @@ class Tcp:
     def _drop(self, peer: Peer) -> None:
         self._streams.pop(peer).close()
 
+    def connected(self) -> Sequence[Peer]:
+        """Return the other ends of all streams."""
+        return list(self._streams)
+
     def close(self) -> None:
         """Let the line go."""
         for stream in [*self._streams.values(), *([self._server] if self._server else [])]:
@@ -177,7 +187,7 @@ class Serial:
         settings = termios.tcgetattr(self._file)
         settings[4] = settings[5] = speed
         termios.tcsetattr(self._file, termios.TCSANOW, settings)
-        self.other: Peer = (device, 0)
+        self._other: Peer = (device, 0)
 
     def receive(self, timeout: float) -> Packets:
         """Return what has come, after waiting for it for at most a time [s]."""
@@ -187,12 +197,16 @@ class Serial:
             data = os.read(self._file, _DATAGRAM)
         except OSError:
             data = b""
-        return [(self.other, data)] if data else []
+        return [(self._other, data)] if data else []
 
     def send(self, data: bytes, peer: Peer) -> None:  # noqa: ARG002 - there is one
         """Send to the other end; what does not fit into its buffer is lost."""
         with contextlib.suppress(OSError):
             os.write(self._file, data)
+
+    def connected(self) -> Sequence[Peer]:
+        """Return the other end."""
+        return [self._other]
 
     def close(self) -> None:
         """Let the line go."""
@@ -248,8 +262,6 @@ class Port:
         self._packer = mavlink.MAVLink(None, srcSystem=system, srcComponent=component)
         self._parsers: dict[Peer, Any] = {}
         self._heard: dict[Peer, float] = {}
-        other = getattr(line, "other", None)
-        self._fixed: list[Peer] = [other] if other is not None else []
         self._log: IO[bytes] | None = None
         self._log_path = log
         self.malformed = 0
@@ -308,11 +320,12 @@ class Port:
                 self._heard.pop(peer, None)
 
     def send(self, message: Any, peer: Peer | None = None) -> None:
-        """Send a message to a peer, or to everybody who has been heard."""
+        """Send a message to a peer, or to everybody who has been heard or is connected."""
         data = message.pack(self._packer)
         self._packer.seq = (self._packer.seq + 1) % 256
         self._note(data)
-        for each in [peer] if peer is not None else self._fixed or list(self._heard):
+        everybody = dict.fromkeys([*self._line.connected(), *self._heard])
+        for each in [peer] if peer is not None else everybody:
             self._line.send(data, each)
 
     def forward(self, message: Any, sender: Peer) -> None:

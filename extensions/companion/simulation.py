@@ -336,21 +336,34 @@ class Server:
         simulation, began = self._simulation, time.monotonic()
         while simulation.time < duration and not self.stopping.is_set():
             if self._lockstep:
-                self._serve(_IDLE)
-                until = self._asked_for
+                fault = self.answer(_IDLE)
             else:
                 ahead = simulation.time + simulation.plane.time_step - (time.monotonic() - began)
                 self._serve(max(0.0, ahead))
-                until = time.monotonic() - began
-            while simulation.time + 0.5 * self._plane.time_step < until:
-                simulation.step()
-                if not self._lockstep:
-                    self._tell()
-                if fault := simulation.fault():
-                    return f"lost at {simulation.time:.1f} s: {fault}"
-            if self._lockstep and until > 0.0 and simulation.time > self._told_until:
-                self._tell()
+                fault = self._fly_until(time.monotonic() - began)
+            if fault:
+                return f"lost at {simulation.time:.1f} s: {fault}"
         return "time is up"
+
+    def answer(self, timeout: float) -> str:
+        """Take what has come in lockstep, after waiting for at most a time [s], and go on to the time
+        that was asked for; return why the aircraft is lost, or nothing.
+        """
+        self._serve(timeout)
+        fault = self._fly_until(self._asked_for)
+        if self._asked_for > 0.0 and self._simulation.time > self._told_until:
+            self._tell()
+        return fault
+
+    def _fly_until(self, until: float) -> str:
+        """Fly until a time [s]; return why the aircraft is lost, or nothing."""
+        simulation, fault = self._simulation, ""
+        while not fault and simulation.time + 0.5 * self._plane.time_step < until:
+            simulation.step()
+            fault = simulation.fault()
+            if not self._lockstep:
+                self._tell()
+        return fault
 
     def _tell(self) -> None:
         """Send what is due."""

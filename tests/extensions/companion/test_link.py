@@ -112,8 +112,8 @@ def test_messages_go_both_ways_and_damaged_ones_are_counted(scheme):
         assert received(here)[0][1].get_srcComponent() == 1
         damaged = bytearray(beat.pack(mavlink.MAVLink(None, srcSystem=1, srcComponent=191)))
         damaged[12] ^= 0xFF
-        here._line.send(bytes(damaged), here._fixed[0])
-        here._line.send(b"GET / HTTP/1.1\r\n\r\n" * 20, here._fixed[0])
+        here._line.send(bytes(damaged), here._line.connected()[0])
+        here._line.send(b"GET / HTTP/1.1\r\n\r\n" * 20, here._line.connected()[0])
         here.send(beat)
         assert [message.get_type() for _, message in received(there)][-1] == "HEARTBEAT"
         assert there.malformed > 0
