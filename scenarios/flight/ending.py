@@ -259,6 +259,8 @@ class Ending:
     guarded : whether the keep-out guard changed a command in the flight; the loop says so at its
         end
     saturated : part of the steps in which the law asked for more than omega_max [-]; likewise
+    given_back : why the vehicle takes no more commands, said by what flies it from outside; the
+        flight is over at the next sample then. Nothing as long as it takes them
     outcome, message : in a word, and why in a sentence; nothing to say where it completed
     """
 
@@ -275,6 +277,7 @@ class Ending:
         self._ditched, self._fault, self._end = False, "", 0.0
         self._noticed = math.inf
         self.guarded, self.saturated = False, 0.0
+        self.given_back = ""
 
     def reached(
         self, time: float, motion: MeasuredMotion, sample: tuple[float, ...], *, complete: bool
@@ -293,7 +296,7 @@ class Ending:
             target = self._guidance.target
             distance = math.hypot(motion.north - target.north, motion.east - target.east)
             over = stop.has_left(time, distance) or (complete and stop.reason is None)
-        return bool(self._fault) or self._ditched or over
+        return bool(self._fault) or self._ditched or over or bool(self.given_back)
 
     @property
     def stop_reason(self) -> str:
@@ -379,6 +382,8 @@ class Ending:
 
     def _shortfall(self) -> str:
         settling, plan, mode = self._settling, self._plan, self._guidance.mode
+        if self.given_back:
+            return f"{self.given_back} at {self._end:.1f} s, {self._crossings()}"
         if self._early_stop is not None and self._early_stop.reason is not None:
             return self._early_stop.message
         ended = f", and ended {mode.value}" if mode in _GIVEN_UP else ""

@@ -672,7 +672,7 @@ class SingleFlight:
         self, study: FlightStudy, task: Task, *, flight_id: str, trial: str, table: str
     ) -> None:
         self._study = study
-        self._task = task
+        self.task = task
         self._flight_id = flight_id
         self._trial = trial
         self._table = table
@@ -708,7 +708,7 @@ class SingleFlight:
 
     def run(self, fly: Fly, _run: RunDirectory, _journal: Journal) -> None:
         """Fly the flight; its time history is written."""
-        fly([self._task])
+        fly([self.task])
 
     def postprocess(self, _run: RunDirectory, _journal: Journal, _progress: Progress) -> None:
         """Do nothing: one flight has only tables and its time history."""

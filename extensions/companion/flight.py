@@ -1,0 +1,634 @@
+"""A flight of a scenario on a vehicle over MAVLink: what is checked before, who has the vehicle, and
+the flight itself, which is recorded as those of a study are.
+"""
+
+import math
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from common.geodesy import LocalFrame
+from common.physics import bank_for_heading_rate
+from extensions.companion.fields import equivalent_over_true
+from extensions.companion.plane import PlaneMode
+from extensions.companion.quality import Link
+from extensions.companion.remote_vehicle import (
+    COURSE,
+    COURSE_INTERVAL,
+    SILENT_AFTER,
+    Limits,
+    RemoteVehicle,
+)
+from extensions.companion.vehicle_link import VehicleLink
+from gnc.estimation.vessel import ReachableSet, ReportedTarget, Tube, VesselReport
+from gnc.guidance import ReportedVessel
+from scenarios.engine.run_directory import RunDirectory
+from scenarios.errors import InputError
+from scenarios.experiment.requests import FlightRequest
+from scenarios.flight.closed_loop import ClosedLoop, record_of
+from scenarios.flight.record import FlightRecord
+from scenarios.flight_runner import FlightRunner, Flown, payload_of, reader_of
+from scenarios.instruments.instrument import Instrument
+from scenarios.planning.flight_plan import FlightPlan, Start
+from scenarios.planning.missions import check_start
+from scenarios.scenario.sections.equipment import SensorsConfig
+from scenarios.studies.base import SingleFlight
+from scenarios.vehicles.sensors import SensorErrors
+from scenarios.vehicles.vehicle_setup import VehicleSetup
+from scenarios.world.faults import NO_FAULT
+from scenarios.world.vessel import Place
+
+_NEEDED = {
+    "roll limit [deg]": ("ROLL_LIMIT_DEG", "LIM_ROLL_CD"),
+    "least airspeed [m/s]": ("AIRSPEED_MIN", "ARSPD_FBW_MIN"),
+    "greatest airspeed [m/s]": ("AIRSPEED_MAX", "ARSPD_FBW_MAX"),
+}
+"""Parameters without which no vehicle is flown, by what they say: their name, and the former one."""
+
+_LOITER_RADIUS, _GUIDED_TIMEOUT, _GUIDED_P = "WP_LOITER_RAD", "GUIDED_TIMEOUT", "GUIDED_P"
+_DEFAULTS = {_LOITER_RADIUS: 60.0, _GUIDED_TIMEOUT: 3.0, _GUIDED_P: 5000.0}
+"""Parameters that not every vehicle tells, with ArduPlane's values [m, s, 0.01 deg/rad]."""
+
+_ROUNDING = 2e-3
+"""By how much a limit of the vehicle may be below what is needed, for rounding [-]."""
+
+_PATIENCE = 10.0
+"""Time within which a vehicle tells its parameters [s]."""
+
+_ASK_INTERVAL, _LOOK = 1.0, 0.1
+"""Time between requests, and between looks at whether something has come [s]."""
+
+_VELOCITY_MAX = 0.3
+"""Difference from the scenario's velocity up to which a steady vessel counts as that one [m/s]."""
+
+_STREAMS = (
+    mavlink.MAVLINK_MSG_ID_ATTITUDE,
+    mavlink.MAVLINK_MSG_ID_VFR_HUD,
+    mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT,
+)
+
+Say = Callable[[str], None]
+
+
+class HeardVessel:
+    """A vessel's track as its reports tell it, by dead reckoning from the last one."""
+
+    manoeuvres_end = math.nan
+
+    def __init__(self) -> None:
+        self._reports: list[VesselReport] = []
+        self._courses: list[float] = []
+
+    def report(self, report: VesselReport) -> None:
+        """Take in a report."""
+        course = math.atan2(report.velocity_east, report.velocity_north)
+        if self._courses:
+            last = self._courses[-1]
+            course = last + math.remainder(course - last, math.tau)
+        self._reports.append(report)
+        self._courses.append(course)
+
+    def _last(self, time: float) -> int:
+        before = [i for i, report in enumerate(self._reports) if report.time <= time]
+        return before[-1] if before else 0
+
+    def motion(self, time: float) -> tuple[float, float, float, float]:
+        """Return north, east [m] and their rates [m/s] at a time [s]."""
+        if not self._reports:
+            return 0.0, 0.0, 0.0, 0.0
+        of = self._reports[self._last(time)]
+        since = time - of.time
+        return (
+            of.north + since * of.velocity_north,
+            of.east + since * of.velocity_east,
+            of.velocity_north,
+            of.velocity_east,
+        )
+
+    def course(self, time: float) -> float:
+        """Return the course [rad]."""
+        return self._courses[self._last(time)] if self._courses else 0.0
+
+
+class HeardPlume:
+    """The axis of the plume behind a vessel that is known from reports, in the estimated wind.
+
+    Parameters
+    ----------
+    vessel : as it is heard
+    heading : of the plume from the bow, where it does not trail with the wind [rad]; None where it
+        does
+    """
+
+    def __init__(self, vessel: HeardVessel, heading: float | None) -> None:
+        self._vessel, self._heading = vessel, heading
+        self.wind: Callable[[], tuple[float, float]] = lambda: (0.0, 0.0)
+        self._axis = 0.0
+
+    def axis(self, time: float) -> float:
+        """Return the course along which the plume trails [rad]."""
+        if self._heading is not None:
+            return self._vessel.course(time) + self._heading
+        _, _, v_north, v_east = self._vessel.motion(time)
+        wind_north, wind_east = self.wind()
+        axis = math.atan2(wind_east - v_east, wind_north - v_north)
+        self._axis += math.remainder(axis - self._axis, math.tau)
+        return self._axis
+
+
+@dataclass(frozen=True, kw_only=True)
+class Companion:
+    """Who flies a vehicle over a link, and how.
+
+    Attributes
+    ----------
+    link, quality : to the vehicle, and how bad it is declared to be
+    by : ``ATTITUDE`` or ``COURSE``
+    lockstep : whether the vehicle's clock waits
+    mmsi : of the vessel; None for the only one
+    patience : for how long a vehicle, a vessel and GUIDED are waited for [s]
+    say : tells the user what is going on
+    """
+
+    link: VehicleLink
+    quality: Link
+    by: str
+    lockstep: bool
+    mmsi: int | None
+    patience: float
+    say: Say
+
+    # ------------------------------------------------------------ before the flight
+
+    def meet(self) -> None:
+        """Wait for a vehicle, and learn its parameters.
+
+        Raises
+        ------
+        InputError : there is none, it is of another type, or it does not tell what is needed
+        """
+        link = self.link
+        self.say("waiting for a vehicle")
+        self._wait(lambda: link.kind != 0, self.patience, "no vehicle was heard")
+        if link.kind != mavlink.MAV_TYPE_FIXED_WING:
+            raise InputError(
+                f"the vehicle is of MAV_TYPE {link.kind}; fixed wings (MAV_TYPE"
+                f" {mavlink.MAV_TYPE_FIXED_WING}) can be flown"
+            )
+        if link.autopilot != mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA:
+            raise InputError(
+                f"the vehicle's autopilot is MAV_AUTOPILOT {link.autopilot}; GUIDED of ArduPlane"
+                f" (MAV_AUTOPILOT {mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA}) is needed"
+            )
+        self.say(f"vehicle {link.system}: fixed wing, ArduPilot, mode {link.mode}")
+        for names in [*_NEEDED.values(), *((name,) for name in _DEFAULTS)]:
+            for name in names:
+                link.request_parameter(name)
+
+        def known() -> bool:
+            told = link.parameters
+            return all(any(name in told for name in names) for names in _NEEDED.values())
+
+        self._wait(known, _PATIENCE, "the vehicle does not tell its limits", again=self._ask)
+
+    def _ask(self) -> None:
+        for names in _NEEDED.values():
+            for name in names:
+                if name not in self.link.parameters:
+                    self.link.request_parameter(name)
+
+    def _wait(
+        self,
+        there: Callable[[], bool],
+        patience: float,
+        missing: str,
+        again: Callable[[], None] = lambda: None,
+    ) -> None:
+        """Wait for something.
+
+        In lockstep the vehicle's clock is let go on only if that is what it takes.
+        """
+        link, waited, asked = self.link, 0.0, 0.0
+        while not there():
+            before = link.now
+            link.advance(link.now if self.lockstep and waited < _LOOK else link.now + _LOOK, there)
+            waited += max(link.now - before, 0.5 * _LOOK)
+            if link.rival is not None:
+                system, component = link.rival
+                raise InputError(
+                    f"another companion ({system}/{component}) is on the link; one can fly a"
+                    " vehicle: end the other one"
+                )
+            if waited > patience or link.gone:
+                raise InputError(f"{missing} in {patience:g} s; check --connect and the vehicle")
+            if waited - asked > _ASK_INTERVAL:
+                asked = waited
+                again()
+
+    def _parameter(self, *names: str) -> float:
+        told = self.link.parameters
+        name = next(each for each in names if each in told or each in _DEFAULTS)
+        value = told.get(name, _DEFAULTS.get(name, math.nan))
+        return 0.01 * value if name == "LIM_ROLL_CD" else value
+
+    def check_limits(self, setup: VehicleSetup, heading_rate_max: float, altitude: float) -> None:
+        """Refuse a vehicle whose limits are narrower than what the guidance may command.
+
+        Raises
+        ------
+        InputError : they are
+        """
+        ratio = equivalent_over_true(altitude)
+        roll, slowest, fastest = (self._parameter(*names) for names in _NEEDED.values())
+        turning = min(setup.airspeed_max, setup.turning_airspeed(heading_rate_max))
+        bank = math.degrees(bank_for_heading_rate(heading_rate_max, turning))
+        if roll < (1.0 - _ROUNDING) * bank:
+            raise InputError(
+                f"the vehicle's ROLL_LIMIT_DEG is {roll:.1f} deg; the guidance banks up to"
+                f" {bank:.1f} deg: lower guidance.bank_deg, or raise the limit"
+            )
+        least, most = ratio * setup.airspeed_min, ratio * setup.airspeed_max
+        if slowest > (1.0 + _ROUNDING) * least or fastest < (1.0 - _ROUNDING) * most:
+            raise InputError(
+                f"the vehicle flies at {slowest:.1f} to {fastest:.1f} m/s (AIRSPEED_MIN,"
+                f" AIRSPEED_MAX); the guidance commands {least:.1f} to {most:.1f} m/s: they have to"
+                " lie within"
+            )
+
+    def on_link(self, setup: VehicleSetup, request: FlightRequest) -> VehicleSetup:
+        """Return what a flight needs of its vehicle, with the link between them.
+
+        The dead time delays every turn. By what a command may be later than that, the vehicle flies
+        on towards the vessel, at most at the sum of both speeds through the air.
+        """
+        scenario = request.scenario
+        dead = self.dead_time
+        late = self.quality.late(1.0 / scenario.guidance.rate_hz, scenario.flight.duration_max_s)
+        closing = scenario.guidance.airspeed_mps * (1.0 + scenario.following.speed_ratio_max)
+        return replace(
+            setup,
+            lag=setup.lag + dead,
+            reversal=replace(setup.reversal, delay=setup.reversal.delay + dead),
+            response_error=setup.response_error + closing * late,
+            # Accelerations are not read.
+            thrust=None,
+        )
+
+    @property
+    def dead_time(self) -> float:
+        """Time from a measurement until its command is flown, beyond the vehicle's own [s]."""
+        return self.quality.dead_time + (0.5 * COURSE_INTERVAL if self.by == COURSE else 0.0)
+
+    # ------------------------------------------------------------ taking over
+
+    def take_over(
+        self, plan: FlightPlan, asked_back: Callable[[], bool]
+    ) -> tuple[RemoteVehicle, FlightPlan, HeardVessel | None]:
+        """Wait until the vehicle is in GUIDED; return it with the plan of the flight from where it
+        is, and the vessel that will be heard.
+
+        Raises
+        ------
+        InputError : the vessel or the vehicle's place is not known in time, or does not fit
+        """
+        link, interval = self.link, 1e6 * plan.time_step
+        for number in _STREAMS:
+            link.command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number, interval)
+        link.advance(link.now)
+        self._wait(
+            lambda: link.state is not None, self.patience, "the vehicle told no place but 0/0"
+        )
+        if plan.world is not None:
+            self._wait(
+                lambda: bool(self._vessels()), self.patience, "no report of the vessel was heard"
+            )
+        self.say(f"waiting for GUIDED, in mode {link.mode}")
+        self._wait(
+            lambda: link.mode == PlaneMode.GUIDED or asked_back(),
+            self.patience,
+            "the vehicle was not in GUIDED",
+        )
+        if asked_back():
+            raise InputError("given back on request, before the vehicle was in GUIDED")
+        assert link.state is not None
+        began = link.now if self.lockstep else link.state.time
+        frame, mmsi = self._frame(plan, began)
+        vehicle = RemoteVehicle(
+            link,
+            frame,
+            self._limits(plan),
+            began=began,
+            time_step=plan.time_step,
+            altitude=plan.altitude,
+            by=self.by,
+            lockstep=self.lockstep,
+            asked_back=asked_back,
+        )
+        heard = None
+        if mmsi is not None:
+            heard = HeardVessel()
+            heard.report(vehicle.local(*link.vessels[mmsi]))
+            self._check_vessel(plan, heard)
+            vehicle.listen(mmsi, heard.report)
+        plan = self._from_here(plan, vehicle, frame, heard)
+        link.degrade()
+        self.say("GUIDED: flying")
+        return vehicle, plan, heard
+
+    def _vessels(self) -> list[int]:
+        heard = list(self.link.vessels)
+        if self.mmsi is not None:
+            return [self.mmsi] if self.mmsi in heard else []
+        return heard
+
+    def _frame(self, plan: FlightPlan, began: float) -> tuple[LocalFrame, int | None]:
+        """Return the frame of the flight, whose origin is where its vessel is at the start, and the
+        vessel's number; without a vessel, the vehicle is where the plan begins.
+        """
+        height, state = plan.source_height, self.link.state
+        assert state is not None
+        if plan.world is None:
+            here = LocalFrame(state.latitude, state.longitude, height)
+            origin = here.to_geodetic(-plan.start.north, -plan.start.east)
+            return LocalFrame(float(origin[0]), float(origin[1]), height), None
+        heard = self._vessels()
+        if len(heard) > 1:
+            names = ", ".join(map(str, sorted(heard)[:5]))
+            raise InputError(f"{len(heard)} vessels are heard ({names}); choose one by --mmsi")
+        at, vessel = self.link.vessels[heard[0]]
+        there = LocalFrame(vessel.latitude, vessel.longitude, height)
+        since = began - at
+        origin = there.to_geodetic(vessel.velocity_north * since, vessel.velocity_east * since)
+        return LocalFrame(float(origin[0]), float(origin[1]), height), heard[0]
+
+    def _limits(self, plan: FlightPlan) -> Limits:
+        return Limits(
+            heading_rate_max=plan.heading_rate_max,
+            keepout_radius=plan.keepout_radius + (plan.margin.total if plan.margin else 0.0),
+            loiter_radius=max(
+                abs(self._parameter(_LOITER_RADIUS)),
+                1.5 * plan.guidance.speed / plan.heading_rate_max,
+            ),
+            roll_max=math.radians(self._parameter("ROLL_LIMIT_DEG", "LIM_ROLL_CD")),
+            gain=math.radians(0.01 * self._parameter(_GUIDED_P)),
+            dead_time=self.dead_time,
+            wait=self.quality.wait,
+            silent_after=max(SILENT_AFTER, self.quality.silence),
+            guided_timeout=self._parameter(_GUIDED_TIMEOUT),
+        )
+
+    def _check_vessel(self, plan: FlightPlan, heard: HeardVessel) -> None:
+        """Refuse a vessel that is not the one of a scenario that knows it beforehand."""
+        if isinstance(plan.guidance.vessel, ReportedVessel):
+            return
+        told, known = heard.motion(0.0)[2:], plan.guidance.vessel
+        off = math.hypot(told[0] - known[0], told[1] - known[1])
+        if off > _VELOCITY_MAX:
+            raise InputError(
+                f"the vessel reports {math.hypot(*told):.1f} m/s, {off:.1f} m/s off the velocity"
+                " that this scenario knows; fly one that learns it: set reports.interval_s"
+            )
+
+    def _from_here(
+        self,
+        plan: FlightPlan,
+        vehicle: RemoteVehicle,
+        frame: LocalFrame,
+        heard: HeardVessel | None,
+    ) -> FlightPlan:
+        """Return the plan from where the vehicle is, with what will be heard as what is true."""
+        motion, world = vehicle.motion(), plan.world
+        _, heading, _ = vehicle.air_data()
+        start = Start(north=motion.north, east=motion.east, course=heading)
+        if world is None or heard is None:
+            return replace(plan, start=start)
+        vessel = plan.guidance.vessel
+        if isinstance(vessel, ReportedVessel):
+            known = ReachableSet(vessel.limits)
+            north, east, v_north, v_east = heard.motion(0.0)
+            known.report(VesselReport(0.0, north, east, v_north, v_east))
+            tubes = list(known.tubes(0.0))
+        else:
+            tubes = [Tube(0.0, 0.0, 0.0, *vessel)]
+        distance = math.hypot(motion.north, motion.east)
+        if distance < plan.keepout_radius:
+            raise InputError(
+                f"the vehicle is {distance:.0f} m from the vessel, inside the keep-out area of"
+                f" {plan.keepout_radius:g} m; lead it out before GUIDED"
+            )
+        check_start(
+            start,
+            plan.guidance.guard,
+            tubes,
+            wind=world.weather.wind.now(0.0, plan.altitude),
+            airspeed=plan.guidance.speed,
+            keepout_radius=plan.keepout_radius,
+        )
+        latitude, longitude = (float(each) for each in frame.to_geodetic(0.0, 0.0))
+        place = Place(
+            latitude=latitude,
+            longitude=longitude,
+            altitude=plan.source_height,
+            utc=world.place.utc,
+        )
+        if plan.sensing is None:
+            return replace(plan, start=start, world=replace(world, place=place))
+        exact = SensorErrors(
+            SensorsConfig(),
+            steps=round(plan.duration_max / plan.time_step) + 2,
+            time_step=plan.time_step,
+            generator=np.random.default_rng(0),
+        )
+        return replace(
+            plan,
+            start=start,
+            world=replace(
+                world,
+                place=place,
+                vessel=heard,
+                plume=HeardPlume(heard, self._plume_heading(plan)),
+            ),
+            # What is read is the telemetry, errors and all; reports come over the link.
+            sensing=replace(plan.sensing, errors=exact, received=[]),
+        )
+
+    @staticmethod
+    def _plume_heading(plan: FlightPlan) -> float | None:
+        centre = getattr(plan.guidance.mission, "centre", None)
+        heading: float | None = getattr(centre, "plume_heading", None)
+        return heading
+
+
+@contextmanager
+def _asked_back() -> Iterator[Callable[[], bool]]:
+    """Yield what says whether Ctrl-C or SIGTERM has asked for the vehicle; a second one ends the
+    program.
+    """
+    asked = threading.Event()
+    kinds = (signal.SIGINT, signal.SIGTERM)
+
+    def ask(*_: Any) -> None:
+        if asked.is_set():
+            raise KeyboardInterrupt
+        asked.set()
+
+    if threading.current_thread() is not threading.main_thread():
+        yield asked.is_set
+        return
+    before = [signal.signal(kind, ask) for kind in kinds]
+    try:
+        yield asked.is_set
+    finally:
+        for kind, handler in zip(kinds, before, strict=True):
+            signal.signal(kind, handler)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CompanionRunner(FlightRunner):
+    """Flies the flight of a scenario on a vehicle over a link; otherwise as ``FlightRunner``.
+
+    Attributes
+    ----------
+    companion : that flies it
+    """
+
+    companion: Companion
+
+    def setup_of(self, request: FlightRequest) -> VehicleSetup:
+        """Return what a flight needs of its vehicle, and of the link to it."""
+        return self.companion.on_link(super().setup_of(request), request)
+
+    def fly(self, request: FlightRequest, plan: FlightPlan, *, every_step: bool) -> Flown:
+        """Return a planned flight, flown on the vehicle."""
+        with _asked_back() as asked_back:
+            vehicle, plan, heard = self.companion.take_over(plan, asked_back)
+            instruments = payload_of(request, plan)
+            loop = ClosedLoop(
+                plan,
+                vehicle,
+                [each for each in instruments if isinstance(each, Instrument)],
+                reader=reader_of(plan, instruments),
+                every_step=every_step,
+            )
+            self._connect(loop, vehicle, heard, plan)
+            record = _flown(loop, vehicle)
+            vehicle.finish()
+        self.companion.say(f"given back: {vehicle.given_back}")
+        if vehicle.extrapolated:
+            self.companion.say(f"steps without telemetry of their own: {vehicle.extrapolated}")
+        return Flown(
+            request=request,
+            plan=plan,
+            instruments=instruments,
+            record=record,
+            every_step=every_step,
+        )
+
+    @staticmethod
+    def _connect(
+        loop: ClosedLoop, vehicle: RemoteVehicle, heard: HeardVessel | None, plan: FlightPlan
+    ) -> None:
+        """Have reports of the vessel come to the guidance and to the record."""
+        target, own = loop.guidance.target, loop.guidance.own
+        plume = plan.world.plume if plan.world else None
+        if isinstance(plume, HeardPlume):
+            plume.wind = lambda: (own.wind_north, own.wind_east)
+        if not isinstance(target, ReportedTarget) or heard is None:
+            return
+        target.report(VesselReport(0.0, *heard.motion(0.0)))
+
+        def report(of: VesselReport) -> None:
+            heard.report(of)
+            target.report(of)
+
+        vehicle.pass_reports_to(report)
+
+
+def _flown(loop: ClosedLoop, vehicle: RemoteVehicle) -> FlightRecord:
+    """Fly; the flight ends where the vehicle is given back."""
+    steps = loop.steps()
+    follow = steps.send
+    try:
+        commands = next(steps)
+        while True:
+            loop.ending.given_back = vehicle.given_back
+            commands = follow(commands)
+    except StopIteration as over:
+        return record_of(over)
+
+
+class CompanionFlight(SingleFlight):
+    """One flight of a study, flown on a vehicle over a link.
+
+    Attributes
+    ----------
+    companion : that flies it; it is set before the flight
+    """
+
+    companion: Companion
+
+    def initial_manifest(self) -> dict[str, Any]:
+        """Return the manifest as written before the flight."""
+        companion = self.companion
+        declared = {field.name: getattr(companion.quality, field.name) for field in fields(Link)}
+        return super().initial_manifest() | {
+            "companion": {
+                "vehicle": "over MAVLink",
+                "by": companion.by,
+                "lockstep": companion.lockstep,
+                "link": declared,
+                "dead_time_s": companion.dead_time,
+            }
+        }
+
+    def work(self, run: RunDirectory) -> CompanionRunner:
+        """Return the work on the flight.
+
+        Raises
+        ------
+        InputError : the flight cannot be flown on this vehicle
+        """
+        work = super().work(run)
+        if not isinstance(work, FlightRunner):
+            raise InputError("this study has no flights that a companion could fly")
+        parts = {field.name: getattr(work, field.name) for field in fields(FlightRunner)}
+        runner = CompanionRunner(**parts, companion=self.companion)
+        request = runner.request(self.task)
+        check_flyable(request)
+        plan = FlightRunner.plan(runner, request)
+        if plan.sensing is not None and plan.sensing.received is None:
+            raise InputError(
+                "this scenario knows the vessel exactly at all times; over a link it is known by"
+                " its reports: set reports.interval_s, as in --set reports.interval_s=[10,10]"
+            )
+        self.companion.check_limits(
+            FlightRunner.setup_of(runner, request), plan.heading_rate_max, plan.altitude
+        )
+        return runner
+
+
+def check_flyable(request: FlightRequest) -> None:
+    """Refuse a flight with parts that are simulated in a study, and would not be on a vehicle.
+
+    Raises
+    ------
+    InputError : it has some
+    """
+    scenario = request.scenario
+    if scenario.fault.kind != NO_FAULT.kind:
+        raise InputError(
+            f"fault.kind is '{scenario.fault.kind}'; a companion makes nothing fail: set"
+            " fault.kind=none"
+        )
+    if scenario.payload.instruments:
+        names = ", ".join(scenario.payload.instruments)
+        raise InputError(
+            f"payload.instruments has {names}, which a study simulates; a companion does not: set"
+            " payload.instruments=[]"
+        )

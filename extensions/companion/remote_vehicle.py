@@ -1,0 +1,483 @@
+"""A vehicle over MAVLink in the closed loop of the study: it flies what the guidance commands as long
+as its mode is GUIDED.
+
+A step of the guidance belongs to a time of the vehicle's clock. It is computed once the telemetry of
+that time is there, or has had the time that the link is declared to need; telemetry that is missing
+is extrapolated from the last. So the loop has one dead time, which guard and preview know.
+"""
+
+import itertools
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from aircraft.state import euler_rates
+from common.geodesy import LocalFrame
+from common.physics import STANDARD_GRAVITY, bank_for_heading_rate
+from extensions.companion.fields import (
+    AircraftState,
+    VesselState,
+    degrees_e7,
+    equivalent_over_true,
+    roll_target,
+)
+from extensions.companion.plane import PlaneMode
+from extensions.companion.vehicle_link import VehicleLink
+from gnc.estimation.navigation import MeasuredMotion
+from gnc.estimation.vessel import VesselReport
+
+ATTITUDE, COURSE = "attitude", "course"
+"""How heading rates are commanded: by roll, or by a heading."""
+
+COURSE_INTERVAL = 0.2
+"""Time between commanded headings [s]."""
+
+_SPEED_CHANGE = 0.005
+"""Change of the commanded airspeed below which it is not sent [m/s]."""
+
+_REPEAT = 1.0
+"""Time after which speed and altitude are sent again [s]: a message may be lost."""
+
+_RETREAT_INTERVAL = 5.0
+"""Time between renewals of the place to retreat to [s]."""
+
+_LEAVING_GAIN = 1.0
+"""Heading rate over the angle that is left to the course away [1/s]."""
+
+_LEAVING_STEPS = 5
+"""Least number of times that the vehicle is told to leave [-]: a message may be lost."""
+
+SILENT_AFTER = 1.0
+"""Shortest time without telemetry after which the vehicle is given back [s]."""
+
+_BEARINGS = 36
+"""Directions from the vessel in which a place to retreat to is looked for [-]."""
+
+_DISTANCES = (1.0, 1.5, 2.0, 3.0)
+"""Distances there, over the one that is kept [-]: from ahead of her a near one leads past her."""
+
+_SPARE_RADII = 2.0
+"""Turn radii between the keep-out area and the circle of a retreat [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limits:
+    """What a companion needs to know of its flight.
+
+    Attributes
+    ----------
+    heading_rate_max : omega_max [rad/s]
+    keepout_radius : that a retreat keeps [m]
+    loiter_radius : of the vehicle's loiter [m]
+    roll_max : of the vehicle [rad]
+    gain : of the roll by the vehicle's heading error, in ``COURSE`` [-]
+    dead_time : from a measurement until its command arrives [s]
+    wait : after which a measurement is taken up [s]
+    silent_after : time without telemetry after which the vehicle is given back [s]
+    guided_timeout : for which the vehicle flies the last roll [s]
+    """
+
+    heading_rate_max: float
+    keepout_radius: float
+    loiter_radius: float
+    roll_max: float
+    gain: float
+    dead_time: float
+    wait: float
+    silent_after: float
+    guided_timeout: float
+
+
+class RemoteVehicle:
+    """A vehicle over MAVLink, as ``scenarios.vehicles.vehicle.Vehicle``.
+
+    Parameters
+    ----------
+    link : to it
+    frame : that north and east are in
+    limits : of the flight
+    began : time of the vehicle's clock at the first step [s]
+    time_step : of the guidance [s]
+    altitude : to hold [m]
+    by : ``ATTITUDE`` or ``COURSE``
+    lockstep : whether the vehicle's clock waits
+    asked_back : says whether somebody has asked for the vehicle
+
+    Attributes
+    ----------
+    given_back : why it takes no more commands, or nothing
+    worst_wait : longest time by which a step was late [s]
+    extrapolated : number of steps without telemetry of their own
+    """
+
+    def __init__(
+        self,
+        link: VehicleLink,
+        frame: LocalFrame,
+        limits: Limits,
+        *,
+        began: float,
+        time_step: float,
+        altitude: float,
+        by: str,
+        lockstep: bool,
+        asked_back: Callable[[], bool] = lambda: False,
+    ) -> None:
+        if link.state is None:
+            raise ValueError("a vehicle without a state cannot be flown")
+        self._link, self._frame, self._limits = link, frame, limits
+        self._began, self._time_step = began, time_step
+        self._by, self._lockstep, self._asked_back = by, lockstep, asked_back
+        self._state: AircraftState = link.state
+        self._step = 0
+        self._altitude, self._altitude_at = altitude, -math.inf
+        self._airspeed, self._airspeed_at = math.nan, -math.inf
+        self._course_at, self._retreat_at = -math.inf, -math.inf
+        self._rates: list[float] = []
+        self._vessel: tuple[float, VesselState] | None = None
+        self._held: list[tuple[float, VesselState]] = []
+        self._report: Callable[[VesselReport], None] = lambda _: None
+        self.given_back = ""
+        self.worst_wait, self.extrapolated = 0.0, 0
+
+    # ------------------------------------------------------------ what the guidance reads
+
+    @property
+    def _target(self) -> float:
+        """Time of the vehicle's clock that the step belongs to [s]."""
+        return self._began + self._step * self._time_step
+
+    def motion(self) -> MeasuredMotion:
+        """Return the motion at the step, in the local frame."""
+        state = self._state
+        north, east = (
+            float(each) for each in self._frame.to_local(state.latitude, state.longitude)
+        )
+        turned = float(self._frame.true_north(state.latitude, state.longitude))
+        speed = math.hypot(state.velocity_north, state.velocity_east)
+        course = math.atan2(state.velocity_east, state.velocity_north) + turned
+        rate, ahead = self._heading_rate(), self._target - state.time
+        # A vehicle that turns steadily flies a chord in the mean direction.
+        mean, chord = course + 0.5 * rate * ahead, speed * ahead
+        course += rate * ahead
+        return MeasuredMotion(
+            north + chord * math.cos(mean),
+            east + chord * math.sin(mean),
+            speed * math.cos(course),
+            speed * math.sin(course),
+            rate,
+        )
+
+    def _heading_rate(self) -> float:
+        state = self._state
+        return euler_rates(state.rates, state.roll, state.pitch)[2]
+
+    def _heading(self) -> float:
+        """Return the heading at the step, in the local frame [rad]."""
+        state = self._state
+        turned = float(self._frame.true_north(state.latitude, state.longitude))
+        return state.yaw + turned + self._heading_rate() * (self._target - state.time)
+
+    @property
+    def _true_airspeed(self) -> float:
+        return self._state.airspeed / equivalent_over_true(self._state.altitude)
+
+    def air_data(self) -> tuple[float, float, float]:
+        """Return true airspeed [m/s], heading and roll [rad]."""
+        return self._true_airspeed, self._heading(), self._state.roll
+
+    def engine(self) -> None:
+        """Return nothing: accelerations are not read."""
+
+    def sample(self) -> tuple[float, ...]:
+        """Return ``SAMPLE_COLUMNS``; angles of the air and control surfaces are not told."""
+        state, unknown = self._state, math.nan
+        return (
+            state.altitude,
+            self._true_airspeed,
+            state.roll,
+            state.climb,
+            self._heading() % math.tau,
+            state.pitch,
+            unknown,
+            unknown,
+            unknown,
+            unknown,
+            state.throttle,
+            unknown,
+        )
+
+    def servo_error(self) -> float:
+        """Return 0: control surfaces are not told."""
+        return 0.0
+
+    def hold_elevator(self) -> None:
+        """Do nothing: the vehicle's own autopilot has the elevator."""
+
+    def fail(self, name: str) -> None:
+        """Raise ValueError: nothing of a vehicle is made to fail from here."""
+        raise ValueError(f"'{name}' of a vehicle over a link cannot be made to fail")
+
+    def fault(self, sample: tuple[float, ...]) -> str:
+        """Return nothing as long as the telemetry has numbers: the vehicle watches itself."""
+        return "" if math.isfinite(sum(sample[:6])) else "the telemetry is not a number"
+
+    # ------------------------------------------------------------ the vessel
+
+    def listen(self, mmsi: int, report: Callable[[VesselReport], None]) -> None:
+        """Pass the reports of a vessel on from now on, each once the guidance has come to the time
+        at which it was true.
+        """
+        self._report = report
+
+        def take(at: float, vessel: VesselState) -> None:
+            if vessel.mmsi == mmsi:
+                self._held.append((at, vessel))
+
+        self._link.on_vessel = take
+        if mmsi in self._link.vessels:
+            take(*self._link.vessels[mmsi])
+        self._pass_reports_on()
+
+    def pass_reports_to(self, report: Callable[[VesselReport], None]) -> None:
+        """Pass the reports on to this from now on."""
+        self._report = report
+
+    def local(self, at: float, vessel: VesselState) -> VesselReport:
+        """Return a report in the local frame; its time is that since the first step."""
+        north, east = (
+            float(each) for each in self._frame.to_local(vessel.latitude, vessel.longitude)
+        )
+        turned = float(self._frame.true_north(vessel.latitude, vessel.longitude))
+        cosine, sine = math.cos(turned), math.sin(turned)
+        v_north, v_east = vessel.velocity_north, vessel.velocity_east
+        return VesselReport(
+            at - self._began,
+            north,
+            east,
+            cosine * v_north - sine * v_east,
+            sine * v_north + cosine * v_east,
+        )
+
+    def _pass_reports_on(self) -> None:
+        due = [entry for entry in self._held if entry[0] <= self._target + 1e-3]
+        self._held = [entry for entry in self._held if entry[0] > self._target + 1e-3]
+        for entry in due:
+            self._vessel = entry
+            self._report(self.local(*entry))
+
+    # ------------------------------------------------------------ what the guidance commands
+
+    def command_altitude(self, altitude: float, /) -> None:
+        """Let it climb or sink to an altitude [m] from now on."""
+        self._altitude, self._altitude_at = altitude, -math.inf
+
+    def advance(self, heading_rate: float, airspeed: float) -> None:
+        """Have a step flown with these commands [rad/s, m/s]; wait for the next one."""
+        if not self.given_back:
+            self._renew_retreat()
+            self._command_turn(heading_rate)
+            self._command_airspeed(airspeed)
+            self._command_altitude()
+        self._next_step()
+        self._judge_link()
+
+    def _command_turn(self, heading_rate: float) -> None:
+        bank = bank_for_heading_rate(heading_rate, self._true_airspeed)
+        if self._by == ATTITUDE:
+            self._link.send(
+                roll_target(self._target, self._link.system, mavlink.MAV_COMP_ID_AUTOPILOT1, bank)
+            )
+            return
+        under_way = round(self._limits.dead_time / self._time_step)
+        self._rates = [*self._rates, heading_rate][-max(1, under_way) :]
+        if self._target - self._course_at < COURSE_INTERVAL - 1e-6:
+            return
+        self._course_at = self._target
+        # The heading that the vehicle has once the command arrives, what it turns until the next
+        # one, and by how much it has to be ahead for this bank.
+        coming = sum(self._rates[:-1]) * self._time_step if under_way else 0.0
+        ahead = bank / self._limits.gain + 0.5 * COURSE_INTERVAL * heading_rate
+        turned = float(self._frame.true_north(self._state.latitude, self._state.longitude))
+        heading = math.degrees(self._heading() - turned + coming + ahead) % 360.0
+        self._link.command(
+            mavlink.MAV_CMD_GUIDED_CHANGE_HEADING,
+            mavlink.HEADING_TYPE_HEADING,
+            heading if heading < 359.9999 else 0.0,
+            STANDARD_GRAVITY * math.tan(self._limits.roll_max),
+        )
+
+    def _command_airspeed(self, airspeed: float) -> None:
+        equivalent = airspeed * equivalent_over_true(self._state.altitude)
+        changed = not abs(equivalent - self._airspeed) <= _SPEED_CHANGE
+        if changed or self._target - self._airspeed_at >= _REPEAT:
+            self._airspeed, self._airspeed_at = equivalent, self._target
+            self._link.command(
+                mavlink.MAV_CMD_GUIDED_CHANGE_SPEED, mavlink.SPEED_TYPE_AIRSPEED, equivalent
+            )
+
+    def _command_altitude(self) -> None:
+        if self._target - self._altitude_at >= _REPEAT:
+            self._altitude_at = self._target
+            self._link.command(mavlink.MAV_CMD_GUIDED_CHANGE_ALTITUDE, z=self._altitude)
+
+    def _next_step(self) -> None:
+        """Wait for the next step and its telemetry."""
+        self._step += 1
+        link, target = self._link, self._target
+        if self._lockstep or self._limits.wait > 0.0:
+            link.advance(target + self._limits.wait)
+        else:
+            fresh = target - 0.5 * self._time_step
+
+            def there() -> bool:
+                return link.state is not None and link.state.time >= fresh
+
+            link.advance(target + self._time_step, there)
+        self.worst_wait = max(self.worst_wait, link.now - target - self._limits.wait)
+        if link.state is not None:
+            self._state = link.state
+        self.extrapolated += self._state.time < target - 0.5 * self._time_step
+        self._pass_reports_on()
+
+    # ------------------------------------------------------------ giving back
+
+    def _judge_link(self) -> None:
+        """Give the vehicle back where it is no longer ours to fly."""
+        if self.given_back:
+            return
+        link = self._link
+        silent = self._target - self._state.time
+        if link.restarted:
+            self.given_back = "the vehicle's clock jumped: it was restarted"
+        elif link.mode != PlaneMode.GUIDED:
+            self.given_back = f"the pilot took over (mode {_mode_name(link.mode)})"
+        elif link.rival is not None:
+            self.given_back = f"another companion ({link.rival[0]}/{link.rival[1]}) is on the link"
+        elif link.gone or silent > self._limits.silent_after:
+            self._leave(f"telemetry was silent for {silent:.1f} s")
+        elif self._asked_back():
+            self._leave("given back on request")
+
+    def finish(self) -> None:
+        """Give the vehicle back at the end of the flight."""
+        if not self.given_back:
+            self._leave("the flight is over")
+
+    def _leave(self, reason: str) -> None:
+        """Send the vehicle to its retreat, and turn it away until that is what it flies."""
+        self.given_back = reason
+        motion, link = self.motion(), self._link
+        if link.gone:
+            return
+        self._retreat_at = -math.inf
+        course = math.atan2(motion.velocity_east, motion.velocity_north)
+        away = course
+        if self._vessel is not None:
+            north, east = self._vessel_at(self._target)
+            away = math.atan2(motion.east - east, motion.north - north)
+        timeout = self._limits.guided_timeout if self._by == ATTITUDE else 0.0
+        limit = self._limits.heading_rate_max
+        for _ in range(max(_LEAVING_STEPS, round(timeout / self._time_step))):
+            self._renew_retreat(always=True)
+            if self._by == ATTITUDE:
+                rate = _LEAVING_GAIN * math.remainder(away - course, math.tau)
+                rate = min(limit, max(-limit, rate))
+                course += rate * self._time_step
+                self._command_turn(rate)
+            self._next_step()
+            if link.mode != PlaneMode.GUIDED or link.restarted or link.gone:
+                return
+
+    def _vessel_at(self, time: float) -> tuple[float, float]:
+        """Return where the vessel is by its last report, at a time of the vehicle's clock [m]."""
+        assert self._vessel is not None
+        report = self.local(*self._vessel)
+        since = time - self._began - report.time
+        return (
+            report.north + since * report.velocity_north,
+            report.east + since * report.velocity_east,
+        )
+
+    def _renew_retreat(self, *, always: bool = False) -> None:
+        """Tell the vehicle where to loiter when commands stop."""
+        due = always or self._target - self._retreat_at >= _RETREAT_INTERVAL
+        if self._vessel is None or not due:
+            return
+        # It ends a commanded heading.
+        self._retreat_at, self._course_at = self._target, -math.inf
+        report, motion = self.local(*self._vessel), self.motion()
+        vessel = self._vessel_at(self._target)
+        north, east = retreat(
+            (motion.north - vessel[0], motion.east - vessel[1]),
+            (report.velocity_north, report.velocity_east),
+            keep=self._limits.keepout_radius + _SPARE_RADII * self._limits.loiter_radius,
+            speed=math.hypot(motion.velocity_north, motion.velocity_east),
+        )
+        latitude, longitude = self._frame.to_geodetic(north + vessel[0], east + vessel[1])
+        self._link.command(
+            mavlink.MAV_CMD_DO_REPOSITION,
+            -1.0,
+            0.0,
+            self._limits.loiter_radius,
+            0.0,
+            x=degrees_e7(float(latitude)),
+            y=degrees_e7(float(longitude)),
+            z=self._altitude,
+        )
+
+
+def retreat(
+    own: tuple[float, float], vessel: tuple[float, float], *, keep: float, speed: float
+) -> tuple[float, float]:
+    """Return a place to loiter at while nobody commands, north and east of the vessel [m].
+
+    It is beside the vessel's track, or behind her, so that she does not come to it, and the straight
+    way to it keeps away from her as far as any such way does.
+
+    Parameters
+    ----------
+    own : place of the vehicle from the vessel, north and east [m]
+    vessel : her velocity [m/s]
+    keep : distance of the place from the vessel and her track [m]
+    speed : of the vehicle over the ground [m/s]
+    """
+    best, found = -math.inf, own
+    her_speed = math.hypot(*vessel)
+    for k, factor in itertools.product(range(_BEARINGS), _DISTANCES):
+        bearing, distance = math.tau * k / _BEARINGS, factor * keep
+        place = distance * math.cos(bearing), distance * math.sin(bearing)
+        if her_speed > 0.0:
+            ahead = (place[0] * vessel[0] + place[1] * vessel[1]) / her_speed
+            across = abs(place[0] * vessel[1] - place[1] * vessel[0]) / her_speed
+            if ahead > 0.0 and across < (1.0 - 1e-6) * keep:
+                # She would come nearer than that.
+                continue
+        way = math.hypot(place[0] - own[0], place[1] - own[1])
+        time = way / max(speed, 1.0)
+        # In her frame the vehicle arrives where the place has fallen back to.
+        end = place[0] - vessel[0] * time, place[1] - vessel[1] * time
+        nearest = _nearest(own, end)
+        # The shorter of ways that are equally far off.
+        worth = min(nearest, keep) - 1e-3 * way
+        if worth > best:
+            best, found = worth, place
+    return found
+
+
+def _nearest(start: tuple[float, float], end: tuple[float, float]) -> float:
+    """Return the least distance of a straight line from the origin."""
+    along = end[0] - start[0], end[1] - start[1]
+    squared = along[0] ** 2 + along[1] ** 2
+    share = 0.0
+    if squared > 0.0:
+        share = min(1.0, max(0.0, -(start[0] * along[0] + start[1] * along[1]) / squared))
+    return math.hypot(start[0] + share * along[0], start[1] + share * along[1])
+
+
+def _mode_name(number: int) -> str:
+    names: dict[int, Any] = {int(mode): mode.name for mode in PlaneMode}
+    return str(names.get(number, number))

@@ -1,0 +1,296 @@
+"""The link from a companion to its vehicle: messages both ways over a link that may be bad, what the
+vehicle says of itself, and its clock.
+
+Times are those of the vehicle's clock. In lockstep the companion sets that clock: it sends the time
+that it wants as SYSTEM_TIME, and the vehicle answers with the same once it is there. These messages
+are no traffic of the link, and take no time. Otherwise the clock is estimated from the telemetry's
+time stamps, by the one that came fastest.
+"""
+
+import math
+import time
+from collections.abc import Callable
+from typing import Any
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from extensions.companion.fields import AircraftState, VesselState, from_degrees_e7
+from extensions.companion.ports import Port
+from extensions.companion.quality import Link, SimulatedLink
+
+COMPONENT = mavlink.MAV_COMP_ID_ONBOARD_COMPUTER
+
+_HEARTBEAT_INTERVAL = 1.0
+_ASK_AGAIN, _GIVE_UP = 0.5, 10.0
+"""After how long a vehicle in lockstep is asked once more for its time, and counts as gone [s]."""
+
+_JUMP = 1.0
+"""By how much a vehicle's clock may differ from what is expected [s]; one that restarted does."""
+
+_IDLE = 0.05
+"""Longest wait for a message [s]."""
+
+
+class VehicleLink:
+    """What is known of a vehicle, and a way to tell it something.
+
+    Parameters
+    ----------
+    port : to the vehicle
+    link : how bad the link is declared to be
+    lockstep : whether the vehicle's clock waits for this one
+    simulated : seed of a bad link that is simulated, or None for the one that there is
+
+    Attributes
+    ----------
+    now : time of the vehicle's clock [s]
+    system : of the vehicle, 0 before its first heartbeat
+    kind, autopilot, mode : of its heartbeat
+    parameters : that it has told, by name
+    state : its motion; None before it was told completely
+    vessels : last report of each vessel by its MMSI, with the time at which it was true [s]
+    rival : another companion that was heard, as (system, component), or None
+    restarted : whether the vehicle's clock has jumped
+    """
+
+    def __init__(
+        self, port: Port, link: Link, *, lockstep: bool, simulated: int | str | None
+    ) -> None:
+        self._port, self._link, self._lockstep = port, link, lockstep
+        self._up, self._down = SimulatedLink(Link(), 0), SimulatedLink(Link(), 0)
+        self._simulated = simulated
+        self.now = 0.0
+        self.system = self.kind = self.autopilot = 0
+        self.mode = -1
+        self.parameters: dict[str, float] = {}
+        self.acknowledged: dict[int, int] = {}
+        self.state: AircraftState | None = None
+        self._attitude: Any = None
+        self._hud: Any = None
+        self.vessels: dict[int, tuple[float, VesselState]] = {}
+        self.on_vessel: Callable[[float, VesselState], None] = lambda *_: None
+        self.rival: tuple[int, int] | None = None
+        self.restarted = False
+        self._offset: float | None = None
+        self._reached = -math.inf
+        self._next_heartbeat = self._next_heartbeat_now = -math.inf
+        self.gone = False
+
+    def degrade(self) -> None:
+        """Have the link be as bad as declared from now on, where that is simulated."""
+        if self._simulated is not None:
+            self._up = SimulatedLink(self._link, f"up {self._simulated}")
+            self._down = SimulatedLink(self._link, f"down {self._simulated}")
+
+    # ------------------------------------------------------------ telling
+
+    def send(self, message: Any) -> None:
+        """Send a message."""
+        self._up.put(self.now, message)
+        self._flush()
+
+    def command(
+        self,
+        number: int,
+        *values: float,
+        x: int = 0,
+        y: int = 0,
+        z: float = 0.0,
+        frame: int = mavlink.MAV_FRAME_GLOBAL,
+    ) -> None:
+        """Send a COMMAND_INT with up to four parameters."""
+        first, second, third, fourth = (*values, 0.0, 0.0, 0.0, 0.0)[:4]
+        self.send(
+            mavlink.MAVLink_command_int_message(
+                self.system,
+                mavlink.MAV_COMP_ID_AUTOPILOT1,
+                frame,
+                number,
+                0,
+                0,
+                first,
+                second,
+                third,
+                fourth,
+                x,
+                y,
+                z,
+            )
+        )
+
+    def request_parameter(self, name: str) -> None:
+        """Ask for a parameter."""
+        self.send(
+            mavlink.MAVLink_param_request_read_message(
+                self.system, mavlink.MAV_COMP_ID_AUTOPILOT1, name.encode(), -1
+            )
+        )
+
+    def _flush(self) -> None:
+        for message in self._up.due(self.now):
+            self._port.send(message)
+
+    def _heartbeat(self) -> None:
+        if time.monotonic() >= self._next_heartbeat or self.now >= self._next_heartbeat_now:
+            self._next_heartbeat = time.monotonic() + _HEARTBEAT_INTERVAL
+            self._next_heartbeat_now = self.now + _HEARTBEAT_INTERVAL
+            self.send(
+                mavlink.MAVLink_heartbeat_message(
+                    mavlink.MAV_TYPE_ONBOARD_CONTROLLER,
+                    mavlink.MAV_AUTOPILOT_INVALID,
+                    0,
+                    0,
+                    mavlink.MAV_STATE_ACTIVE,
+                    3,
+                )
+            )
+
+    # ------------------------------------------------------------ the clock
+
+    def advance(self, until: float, enough: Callable[[], bool] = lambda: False) -> None:
+        """Go on to a time of the vehicle's clock [s], or until it is ``enough``; take what comes."""
+        self._heartbeat()
+        if self._lockstep:
+            while True:
+                target = min(until, max(self.now, self._up.next_arrival))
+                self._ask(target)
+                self.now = max(self.now, target)
+                self._flush()
+                self._deliver()
+                if self.now >= until - 1e-9 or self.gone:
+                    return
+        while not enough():
+            self.now = self._estimate()
+            self._flush()
+            self._deliver()
+            left = until - self.now
+            if left <= 0.0 or enough():
+                return
+            for _, message in self._port.receive(min(left, _IDLE)):
+                self._receive(message)
+
+    def _estimate(self) -> float:
+        if self._offset is None:
+            return max(self.now, time.monotonic() - _START)
+        return time.monotonic() + self._offset
+
+    def _ask(self, until: float) -> None:
+        """Have the vehicle's clock go on to a time [s]."""
+        began = asked = -math.inf
+        milliseconds = round(1e3 * until)
+        while True:
+            clock = time.monotonic()
+            if began == -math.inf:
+                began = clock
+            if clock - asked >= _ASK_AGAIN:
+                asked = clock
+                self._port.send(mavlink.MAVLink_system_time_message(0, milliseconds))
+            for _, message in self._port.receive(_IDLE):
+                self._receive(message, at=until)
+            if 1e3 * self._reached >= milliseconds - 0.5:
+                self._reached = max(self._reached, until)
+                return
+            if clock - began >= _GIVE_UP:
+                self.gone = True
+                return
+
+    # ------------------------------------------------------------ hearing
+
+    def _receive(self, message: Any, at: float | None = None) -> None:
+        sender = message.get_srcSystem(), message.get_srcComponent()
+        kind = message.get_type()
+        if kind == "HEARTBEAT" and message.type == mavlink.MAV_TYPE_ONBOARD_CONTROLLER:
+            self.rival = sender
+            return
+        of_autopilot = sender[1] == mavlink.MAV_COMP_ID_AUTOPILOT1
+        if kind == "HEARTBEAT" and of_autopilot and not self.system:
+            self.system = sender[0]
+        if sender[0] != self.system or not of_autopilot:
+            return
+        if kind == "SYSTEM_TIME" and self._lockstep:
+            if 1e-3 * message.time_boot_ms < self._reached - _JUMP:
+                self.restarted = True
+            self._reached = 1e-3 * message.time_boot_ms
+            return
+        if kind == "GLOBAL_POSITION_INT":
+            self._check_clock(1e-3 * message.time_boot_ms)
+        if at is None and self._offset is None:
+            # Its clock is not known yet.
+            self._take(message)
+        else:
+            self._down.put(self._estimate() if at is None else at, message)
+
+    def _check_clock(self, stamp: float) -> None:
+        """Estimate the vehicle's clock by a time stamp [s], and notice where it jumps."""
+        if self._lockstep:
+            if stamp < self._reached - _JUMP:
+                self.restarted = True
+            return
+        latency = 0.0 if self._simulated is not None else self._link.latency
+        offset = stamp + latency - time.monotonic()
+        late = _JUMP + self._link.jitter + self._link.silence
+        if self._offset is None or offset > self._offset:
+            if self._offset is not None and offset > self._offset + _JUMP:
+                self.restarted = True
+            self._offset = offset
+        elif offset < self._offset - late and stamp < self.now - late:
+            self.restarted = True
+
+    def _deliver(self) -> None:
+        for message in self._down.due(self.now):
+            self._take(message)
+
+    def _take(self, message: Any) -> None:
+        match message.get_type():
+            case "HEARTBEAT":
+                self.kind, self.autopilot = message.type, message.autopilot
+                self.mode = message.custom_mode
+            case "PARAM_VALUE":
+                self.parameters[message.param_id.rstrip("\0")] = message.param_value
+            case "COMMAND_ACK":
+                self.acknowledged[message.command] = message.result
+            case "ATTITUDE":
+                angles = message.roll, message.pitch, message.yaw
+                rates = message.rollspeed, message.pitchspeed, message.yawspeed
+                if all(map(math.isfinite, (*angles, *rates))):
+                    self._attitude = message
+            case "VFR_HUD":
+                if math.isfinite(message.airspeed) and message.airspeed >= 0.0:
+                    self._hud = message
+            case "GLOBAL_POSITION_INT":
+                self._place(message)
+            case "AIS_VESSEL":
+                vessel = VesselState.of(message)
+                if vessel is not None and (self._lockstep or self._offset is not None):
+                    true_at = self.now - self._link.latency - vessel.age
+                    self.vessels[vessel.mmsi] = true_at, vessel
+                    self.on_vessel(true_at, vessel)
+
+    def _place(self, message: Any) -> None:
+        """Take a place, which completes the state; that of 0/0 is none."""
+        attitude, hud = self._attitude, self._hud
+        if attitude is None or hud is None or (message.lat == 0 and message.lon == 0):
+            return
+        stamp = 1e-3 * message.time_boot_ms
+        if self.state is not None and stamp < self.state.time:
+            # Overtaken on its way.
+            return
+        self.state = AircraftState(
+            time=stamp,
+            latitude=from_degrees_e7(message.lat),
+            longitude=from_degrees_e7(message.lon),
+            altitude=1e-3 * message.alt,
+            height=1e-3 * message.relative_alt,
+            velocity_north=0.01 * message.vx,
+            velocity_east=0.01 * message.vy,
+            climb=-0.01 * message.vz,
+            roll=attitude.roll,
+            pitch=attitude.pitch,
+            yaw=attitude.yaw,
+            rates=(attitude.rollspeed, attitude.pitchspeed, attitude.yawspeed),
+            airspeed=hud.airspeed,
+            throttle=0.01 * hud.throttle,
+        )
+
+
+_START = time.monotonic()

@@ -1,0 +1,278 @@
+"""Flights over the link beside those of the study: the same where the link is perfect, and what
+becomes of one whose link, pilot or vehicle is not.
+"""
+
+import math
+
+import pandas as pd
+import pytest
+
+from extensions.companion.plane import PlaneMode
+from tests.extensions.companion.served import companion, served
+from tests.in_process import assert_refused, run_command
+
+STEADY = ("comparison.nu=[]", "sweep.nu=[0.5]", "flight.crossings=8")
+KINEMATIC = (*STEADY, "fidelity=kinematic")
+
+
+def row(out):
+    return pd.read_csv(out / "summary.csv").iloc[0]
+
+
+@pytest.fixture(scope="module")
+def perfect(tmp_path_factory):
+    """A flight of the JSBSim aircraft over a perfect link, in lockstep."""
+    out = tmp_path_factory.mktemp("perfect") / "run"
+    with served("sim3", *STEADY) as vehicle:
+        ended = companion(vehicle, "sim3", out, "--lockstep", settings=STEADY)
+    assert ended.status == 0, ended
+    return out, vehicle
+
+
+@pytest.fixture(scope="module")
+def flown_in_study(tmp_path_factory):
+    """The same flight in the study."""
+    out = tmp_path_factory.mktemp("study") / "run"
+    keys = [word for key in STEADY for word in ("--set", key)]
+    run_command("scenarios.run", "sim3", "--out", out, "--no-report", "--jobs", "1", *keys)
+    return out
+
+
+def test_a_perfect_link_flies_the_flight_of_the_study(perfect, flown_in_study):
+    out, _ = perfect
+    linked, flown = row(out), row(flown_in_study)
+    # The study hands the guidance exact numbers; telemetry has a place in steps of 11 mm, velocities
+    # in steps of 1 cm/s, and the rate of yaw in place of that of the course. Of the issue: 2 % and
+    # 2 m. Measured over 30 crossings: 0.01 ms in the mean interval, 6 mm in the error.
+    interval = "crossing_interval_mean_s"
+    assert linked[interval] == pytest.approx(flown[interval], rel=1e-4)
+    assert linked["tracking_error_rms_m"] == pytest.approx(flown["tracking_error_rms_m"], abs=0.05)
+    assert linked["min_distance_m"] == pytest.approx(flown["min_distance_m"], abs=0.1)
+    crossed = [pd.read_csv(of / "crossings.csv") for of in (out, flown_in_study)]
+    for column, tolerance in (("time_s", 0.01), ("distance_m", 0.3), ("angle_deg", 0.5)):
+        assert crossed[0][column].to_numpy() == pytest.approx(crossed[1][column], abs=tolerance)
+
+
+def test_what_the_companion_records_is_what_the_vehicle_flew(perfect):
+    out, vehicle = perfect
+    # The least distance of the vehicle's own 120 Hz, against that of the record at 10 Hz between
+    # whose samples it is interpolated; and the vessel's place in AIS_VESSEL is rounded.
+    assert row(out)["min_distance_m"] == pytest.approx(vehicle.simulation.closest, abs=0.1)
+
+
+def test_its_run_is_reported_and_compared(perfect, flown_in_study, tmp_path):
+    out, _ = perfect
+    assert (out / "report.html").stat().st_size > 0
+    assert (out / "report.pdf").stat().st_size > 0
+    ended = run_command(
+        "scenarios.cli.main", "compare", flown_in_study, out, "--out", tmp_path / "both"
+    )
+    assert ended.status == 0, ended
+
+
+def test_nothing_is_armed_and_no_mode_is_changed(perfect):
+    _, vehicle = perfect
+    kinds = {message.get_type() for _, message in vehicle.heard}
+    assert "SET_MODE" not in kinds
+    commands = {
+        m.command for _, m in vehicle.heard if m.get_type() in ("COMMAND_INT", "COMMAND_LONG")
+    }
+    # Intervals of messages, place to retreat to, airspeed, altitude.
+    assert commands <= {511, 192, 43000, 43001}
+    assert not [m for _, m in vehicle.heard if m.get_type() == "COMMAND_INT" and m.command == 192
+                and int(m.param2)]  # fmt: skip
+
+
+def test_a_course_link_flies_it_as_well(tmp_path):
+    with served("sim3", *KINEMATIC) as vehicle:
+        ended = companion(vehicle, "sim3", tmp_path / "run", "--lockstep", "--by", "course",
+                          "--no-report", settings=KINEMATIC)  # fmt: skip
+    assert ended.status == 0, ended
+    assert vehicle.count("SET_ATTITUDE_TARGET") == 0
+    assert row(tmp_path / "run")["outcome"] == "completed"
+    # The paper's 9.5 s; the orbit touches r_min, from which the lag of a course takes metres.
+    assert row(tmp_path / "run")["crossing_interval_mean_s"] == pytest.approx(9.5, abs=0.1)
+
+
+def test_a_pilot_who_takes_the_mode_has_the_vehicle(tmp_path):
+    def at_step(simulation):
+        if simulation.time == pytest.approx(10.0):
+            simulation.plane.set_mode(PlaneMode.LOITER)
+
+    with served("sim3", *KINEMATIC, at_step=at_step) as vehicle:
+        ended = companion(vehicle, "sim3", tmp_path / "run", "--lockstep", "--no-report",
+                          settings=KINEMATIC)  # fmt: skip
+        assert vehicle.simulation.plane.mode is PlaneMode.LOITER
+    assert "given back: the pilot took over (mode LOITER)" in ended.out
+    assert ended.status == 1
+    assert "the pilot took over (mode LOITER) at 1" in row(tmp_path / "run")["message"]
+    # A heartbeat tells it within a second; then nothing is commanded.
+    assert vehicle.count("SET_ATTITUDE_TARGET", after=11.2) == 0
+    assert vehicle.count("COMMAND_INT", after=11.2) == 0
+
+
+def test_telemetry_that_stops_ends_in_a_retreat_outside(tmp_path):
+    with served("sim3", *KINEMATIC, muted=(40.0, 1e6)) as vehicle:
+        ended = companion(vehicle, "sim3", tmp_path / "run", "--lockstep", "--no-report",
+                          settings=KINEMATIC)  # fmt: skip
+        simulation = vehicle.simulation
+        for _ in range(round(300.0 / simulation.plane.time_step)):
+            simulation.step()
+        assert simulation.closest > 200.0
+        assert simulation.plane.mode is PlaneMode.GUIDED
+    assert "given back: telemetry was silent for 1.0" in ended.out
+    last = max(at for at, message in vehicle.heard if message.get_type() == "SET_ATTITUDE_TARGET")
+    # A second of silence, and the vehicle's time-out of 3 s, in which it is turned away.
+    assert last == pytest.approx(44.0, abs=0.3)
+
+
+def test_a_vehicle_that_restarts_gets_no_command(tmp_path):
+    def change(message):
+        if message.get_type() == "GLOBAL_POSITION_INT" and message.time_boot_ms > 20000:
+            message.time_boot_ms = 50
+        return message
+
+    with served("sim3", *KINEMATIC, change=change) as vehicle:
+        ended = companion(vehicle, "sim3", tmp_path / "run", "--lockstep", "--no-report",
+                          settings=KINEMATIC)  # fmt: skip
+    assert "given back: the vehicle's clock jumped: it was restarted" in ended.out
+    assert vehicle.count("SET_ATTITUDE_TARGET", after=20.2) == 0
+
+
+def test_a_bad_link_is_reckoned_with(tmp_path):
+    link = "latency=0.2,jitter=0.05,loss=0.05"
+    settings = ("reports.interval_s=[10,10]", "flight.crossings=4", "fidelity=kinematic", "flights=1",
+                "vessel.speed_mps=5", "wind.speed_mps=5", "wind.from_deg=20", "draws=[]",
+                "guidance.rate_hz=10")  # fmt: skip
+    margins, closest = [], []
+    for declared in ("", link):
+        out = tmp_path / ((declared and "bad") or "perfect")
+        with served("sea_wind", *settings) as vehicle:
+            ended = companion(vehicle, "sea_wind", out, "--lockstep", "--no-report", "--link", declared,
+                              "--simulate-link", "1", settings=settings)  # fmt: skip
+        assert ended.status == 0, ended
+        margins.append(row(out)["keepout_margin_m"])
+        closest.append(vehicle.simulation.closest)
+    # A dead time of 0.475 s at 19.42 m/s alone is 9 m, on the way in and out of a turn less.
+    assert margins[1] > margins[0] + 3.0
+    assert min(closest) > 200.0
+
+
+def refused(tmp_path, *words, settings=KINEMATIC, options=(), **vehicle):
+    with served("sim3", *settings, **vehicle) as told:
+        ended = companion(told, "sim3", tmp_path / "run", "--lockstep", "--no-report", "--wait", "3",
+                          *options, settings=settings)  # fmt: skip
+    assert_refused(ended, *words)
+    assert told.count("SET_ATTITUDE_TARGET") == 0
+
+
+def test_limits_that_do_not_fit_are_refused(tmp_path):
+    roll = {"ROLL_LIMIT_DEG": 30.0}
+    refused(tmp_path, "ROLL_LIMIT_DEG is 30.0 deg", "bank_deg", parameters=roll)
+    refused(tmp_path / "airspeed", "AIRSPEED_MAX", parameters={"AIRSPEED_MAX": 20.0})
+
+
+def test_another_type_of_vehicle_is_refused(tmp_path):
+    def copter(message):
+        if message.get_type() == "HEARTBEAT":
+            message.type = 2
+        return message
+
+    refused(tmp_path, "MAV_TYPE 2", change=copter)
+
+    def px4(message):
+        if message.get_type() == "HEARTBEAT":
+            message.autopilot = 12
+        return message
+
+    refused(tmp_path / "other", "MAV_AUTOPILOT 12", change=px4)
+
+
+def test_simulated_parts_are_refused(tmp_path):
+    faults = ("sea_wind", "wind.from_deg=20", "wind.speed_mps=5", "vessel.speed_mps=5", "draws=[]",
+              "flights=1", "fidelity=kinematic")  # fmt: skip
+    scenario, *settings = faults
+    with served(scenario, *settings) as vehicle:
+        ended = companion(vehicle, scenario, tmp_path / "run", "--lockstep", settings=settings)
+    assert_refused(ended, "knows the vessel exactly", "reports.interval_s")
+
+
+def failed(tmp_path, *words, **vehicle):
+    """Fly, and have the flight end before it began."""
+    with served("sim3", *KINEMATIC, **vehicle) as told:
+        ended = companion(told, "sim3", tmp_path / "run", "--lockstep", "--no-report", "--wait", "3",
+                          settings=KINEMATIC)  # fmt: skip
+    assert ended.status == 1, ended
+    for word in words:
+        assert word in row(tmp_path / "run")["message"]
+    assert told.count("SET_ATTITUDE_TARGET") == 0
+
+
+def test_a_place_of_zero_is_none(tmp_path):
+    def nowhere(message):
+        if message.get_type() == "GLOBAL_POSITION_INT":
+            message.lat = message.lon = 0
+        return message
+
+    failed(tmp_path, "told no place but 0/0", change=nowhere)
+
+
+def test_a_vessel_that_is_another_one_is_refused(tmp_path):
+    def faster(message):
+        if message.get_type() == "AIS_VESSEL":
+            message.velocity += 200
+        return message
+
+    failed(tmp_path, "off the velocity that this scenario knows", change=faster)
+
+
+def test_without_guided_nothing_is_commanded(tmp_path):
+    failed(tmp_path, "the vehicle was not in GUIDED", mode="LOITER")
+
+
+def test_a_second_companion_is_refused(tmp_path):
+    from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+    def change(message):
+        return message
+
+    with served("sim3", *KINEMATIC, change=change) as vehicle:
+        import socket
+
+        host, port = vehicle.url.removeprefix("tcp://").split(":")
+        with socket.create_connection((host, int(port))) as other:
+            beat = mavlink.MAVLink_heartbeat_message(
+                mavlink.MAV_TYPE_ONBOARD_CONTROLLER, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, 4, 3
+            )
+            packer = mavlink.MAVLink(None, srcSystem=1, srcComponent=191)
+            import threading
+
+            over = threading.Event()
+
+            def beating():
+                while not over.wait(0.1):
+                    other.sendall(beat.pack(packer))
+
+            thread = threading.Thread(target=beating)
+            thread.start()
+            try:
+                ended = companion(vehicle, "sim3", tmp_path / "run", "--lockstep", "--no-report",
+                                  settings=KINEMATIC)  # fmt: skip
+            finally:
+                over.set()
+                thread.join()
+    assert "another companion (1/191)" in ended.errors + ended.out + (
+        str(row(tmp_path / "run")["message"]) if (tmp_path / "run").exists() else ""
+    )
+    assert vehicle.count("SET_ATTITUDE_TARGET") == 0
+
+
+def test_in_real_time_it_keeps_its_rate(tmp_path):
+    settings = (*KINEMATIC, "flight.duration_max_s=6", "guidance.rate_hz=10")
+    with served("sim3", *settings, lockstep=False, scheme="udp") as vehicle:
+        ended = companion(vehicle, "sim3", tmp_path / "run", "--no-report", settings=settings)
+    assert "given back: the flight is over" in ended.out
+    sent = [at for at, m in vehicle.heard if m.get_type() == "SET_ATTITUDE_TARGET"]
+    flown = [at for at in sent if at <= sent[0] + 6.0]
+    assert len(flown) == pytest.approx(60, abs=4)
+    assert math.isfinite(vehicle.simulation.closest)
