@@ -2,8 +2,8 @@
 
 import math
 import re
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -12,6 +12,45 @@ from common.provenance import without_folders
 from reports.document.blocks import Block, Fold, Table, Verdict
 from reports.run.columns import Array
 from reports.run.run_data import RunData
+
+
+class Cell(NamedTuple):
+    """How a table of rows writes one of its columns.
+
+    Attributes
+    ----------
+    head : title of the column
+    value : key of its value in a row, or the function that returns it; text stands as it is, and
+        what is missing is a dash
+    pattern : of its numbers
+    width : relative, in print
+    """
+
+    head: str
+    value: str | Callable[[Any], object]
+    pattern: str = "{}"
+    width: float = 1.0
+
+
+def rows_table(rows: Iterable[Any], cells: Sequence[Cell], **others: Any) -> Table:
+    """Return a table with a row for each of ``rows``, which are mappings or rows of a data frame.
+
+    Parameters
+    ----------
+    rows, cells : what is written, and how
+    others : further attributes of ``Table``
+    """
+    return Table(
+        head=[cell.head for cell in cells],
+        rows=[[_written(row, cell) for cell in cells] for row in rows],
+        widths=[cell.width for cell in cells],
+        **others,
+    )
+
+
+def _written(row: Any, cell: Cell) -> str:
+    value = cell.value(row) if callable(cell.value) else row.get(cell.value)
+    return value if isinstance(value, str) else number(value, cell.pattern)
 
 
 def pairs_table(

@@ -11,6 +11,7 @@ from common.intervals import CONFIDENCE, clopper_pearson, percent
 from common.premises import UNEXPLAINED
 from common.verdict import FAILED, MET, Closest, Counts, Premises, RunVerdict
 from reports.document.blocks import Card, Verdict
+from reports.document.state import state_words
 from reports.document.tables import approach, span
 from reports.flights.bounds import counted_as_violations, sampled, violation_bound
 from reports.flights.criteria import (
@@ -118,13 +119,17 @@ def _warnings(run: RunData) -> list[str]:
 
 def _state(verdict: RunVerdict) -> list[str]:
     """Return that a run was interrupted or is incomplete, which stands before anything else."""
-    if verdict.is_done:
-        return []
     counts = verdict.counts
-    word = "Interrupted" if verdict.interrupted else "Incomplete"
-    if not counts.left:
+    if not counts.left and not verdict.is_done:
+        word = "Interrupted" if verdict.interrupted else "Incomplete"
         return [f"{word} before all comparisons were flown"]
-    return [f"{word} after {counts.done:,} of {_plural(counts.planned, 'flight')}"]
+    return state_words(
+        "flights",
+        counts.done,
+        counts.planned,
+        is_done=verdict.is_done,
+        interrupted=verdict.interrupted,
+    )
 
 
 def _answer(run: RunData, flown: pd.DataFrame) -> str:
