@@ -10,6 +10,7 @@ from reports.document.blocks import Block, Findings, Section, Text
 from reports.document.chart import Chart
 from reports.finding.flights import finding_sections
 from reports.flights.added import added_sections
+from reports.flights.answers import kept_out_and_finished
 from reports.flights.comparison import comparison_section
 from reports.flights.first_page import closest_and_typical, flights_in_words
 from reports.flights.names import flight_name, flown_elsewhere, swept_column, told_name
@@ -25,7 +26,7 @@ from reports.flights.trials.tables import (
     flight_table,
     trial_table,
 )
-from reports.flights.verdict import flight_verdict
+from reports.flights.verdict import Answer, flight_verdict
 from reports.measurement.facts import flown_facts
 from reports.measurement.flights import sulphur_sections
 from reports.monte_carlo.content import monte_carlo_sections
@@ -38,8 +39,14 @@ _LISTED_MAX = 12
 """Flights of a run's only trial that are all listed; of a sweep they are, however many."""
 
 
-def flights_content(run: RunData) -> Findings:
-    """Return the findings of flights."""
+def flights_content(run: RunData, answer: Answer = kept_out_and_finished) -> Findings:
+    """Return the findings of flights.
+
+    Parameters
+    ----------
+    run : the run
+    answer : to the question of its study, with which page 1 begins
+    """
     trials = read_trials(run)
     by_key = {trial.key: trial for trial in trials}
 
@@ -68,7 +75,7 @@ def flights_content(run: RunData) -> Findings:
     flown = flights_flown(run.summary)
     return Findings(
         flown=f"{flights_in_words(run, flown)}.",
-        verdict=flight_verdict(run, trials),
+        verdict=flight_verdict(run, trials, answer),
         # Without a flight the first figure would be that of an aircraft that did not fly.
         picture=(closest_and_typical(trials) or _picture(sections)) if len(flown) else None,
         sections=sections,

@@ -10,13 +10,16 @@ import pandas as pd
 from common.intervals import percent
 from measurement.estimate.verdict import (
     ABOVE,
+    BELOW,
     OPEN,
+    REJECTED,
     content_words,
+    probability,
     repeated_words,
     suspect_words,
     verdict_words,
 )
-from measurement.gases import MASS_PERCENT
+from measurement.gases import MASS_PERCENT, limit_words
 from reports.document.blocks import Block, Card, Heading, Section, Text
 from reports.document.chart import Chart
 from reports.document.tables import number
@@ -42,13 +45,26 @@ from reports.measurement.flight_tables import (
     interval_words,
 )
 from reports.measurement.tables import over_time_table, result_table
-from reports.measurement.verdict import CONTENT_NAME, INTERVAL_NAME, fuel_card
+from reports.measurement.verdict import CONTENT_NAME, fuel_card
 from reports.run.columns import column, flights_flown
 from reports.run.flight_config import flight_config
 from reports.run.run_data import RunData
 from reports.run.surroundings import surroundings
 from reports.run.time_history import keepout_distance
 from reports.run.trials import Name
+
+_CALLED = {ABOVE: "Above the limit", BELOW: "Below the limit", OPEN: "Inconclusive"}
+_ONE_RESULT = (
+    "{called}: fuel sulphur {content} % ({low} to {high}), limit {limit}; {chance} chance of being"
+    " above"
+)
+_WITHOUT_VERDICT = (
+    "No verdict, as quality C gives none: fuel sulphur {content} % ({low} to {high}), limit {limit}"
+)
+_TRUTH = (
+    "The simulated fuel holds {fuel:.3f} %; a perfect instrument would read {expected:.3f} %,"
+    " because some sulphur leaves as sulphate."
+)
 
 _FEW = 8
 """Flights of which figures are not spread: of so few there are no statistics."""
@@ -78,8 +94,11 @@ def sulphur_cards(run: RunData) -> list[Card]:
     if len(measured) == 1:
         row = measured.iloc[0]
         return [
-            Card(CONTENT_NAME, number(row["fsc_percent"], f"{{:z.3f}} {MASS_PERCENT}")),
-            Card(INTERVAL_NAME, f"{interval_words(row)} {MASS_PERCENT}"),
+            Card(
+                CONTENT_NAME,
+                number(row["fsc_percent"], f"{{:z.3f}} {MASS_PERCENT}"),
+                note=f"95 % interval {interval_words(row)} %",
+            ),
             fuel_card(
                 float(row["sulphur_limit_percent"]),
                 str(row["sulphur_verdict"]),
@@ -95,14 +114,6 @@ def sulphur_cards(run: RunData) -> list[Card]:
         ),
         Card("Flights whose 95 % interval holds what a perfect instrument reads", percent(inside)),
     ]
-
-
-def sulphur_above(run: RunData) -> bool:
-    """Return whether the only flight that measured the fuel called it above its limit, as red in a
-    run as in an estimate.
-    """
-    measured = _measured(run)
-    return len(measured) == 1 and measured.iloc[0]["sulphur_verdict"] == "above"
 
 
 def sulphur_below(run: RunData) -> bool:
@@ -121,8 +132,8 @@ def sulphur_below(run: RunData) -> bool:
 
 
 def sulphur_headline(run: RunData) -> str:
-    """Return what was measured of the fuel, with interval and verdict, in a sentence; no word of a
-    run without a sniffer.
+    """Return the verdict on the fuel, with its content and interval, in a sentence; no word of a run
+    without a sniffer.
     """
     measured, sniffed = _measured(run), flights_flown(run.summary)
     if "fsc_percent" not in run.summary:
@@ -133,7 +144,16 @@ def sulphur_headline(run: RunData) -> str:
         return f"No fuel sulphur content from {_flights(len(sniffed))} with a sniffer{told}"
     if len(measured) == 1:
         row = measured.iloc[0]
-        return f"Fuel sulphur {_content(row)}: {_verdict_words(row)}"
+        rejected = row["sulphur_quality"] == REJECTED
+        words = _WITHOUT_VERDICT if rejected else _ONE_RESULT
+        return words.format(
+            called=_CALLED.get(row["sulphur_verdict"], ""),
+            content=number(row["fsc_percent"], "{:z.3f}"),
+            low=number(row["fsc_low_percent"], "{:z.3f}"),
+            high=number(row["fsc_high_percent"], "{:z.3f}"),
+            limit=limit_words(float(row["sulphur_limit_percent"])),
+            chance=probability(float(row["probability_above"])),
+        )
     return (
         "Verdicts on the sulphur limit from {flights:,} flights: {right:,} right, {wrong:,} wrong, {open:,} open"
         ", {without:,} without a result".format(**sulphur_verdicts(run))
@@ -268,16 +288,12 @@ def _verdict_words(row: "pd.Series[Any]") -> str:
 def _told(row: "pd.Series[Any]") -> str:
     """Return result and verdict in words, with probability and limit."""
     verdict = f"The fuel's sulphur content is {_content(row)}: {_verdict_words(row)}."
-    return (
-        f"{verdict} Quality {row['sulphur_quality']}"
-        + (
-            f": {row['sulphur_reason']}."
-            if row["sulphur_reason"] and pd.notna(row["sulphur_reason"])
-            else "."
-        )
-        + _suspect(row)
-        + f" The fuel's own content is {row['fsc_fuel_percent']:.3f} %, of which a perfect instrument reads"
-        f" {row['fsc_expected_percent']:.3f} %."
+    reason = row["sulphur_reason"]
+    quality = f"Quality {row['sulphur_quality']}"
+    if reason and pd.notna(reason):
+        quality += f": {reason}"
+    return f"{verdict} {quality}.{_suspect(row)} " + _TRUTH.format(
+        fuel=row["fsc_fuel_percent"], expected=row["fsc_expected_percent"]
     )
 
 

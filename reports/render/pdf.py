@@ -112,7 +112,7 @@ def _card(card: Card, *, judges: bool) -> Data:
         "name": card.name,
         "value": unbroken(card.value),
         "tone": card.tone,
-        "judgement": card.judgement if judges else "",
+        "small": unbroken(card.small_print) if judges else card.note,
     }
 
 
