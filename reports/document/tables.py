@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from common.provenance import without_folders
-from reports.document.blocks import Block, Fold, Table, Verdict
+from reports.document.blocks import Block, Card, Fold, Table
 from reports.run.columns import Array
 from reports.run.run_data import RunData
 
@@ -104,14 +104,14 @@ def _parameter_table(caption: str, rows: list[list[str]]) -> Table:
     )
 
 
-def figure_table(verdict: Verdict) -> Table:
-    """Return every figure of a verdict; page 1 has the most important."""
-    rows = [[card.name, card.value, card.required, card.result] for card in verdict.figures]
+def figure_table(figures: Sequence[Card]) -> Table:
+    """Return figures of a verdict, those that page 1 has no tile for."""
+    rows = [[card.name, card.value, card.required, card.result, card.note] for card in figures]
     return Table(
-        head=["Figure", "Value", "Required", ""],
+        head=["Figure", "Value", "Required", "", "Note"],
         rows=rows,
-        widths=[3.0, 1.4, 1.4, 0.6],
-        caption="Every figure of the verdict; a dash where nothing is required of it.",
+        widths=[3.0, 1.4, 1.4, 0.6, 2.0],
+        caption="Figures beside those of page 1; a dash where nothing is required.",
     )
 
 
@@ -232,8 +232,14 @@ def outcome(row: "pd.Series[Any]") -> str:
     """Return how a flight ended, in words, and which criteria it failed."""
     if row["criteria_met"]:
         return "met"
-    ended, message = str(row["outcome"]).replace("_", " "), in_symbols(str(row["message"]))
+    ended = str(row["outcome"]).replace("_", " ")
+    message = first_sentence(in_symbols(str(row["message"])))
     return f"{ended}: {message}" if message else ended
+
+
+def first_sentence(message: str) -> str:
+    """Return the message of a flight without the advice that follows it."""
+    return re.split(r"\. (?=[A-Z])", message, maxsplit=1)[0]
 
 
 _ADVICE = ": allow more time"

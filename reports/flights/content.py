@@ -6,10 +6,12 @@ from typing import Any
 import pandas as pd
 
 from reports.design.section import innerloop_section
-from reports.document.blocks import Block, Findings, Section, Text
+from reports.document.blocks import Block, Findings, Section, Text, folded
 from reports.document.chart import Chart
 from reports.finding.flights import finding_sections
+from reports.finding.variants import searching_variants
 from reports.flights.added import added_sections
+from reports.flights.answers import kept_out_and_finished
 from reports.flights.comparison import comparison_section
 from reports.flights.first_page import closest_and_typical, flights_in_words
 from reports.flights.names import flight_name, flown_elsewhere, swept_column, told_name
@@ -25,9 +27,10 @@ from reports.flights.trials.tables import (
     flight_table,
     trial_table,
 )
-from reports.flights.verdict import flight_verdict
+from reports.flights.verdict import Answer, flight_verdict
 from reports.measurement.facts import flown_facts
 from reports.measurement.flights import sulphur_sections
+from reports.measurement.method import is_of_the_method
 from reports.monte_carlo.content import monte_carlo_sections
 from reports.monte_carlo.falsification import falsification_sections
 from reports.run.columns import flights_flown
@@ -38,37 +41,53 @@ _LISTED_MAX = 12
 """Flights of a run's only trial that are all listed; of a sweep they are, however many."""
 
 
-def flights_content(run: RunData) -> Findings:
-    """Return the findings of flights."""
+def flights_content(run: RunData, answer: Answer = kept_out_and_finished) -> Findings:
+    """Return the findings of flights.
+
+    Parameters
+    ----------
+    run : the run
+    answer : to the question of its study, with which page 1 begins
+    """
     trials = read_trials(run)
     by_key = {trial.key: trial for trial in trials}
 
     def name(row: "pd.Series[Any]") -> str:
         return told_name(by_key[row["trial"]], row)
 
-    sections = [
-        *monte_carlo_sections(run),
-        *falsification_sections(run),
-        *finding_sections(run, trials, name),
-        *sulphur_sections(run, name),
-        _overview(trials),
+    of_search, of_fuel = finding_sections(run, trials, name), sulphur_sections(run, name)
+    of_flights = [
         *(_trial(trial, only=len(trials) == 1) for trial in trials if len(trial.rows)),
         *added_sections(run, trials, name),
         comparison_section(run, trials),
+    ]
+    of_probabilities = [*monte_carlo_sections(run), *falsification_sections(run)]
+    # Whether these flights keep out is then not the question.
+    asks_otherwise = is_of_the_method(run) or bool(searching_variants(run))
+    if asks_otherwise:
+        of_probabilities, of_flights = (
+            [folded(of) for of in sections] for sections in (of_probabilities, of_flights)
+        )
+    sections = [
+        *of_probabilities,
+        *of_search,
+        *of_fuel,
+        _overview(trials),
+        *of_flights,
         Section(
             anchor="failed",
             title="Flights that failed a criterion",
             nav_title="Failed",
             blocks=failed_blocks(trials),
         ),
-        flight_section(trials),
+        flight_section(trials, only_failed=asks_otherwise),
         *([innerloop_section(run.innerloop)] if run.innerloop else []),
         Section(anchor="parameters", title="Parameters", blocks=parameter_blocks(run, trials)),
     ]
     flown = flights_flown(run.summary)
     return Findings(
         flown=f"{flights_in_words(run, flown)}.",
-        verdict=flight_verdict(run, trials),
+        verdict=flight_verdict(run, trials, answer),
         # Without a flight the first figure would be that of an aircraft that did not fly.
         picture=(closest_and_typical(trials) or _picture(sections)) if len(flown) else None,
         sections=sections,

@@ -54,8 +54,10 @@ _TYPICAL = (_MEDIAN, _MEDIAN_BEYOND)
 """Why a flight is shown that page 1 shows already, or that stands for many."""
 
 
-def flight_section(trials: list[Trial]) -> Section:
-    """Return the section of single flights."""
+def flight_section(trials: list[Trial], *, only_failed: bool = False) -> Section:
+    """Return the section of single flights; with ``only_failed``, of flights that are not swept
+    those alone are printed that violated the keep-out area or failed a criterion.
+    """
     swept = len(trials) == 1 and bool(trials[0].swept) and len(trials[0].rows) <= SWEPT_MAX
     picked = picked_flights(trials)
     if swept and len(trials[0].rows) > 1:
@@ -72,7 +74,10 @@ def flight_section(trials: list[Trial]) -> Section:
         )
     else:
         several = any(radii_differ(beside_vessel(trial.rows)) for trial in trials)
-        printed = _printed([why for _, _, why in picked])
+        reasons = [why for _, _, why in picked]
+        printed = _printed(reasons)
+        if only_failed:
+            printed = {of for of in printed if reasons[of] in (_VIOLATION, _FAILED)}
         flights = [
             replace(_content(trial, row, _state(row, why)), printed=number in printed)
             for number, (trial, row, why) in enumerate(picked)
