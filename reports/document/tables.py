@@ -83,13 +83,19 @@ def parameter_blocks(run: RunData, sampled: Mapping[str, str] | None = None) -> 
         for row, p in zip(every, run.manifest["parameters"], strict=True)
         if p["key"] in known or "default" not in p or p["value"] != p["default"]
     ]
+    brief = [[*row[:3], first_clause(row[3])] for row in own]
     return [
-        _parameter_table("Parameters that differ from their defaults.", own),
+        _parameter_table("Parameters that differ from their defaults.", brief),
         Fold(
             title="Every parameter",
             blocks=[_parameter_table("Every parameter, with its unit and meaning.", every)],
         ),
     ]
+
+
+def first_clause(meaning: str) -> str:
+    """Return the meaning of a key up to its first stop: what a line of a table has room for."""
+    return re.split(r"[.:;,] | \(", meaning.rstrip("."), maxsplit=1)[0]
 
 
 def _parameter_table(caption: str, rows: list[list[str]]) -> Table:

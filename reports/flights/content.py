@@ -63,7 +63,10 @@ def flights_content(run: RunData, answer: Answer = kept_out_and_finished) -> Fin
     ]
     of_probabilities = [*monte_carlo_sections(run), *falsification_sections(run)]
     # Whether these flights keep out is then not the question.
-    asks_otherwise = is_of_the_method(run) or bool(searching_variants(run))
+    is_search = bool(searching_variants(run))
+    asks_otherwise = is_of_the_method(run) or is_search
+    if is_search:
+        of_fuel = [folded(of) for of in of_fuel]
     if asks_otherwise:
         of_probabilities, of_flights = (
             [folded(of) for of in sections] for sections in (of_probabilities, of_flights)

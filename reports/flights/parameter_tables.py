@@ -4,7 +4,7 @@ import re
 from typing import Any
 
 from reports.document.blocks import Block, Fold, Heading, Table, Text
-from reports.document.tables import in_symbols, parameter_value, span
+from reports.document.tables import first_clause, in_symbols, parameter_value, span
 from reports.flights.names import flown_elsewhere, manoeuvre_name, swept_column
 from reports.flights.trials.tables import OSCILLATION_COLUMNS, flight_table
 from reports.monte_carlo.names import input_name, input_unit
@@ -43,7 +43,11 @@ def parameter_blocks(run: RunData, trials: list[Trial]) -> list[Block]:
             )
         )
     if len(trials) == 1:
-        blocks += [Heading(trials[0].title), _table(_rows(trials[0]) + _derived(run, trials[0]))]
+        rows = _rows(trials[0]) + _derived(run, trials[0])
+        blocks += [
+            Heading(trials[0].title),
+            _table([[*row[:-1], first_clause(row[-1])] for row in rows]),
+        ]
     else:
         # What a trial is about stands above its figures.
         blocks.append(Text("What each trial sets is in the manifest, and in report.html."))

@@ -9,8 +9,8 @@ import pandas as pd
 
 from common.intervals import CONFIDENCE, clopper_pearson, percent
 from measurement.estimate.verdict import ABOVE, OPEN
-from measurement.gases import MASS_PERCENT
-from reports.document.blocks import Block, Card, Heading, Table, Text
+from measurement.gases import MASS_PERCENT, limit_words
+from reports.document.blocks import Block, Card, Heading, Table, Text, UndecidedCard
 from reports.document.tables import Cell, rows_table
 from reports.measurement.data import share_read
 from reports.measurement.flight_charts import error_chart, operating_curve, trajectory_chart
@@ -83,8 +83,8 @@ def _verdicts(rows: pd.DataFrame) -> tuple[Mask, Mask, Mask]:
 
 
 def method_cards(run: RunData) -> list[Card]:
-    """Return how many verdicts were wrong, the relative error of each instrument with the flight
-    that has the largest, and how many intervals hold the truth.
+    """Return how many verdicts were wrong and open, the relative error of each instrument with the
+    flight that has the largest, and how many intervals hold the truth.
     """
     rows, counts = measured_flights(run), sulphur_verdicts(run)
     decided = counts["right"] + counts["wrong"]
@@ -95,8 +95,16 @@ def method_cards(run: RunData) -> list[Card]:
         f"{counts['wrong']:,} of {decided:,}",
         note=f"rate below {percent(most)} at {percent(CONFIDENCE)}" if decided else "",
     )
+    limits = sorted(rows["sulphur_limit_percent"].unique())
+    of_limits = " and ".join(map(limit_words, limits))
+    is_open = UndecidedCard("Open verdicts", f"{counts['open']:,} of {len(rows):,}", of_limits)
     name = "95 % intervals that hold what a perfect instrument reads"
-    return [wrong, *_errors(rows), Card(name, f"{held:,} of {len(rows):,}")]
+    return [
+        wrong,
+        *([is_open] if counts["open"] else []),
+        *_errors(rows),
+        Card(name, f"{held:,} of {len(rows):,}"),
+    ]
 
 
 def _held(rows: pd.DataFrame) -> Mask:
