@@ -122,7 +122,7 @@ def arena_content(run: RunData) -> Findings:
         _section("plume", "Measuring the plume", "Plume", _plume(arena)),
         _section("tuning", "Tuning of each law", "Tuning", _tuned(arena)),
         *added_sections(run, list(trials.values()), name),
-        *([innerloop_section(run.innerloop)] if run.innerloop else []),
+        innerloop_section(run),
         _section("parameters", "Parameters", "Parameters", parameter_blocks(run)),
     ]
     both = len(arena.entrants) - len({entrant.law for entrant in arena.entrants})

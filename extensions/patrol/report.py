@@ -177,7 +177,7 @@ def patrol_content(run: RunData) -> Findings:
                     *([Fold(title="The other patrols", blocks=folded)] if folded else []),
                 ],
             ),
-            *([innerloop_section(run.innerloop)] if run.innerloop else []),
+            innerloop_section(run),
             Section(anchor="parameters", title="Parameters", blocks=parameter_blocks(run, sampled)),
         ],
     )

@@ -132,8 +132,8 @@ def _nichols(design: Record) -> Chart:
         + cut_words(panels),
         panels=panels,
         # No gap after the last, where that can be.
-        columns=2 if len(design["loops"]) % 3 else 3,
-        panel_height=0.26,
+        columns=4 if len(design["loops"]) % 3 else 3,
+        panel_height=0.25,
     )
 
 

@@ -73,7 +73,7 @@ def _chart(design: Record, name: str, margins: Sequence[_Margin], caption: str) 
             " which nothing was designed."
         )
     return Chart(
-        name=name, caption=caption + cut_words(panels), panels=panels, columns=2, panel_height=0.24
+        name=name, caption=caption + cut_words(panels), panels=panels, columns=2, panel_height=0.21
     )
 
 

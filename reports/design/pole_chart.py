@@ -28,7 +28,7 @@ def pole_chart(design: Record) -> Chart:
             *(_panel(design, kind, "", _SLOW) for kind, _ in _KINDS),
         ],
         columns=2,
-        panel_height=0.36,
+        panel_height=0.3,
     )
 
 

@@ -103,8 +103,8 @@ def trim_map(design: Record) -> Chart:
         name="trims",
         caption=caption,
         panels=[_map_panel(design, trims, quantity) for quantity in quantities],
-        columns=2,
-        panel_height=0.28,
+        columns=3,
+        panel_height=0.24,
     )
 
 

@@ -84,7 +84,7 @@ def flights_content(run: RunData, answer: Answer = kept_out_and_finished) -> Fin
             blocks=failed_blocks(trials),
         ),
         flight_section(trials, only_failed=asks_otherwise),
-        *([innerloop_section(run.innerloop)] if run.innerloop else []),
+        innerloop_section(run),
         Section(anchor="parameters", title="Parameters", blocks=parameter_blocks(run, trials)),
     ]
     flown = flights_flown(run.summary)

@@ -57,7 +57,7 @@ def paper_content(run: RunData) -> Findings:
         ),
         *([bounds_section(json.loads(bounds.read_text(encoding="utf-8")))] if bounds.is_file() else []),
         _detail(_flights(run)),
-        *([innerloop_section(run.innerloop)] if run.innerloop else []),
+        innerloop_section(run),
         Section(
             anchor="parameters",
             title="Parameters",

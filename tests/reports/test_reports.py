@@ -15,11 +15,10 @@ from report_parts import (
     blocks_of,
     built,
     draw_all_but,
-    named_charts,
 )
 
 from reports.build import build_reports
-from reports.document.blocks import FlightPicker, Table
+from reports.document.blocks import FlightPicker, Table, Text
 from reports.document.chart import Chart
 from reports.document.tables import limit
 from reports.errors import ReportError
@@ -37,7 +36,6 @@ from tests.run_tables import change_manifest, manifest_of, write_manifest
 # Three crossings are too few for the study's own criteria.
 CRITERIA = ["criteria.tracking_error_rms_m=5.0", "criteria.crossing_interval_error=0.1"]
 OVERRIDES = ["sweep.nu=[0.5, 0.9, 1.0]", "flight.crossings=3", "comparison.nu=[0.5]", *CRITERIA]
-AUTOPILOT = ["step1", "step2", "step3", "levelmargins", "leveldiskmargins", "loops", "poles"]
 
 
 @pytest.fixture(scope="module")
@@ -71,9 +69,8 @@ def charts_of(report):
 
 
 def test_both_reports_are_built_from_disk_alone(copy, monkeypatch):
-    # Those of single flights are drawn in the report of trials, and page 1's in its own tests; of
-    # steps and margins one is enough.
-    draw_all_but(monkeypatch, "first", "tracks", "histories", "step2", "step3", "leveldiskmargins")
+    # Those of single flights are drawn in the report of trials, and page 1's in its own tests.
+    draw_all_but(monkeypatch, "first", "tracks", "histories")
     text = built(copy)
     assert "Sweep of the speed ratio" in text
     figures = json.loads(re.search(r'id="flight-figures">(.*?)</script>', text, re.DOTALL)[1])
@@ -93,12 +90,11 @@ def test_the_sweep_shows_everything_in_its_place(report):
         f"trial1-nu1-{what}" for what in ("interval", "distance", "errors", "command")
     ]
     assert names["comparison"] == ["trial1-comparison"]
-    assert names["innerloop"] == AUTOPILOT
     tables = {
         section.anchor: len(blocks_of(report, Table, section.anchor)) for section in report.sections
     }
     assert tables == {
-        "figures": 1, "trials": 1, "trial1": 1, "comparison": 1, "failed": 1, "flights": 0, "innerloop": 3, "parameters": 3,
+        "figures": 1, "trials": 1, "trial1": 1, "comparison": 1, "failed": 1, "flights": 0, "innerloop": 0, "parameters": 3,
         "provenance": 1,
     }  # fmt: skip
     assert all(
@@ -238,25 +234,8 @@ def test_a_record_of_another_aircraft_over_airspeed_and_bank_is_shown_in_the_swe
     (copy / "innerloop.json").write_text(json.dumps(design), encoding="utf-8")
     report = content(read_run(copy))
     assert f"of the {design['title']} in six degrees of freedom" in html_of(report, copy)
-    assert [chart.name for chart in blocks_of(report, Chart, "innerloop")] == AUTOPILOT
-    shown = blocks_of(report, Table, "innerloop")
-    assert len(shown) == 3
-    assert all(table.rows for table in shown)
-
-
-@pytest.mark.usefixtures("without_single_flights")
-def test_poles_are_shown_as_far_out_as_the_aircraft_has_them(copy):
-    # Else those of an airliner would be one dot at the origin. One at -80 1/s is a servo's, and off
-    # the figure.
-    design = record()
-    slow = [[-3.0, 1.0], [-3.0, -1.0], [-80.0, 0.0]]
-    for poles in design["poles"]:
-        poles["open_loop"] = poles["closed_loop"] = slow
-    (copy / "innerloop.json").write_text(json.dumps(design), encoding="utf-8")
-    panel = named_charts(content(read_run(copy)))["poles"].panels[0]
-    # A tenth beyond the farthest, to the left and with 0.45 of that either way.
-    assert panel.x_range == pytest.approx((-3.3, 0.165), rel=1e-9)
-    assert panel.y_range == pytest.approx((-1.485, 1.485), rel=1e-9)
+    (line,) = blocks_of(report, Text, "innerloop")
+    assert f"plume-flight design {design['aircraft']}" in line.text
 
 
 @pytest.mark.parametrize(
