@@ -25,7 +25,7 @@ def sim_1_charts(run: RunData) -> list[Chart]:
     """Return figures 3, 4 and 5: a circular reference, opposite initial headings."""
     return [
         _side_by_side(
-            run, ["sim1"], _figure_3, name="fig3", aspect=0.9, panel_height=0.55, labels=("East [m]", "North [m]"),
+            run, ["sim1"], _figure_3, name="fig3", aspect=0.9, panel_height=0.44, labels=("East [m]", "North [m]"),
             caption="To put beside the paper's figure 3: the circular reference and the UAV. Rings: where each is at the start.",
         ),
         _side_by_side(
@@ -51,7 +51,7 @@ def sim_2_charts(run: RunData) -> list[Chart]:
     cases = ["sim2_los", "sim2_delta"]
     return [
         _side_by_side(
-            run, cases, _figure_6, name="fig6", aspect=1.2, panel_height=0.42, labels=("East [m]", "North [m]"),
+            run, cases, _figure_6, name="fig6", aspect=1.2, panel_height=0.36, labels=("East [m]", "North [m]"),
             caption="The paper's figure 6: both UAVs start in front of the reference and fly the other way. UAV 1 steers by the"
             " line of sight, UAV 2 by the δ formulation. Rings: starts.",
         ),
@@ -150,7 +150,7 @@ def _side_by_side(
     aspect: float = 0.0,
     shown_after: float = 20.0,
     columns: int = 2,
-    panel_height: float = 0.4,
+    panel_height: float = 0.27,
 ) -> Chart:
     """Return a panel for each vehicle that has flown every case, up to ``shown_after`` [s] after
     the last of them has settled.
