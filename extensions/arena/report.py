@@ -176,14 +176,16 @@ def _standoff(arena: Arena) -> list[Block]:
 
 def _plume(arena: Arena) -> list[Block]:
     figures = [figure for figure in (CROSSINGS, PLUME_TIME, SULPHUR) if arena.has(figure)]
-    has_sulphur = arena.has(SULPHUR)
+    table, has_sulphur = plume_table(arena), arena.has(SULPHUR)
+    # The figure shows the means of the table.
+    shown: list[Block] = [worth_chart(arena)] if has_sulphur else [table]
     return [
         Text(f"{_PLUME} {_SULPHUR}" if has_sulphur else _PLUME),
-        *([worth_chart(arena)] if has_sulphur else []),
-        plume_table(arena),
+        *shown,
         Fold(
-            title="Measuring by condition",
+            title="Measuring the plume in figures, and by condition",
             blocks=[
+                *([table] if has_sulphur else []),
                 crossing_chart(arena),
                 *(by_condition_table(arena, figure) for figure in figures),
             ],
@@ -369,11 +371,14 @@ def condition_table(arena: Arena) -> Table:
 
 
 _NUMBER = Cell("No.", lambda entrant: str(entrant.number), width=0.4)
-_VIOLATIONS = Cell(
-    "Keep-out violations",
-    lambda entrant: str(total(entrant.rows, "keepout_violations")),
-    width=0.95,
-)
+
+
+def _violations(arena: Arena) -> list[Cell]:
+    """Return the column of keep-out violations, where there are any."""
+    if not arena.run.verdict.counts.keepout_violations:
+        return []
+    name = "Keep-out violations"
+    return [Cell(name, lambda entrant: str(total(entrant.rows, "keepout_violations")))]
 
 
 def _law(width: float) -> Cell:
@@ -382,17 +387,17 @@ def _law(width: float) -> Cell:
 
 def tracking_table(arena: Arena, *, tracking: bool) -> Table:
     """Return the figures of tracking of the laws of a task, over all conditions."""
-    means = _means(arena, TRACKING_FIGURES, arena.together, (1.75, 1.9, 1.9, 1.45))
+    means = _means(arena, TRACKING_FIGURES, arena.together, (2.0, 2.0, 2.0, 1.6))
     cells = [
         Cell("Settled", lambda entrant: f"{len(_settling(entrant))} of {len(entrant.rows)}"),
-        Cell("Settling, median [s]", _settled_at, "{:.0f}", 0.95),
-        _VIOLATIONS,
+        Cell("Settling, median [s]", _settled_at, "{:.0f}", 0.9),
+        *_violations(arena),
     ]
     entrants = arena.ranked(ERROR, arena.in_task(tracking=tracking))
     return _ranked_table(
         arena,
         entrants,
-        [_NUMBER, _law(2.0)],
+        [_NUMBER, _law(2.2)],
         dict(zip(TRACKING_FIGURES, means, strict=True)),
         cells,
         caption=f"{_TASKS[tracking]}, over all conditions.",
@@ -412,7 +417,7 @@ def _settled_at(entrant: Entrant) -> float | None:
 def plume_table(arena: Arena) -> Table:
     """Return the figures of measuring the plume of every law, over all conditions."""
     figures = [figure for figure in MEASURING_FIGURES if arena.has(figure)]
-    widths = [2.4 if figure == SULPHUR else 1.7 for figure in figures]
+    widths = [2.6 if figure == SULPHUR else 1.9 for figure in figures]
     means = _means(arena, figures, arena.together, widths)
     task = Cell("Task", lambda entrant: "tracks" if entrant.tracks else "circles", width=0.6)
     closest = Cell(
@@ -421,9 +426,9 @@ def plume_table(arena: Arena) -> Table:
     return _ranked_table(
         arena,
         arena.ranked(CROSSINGS, arena.entrants),
-        [_NUMBER, _law(2.0), task],
+        [_NUMBER, _law(2.3), task],
         dict(zip(figures, means, strict=True)),
-        [closest, _VIOLATIONS],
+        [closest, *_violations(arena)],
         caption="Measuring the plume, over all conditions.",
     )
 
@@ -769,7 +774,7 @@ def worth_chart(arena: Arena) -> Chart:
         " the sulphur content come first.",
         panels=panels,
         columns=len(panels),
-        panel_height=0.1 + 0.025 * len(entrants),
+        panel_height=0.1 + 0.02 * len(entrants),
     )
 
 

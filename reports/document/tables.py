@@ -103,7 +103,7 @@ def _parameter_table(caption: str, rows: list[list[str]]) -> Table:
         caption=caption,
         head=["Parameter", "Value", "Unit", "Meaning and equation"],
         rows=rows,
-        widths=[2.7, 1.9, 0.7, 3.6],
+        widths=[2.3, 3.0, 0.6, 3.0],
         left_columns=4,
         prose=True,
         breakable=True,

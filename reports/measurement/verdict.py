@@ -18,8 +18,8 @@ from reports.document.blocks import Card, FuelCard, UndecidedCard, Verdict
 from reports.document.tables import number
 from reports.measurement.data import WORDS, Record, errors, value
 
-CONTENT_NAME, INTERVAL_NAME = "Fuel sulphur content", "Fuel sulphur content, 95 % interval"
-"""Names of the tiles of a result."""
+CONTENT_NAME = "Fuel sulphur content"
+"""Name of the tile of a result."""
 
 
 def measurement_verdict(record: Record) -> Verdict:
@@ -142,8 +142,8 @@ def _figures(record: Record) -> list[Card]:
         Card(
             CONTENT_NAME,
             number(found["fsc_percent"] if _known(found) else None, f"{{:.3f}} {MASS_PERCENT}"),
+            note=f"95 % interval {_interval(found)}" if _known(found) else "",
         ),
-        Card(INTERVAL_NAME, _interval(found) if _known(found) else "–"),
         *chances,
         Card("Quality", str(found["quality"])),
         *times,
