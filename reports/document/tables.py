@@ -67,11 +67,12 @@ def _parameter_table(caption: str, rows: list[list[str]]) -> Table:
 
 def figure_table(figures: Sequence[Card]) -> Table:
     """Return figures of a verdict, those that page 1 has no tile for."""
-    rows = [[card.name, card.value, card.required, card.result, card.note] for card in figures]
+    rows = [[card.name, card.note, card.value, card.required, card.result] for card in figures]
     return Table(
-        head=["Figure", "Value", "Required", "", "Note"],
+        head=["Figure", "Flight", "Value", "Required", ""],
         rows=rows,
-        widths=[3.0, 1.4, 1.4, 0.6, 2.0],
+        widths=[3.0, 2.0, 1.4, 1.4, 0.6],
+        left_columns=2,
         caption="Figures beside those of page 1; a dash where nothing is required.",
     )
 
