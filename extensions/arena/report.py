@@ -22,7 +22,7 @@ from extensions.arena.record import (
     Figure,
     read_arena,
 )
-from reports.design.section import innerloop_section
+from reports.design.section import design_words
 from reports.document.blocks import (
     Block,
     Card,
@@ -122,8 +122,12 @@ def arena_content(run: RunData) -> Findings:
         _section("plume", "Measuring the plume", "Plume", _plume(arena)),
         _section("tuning", "Tuning of each law", "Tuning", _tuned(arena)),
         *added_sections(run, list(trials.values()), name),
-        innerloop_section(run),
-        _section("parameters", "Parameters", "Parameters", parameter_blocks(run)),
+        _section(
+            "parameters",
+            "Parameters",
+            "Parameters",
+            [*parameter_blocks(run), *design_words(run)],
+        ),
     ]
     both = len(arena.entrants) - len({entrant.law for entrant in arena.entrants})
     laws = f"{len(arena.entrants) - both} steering laws" + f", {both} of them in both tasks" * (

@@ -15,7 +15,7 @@ from common.verdict import MET
 from extensions.patrol import PHASES, SHIPS
 from extensions.patrol.counts import PatrolCounts
 from measurement.gases import MASS_PERCENT
-from reports.design.section import innerloop_section
+from reports.design.section import design_words
 from reports.document.axes import in_kilometres
 from reports.document.blocks import Card, Findings, Fold, Heading, Section, Table, Text, Verdict
 from reports.document.chart import Chart, Line, Note, Panel, Style
@@ -177,8 +177,11 @@ def patrol_content(run: RunData) -> Findings:
                     *([Fold(title="The other patrols", blocks=folded)] if folded else []),
                 ],
             ),
-            innerloop_section(run),
-            Section(anchor="parameters", title="Parameters", blocks=parameter_blocks(run, sampled)),
+            Section(
+                anchor="parameters",
+                title="Parameters",
+                blocks=[*parameter_blocks(run, sampled), *design_words(run)],
+            ),
         ],
     )
 

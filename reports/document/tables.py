@@ -83,7 +83,7 @@ def parameter_blocks(run: RunData, sampled: Mapping[str, str] | None = None) -> 
         for row, p in zip(every, run.manifest["parameters"], strict=True)
         if p["key"] in known or "default" not in p or p["value"] != p["default"]
     ]
-    brief = [[*row[:3], first_clause(row[3])] for row in own]
+    brief = [row[:-1] for row in own]
     return [
         _parameter_table("Parameters that differ from their defaults.", brief),
         Fold(
@@ -93,18 +93,17 @@ def parameter_blocks(run: RunData, sampled: Mapping[str, str] | None = None) -> 
     ]
 
 
-def first_clause(meaning: str) -> str:
-    """Return the meaning of a key up to its first stop: what a line of a table has room for."""
-    return re.split(r"[.:;,] | \(", meaning.rstrip("."), maxsplit=1)[0]
-
-
 def _parameter_table(caption: str, rows: list[list[str]]) -> Table:
+    """Return parameters with their units and, where rows have them, their meanings."""
+    head, widths = ["Parameter", "Value", "Unit", "Meaning and equation"], [2.7, 1.9, 0.7, 3.6]
+    is_brief = all(len(row) < len(head) for row in rows)
+    shown = head[:-1] if is_brief else head
     return Table(
         caption=caption,
-        head=["Parameter", "Value", "Unit", "Meaning and equation"],
+        head=shown,
         rows=rows,
-        widths=[2.3, 3.0, 0.6, 3.0],
-        left_columns=4,
+        widths=[2.6, 5.0, 0.7] if is_brief else widths,
+        left_columns=len(shown),
         prose=True,
         breakable=True,
     )
@@ -112,11 +111,12 @@ def _parameter_table(caption: str, rows: list[list[str]]) -> Table:
 
 def figure_table(figures: Sequence[Card]) -> Table:
     """Return figures of a verdict, those that page 1 has no tile for."""
-    rows = [[card.name, card.value, card.required, card.result, card.note] for card in figures]
+    rows = [[card.name, card.note, card.value, card.required, card.result] for card in figures]
     return Table(
-        head=["Figure", "Value", "Required", "", "Note"],
+        head=["Figure", "Flight", "Value", "Required", ""],
         rows=rows,
-        widths=[3.0, 1.4, 1.4, 0.6, 2.0],
+        widths=[3.0, 2.0, 1.4, 1.4, 0.6],
+        left_columns=2,
         caption="Figures beside those of page 1; a dash where nothing is required.",
     )
 

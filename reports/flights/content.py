@@ -5,15 +5,16 @@ from typing import Any
 
 import pandas as pd
 
-from reports.design.section import innerloop_section
+from reports.design.section import design_words
 from reports.document.blocks import Block, Findings, Section, Text, folded
 from reports.document.chart import Chart
+from reports.document.panels import COUNTED_MIN
 from reports.finding.flights import finding_sections
 from reports.finding.variants import searching_variants
 from reports.flights.added import added_sections
 from reports.flights.answers import kept_out_and_finished
 from reports.flights.comparison import comparison_section
-from reports.flights.first_page import closest_and_typical, flights_in_words
+from reports.flights.first_page import flights_in_words, telling_and_typical
 from reports.flights.names import flight_name, flown_elsewhere, swept_column, told_name
 from reports.flights.parameter_tables import parameter_blocks
 from reports.flights.selection import flight_section
@@ -84,15 +85,21 @@ def flights_content(run: RunData, answer: Answer = kept_out_and_finished) -> Fin
             blocks=failed_blocks(trials),
         ),
         flight_section(trials, only_failed=asks_otherwise),
-        innerloop_section(run),
-        Section(anchor="parameters", title="Parameters", blocks=parameter_blocks(run, trials)),
+        Section(
+            anchor="parameters",
+            title="Parameters",
+            blocks=[
+                *parameter_blocks(run, trials),
+                *design_words(run),
+            ],
+        ),
     ]
     flown = flights_flown(run.summary)
     return Findings(
         flown=f"{flights_in_words(run, flown)}.",
         verdict=flight_verdict(run, trials, answer),
         # Without a flight the first figure would be that of an aircraft that did not fly.
-        picture=(closest_and_typical(trials) or _picture(sections)) if len(flown) else None,
+        picture=(telling_and_typical(trials) or _picture(sections)) if len(flown) else None,
         sections=sections,
         facts=flown_facts(run),
     )
@@ -107,16 +114,17 @@ def _picture(sections: list[Section]) -> Chart | None:
 
 
 def _overview(trials: list[Trial]) -> Section:
-    criteria = criteria_table(trials)
+    table = criteria_table(trials)
+    criteria = [table] if table.rows else []
     if len(trials) == 1:
-        return Section(anchor="trials", title="Criteria", blocks=[criteria])
+        return Section(anchor="trials", title="Criteria", blocks=criteria)
     meaning = (
         "Completed: the aircraft came through, settled, and flew the crossings that were asked for, or one at least. Met: it kept"
         " out, completed, and met every other criterion. Kept out: known to have kept out to its end. Distances are from the"
         " keep-out sphere's centre, or horizontal where the keep-out area is a cylinder."
     )
     return Section(
-        anchor="trials", title="Trials", blocks=[Text(meaning), trial_table(trials), criteria]
+        anchor="trials", title="Trials", blocks=[Text(meaning), trial_table(trials), *criteria]
     )
 
 
@@ -152,7 +160,9 @@ def _trial(trial: Trial, *, only: bool) -> Section:
         if list(trial.swept) == ["nu"]
         else "Flights"
     )
-    charts = trial_charts(trial)
+    # Of few flights a table or page 1 says more than a figure.
+    few = not trial.swept and len(trial.flown) < COUNTED_MIN
+    charts = [] if few else trial_charts(trial)
     blocks = [*text, *charts, *table] if trial.swept else [*text, *table, *charts]
     return Section(
         anchor=trial.name,

@@ -3,8 +3,8 @@
 import re
 from typing import Any
 
-from reports.document.blocks import Block, Fold, Heading, Table, Text
-from reports.document.tables import first_clause, in_symbols, parameter_value, span
+from reports.document.blocks import Block, Fold, Table, Text
+from reports.document.tables import in_symbols, parameter_value, span
 from reports.flights.names import flown_elsewhere, manoeuvre_name, swept_column
 from reports.flights.trials.tables import OSCILLATION_COLUMNS, flight_table
 from reports.monte_carlo.names import input_name, input_unit
@@ -14,6 +14,8 @@ from reports.run.trials import Parameters, Trial
 
 _HEAD = ["Parameter", "Value", "Default", "Unit", "Meaning and equation"]
 _WIDTHS = [2.5, 1.5, 0.9, 0.5, 4.1]
+
+_ALL = "Parameters that differ from their defaults; report.html and the manifest have all, and what they mean."
 
 
 _OWN = "a table of one's own"
@@ -44,10 +46,19 @@ def parameter_blocks(run: RunData, trials: list[Trial]) -> list[Block]:
         )
     if len(trials) == 1:
         rows = _rows(trials[0]) + _derived(run, trials[0])
-        blocks += [
-            Heading(trials[0].title),
-            _table([[*row[:-1], first_clause(row[-1])] for row in rows]),
-        ]
+        short = _HEAD[:4]
+        blocks.append(
+            Table(
+                caption=_ALL,
+                head=short,
+                rows=[row[: len(short)] for row in rows],
+                widths=[2.6, 3.6, 1.2, 0.8],
+                left_columns=len(short),
+                prose=True,
+                breakable=True,
+            )
+        )
+        more.append(_table(rows))
     else:
         # What a trial is about stands above its figures.
         blocks.append(Text("What each trial sets is in the manifest, and in report.html."))

@@ -80,11 +80,18 @@ def monte_carlo_sections(run: RunData) -> list[Section]:
             nav_title="Distributions",
             blocks=_spread(run, statistics),
         ),
-        Section(
-            anchor="drivers",
-            title="Sensitivity",
-            nav_title="Sensitivity",
-            blocks=_drivers(run, statistics),
+        # Of figures that have indices: few flights have none.
+        *(
+            [
+                Section(
+                    anchor="drivers",
+                    title="Sensitivity",
+                    nav_title="Sensitivity",
+                    blocks=_drivers(run, statistics),
+                )
+            ]
+            if any(found["inputs"] for found in statistics["sensitivity"].values())
+            else []
         ),
     ]
 
@@ -163,12 +170,7 @@ def _drivers(run: RunData, statistics: dict[str, Any]) -> list[Block]:
         " the true index less often, as δ comes out a tenth too low of some hundred flights."
     )
     return [
-        # Of indices that there are: nobody needs to know how to read others.
-        *(
-            [Text(text)]
-            if any(found["inputs"] for found in statistics["sensitivity"].values())
-            else []
-        ),
+        Text(text),
         *(Text(line) for line in left_out_rows(run, statistics["sensitivity"])),
         *driver_charts(run, statistics),
         *scatter_charts(run, statistics),

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from common.run_layout import BOUNDS
-from reports.design.section import innerloop_section
+from reports.design.section import design_words
 from reports.document.blocks import (
     Findings,
     FlightContent,
@@ -70,11 +70,15 @@ def paper_content(run: RunData) -> Findings:
         ),
         *([bounds_section(json.loads(bounds.read_text(encoding="utf-8")))] if bounds.is_file() else []),
         _detail(_flights(run)),
-        innerloop_section(run),
         Section(
             anchor="parameters",
             title="Parameters",
-            blocks=[Heading("What each simulation sets"), _case_table(run), *parameter_blocks(run)],
+            blocks=[
+                Heading("What each simulation sets"),
+                _case_table(run),
+                *parameter_blocks(run),
+                *design_words(run),
+            ],
         ),
     ]  # fmt: skip
     return Findings(

@@ -80,7 +80,7 @@ def test_both_reports_are_built_from_disk_alone(copy, monkeypatch):
 
 def test_the_sweep_shows_everything_in_its_place(report):
     assert [section.anchor for section in report.sections] == [
-        "figures", "trials", "trial1", "comparison", "failed", "flights", "innerloop", "parameters", "provenance",
+        "figures", "trials", "trial1", "comparison", "failed", "flights", "parameters", "provenance",
     ]  # fmt: skip
     names = {
         section.anchor: [c.name for c in blocks_of(report, Chart, section.anchor)]
@@ -94,7 +94,7 @@ def test_the_sweep_shows_everything_in_its_place(report):
         section.anchor: len(blocks_of(report, Table, section.anchor)) for section in report.sections
     }
     assert tables == {
-        "figures": 1, "trials": 1, "trial1": 1, "comparison": 1, "failed": 1, "flights": 0, "innerloop": 0, "parameters": 3,
+        "figures": 1, "trials": 1, "trial1": 1, "comparison": 1, "failed": 1, "flights": 0, "parameters": 3,
         "provenance": 1,
     }  # fmt: skip
     assert all(
@@ -234,7 +234,7 @@ def test_a_record_of_another_aircraft_over_airspeed_and_bank_is_shown_in_the_swe
     (copy / "innerloop.json").write_text(json.dumps(design), encoding="utf-8")
     report = content(read_run(copy))
     assert f"of the {design['title']} in six degrees of freedom" in html_of(report, copy)
-    (line,) = blocks_of(report, Text, "innerloop")
+    (line,) = blocks_of(report, Text, "parameters")
     assert f"plume-flight design {design['aircraft']}" in line.text
 
 

@@ -14,7 +14,7 @@ from reports.design.console import print_summary
 from reports.design.data import complete, excess_overshoot, reversal_sentences, where
 from reports.design.loop_charts import disk_region, turned
 from reports.design.margin_charts import margin_charts
-from reports.design.section import innerloop_section
+from reports.design.section import design_words
 from reports.document.blocks import Table, Text
 from reports.document.chart import Chart
 from reports.errors import ReportError
@@ -212,9 +212,9 @@ def test_how_to_fly_it_elsewhere_names_the_files_that_are_there(report, tmp_path
 
 
 def test_a_report_of_flights_says_where_the_design_is_and_no_more():
-    (line,) = innerloop_section(SimpleNamespace(innerloop=record())).blocks
+    (line,) = design_words(SimpleNamespace(innerloop=record()))
     assert "innerloop.json; plume-flight design c172x" in line.text
-    assert innerloop_section(SimpleNamespace(innerloop=None)).blocks == []
+    assert design_words(SimpleNamespace(innerloop=None)) == []
 
 
 def test_a_limit_is_drawn_only_for_margins_of_which_something_is_required():

@@ -14,7 +14,7 @@ from reports.build import build_reports
 from reports.document.blocks import CARDS_MAX, Card, Heading, Section, Table, Verdict
 from reports.document.chart import Chart
 from reports.document.numbering import figures_in, numbered
-from reports.flights.first_page import closest_and_typical, flights_in_words
+from reports.flights.first_page import flights_in_words, telling_and_typical
 from reports.flights.selection import picked_flights
 from reports.registry import content
 from reports.render import matplotlib_charts
@@ -283,7 +283,7 @@ def test_the_typical_flight_is_at_the_median_of_all_flights_or_nearest_to_it(
     run_path, tmp_path, gone, nearest
 ):
     run, distances = without_histories(run_path, tmp_path, gone)
-    picture = closest_and_typical(read_trials(run))
+    picture = telling_and_typical(read_trials(run))
     typical = min(nearest, key=lambda rank: abs(distances[rank] - distances[2]))
     closest = min(set(range(5)) - set(gone))
     told = "the flight with the closest approach" + (
@@ -324,9 +324,9 @@ def test_flights_shown_one_by_one_have_one_at_the_median_of_all_or_nearest_to_it
 
 def test_long_names_of_flights_stand_below_the_picture(run_path, monkeypatch):
     trials = read_trials(read_run(run_path))
-    named = closest_and_typical(trials)
+    named = telling_and_typical(trials)
     monkeypatch.setattr("reports.flights.first_page._NAME_MAX", 3)
-    bare = closest_and_typical(trials)
+    bare = telling_and_typical(trials)
     for with_name, without in zip(named.panels, bare.panels, strict=True):
         what, name, distance = re.fullmatch(
             r"(\w+): (short_0000\d), (.+ m)", with_name.title
