@@ -22,6 +22,7 @@ from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.files import load_study
 from scenarios.studies import paper
 from scenarios.studies.base import run_study
+from tests.reports.report_parts import numbers_on_page_1
 from tests.run_tables import rows_of
 
 FEW_RESERVES = (0.0, 0.015, 0.2, 0.4, 0.6)
@@ -247,6 +248,26 @@ def few_bounds(monkeypatch):
     monkeypatch.setattr(paper, "RESERVES", (0.0, 0.4))
 
 
+def expected_numbers(path):
+    """Return the numbers that page 1 may have, from the summary, as it writes them."""
+    rows = {row["flight_id"]: row for row in rows_of(path)}
+    ends = [float(row["tracking_error_end_m"]) for row in rows.values()]
+    demands = [float(row["heading_rate_demand_max_rad_s"]) for row in rows.values()]
+    third = rows["sim3_kinematic"]
+    return {
+        *(f"{end:.2f}" for end in ends),
+        *(f"{1000.0 * end:.1f}" for end in ends),
+        *(f"{demand:.3f}" for demand in demands),
+        f"{float(third['crossing_interval_mean_s']):.3f}",
+        f"{float(third['crossing_distance_mean_m']):.2f}",
+        f"{float(third['min_distance_m']):.1f}",
+        f"{float(rows['sim1_kinematic']['duration_s']):.0f}",
+        f"{len(rows)}",
+        # Simulations, statements that are reproduced and all, and what the paper prints.
+        *("1", "2", "3", "8", "9", "9.5", "214", "200", "0.503", "0.1", "0"),
+    }
+
+
 def test_the_kinematic_half_flies_alone(tmp_path, few_bounds):
     scenario = load_study(
         "paper", ["fidelity=kinematic", "guidance.rate_hz=10", "flight.crossings=10"]
@@ -261,6 +282,7 @@ def test_the_kinematic_half_flies_alone(tmp_path, few_bounds):
     assert result.all_met
     # Nothing of the aircraft was designed or loaded for it.
     assert not (tmp_path / "run" / "innerloop.json").exists()
+    assert numbers_on_page_1(tmp_path / "run", tmp_path) <= expected_numbers(tmp_path / "run")
     write_html(content(read_run(tmp_path / "run")), tmp_path / "report.html")
     assert "kinematic vehicle" in (tmp_path / "report.html").read_text(encoding="utf-8")
 

@@ -34,7 +34,7 @@ from reports.document.chart import Chart
 from reports.registry import content
 from reports.run.run_data import read_run
 from scenarios.scenario.files import load_study
-from tests.reports.report_parts import blocks_of, built, flown
+from tests.reports.report_parts import blocks_of, built, flown, numbers_on_page_1
 
 QUICK = (
     "fidelity=kinematic", "guidance.rate_hz=5", "flight.log_rate_hz=5",
@@ -319,3 +319,25 @@ def test_an_arena_that_was_not_evaluated_is_reported_as_flights(path, run):
         assert "plume" not in {section.anchor for section in arena_content(run).sections}
     finally:
         (path / "gone").rename(path / "arena.json")
+
+
+def test_every_number_on_page_1_is_that_of_the_evaluation(path, tmp_path):
+    record = json.loads((path / "arena.json").read_text(encoding="utf-8"))
+    counts = json.loads((path / "verdict.json").read_text(encoding="utf-8"))["whole"]["counts"]
+    ends = [
+        value
+        for entry in record["estimates"]
+        if entry["condition"] == "all"
+        for value in (entry["mean"], entry["low"], entry["high"])
+        if value is not None
+    ]
+    expected = {
+        *(f"{value:.2f}" for value in ends),
+        # The sulphur error of a minute is the inverse root of its mean information.
+        *(f"{1.0 / math.sqrt(value):.4f}" for value in ends if value > 0.0),
+        *(f"{counts[name]}" for name in ("keepout_violations", "lost", "violated", "flown")),
+        *map(str, range(1, len(record["entrants"]))),
+        # Confidence of the intervals, and what is required of violations and losses.
+        *("95", "0"),
+    }
+    assert numbers_on_page_1(path, tmp_path) <= expected

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from convergence_runs import LAWS, REFERENCES, TRAJECTORIES, write_convergence_run
-from report_parts import blocks_of, built, draw_all_but
+from report_parts import blocks_of, built, draw_all_but, numbers_on_page_1
 
 from extensions.convergence.report import FAILED_ROWS, FAILURES_NAMED, settled_time
 from reports.build import build_reports, export_run
@@ -241,3 +241,33 @@ def test_trajectories_are_no_flights_to_export(tmp_path, exporter):
     write_convergence_run(tmp_path / "run", 4)
     with pytest.raises(ReportError, match="has no time histories of flights"):
         export_run(tmp_path / "run", exporter)
+
+
+def test_every_number_on_page_1_is_that_of_the_summary(failed_path, tmp_path):
+    rows = pd.read_csv(failed_path / "summary.csv")
+    proven = rows[rows["law"] != "cascade_cut"]
+    converged = rows["outcome"] == "converged"
+    known = proven[proven["settling_time_predicted_s"].between(0.0, np.inf, inclusive="neither")]
+    ratio = (known["settling_time_s"] / known["settling_time_predicted_s"]).median()
+    commands = rows.groupby("law")["heading_rate_max_rad_s"].max()
+    failures = proven[proven["outcome"] != "converged"]
+    expected = {
+        *(f"{number}" for number in converged.groupby(rows["law"]).sum()),
+        *(f"{number}" for number in rows["law"].value_counts()),
+        *(f"{number:.3f}" for number in commands),
+        *(f"{number:.0f}" for number in commands),
+        *(f"{number}" for number in failures["trajectory"]),
+        *(f"{len(of)}" for of in (proven, proven[proven["outcome"] == "converged"])),
+        f"{rows['trajectory'].nunique()}",
+        f"{rows['settling_time_s'].max():.0f}",
+        f"{ratio:.2f}",
+        f"{manifest_of(failed_path)['config']['guidance']['heading_rate_max_rad_s']:g}",
+        # Equations, by which the laws are named.
+        *("24", "30"),
+    }
+    messages = {
+        number
+        for text in failures["message"].astype(str)
+        for number in re.findall(r"\d+(?:\.\d+)?", text)
+    }
+    assert numbers_on_page_1(failed_path, tmp_path) <= expected | messages

@@ -2,6 +2,7 @@
 one that cannot be.
 """
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -20,7 +21,7 @@ from extensions.patrol.report import (
 )
 from reports.document.blocks import CARDS_MAX
 from reports.run.run_data import read_run
-from tests.reports.report_parts import flown
+from tests.reports.report_parts import flown, numbers_on_page_1
 
 QUICK = (
     "fidelity=kinematic", "guidance.rate_hz=5", "flight.log_rate_hz=5", "flights=1", "patrol.ships=2", "patrol.area_m=9000",
@@ -183,3 +184,19 @@ def test_the_report_is_judged_as_the_study_is(run):
     # The study's exit status is of the same sums: a patrol that did not come through fails both.
     fallen = replace(run, summary=run.summary.assign(criteria_met=False))
     assert (patrol_content(fallen).verdict.holds, counts_of(fallen).met) == (False, False)
+
+
+def test_every_number_on_page_1_is_that_of_the_tables(run, tmp_path):
+    rows = pd.read_csv(run.path / "summary.csv")
+    sums = rows[["served", "correct", "wrong", "open", "verdicts", "oracle_verdicts"]].sum()
+    nearest = rows[["min_distance_m", "others_distance_min_m"]].min()
+    expected = {
+        *(f"{number:.0f}" for number in sums),
+        f"{sums['served'] / (rows['duration_s'].sum() / 3600.0):.1f}",
+        f"{rows['keepout_violations'].sum():.0f}",
+        *(f"{math.floor(10.0 * number) / 10.0:.1f}" for number in nearest.dropna()),
+        *(f"{number:.1f}" for number in nearest.dropna()),
+        # Required: more than 0 ships, 80 % and 5 % of the verdicts, and r_min of 200 m.
+        *("0", "80", "5", "200"),
+    }
+    assert numbers_on_page_1(run.path, tmp_path) <= expected

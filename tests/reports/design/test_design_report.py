@@ -7,7 +7,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from design_runs import AIRSPEEDS, BANKS_DEG, CASES, LOOPS, REVERSALS, record, write_design
-from report_parts import assert_axes_read_quantity_and_unit, blocks_of, built, draw_all_but
+from report_parts import (
+    assert_axes_read_quantity_and_unit,
+    blocks_of,
+    built,
+    draw_all_but,
+    numbers_on_page_1,
+)
 
 from reports.build import build_reports
 from reports.design.console import print_summary
@@ -290,3 +296,41 @@ def test_the_report_and_the_console_say_how_far_reversals_stray(tmp_path, capsys
     ]
     print_summary(record())
     assert "4.39 m nearer" in " ".join(capsys.readouterr().out.split())
+
+
+def test_every_number_on_page_1_is_that_of_the_record(path, tmp_path):
+    design = json.loads((path / "innerloop.json").read_text(encoding="utf-8"))
+    margins = [
+        abs(math.floor(10.0 * row[key] + 1e-6) / 10.0)
+        for row in [*design["margins"], *design["robustness"]]
+        for key in ("gain_db", "phase_deg", "disk_gain_db", "disk_phase_deg")
+        if row.get(key) is not None
+    ]
+    points = {
+        (row["airspeed_mps"], round(math.degrees(row["bank_rad"]), 1)) for row in design["margins"]
+    }
+    flown, model = (
+        next(
+            r["overshoot"]
+            for r in design["responses"]
+            if (r["kind"], r["command"]) == (kind, "heading_rate")
+        )
+        for kind in ("flown", "model")
+    )
+    on_grid = {
+        (row["airspeed_mps"], row["bank_rad"]) for row in design["margins"] if not row["between"]
+    }
+    expected = {
+        *(f"{value:.1f}" for value in margins),
+        *(f"{abs(value):g}" for point in points for value in point),
+        *(f"{value:g}" for value in design["required"].values()),
+        f"{len(on_grid)}",
+        f"{len(points) - len(on_grid)}",
+        f"{len({row['case'] for row in design['robustness'] if not row['periods_late']})}",
+        f"{sum(bool(t['limits']) for t in design['trims'])}",
+        f"{design['heading_rate_lag_s']:.2f}",
+        f"{100.0 * max(0.0, flown - model):.1f}",
+        # Per cent of the perturbations.
+        "20",
+    }
+    assert numbers_on_page_1(path, tmp_path) <= expected

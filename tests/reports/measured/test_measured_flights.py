@@ -1,14 +1,21 @@
 """The report of flights with a sniffer: one as a client reads it, several as a method is judged."""
 
+import json
 import re
 from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 import pytest
-from report_parts import assert_axes_read_quantity_and_unit, blocks_of, named_charts
+from report_parts import (
+    assert_axes_read_quantity_and_unit,
+    blocks_of,
+    named_charts,
+    numbers_on_page_1,
+)
+from scipy.stats import beta
 
-from reports.document.blocks import Table, Text
+from reports.document.blocks import Fold, Table, Text
 from reports.measurement import flight_charts, flight_tables, flights
 from reports.measurement.facts import flown_facts
 from reports.registry import content
@@ -28,7 +35,7 @@ QUICK = (
 def flown(directory, *overrides):
     scenario = load_study("sulphur", (*QUICK, *overrides))
     run_study(scenario, "sulphur", directory, executor_factory=InProcessExecutor)
-    return content(read_run(directory))
+    return directory
 
 
 CONTENT = r"0\.\d{3} % m/m, 95 % interval 0\.\d{3} to 0\.\d{3} %"
@@ -37,22 +44,28 @@ CONTENT = r"0\.\d{3} % m/m, 95 % interval 0\.\d{3} to 0\.\d{3} %"
 
 @pytest.fixture(scope="module")
 def one(tmp_path_factory):
-    return flown(tmp_path_factory.mktemp("one") / "run", "flight.after_settling_s=130")
+    path = flown(tmp_path_factory.mktemp("one") / "run", "flight.after_settling_s=130")
+    return content(read_run(path))
 
 
 @pytest.fixture(scope="module")
-def several(tmp_path_factory):
+def several_path(tmp_path_factory):
     sweeps = (
         'sweep.payload.sensor=["fast","laser"]',
         "sweep.emission.sulphur_percent=[0.05,0.1,0.5]",
         "flights=1",
     )
     more = ("sweep.guidance.bank_deg=[30,45]",)
+    return flown(tmp_path_factory.mktemp("several") / "run", *sweeps, *more)
+
+
+@pytest.fixture(scope="module")
+def several(several_path):
     with pytest.MonkeyPatch.context() as patch:
         # Of each fuel and sensor one flight at either bank: too few for a curve that anybody is to
         # read.
         patch.setattr("reports.measurement.flight_charts._OF_EACH_MIN", 2)
-        return flown(tmp_path_factory.mktemp("several") / "run", *sweeps, *more)
+        return content(read_run(several_path))
 
 
 def test_one_flight_is_told_with_result_probability_and_limit(one):
@@ -102,7 +115,11 @@ def test_several_flights_are_judged_as_a_method(several):
     assert {"sulphur-errors", "operating-curve", "sulphur-trajectory"} <= set(charts)
     assert_axes_read_quantity_and_unit(charts.values())
     (section,) = [section for section in several.sections if section.anchor == "sulphur"]
-    accuracy, best, calls, hits = [block for block in section.blocks if isinstance(block, Table)]
+    verdicts, accuracy, best, calls, hits = [
+        block for block in section.blocks if isinstance(block, Table)
+    ]
+    assert [row[:2] for row in verdicts.rows] == [["0.1", "fast"], ["0.1", "laser"]]
+    assert sum(int(cell) for row in verdicts.rows for cell in row[2:]) == 12
     assert [row[:3] for row in accuracy.rows] == [
         ["fast", "equalise and regress", "6"], ["fast", "areas of passes", "6"],
         ["laser", "equalise and regress", "6"], ["laser", "areas of passes", "6"],
@@ -116,7 +133,39 @@ def test_several_flights_are_judged_as_a_method(several):
         row[0].startswith("Crossings of the plume's mean axis, with smoke or without")
         for row in hits.rows
     )
-    assert any("Bias of the sulphur content" in name for name, *_ in several.verdict.figures)
+    names = [card.name for card in several.verdict.cards]
+    assert {"Relative error, fast, median", "Relative error, laser, median"} <= set(names)
+    # Flights are folded away, which are not what the study asks about.
+    (whole,) = [section for section in several.sections if section.anchor == "sulphur"]
+    assert not any(isinstance(block, Fold) for block in whole.blocks)
+
+
+def test_every_number_on_page_1_of_several_flights_is_that_of_the_summary(several_path, tmp_path):
+    rows = pd.read_csv(several_path / "summary.csv")
+    verdict = json.loads((several_path / "verdict.json").read_text(encoding="utf-8"))
+    called, expected = rows["sulphur_verdict"], rows["fsc_expected_percent"]
+    above = rows["fsc_fuel_percent"] > rows["sulphur_limit_percent"]
+    right = ((called == "above") & above) | ((called == "below") & ~above)
+    decided = called != "open"
+    held = rows["fsc_low_percent"].le(expected) & expected.le(rows["fsc_high_percent"])
+    errors = (rows["fsc_percent"] / expected - 1.0).abs().groupby(rows["sensor"])
+    # Exact upper limit of a proportion with no event, or with some (Clopper and Pearson).
+    wrong = int((decided & ~right).sum())
+    most = beta.ppf(0.975, wrong + 1, int(decided.sum()) - wrong)
+    counts = verdict["whole"]["counts"]
+    known = {
+        *(f"{len(of)}" for of in (rows, rows[decided], rows[~decided], rows[held], rows[right])),
+        f"{wrong}",
+        *(f"{100.0 * error:.3g}" for error in (*errors.median(), *errors.max())),
+        f"{100.0 * most:.3g}",
+        *(f"{counts[name]}" for name in ("kept_out", "beside", "completed", "done", "planned")),
+        # Confidence, the limit, and that no flight is without a result.
+        *("95", "0.10", "0"),
+    }
+    told = set(
+        re.findall(r"\d+(?:\.\d+)?", " ".join(content(read_run(several_path)).verdict.failures))
+    )
+    assert numbers_on_page_1(several_path, tmp_path) <= known | told
 
 
 def test_page_1_tells_the_fuel_with_interval_and_verdict_before_the_keep_out_area(one, several):
@@ -146,7 +195,7 @@ def test_a_verdict_is_right_or_wrong_by_the_fuel_that_was_simulated():
 ROW = {
     "fsc_percent": 0.5, "fsc_low_percent": 0.461, "fsc_high_percent": 0.539, "sulphur_limit_percent": 0.1, "probability_above": 1.0,
     "sulphur_verdict": "above", "sulphur_quality": "A", "sulphur_reason": "", "fsc_fuel_percent": 0.5, "fsc_expected_percent": 0.49,
-    "duration_s": 600.0,
+    "duration_s": 600.0, "sensor": "fast",
 }  # fmt: skip
 """Of a flight that measured the fuel, in the summary."""
 
