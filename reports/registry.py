@@ -44,14 +44,15 @@ STUDIES: dict[str, Callable[[RunData], Findings]] = {
     "design": design_content,
     "measurement": measurement_content,
 }
-"""A study, as its manifest names it, and what makes the findings of its report; one of flights gives
-``flights_content`` the answer to its question. An installed package announces more of them in the group ``plume_flight_study.report``, by the name of their study; the
-class of a study in a file has its own as an attribute ``report``.
+"""A study, as its manifest names it, and what makes the findings of its report; one of flights
+gives ``flights_content`` the answer to its question. An installed package announces more of them in
+the group ``plume_flight_study.report``, by the name of their study; the class of a study in a file
+has its own as an attribute ``report``.
 """
 
 SECTIONS = "report_section"
-"""Group of entry points, ``plume_flight_study.report_section``: functions that return sections which
-reports of every study have at their end, given the run.
+"""Group of entry points, ``plume_flight_study.report_section``: functions that return sections
+which reports of every study have at their end, given the run.
 """
 
 
@@ -113,7 +114,8 @@ def _findings_of(run: RunData) -> Callable[[RunData], Findings]:
             return flights_content
     known = [*STUDIES, *sorted(announced("report"))]
     raise ReportError(
-        f"'{run.path}': study is {study!r}, which has no report; those that have one: {', '.join(known)}"
+        f"'{run.path}': study is {study!r}, which has no report; those that have one:"
+        f" {', '.join(known)}"
     )
 
 

@@ -25,7 +25,7 @@ MEASURING_FIGURES = (CROSSINGS, PLUME_TIME, SULPHUR, "crossing_distance_mean_m")
 
 
 def _error_of_a_minute(information: float) -> float:
-    """Return the standard uncertainty of the information of a minute: infinite where there is none."""
+    """Return the standard uncertainty of the information of a minute; infinite without any."""
     if math.isnan(information):
         return math.nan
     return 1.0 / math.sqrt(information) if information > 0.0 else math.inf

@@ -537,8 +537,8 @@ def by_condition_table(arena: Arena, figure: str, *, tracking: bool | None = Non
 
 
 def tuning_table(arena: Arena) -> Table:
-    """Return the tuning of each law: what it makes use of, its parameters, and what either set costs
-    the tuner.
+    """Return the tuning of each law: what it makes use of, its parameters, and what either set
+    costs the tuner.
     """
 
     def parameters(entrant: Entrant) -> str:

@@ -309,7 +309,7 @@ def converged_count(rows: pd.DataFrame) -> int:
 
 
 def command_words(rows: pd.DataFrame) -> str:
-    """Return the largest heading rate that was commanded, in rad/s: under law (24) it has no limit."""
+    """Return the largest heading rate that was commanded [rad/s]; law (24) has no limit."""
     largest = rows["heading_rate_max_rad_s"].max()
     return number(largest, "{:,.0f}" if largest >= 100.0 else "{:.3f}")
 

@@ -98,16 +98,16 @@ _RESIDUAL = (
     " (m/s² or rad/s²)."
 )
 _VERIFICATION = (
-    "The linear model's answer to a small input against that of the simulation, in which servos have"
-    " no play here: largest error as a fraction of the largest excursion. An aircraft whose servos"
-    " have play may fly with a limit cycle, which no linear model has; page 1 says so. Of jets the"
-    " throttle's error is the largest: its lag is measured with a throttle step of 0.05, as a"
-    " turbine spools at a steady rate, and here the throttle moves by 0.01."
+    "The linear model's answer to a small input against that of the simulation, in which servos"
+    " have no play here: largest error as a fraction of the largest excursion. An aircraft whose"
+    " servos have play may fly with a limit cycle, which no linear model has; page 1 says so. Of"
+    " jets the throttle's error is the largest: its lag is measured with a throttle step of 0.05,"
+    " as a turbine spools at a steady rate, and here the throttle moves by 0.01."
 )
 _WEIGHTS = (
     "Gains follow from the linear models by weights. By Bryson's rule the weight of a quantity is"
-    " one over the square of its acceptable deviation. The table lists these deviations, one set for"
-    " the whole grid; the weights of controls follow from them and from the bandwidths at each"
+    " one over the square of its acceptable deviation. The table lists these deviations, one set"
+    " for the whole grid; the weights of controls follow from them and from the bandwidths at each"
     " airspeed. Below them: the model that the heading rate follows, the largest errors of altitude"
     " and airspeed that the autopilot acts on, the anti-windup rate, and the computing rate."
 )

@@ -183,9 +183,10 @@ def damping(pole: tuple[float, float]) -> float:
 
 
 _REVERSAL = (
-    "A reversal of the turn at {bank_deg:.0f}° of bank is predicted by a dead time of {delay_s:.2f}"
-    " s and a lag of {lag_s:.2f} s. In {reversals} reversals that a search flew the aircraft came up"
-    " to {deviation_max_m:.2f} m nearer to what it turned away from than predicted{worst}."
+    "A reversal of the turn at {bank_deg:.0f}° of bank is predicted by a dead time of"
+    " {delay_s:.2f} s and a lag of {lag_s:.2f} s. In {reversals} reversals that a search flew the"
+    " aircraft came up to {deviation_max_m:.2f} m nearer to what it turned away from than"
+    " predicted{worst}."
 )
 _OTHERS = "In the {unguided_reversals} others at most {deviation_99_percent_m:.2f} m."
 _OTHERS_OF_MANY = (
@@ -217,13 +218,14 @@ def limit_cycle_sentence(design: Record) -> str:
     amplitudes = _amplitudes(found)
     if found["is_flown"]:
         return (
-            f"Its servos have play: straight and level in still air it flies with a limit cycle of {found['period_s']:.1f} s,"
-            f" altitude ±{amplitudes[0]} and bank ±{amplitudes[1]}, which no linear model and no margin shows."
+            "Its servos have play: straight and level in still air it flies with a limit cycle of"
+            f" {found['period_s']:.1f} s, altitude ±{amplitudes[0]} and bank ±{amplitudes[1]},"
+            " which no linear model and no margin shows."
         )
     least = _amplitudes(found["counted_from"])
     return (
-        f"Its servos have play; straight and level in still air it flew with no sustained oscillation from {least[0]} of altitude"
-        f" or {least[1]} of bank on."
+        "Its servos have play; straight and level in still air it flew with no sustained"
+        f" oscillation from {least[0]} of altitude or {least[1]} of bank on."
     )
 
 

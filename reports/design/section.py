@@ -4,7 +4,10 @@ from common.run_layout import DESIGN_RECORD
 from reports.document.blocks import Text
 from reports.run.run_data import RunData
 
-_WHERE = "The design of the autopilot stands in {record}; plume-flight design {aircraft} makes its report."
+_WHERE = (
+    "The design of the autopilot stands in {record}; plume-flight design {aircraft} makes its"
+    " report."
+)
 
 
 def design_words(run: RunData) -> list[Text]:

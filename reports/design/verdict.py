@@ -86,8 +86,8 @@ def _nominal_failures(design: Record) -> dict[tuple[str, str], str]:
             if row is not None:
                 points = f"{len(short)} of {len(rows)} points"
                 failures[loop, kind] = (
-                    f"{loop_name(row)}: {kind} margin {down(row[key])} {unit} at {where(row)}, required"
-                    f" {design['required'][key]:g} {unit}; short at {points}"
+                    f"{loop_name(row)}: {kind} margin {down(row[key])} {unit} at {where(row)},"
+                    f" required {design['required'][key]:g} {unit}; short at {points}"
                 )
     return failures
 
@@ -100,7 +100,8 @@ def _perturbed_failures(design: Record) -> list[str]:
         unstable = _points([row for row in rows if not row["stable"]])
         if unstable:
             failures.append(
-                f"{case_name(rows[0])}: unstable at {len(unstable)} of {len(_points(rows))} points, as at {unstable[0]}"
+                f"{case_name(rows[0])}: unstable at {len(unstable)} of {len(_points(rows))}"
+                f" points, as at {unstable[0]}"
             )
             continue
         for kind, key, unit in (("gain", "gain_db", "dB"), ("phase", "phase_deg", "deg")):
@@ -109,8 +110,8 @@ def _perturbed_failures(design: Record) -> list[str]:
             if row is not None:
                 loop = str(row[f"{kind}_loop"]).replace("_", " ")
                 failures.append(
-                    f"{case_name(row)}: {kind} margin {down(row[key])} {unit} of {loop} at {where(row)},"
-                    f" required {required:g} {unit}"
+                    f"{case_name(row)}: {kind} margin {down(row[key])} {unit} of {loop} at"
+                    f" {where(row)}, required {required:g} {unit}"
                 )
     return failures
 

@@ -63,7 +63,8 @@ def accuracy_table(statistics: Record) -> Table:
     rows = [entry for entry in statistics["accuracy"] if entry["fsc_fuel_percent"] is None]
     return Table(caption="Bias, spread and coverage, by sensor and method.",
         head=[
-            "Sensor", "Method", "Flights", f"Bias [{MASS_PERCENT}]", "Share read", "Predicted", f"Spread, 1σ [{MASS_PERCENT}]",
+            "Sensor", "Method", "Flights", f"Bias [{MASS_PERCENT}]", "Share read", "Predicted",
+            f"Spread, 1σ [{MASS_PERCENT}]",
             f"Stated, 1σ [{MASS_PERCENT}]", f"Of it noise [{MASS_PERCENT}]", "Covered",
             f"Interval at {percent(statistics['confidence'])}",
         ],
@@ -73,7 +74,8 @@ def accuracy_table(statistics: Record) -> Table:
                 METHODS[entry["method"]],
                 f"{entry['flights']:,}",
                 number(entry["bias_percent"], "{:+.4f}"),
-                *("–" if share is None else percent(share) for share in (entry["share_read"], entry["share_predicted"])),
+                *("–" if share is None else percent(share) for share in (entry["share_read"],
+                entry["share_predicted"])),
                 number(entry["spread_percent"], "{:.4f}"),
                 number(entry["stated_percent"], "{:.4f}"),
                 number(entry["stated_noise_percent"], "{:.4f}"),
@@ -159,7 +161,10 @@ def best_table(run: RunData, rows: pd.DataFrame) -> Table:
     ranked = pd.concat([rows, noise], axis=1).sort_values("minute")
     best = pd.concat([group.head(_BEST) for _, group in ranked.groupby("sensor")])
     return Table(
-        caption="Trajectories that leave the least noise after a minute, by sensor, and what each method reads on them.",
+        caption=(
+            "Trajectories that leave the least noise after a minute, by sensor, and what each"
+            " method reads on them."
+        ),
         head=[
             "Sensor",
             "ν",

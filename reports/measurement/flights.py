@@ -1,5 +1,5 @@
-"""What flights with a sniffer show of the fuel, one flight as a client reads it; how many are judged
-is in ``reports.measurement.method``.
+"""What flights with a sniffer show of the fuel, one flight as a client reads it; how many are
+judged is in ``reports.measurement.method``.
 """
 
 from typing import Any
@@ -120,8 +120,8 @@ def sulphur_below(run: RunData) -> bool:
 
 
 def sulphur_headline(run: RunData) -> str:
-    """Return the verdict on the fuel, with its content and interval, in a sentence; no word of a run
-    without a sniffer.
+    """Return the verdict on the fuel, with its content and interval, in a sentence; no word of a
+    run without a sniffer.
     """
     measured, sniffed = measured_flights(run), flights_flown(run.summary)
     if "fsc_percent" not in run.summary:
@@ -183,7 +183,7 @@ def _flight(run: RunData, measured: pd.DataFrame, name: Name) -> Section | None:
 
 
 def _since(run: RunData, row: "pd.Series[Any]") -> str:
-    """Return what the time of an estimate is counted from: it begins where readings are evaluated."""
+    """Return what the time of an estimate is counted from: where evaluation begins."""
     window = flight_config(run, row).get("flight", {}).get("measured_s")
     return "the flight settled" if window is None else "the evaluation began"
 

@@ -115,7 +115,7 @@ def _held(rows: pd.DataFrame) -> Mask:
 
 
 def _errors(rows: pd.DataFrame) -> Iterator[Card]:
-    """Yield the relative error of each instrument, as its median, and the flight with the largest."""
+    """Yield the median relative error of each instrument, and the flight with the largest."""
     for sensor, group in rows.groupby("sensor"):
         shares = share_read(column(group, "fsc_percent"), column(group, "fsc_expected_percent"))
         errors = np.abs(shares - 1.0)

@@ -49,7 +49,7 @@ def measurement_verdict(record: Record) -> Verdict:
 
 
 def sentence(verdict: dict[str, Any], quality: str, *, known: bool) -> str:
-    """Return a verdict in words; that there is none without a result, or of a record of quality C."""
+    """Return a verdict in words; there is none without a result, or with quality C."""
     limit = float(verdict["limit_percent"])
     if not known:
         return f"Nothing can be said of the limit of {limit_words(limit)}: there is no result"
@@ -76,7 +76,10 @@ def _result(record: Record) -> str:
     content = content_words(
         value(found, "fsc_percent"), value(found, "low_percent"), value(found, "high_percent")
     )
-    return f"Fuel sulphur content {content}, from {passes} in {figures['duration_s']:.0f} s. Quality {found['quality']}."
+    return (
+        f"Fuel sulphur content {content}, from {passes} in {figures['duration_s']:.0f} s. Quality"
+        f" {found['quality']}."
+    )
 
 
 def _decision(record: Record) -> str:

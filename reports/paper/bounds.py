@@ -33,24 +33,26 @@ def bounds_section(record: dict[str, Any]) -> Section:
 
 
 _BOUND = (
-    "The paper's abstract announces sufficient conditions for the heading rate to stay within its bound; its text does not"
-    " print them. docs/actuation_bounds.md derives one. The bound holds for law (30) in every state, at any distance and on any"
-    " course; beside it stands the largest command that was found by a search over {samples:,} states, refined from the worst of"
-    " them."
+    "The paper's abstract announces sufficient conditions for the heading rate to stay within its"
+    " bound; its text does not print them. docs/actuation_bounds.md derives one. The bound holds"
+    " for law (30) in every state, at any distance and on any course; beside it stands the largest"
+    " command that was found by a search over {samples:,} states, refined from the worst of them."
 )
 
 _COST = (
-    "On the reference itself the law demands ω_r plus what h and V/R add, so a reference that spends all of ω_max, as the"
-    " paper's Simulation 3 does, leaves no ε, R and h that keep commands within ω_max. A reserve buys them. The parameters below"
-    " converge fastest among those that keep every command within ω_max; the price is a longer look-ahead, hence slower"
-    " convergence, and a longer crossing interval. The catalog's Simulation 3 and sweep do not pay it: their commands are cut at"
-    " ω_max on the way to the reference. guidance.tuning=bounded with a guidance.reserve of some tenths flies with the"
-    " guarantee."
+    "On the reference itself the law demands ω_r plus what h and V/R add, so a reference that"
+    " spends all of ω_max, as the paper's Simulation 3 does, leaves no ε, R and h that keep"
+    " commands within ω_max. A reserve buys them. The parameters below converge fastest among"
+    " those that keep every command within ω_max; the price is a longer look-ahead, hence slower"
+    " convergence, and a longer crossing interval. The catalog's Simulation 3 and sweep do not pay"
+    " it: their commands are cut at ω_max on the way to the reference. guidance.tuning=bounded"
+    " with a guidance.reserve of some tenths flies with the guarantee."
 )
 
 _COST_FOR = (
-    "For speeds up to {speed_mps:g} m/s, which is the largest commanded airspeed and for an aircraft a margin, and ω_max ="
-    " {heading_rate_max_rad_s:g} rad/s; the time is estimated from {distance_from_m:g} m to {distance_to_m:g} m."
+    "For speeds up to {speed_mps:g} m/s, which is the largest commanded airspeed and for an"
+    " aircraft a margin, and ω_max = {heading_rate_max_rad_s:g} rad/s; the time is estimated from"
+    " {distance_from_m:g} m to {distance_to_m:g} m."
 )
 
 
@@ -111,7 +113,10 @@ def _cost_chart(rows: list[dict[str, Any]]) -> Chart:
 
     return Chart(
         name="boundcost",
-        caption=f"What it costs that the demand of the law stays within ω_max in every state, at ν = {rows[0]['nu']:g}.",
+        caption=(
+            "What it costs that the demand of the law stays within ω_max in every state, at ν ="
+            f" {rows[0]['nu']:g}."
+        ),
         panels=[
             panel("convergence_time_s", "Estimated time to settle [s]"),
             panel("crossing_interval_s", "Crossing interval [s]"),

@@ -51,7 +51,6 @@ from reports.run.trials import read_trials
 
 def paper_content(run: RunData) -> Findings:
     """Return the findings of the paper's simulations."""
-    bounds = run.path / BOUNDS
     sections = [
         Section(
             anchor="numbers",
@@ -63,12 +62,8 @@ def paper_content(run: RunData) -> Findings:
                 Fold(title="The flights, one by one", blocks=[_flight_table(run)]),
             ],
         ),
-        *(
-            Section(anchor=f"sim{i}", title=f"Simulation {i}: {title}", nav_title=f"Sim. {i}", blocks=[Text(text), *charts])
-            for i, (title, text, figures) in enumerate(_SIMULATIONS, start=1)
-            if (charts := [chart for chart in figures(run) if chart.panels])
-        ),
-        *([bounds_section(json.loads(bounds.read_text(encoding="utf-8")))] if bounds.is_file() else []),
+        *_simulations(run),
+        *_bounds(run),
         _detail(_flights(run)),
         Section(
             anchor="parameters",
@@ -80,10 +75,33 @@ def paper_content(run: RunData) -> Findings:
                 *design_words(run),
             ],
         ),
-    ]  # fmt: skip
+    ]
     return Findings(
         flown=_flown(run), verdict=paper_verdict(run), picture=_picture(run), sections=sections
     )
+
+
+def _simulations(run: RunData) -> list[Section]:
+    """Return a section for each simulation that has a figure."""
+    shown = (
+        (i, title, text, [chart for chart in figures(run) if chart.panels])
+        for i, (title, text, figures) in enumerate(_SIMULATIONS, start=1)
+    )
+    return [
+        Section(
+            anchor=f"sim{i}",
+            title=f"Simulation {i}: {title}",
+            nav_title=f"Sim. {i}",
+            blocks=[Text(text), *charts],
+        )
+        for i, title, text, charts in shown
+        if charts
+    ]
+
+
+def _bounds(run: RunData) -> list[Section]:
+    path = run.path / BOUNDS
+    return [bounds_section(json.loads(path.read_text(encoding="utf-8")))] if path.is_file() else []
 
 
 def _flown(run: RunData) -> str:
@@ -113,27 +131,30 @@ def _picture(run: RunData) -> Chart | None:
 
 
 _NUMBERS = (
-    "The same guidance steers both vehicles, from the same starts. The kinematic vehicle keeps its speed, as in the paper; the"
-    " aircraft is flown as everywhere in this study, its airspeed trimmed by the along-track error. The paper prints neither"
-    " gains nor starts: what can be compared are the numbers and statements of its section V."
+    "The same guidance steers both vehicles, from the same starts. The kinematic vehicle keeps"
+    " its speed, as in the paper; the aircraft is flown as everywhere in this study, its airspeed"
+    " trimmed by the along-track error. The paper prints neither gains nor starts: what can be"
+    " compared are the numbers and statements of its section V."
 )
 
 _SIM_ONE = (
-    "The UAV starts beside the reference and heads the other way. Look-ahead and steering are those that converge fastest while"
-    " the heading-rate demand of the law stays within ω_max in every state (see the section on actuation bounds). That is why it"
-    " turns so gently, and strays hundreds of metres before it comes back: the price of the guarantee."
+    "The UAV starts beside the reference and heads the other way. Look-ahead and steering are"
+    " those that converge fastest while the heading-rate demand of the law stays within ω_max in"
+    " every state (see the section on actuation bounds). That is why it turns so gently, and"
+    " strays hundreds of metres before it comes back: the price of the guarantee."
 )
 
 _SIM_TWO = (
-    "Both UAVs start in front of the reference and fly towards it. Passing it, the line of sight turns arbitrarily fast: there"
-    " is the singularity that the δ formulation takes away. The paper has UAV 1 converge fast onto the reference. That is not"
-    " reproduced: with our gain it is near within seconds, but at constant speed stays behind for good."
+    "Both UAVs start in front of the reference and fly towards it. Passing it, the line of sight"
+    " turns arbitrarily fast: there is the singularity that the δ formulation takes away. The"
+    " paper has UAV 1 converge fast onto the reference. That is not reproduced: with our gain it"
+    " is near within seconds, but at constant speed stays behind for good."
 )
 
 _SIM_THREE = (
-    "A vessel on a straight course, the UAV from a random place behind it. In the paper the vessel has half the UAV's speed,"
-    " and the reference spends all of ω_max; then no parameters keep the demand of the law within it, and commands are cut at"
-    " ω_max."
+    "A vessel on a straight course, the UAV from a random place behind it. In the paper the"
+    " vessel has half the UAV's speed, and the reference spends all of ω_max; then no parameters"
+    " keep the demand of the law within it, and commands are cut at ω_max."
 )
 
 _SIMULATIONS = (
@@ -253,7 +274,7 @@ def _flights(run: RunData) -> FlightPicker:
 
 
 def _is_elsewhere(values: dict[str, Any]) -> bool:
-    """Return whether a case sets anything of the world that the figures of a flight are drawn in."""
+    """Return whether a case sets the world that the figures of a flight are drawn in."""
     return any(
         key.startswith(("vessel", "plume", "keepout", "guidance.airspeed_mps")) for key in values
     )
