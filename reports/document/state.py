@@ -15,7 +15,7 @@ def state_words(
     """
     if is_done:
         return []
-    word = "Interrupted" if interrupted else "Incomplete"
+    word = "INTERRUPTED" if interrupted else "INCOMPLETE"
     if done == planned:
         return [f"{word} before its end"]
     return [f"{word} after {done:,} of {planned:,} {what}"]

@@ -78,7 +78,7 @@ def test_an_unfinished_study_is_not_called_complete(tmp_path):
     assert report.verdict.holds
     assert not report.verdict.complete
     assert report.verdict.headline.startswith(
-        "Interrupted after 60 of 200 trajectories. All 60 trajectories converged; "
+        "INTERRUPTED after 60 of 200 trajectories. All 60 trajectories converged; "
     )
     assert "continue it with --resume" in report.verdict.detail
 
@@ -100,7 +100,7 @@ def test_trajectories_that_were_lost_with_their_process_are_no_counter_examples(
     assert report.verdict.holds
     assert not report.verdict.complete
     assert report.verdict.headline.startswith(
-        "Incomplete after 50 of 60 trajectories. All 50 trajectories converged; "
+        "INCOMPLETE after 50 of 60 trajectories. All 50 trajectories converged; "
     )
     assert (
         "10 trajectories were lost with their processes, and count as not flown; --resume"
