@@ -18,7 +18,7 @@ def provenance_section(run: RunData, head: Letterhead) -> Section:
         row for rows in (_made(run, head), _vehicle(run), _hashes(run), _host(run)) for row in rows
     ]
     caption = "How the run was made; with the same source, input and seed it can be made again."
-    table = pairs_table(rows, caption=caption, breakable=True, print_size_pt=8.0)
+    table = pairs_table(rows, caption=caption, breakable=True, print_size_pt=6.5)
     return Section(anchor="provenance", title="Provenance", blocks=[table])
 
 

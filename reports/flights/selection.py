@@ -186,12 +186,14 @@ def _rank(why: str) -> int:
 def _candidates(trial: Trial) -> Iterator[tuple["pd.Series[Any]", str]]:
     """Yield a trial's flights to look at, the most important first: one of each sort, none twice."""
     rows, near = trial.rows, beside_vessel(trial.rows)
-    severe = by_severity(rows[severity(rows) < len(SEVERE)])
+    severe = [rows[severity(rows) == place] for place in range(len(SEVERE))]
     failed = rows[~met(rows) & (severity(rows) == len(SEVERE))]
     # Of the others, those that have a time history: they are chosen for their figures.
     recorded, distances = trial.run.with_history(near), clearance(near)
     least, middle = (_LEAST_BEYOND, _MEDIAN_BEYOND) if radii_differ(near) else (_CLOSEST, _MEDIAN)
-    chosen = [(of.iloc[0], SEVERE[place]) for place, of in severe.groupby(severity(severe))]
+    chosen = [
+        (by_severity(of).iloc[0], what) for what, of in zip(SEVERE, severe, strict=True) if len(of)
+    ]
     if len(failed):
         # One to look at, if there is any.
         shown = failed[trial.run.with_history(failed)]
