@@ -52,6 +52,9 @@ _ORDER = (*SEVERE, _FAILED, _CLOSEST, _LEAST_BEYOND, _ALONE)
 PRINTED_MAX = 1
 """Flights that have a page in print, the most telling first: the page on the screen has all."""
 
+Picked = tuple[Trial, "pd.Series[Any]", str]
+"""A flight that is shown: its trial, its row, and why it is."""
+
 _CHOSEN = (
     "{which}: one that lost its aircraft, diverged, violated the keep-out area or failed a"
     " criterion, the closest approach, and the median of closest approaches. report.pdf shows the"
@@ -71,7 +74,7 @@ def flight_section(trials: list[Trial]) -> Section:
     """Return the section of single flights."""
     swept = len(trials) == 1 and bool(trials[0].swept) and len(trials[0].rows) <= SWEPT_MAX
     picked = picked_flights(trials)
-    printed = _printed([why for _, _, why in picked])
+    printed = _printed(picked)
     if swept and len(trials[0].rows) > 1:
         telling = {str(picked[i][1]["flight_id"]): picked[i][2] for i in printed}
         flights = [
@@ -96,10 +99,14 @@ def flight_section(trials: list[Trial]) -> Section:
     )
 
 
-def _printed(reasons: Sequence[str]) -> list[int]:
-    """Return the numbers of the flights that are printed, given why each is shown."""
-    told = [number for number, why in enumerate(reasons) if why in _ORDER]
-    return sorted(told, key=lambda number: _ORDER.index(reasons[number]))[:PRINTED_MAX]
+def _printed(picked: Sequence[Picked]) -> list[int]:
+    """Return the numbers of the flights that are printed, those with a time history first."""
+    told = [
+        (not trial.run.has_history(str(row["flight_id"])), _ORDER.index(why), number)
+        for number, (trial, row, why) in enumerate(picked)
+        if why in _ORDER
+    ]
+    return [number for *_, number in sorted(told)[:PRINTED_MAX]]
 
 
 def _only(trials: list[Trial]) -> str:
@@ -161,7 +168,7 @@ def _state(row: "pd.Series[Any]", why: str) -> str:
     return why if row["criteria_met"] or why in (*SEVERE, _FAILED) else f"{why}, {_FAILED}"
 
 
-def picked_flights(trials: list[Trial]) -> list[tuple[Trial, "pd.Series[Any]", str]]:
+def picked_flights(trials: list[Trial]) -> list[Picked]:
     """Return the flights to be shown, at most ``PICKED_MAX``, in the trials' order, and why each of
     them is.
 

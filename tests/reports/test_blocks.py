@@ -108,7 +108,7 @@ def test_a_picker_offers_flights_by_their_labels_and_a_report_without_one_has_no
         for i in ("a", "b")
     ]
     text = html_of([FlightPicker(flights=flights)], tmp_path)
-    assert re.findall(r'<option value="(\w)">(.*?)</option>', text) == [
+    assert re.findall(r'<option value="(\w)" data-telling>(.*?)</option>', text) == [
         ("a", "label a"),
         ("b", "label b"),
     ]
