@@ -125,7 +125,7 @@ def ship_words(*about: Surroundings, panels: Sequence[Panel] | None = None) -> s
         " Its width is two standard deviations of the mean smoke to either side." if smoke else ""
     )
     told = "; ".join(
-        [f"the keep-out {shapes} is about her funnel"] * (AREA in shown) + [hulls] * (SHIP in shown)
+        [f"the keep-out {shapes} is about the funnel"] * (AREA in shown) + [hulls] * (SHIP in shown)
     )
     still = "Ship, north and wind are" if SHIP in shown else "North and wind are"
     moved = f" {still} as they were at the closest approach." if changing else ""
@@ -140,5 +140,5 @@ def hull_words(hull: Hull) -> str:
     """Return how large a ship is drawn, and why."""
     size = f"{hull.length:g} m by {hull.beam:g} m"
     if hull.known:
-        return f"her hull is that of {hull.title}, {size}, as the scenario gives none"
-    return f"her size is not known, and drawn is {hull.title} of {size}"
+        return f"the scenario gives no hull: that of {hull.title}, {size}, is drawn"
+    return f"the scenario gives no hull: {hull.title} of {size} is drawn"

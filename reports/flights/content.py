@@ -132,7 +132,8 @@ def _trial(trial: Trial, *, only: bool) -> Section:
     table: list[Block] = []
     if trial.kind is Kind.FAULTS and len(trial.flown):
         table.append(fault_table(trial))
-    if trial.swept or (only and len(trial.rows) <= _LISTED_MAX):
+    # Page 1 says of a flight alone what a table of one row would.
+    if trial.swept or (only and 1 < len(trial.rows) <= _LISTED_MAX):
         head, name = swept_column(trial) if trial.swept else ("Flight", partial(flight_name, trial))
         caption = " ".join(
             [

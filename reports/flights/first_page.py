@@ -23,7 +23,6 @@ from reports.run.columns import (
     radii_differ,
     recorded_at,
     severity,
-    total,
 )
 from reports.run.flight_config import flight_configs, wind_changes
 from reports.run.run_data import RunData
@@ -72,7 +71,7 @@ def simulated(flown: pd.DataFrame) -> str:
     """Return how long all flights took together; less than an hour is told in minutes, less than
     two minutes in seconds.
     """
-    time = total(flown, "duration_s") / SECONDS_PER_HOUR
+    time = float(np.nansum(column(flown, "duration_s"))) / SECONDS_PER_HOUR
     if 60.0 * time < _MINUTES_MIN:
         return f"{SECONDS_PER_HOUR * time:.0f} s simulated"
     if time < 1.0:

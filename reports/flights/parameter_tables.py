@@ -17,6 +17,8 @@ _WIDTHS = [2.5, 1.5, 0.9, 0.5, 4.1]
 
 _ALL = "Parameters that differ from their defaults; report.html and the manifest have all, and what they mean."
 
+_VALUE, _NO_DEFAULT = "{value} ({default})", " ()"
+"""How a value and its default are written, and what is left of that without a default."""
 
 _OWN = "a table of one's own"
 """Value of a key whose table has its keys in rows of their own."""
@@ -46,18 +48,7 @@ def parameter_blocks(run: RunData, trials: list[Trial]) -> list[Block]:
         )
     if len(trials) == 1:
         rows = _rows(trials[0]) + _derived(run, trials[0])
-        short = _HEAD[:4]
-        blocks.append(
-            Table(
-                caption=_ALL,
-                head=short,
-                rows=[row[: len(short)] for row in rows],
-                widths=[2.6, 3.6, 1.2, 0.8],
-                left_columns=len(short),
-                prose=True,
-                breakable=True,
-            )
-        )
+        blocks.append(_in_two_columns(rows))
         more.append(_table(rows))
     else:
         # What a trial is about stands above its figures.
@@ -66,6 +57,26 @@ def parameter_blocks(run: RunData, trials: list[Trial]) -> list[Block]:
     every = [[p["key"], "", _default(p), p["unit"], p["meaning"]] for p in trials[0].parameters()]
     title = "Every parameter, with its default"
     return [*blocks, Fold(title=title, blocks=[*more, _table(every)])]
+
+
+def _in_two_columns(rows: list[list[str]]) -> Table:
+    """Return parameters with their values and defaults, without their meanings."""
+    half = -(-len(rows) // 2)
+    cells = [
+        [row[0], _VALUE.format(value=f"{row[1]} {row[3]}".strip(), default=row[2])] for row in rows
+    ]
+    short = [[name, value.removesuffix(_NO_DEFAULT)] for name, value in cells]
+    short += [["", ""]] * (2 * half - len(short))
+    return Table(
+        caption=_ALL,
+        head=["Parameter", "Value, and its default"] * 2,
+        rows=[[*left, *right] for left, right in zip(short[:half], short[half:], strict=True)],
+        widths=[2.4, 2.6, 2.4, 2.6],
+        left_columns=4,
+        prose=True,
+        breakable=True,
+        print_size_pt=6.0,
+    )
 
 
 def _table(rows: list[list[str]]) -> Table:

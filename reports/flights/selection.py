@@ -52,6 +52,9 @@ _ORDER = (*SEVERE, _FAILED, _CLOSEST, _LEAST_BEYOND, _ALONE)
 PRINTED_MAX = 1
 """Flights that have a page in print, the most telling first: the page on the screen has all."""
 
+Picked = tuple[Trial, "pd.Series[Any]", str]
+"""A flight that is shown: its trial, its row, and why it is."""
+
 _CHOSEN = (
     "{which}: one that lost its aircraft, diverged, violated the keep-out area or failed a"
     " criterion, the closest approach, and the median of closest approaches. report.pdf shows the"
@@ -73,9 +76,9 @@ def flight_section(trials: list[Trial], *, only_failed: bool = False) -> Section
     """
     swept = len(trials) == 1 and bool(trials[0].swept) and len(trials[0].rows) <= SWEPT_MAX
     picked = picked_flights(trials)
-    printed = _printed([why for _, _, why in picked])
+    printed = _printed(picked)
     if only_failed:
-        printed = {of for of in printed if picked[of][2] in (*SEVERE, _FAILED)}
+        printed = [of for of in printed if picked[of][2] in (*SEVERE, _FAILED)]
     if swept and len(trials[0].rows) > 1:
         telling = {str(picked[i][1]["flight_id"]): picked[i][2] for i in printed}
         flights = [
@@ -100,10 +103,14 @@ def flight_section(trials: list[Trial], *, only_failed: bool = False) -> Section
     )
 
 
-def _printed(reasons: Sequence[str]) -> list[int]:
-    """Return the numbers of the flights that are printed, given why each is shown."""
-    told = [number for number, why in enumerate(reasons) if why in _ORDER]
-    return sorted(told, key=lambda number: _ORDER.index(reasons[number]))[:PRINTED_MAX]
+def _printed(picked: Sequence[Picked]) -> list[int]:
+    """Return the numbers of the flights that are printed, those with a time history first."""
+    told = [
+        (not trial.run.has_history(str(row["flight_id"])), _ORDER.index(why), number)
+        for number, (trial, row, why) in enumerate(picked)
+        if why in _ORDER
+    ]
+    return [number for *_, number in sorted(told)[:PRINTED_MAX]]
 
 
 def _only(trials: list[Trial]) -> str:
@@ -165,7 +172,7 @@ def _state(row: "pd.Series[Any]", why: str) -> str:
     return why if row["criteria_met"] or why in (*SEVERE, _FAILED) else f"{why}, {_FAILED}"
 
 
-def picked_flights(trials: list[Trial]) -> list[tuple[Trial, "pd.Series[Any]", str]]:
+def picked_flights(trials: list[Trial]) -> list[Picked]:
     """Return the flights to be shown, at most ``PICKED_MAX``, in the trials' order, and why each of
     them is.
 
@@ -190,12 +197,14 @@ def _rank(why: str) -> int:
 def _candidates(trial: Trial) -> Iterator[tuple["pd.Series[Any]", str]]:
     """Yield a trial's flights to look at, the most important first: one of each sort, none twice."""
     rows, near = trial.rows, beside_vessel(trial.rows)
-    severe = by_severity(rows[severity(rows) < len(SEVERE)])
+    severe = [rows[severity(rows) == place] for place in range(len(SEVERE))]
     failed = rows[~met(rows) & (severity(rows) == len(SEVERE))]
     # Of the others, those that have a time history: they are chosen for their figures.
     recorded, distances = trial.run.with_history(near), clearance(near)
     least, middle = (_LEAST_BEYOND, _MEDIAN_BEYOND) if radii_differ(near) else (_CLOSEST, _MEDIAN)
-    chosen = [(of.iloc[0], SEVERE[place]) for place, of in severe.groupby(severity(severe))]
+    chosen = [
+        (by_severity(of).iloc[0], what) for what, of in zip(SEVERE, severe, strict=True) if len(of)
+    ]
     if len(failed):
         # One to look at, if there is any.
         shown = failed[trial.run.with_history(failed)]

@@ -43,7 +43,7 @@ from reports.run.columns import (
     total,
 )
 from reports.run.run_data import RunData
-from reports.run.trials import SHAPES, Trial
+from reports.run.trials import SHAPES, Trial, measured_from
 
 Answer = Callable[[RunData], str]
 """Returns the sentence that answers the question of a study, given its run; no word where the run
@@ -72,7 +72,7 @@ _BESIDE = 1.0
 _STATE = "{state} after {done:,} of {planned:,} flights"
 _STATE_OF_COMPARISONS = "{state} before all comparisons were flown"
 _NOTHING_FLOWN = "Nothing was flown: of {planned:,}, {outcomes}"
-_GUARD_IS_WRONG = "The keep-out guard is wrong: flights in which {unexplained}: {flights:,}"
+_GUARD_IS_WRONG = "The keep-out guard is wrong in {flights:,} of {done:,} flights: {unexplained}"
 
 _ONLY_TO_KEEP_OUT = (
     "Of the flights, {alone:,} had only to stay outside of the keep-out area: {outside:,} did, and"
@@ -129,7 +129,9 @@ def _headline(run: RunData, answer: Answer) -> Iterator[str]:
         yield _NOTHING_FLOWN.format(planned=counts.planned, outcomes=ends or "none was begun")
         return
     if counts.unexplained:
-        yield _GUARD_IS_WRONG.format(unexplained=UNEXPLAINED, flights=counts.unexplained)
+        yield _GUARD_IS_WRONG.format(
+            flights=counts.unexplained, done=counts.done, unexplained=UNEXPLAINED
+        )
     if search := search_answer(run):
         yield search
         return
@@ -261,10 +263,13 @@ def _closest_card(trials: Sequence[Trial], beside: pd.DataFrame) -> Card | None:
     kept = distance >= radius
     if radii_differ(beside):
         name = "Closest approach, beyond the flight's own r_min"
+        note += f", {approach(distance, radius)} m where r_min is {radius:g} m"
         return Card(name, f"{approach(distance - radius, 0.0)} m", "≥ 0 m", kept, note)
     shapes = {trial.shape for trial in trials}
     told = len(shapes) == 1 and shapes <= set(SHAPES)
     name = f"Closest approach, {trials[0].measured_from}" if told else "Closest approach"
+    if not told and closest.shape:
+        note += f", {measured_from(closest.shape)}"
     return Card(name, f"{approach(distance, radius)} m", f"≥ {radius:g} m", kept, note)
 
 
@@ -293,6 +298,8 @@ def _worst_card(trials: Sequence[Trial], key: str) -> Card | None:
     worst, of_all = criterion.worst, criterion.worst_of_all
     name = f"{title}, worst" if run.verdict.counts.planned > 1 else title
     nearly_all = _nearly_all(run, key)
+    if criterion.met and of_all and worst and _is_within(of_all.value, worst.limit):
+        worst = of_all
     if criterion.judged and (not criterion.met or of_all in (None, worst)):
         note = _noted(_named(trials, worst.flight) if worst else "", nearly_all)
         words = worst_words(run, criterion, worst)
@@ -306,6 +313,11 @@ def _worst_card(trials: Sequence[Trial], key: str) -> Card | None:
             required=_required(trials, criterion),
         )
     return Card(name, worst_words(run, criterion, of_all), note=note)
+
+
+def _is_within(value: float | str, limit: object) -> bool:
+    """Return whether the worst of all flights is within the limit of those that are judged by it."""
+    return isinstance(value, float | int) and isinstance(limit, float | int) and value <= limit
 
 
 def _noted(*notes: str) -> str:

@@ -19,7 +19,7 @@ from measurement.estimate.verdict import (
     verdict_words,
 )
 from measurement.gases import MASS_PERCENT, limit_words
-from reports.document.blocks import Block, Card, Section, Text
+from reports.document.blocks import Block, Card, Fold, Section, Text
 from reports.document.chart import Chart
 from reports.document.tables import number
 from reports.measurement.charts import (
@@ -166,12 +166,13 @@ def _flight(run: RunData, measured: pd.DataFrame, name: Name) -> Section | None:
         record, history = run.evaluation(flight_id), run.history(flight_id)
         if record is not None and history is not None:
             samples, since = _samples(record, history), _since(run, row)
+            table = over_time_table(record, since)
             blocks: list[Block | None] = [
                 Text(_told(row) if len(measured) == 1 else f"{name(row)}. {_told(row)}"),
                 result_table(record),
                 _track(run, row, history),
                 over_time_chart(record, since),
-                over_time_table(record, since),
+                Fold(title="The same as a table", blocks=[table]) if table else None,
                 budget_chart(record),
                 channels_chart(samples, "Time since the start of the flight [s]"),
                 regression_chart(samples, record),

@@ -13,7 +13,7 @@ def without_single_flights(monkeypatch):
     """
     monkeypatch.setattr(
         "reports.flights.content.flight_section",
-        lambda _: Section(anchor="flights", title="", blocks=[]),
+        lambda _, **__: Section(anchor="flights", title="", blocks=[]),
     )
     monkeypatch.setattr(
         "reports.flights.content.telling_and_typical",

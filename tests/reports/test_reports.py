@@ -87,14 +87,14 @@ def test_the_sweep_shows_everything_in_its_place(report):
         for section in report.sections
     }
     assert names["trial1"] == [
-        f"trial1-nu1-{what}" for what in ("interval", "distance", "errors", "command")
+        f"trial1-nu1-{what}" for what in ("interval", "distance", "errors", "bank")
     ]
     assert names["comparison"] == ["trial1-comparison"]
     tables = {
         section.anchor: len(blocks_of(report, Table, section.anchor)) for section in report.sections
     }
     assert tables == {
-        "figures": 1, "trials": 1, "trial1": 1, "comparison": 1, "failed": 1, "flights": 0, "parameters": 3,
+        "figures": 1, "trials": 1, "trial1": 1, "comparison": 1, "failed": 1, "flights": 0, "parameters": 4,
         "provenance": 1,
     }  # fmt: skip
     assert all(
@@ -136,15 +136,15 @@ def test_no_curve_is_empty_or_not_a_number_where_there_is_data(report):
 
 @pytest.mark.usefixtures("without_single_flights")
 def test_a_violation_is_in_the_headline(report, copy):
-    assert report.verdict.holds
     run = read_run(copy)
     inside = run.summary["flight_id"] == run.summary["flight_id"][0]
     violations = run.summary["keepout_violations"].mask(inside, 1.0)
     depth = run.summary["keepout_depth_m"].mask(inside, 0.5)
     summary = run.summary.assign(keepout_violations=violations, keepout_depth_m=depth)
     verdict = content(changed(run, summary=summary)).verdict
-    assert not verdict.holds
-    assert verdict.headline == "Keep-out violations in 1 of 3 flights, 1 in all"
+    assert verdict.tone == "bad"
+    assert verdict.headline.startswith("1 of 3 speed ratios kept out, ")
+    assert verdict.cards[0].note.startswith("1 violated the area; 1 unknown")
 
 
 def test_a_flight_of_a_comparison_is_drawn(run_path):
@@ -168,10 +168,8 @@ def test_without_time_histories_no_flight_is_said_to_be_printed(copy):
 def test_an_infeasible_flight_is_in_the_report_with_its_reason(report):
     (table,) = blocks_of(report, Table, "trial1")
     assert "must be below 1" in table.rows[2][1]
-    assert not report.verdict.complete
-    assert report.verdict.headline.startswith(
-        "1 could not be flown, of 3 flights; 2 of 3 flights kept"
-    )
+    assert report.verdict.tone == "bad"
+    assert report.verdict.headline.startswith("2 of 3 speed ratios kept out, 2 finished. ")
     assert "must be below 1" in report.verdict.failures[0]
     assert flights_of(report)[2].title.endswith("not flown, infeasible: speed ratio ν is 1")
     assert flights_of(report)[2].charts == []
@@ -179,7 +177,8 @@ def test_an_infeasible_flight_is_in_the_report_with_its_reason(report):
 
 def test_every_key_that_acts_is_among_the_parameters(run_path, report):
     config = manifest_of(run_path)["config"]
-    *_, parameters = blocks_of(report, Table, "parameters")
+    # Behind the fold of the parameters, and before those of the autopilot.
+    parameters = blocks_of(report, Table, "parameters")[-4]
     listed, scenario = {row[0] for row in parameters.rows}, load_study("sweep_nu", OVERRIDES)
     for section, values in config.items():
         if isinstance(values, dict) and section not in ("sweep", "comparison"):

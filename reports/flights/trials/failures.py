@@ -34,8 +34,12 @@ _LOST_TRACK = (
     "{far:,} of the {settled:,} settled flights lost their track again, by up to {most:.3g} m rms;"
     " no criterion limits it: {causes}."
 )
+_LOST_TRACK_ALONE = (
+    "The flight lost its track again, by {most:.3g} m rms; no criterion limits it: {causes}."
+)
 _CAUSE = "{what} in {here:,} of these and in {there:,} of the others"
 _NO_CAUSE = "nothing in the summary sets them apart"
+_NOTHING = "nothing in the summary explains it"
 
 _USUAL_MODES = (
     "approach",
@@ -178,12 +182,17 @@ def tracking_lines(trial: Trial, *, only: bool = True) -> list[str]:
     far, others = flown[errors > band], flown[errors <= band]
     if not len(far):
         return []
-    line = _LOST_TRACK.format(
-        far=len(far),
-        settled=len(far) + len(others),
-        most=np.nanmax(errors),
-        causes=", ".join(_causes(far, others)) or _NO_CAUSE,
-    )
+    most = float(np.nanmax(errors))
+    if len(flown) == 1:
+        happened = [what for what, mask in _after_settling(far).items() if mask.any()]
+        line = _LOST_TRACK_ALONE.format(most=most, causes=", ".join(happened) or _NOTHING)
+    else:
+        line = _LOST_TRACK.format(
+            far=len(far),
+            settled=len(far) + len(others),
+            most=most,
+            causes=", ".join(_causes(far, others)) or _NO_CAUSE,
+        )
     return [line if only else f"{trial.title}: {line}"]
 
 
@@ -193,7 +202,7 @@ def _causes(far: pd.DataFrame, others: pd.DataFrame) -> Iterator[str]:
     """
     for what, mask in _after_settling(pd.concat([far, others])).items():
         here, there = count(mask[: len(far)]), count(mask[len(far) :])
-        if here and (here + there < len(mask) or not len(others)):
+        if here and here + there < len(mask):
             yield _CAUSE.format(what=what, here=here, there=there)
 
 

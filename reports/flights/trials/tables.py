@@ -202,7 +202,8 @@ def criteria_table(trials: list[Trial]) -> Table:
     """Return a row per criterion of each trial: its limit, the worst among the flights that it
     judges and among all of them, how many it judges, and how many failed it.
 
-    What every flight has to meet, as keeping out, has a row where one failed it.
+    What every flight has to meet, as keeping out, has a row where one of several trials failed it:
+    of a trial that is alone the tiles of page 1 say it.
     """
     rows = [
         [
@@ -216,7 +217,7 @@ def criteria_table(trials: list[Trial]) -> Table:
         ]
         for trial in trials
         for of in trial.verdict.criteria
-        if of.judged and (of.failed or of.key in MEASURED)
+        if of.judged and (of.key in MEASURED or (of.failed and len(trials) > 1))
     ]
     head = ["Trial", "Criterion", "Limit", "Worst judged", "Worst of all", "Judged", "Not met"]
     widths = [1.6, 2.2, 1.0, 1.0, 1.8, 0.8, 0.6]

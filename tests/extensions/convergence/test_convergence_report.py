@@ -29,7 +29,7 @@ def test_a_study_in_which_all_converged_says_so(converged):
         f"All {2 * TRAJECTORIES:,} trajectories converged; law (24) commanded up to "
     )
     assert converged.verdict.failures == []
-    assert [figure[1:] for figure in converged.verdict.figures[:3]] == [
+    assert [figure[1:4] for figure in converged.verdict.figures[:3]] == [
         (f"{TRAJECTORIES:,} of {TRAJECTORIES:,}", "all", True),
         (f"{TRAJECTORIES:,} of {TRAJECTORIES:,}", "all", True),
         (f"{TRAJECTORIES:,} of {TRAJECTORIES:,}", "", None),
@@ -60,7 +60,7 @@ def test_cut_commands_have_no_part_in_the_verdict_but_are_shown(tmp_path):
     assert report.verdict.holds
     assert report.verdict.complete
     assert "26 of 30 converged" in report.verdict.detail
-    assert report.verdict.figures[2] == ("Law (30), cut at ω_max: converged", "26 of 30", "", None)
+    assert report.verdict.figures[2][:2] == ("Law (30), cut at ω_max: converged", "26 of 30")
     (table,) = blocks_of(report, Table, "counterexamples")
     assert len(table.rows) == 4
 
@@ -106,7 +106,7 @@ def test_trajectories_that_were_lost_with_their_process_are_no_counter_examples(
         "10 trajectories were lost with their processes, and count as not flown; --resume"
         in report.verdict.detail
     )
-    assert report.verdict.figures[1][1:] == ("20 of 20", "all", True)
+    assert report.verdict.figures[1][1:4] == ("20 of 20", "all", True)
     assert "counterexamples" not in [section.anchor for section in report.sections]
     (table,) = blocks_of(report, Table, "settling")
     assert [row[2:4] for row in table.rows if row[:2] == ["Law (30)", "all"]] == [["20", "20"]]
@@ -141,12 +141,7 @@ def test_where_no_settling_time_is_predicted_none_is_compared(tmp_path):
     known = rows[rows["trajectory"] >= 6].query("law != 'cascade_cut'")
     ratio = (known["settling_time_s"] / known["settling_time_predicted_s"]).median()
     report = content(read_run(path))
-    assert report.verdict.figures[-1] == (
-        "Settling over predicted, median",
-        f"{ratio:.2f}",
-        "",
-        None,
-    )
+    assert report.verdict.figures[-1][:2] == ("Settling over predicted, median", f"{ratio:.2f}")
 
 
 def test_the_text_says_what_was_drawn_and_what_converged_means(converged):

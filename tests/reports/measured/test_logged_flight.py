@@ -19,7 +19,7 @@ from report_parts import (
 )
 
 from measurement.log.command import main
-from reports.document.blocks import Table
+from reports.document.blocks import Card, Table
 from reports.document.chart import Chart, Line, Panel
 from reports.errors import ReportError
 from reports.measurement.charts import over_time_chart, regression_chart
@@ -346,7 +346,7 @@ def test_a_perfect_instrument_is_shown_where_it_is_known(run_directory, tmp_path
     )
     labels = [line.label for line in report.picture.panels[0].lines]
     assert "a perfect instrument" in labels
-    assert ("A perfect instrument reads", "0.250 % m/m", "", None) in report.verdict.figures
+    assert Card("A perfect instrument reads", "0.250 % m/m") in report.verdict.figures
 
 
 def test_without_samples_the_report_says_so(run_directory, tmp_path):

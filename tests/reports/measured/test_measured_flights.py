@@ -76,12 +76,11 @@ def test_one_flight_is_told_with_result_probability_and_limit(one):
     assert_axes_read_quantity_and_unit(named_charts(one).values())
     told = next(block.text for block in section.blocks if isinstance(block, Text))
     assert re.match(rf"The fuel's sulphur content is {CONTENT}: .* limit of 0\.10 %; prob", told)
-    assert "The fuel's own content is 0.100 %, of which a perfect instrument reads 0.097 %." in told
-    name, value, *_ = one.verdict.figures[0]
-    assert name.startswith("Fuel sulphur content")
-    assert re.fullmatch(r"0\.\d{3} % m/m", value)
-    assert one.verdict.figures[1][0] == "Fuel sulphur content, 95 % interval"
-    assert re.fullmatch(r"0\.\d{3} to 0\.\d{3} % m/m", one.verdict.figures[1][1])
+    assert "The simulated fuel holds 0.100 %; a perfect instrument would read 0.097 %," in told
+    card = one.verdict.figures[0]
+    assert card.name == "Fuel sulphur content"
+    assert re.fullmatch(r"0\.\d{3} % m/m", card.value)
+    assert re.fullmatch(r"95 % interval 0\.\d{3} to 0\.\d{3} %", card.note)
     assert "sulphur" not in {section.anchor for section in one.sections}
 
 
@@ -158,7 +157,7 @@ def test_every_number_on_page_1_of_several_flights_is_that_of_the_summary(severa
         f"{wrong}",
         *(f"{100.0 * error:.3g}" for error in (*errors.median(), *errors.max())),
         f"{100.0 * most:.3g}",
-        *(f"{counts[name]}" for name in ("kept_out", "beside", "completed", "done", "planned")),
+        *(f"{counts[name]}" for name in ("kept_out", "completed", "done", "planned")),
         # Confidence, the limit, and that no flight is without a result.
         *("95", "0.10", "0"),
     }
@@ -168,10 +167,11 @@ def test_every_number_on_page_1_of_several_flights_is_that_of_the_summary(severa
     assert numbers_on_page_1(several_path, tmp_path) <= known | told
 
 
-def test_page_1_tells_the_fuel_with_interval_and_verdict_before_the_keep_out_area(one, several):
+def test_page_1_tells_the_verdict_on_the_fuel_with_content_and_interval(one, several):
     plain = one.verdict.headline.replace("\N{NO-BREAK SPACE}", " ")
-    assert re.match(
-        rf"Fuel sulphur {CONTENT}: .* limit of 0\.10 %; probability above it: [\d.]+ %\. No keep-out",
+    assert re.fullmatch(
+        r"(Above the limit|Below the limit|Inconclusive): fuel sulphur 0\.\d{3} % \(0\.\d{3} to"
+        r" 0\.\d{3}\), limit 0\.10 %; [\d.]+ % chance of being above",
         plain,
     )
     found = re.fullmatch(
@@ -213,14 +213,11 @@ def test_the_tile_of_a_verdict_has_a_colour_of_its_own_and_only_below_is_green(
 ):
     row = {**ROW, "fsc_percent": 0.1, "sulphur_verdict": called, "probability_above": 0.5}
     run = SimpleNamespace(summary=pd.DataFrame([row]))
-    card = flights.sulphur_cards(run)[2]
+    card = flights.sulphur_cards(run)[1]
     assert (card.judgement.replace("\N{NO-BREAK SPACE}", " "), card.tone) == (judgement, tone)
     assert flights.sulphur_below(run) == (called == "below")
-    # Red, as the verdict of an estimate of the same fuel is.
-    assert flights.sulphur_above(run) == (called == "above")
-    assert ("not shown to be above or below the limit" in flights.sulphur_headline(run)) == (
-        called == "open"
-    )
+    words = {"above": "Above the limit", "below": "Below the limit", "open": "Inconclusive"}
+    assert flights.sulphur_headline(run).startswith(f"{words[called]}: fuel sulphur 0.100 % (")
 
 
 def test_a_sniffer_without_a_result_is_said_on_page_1():
@@ -244,7 +241,7 @@ def test_a_probability_is_never_told_as_certain():
         "The fuel's sulphur content is 0.500 % m/m, 95 % interval 0.461 to 0.539 %: above the limit of 0.10 %; "
     )
     assert "probability above it: more than 99.9 %. Quality A." in told
-    card = flights.sulphur_cards(SimpleNamespace(summary=pd.DataFrame([ROW])))[2]
+    card = flights.sulphur_cards(SimpleNamespace(summary=pd.DataFrame([ROW])))[1]
     assert card[:2] == ("Probability above the limit of 0.10 %", "> 99.9 %")
 
 
@@ -259,9 +256,9 @@ def test_a_content_below_0_is_told_with_the_interval_that_its_verdict_rests_on()
     }
     run = SimpleNamespace(summary=pd.DataFrame([row]))
     words = "-0.025 % m/m, which is below 0; 95 % interval 0.000 to 0.039 %, given that no fuel has less than 0: below the limit"
-    assert words in flights.sulphur_headline(run)
+    assert "fuel sulphur -0.025 % (0.000 to 0.039), limit" in flights.sulphur_headline(run)
     assert words in flights._told(pd.Series(row))
-    assert flights.sulphur_cards(run)[1].value == "0.000 to 0.039 % m/m"
+    assert flights.sulphur_cards(run)[0].note == "95 % interval 0.000 to 0.039 %"
     table = flight_tables.flight_table(
         pd.DataFrame([{**row, "flight_id": "flight_1", "sensor": "fast"}]),
         lambda of: str(of["flight_id"]),
@@ -280,8 +277,10 @@ def test_quality_c_gives_no_verdict_in_words_either():
     assert "95 % interval 0.461 to 0.539 %: no verdict on the limit of 0.10 %: quality C" in told
     assert "Quality C: SO2 is saturated." in told
     assert "not shown" not in told
-    card = flights.sulphur_cards(SimpleNamespace(summary=pd.DataFrame([row])))[2]
-    assert card[1] == "no verdict: quality C"
+    run = SimpleNamespace(summary=pd.DataFrame([row]))
+    assert flights.sulphur_cards(run)[1].value == "no verdict: quality C"
+    assert flights.sulphur_headline(run).startswith("No verdict, as quality C gives none: ")
+    assert "chance" not in flights.sulphur_headline(run)
 
 
 @pytest.mark.parametrize(
@@ -381,7 +380,7 @@ def test_a_share_of_nothing_is_a_dash():
 
 
 def test_flights_without_a_sniffer_have_none_of_it(tmp_path):
-    bare = flown(tmp_path / "run", "payload=[]")
+    bare = content(read_run(flown(tmp_path / "run", "payload=[]")))
     assert not {"sulphur", "measurement"} & {section.anchor for section in bare.sections}
     assert not any("ulphur" in name for name, *_ in bare.verdict.figures)
     assert blocks_of(bare, Table)
