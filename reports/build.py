@@ -102,7 +102,8 @@ def export_run(
     run_name = run.manifest.get("name")
     if not is_file_name(run_name):
         raise ReportError(
-            f"'{directory}' is that of a run called {run_name!r}, which is no name of a file; do not use this run"
+            f"'{directory}' is that of a run called {run_name!r}, which is no name of a file; do"
+            " not use this run"
         )
     if folder.is_symlink():
         raise ReportError(
@@ -158,7 +159,8 @@ def made_exporter(name: str) -> "Exporter":
         suffix = getattr(exporter, "suffix", None)
         if not (isinstance(suffix, str) and suffix.startswith(".") and is_file_name(suffix)):
             raise ReportError(
-                f"exporter '{name}' has suffix = {suffix!r}; it needs one with a leading dot and no slash, as '.csv'"
+                f"exporter '{name}' has suffix = {suffix!r}; it needs one with a leading dot and"
+                " no slash, as '.csv'"
             )
     return exporter
 
@@ -185,7 +187,8 @@ def stream_run(
         flight = next(recorded_flights(run))
         seconds = float(flight.time[-1] - flight.time[0])
         print(
-            f"streaming {flight.flight_id}, {seconds:.0f} s of flight, to {address}; Ctrl-C ends it",
+            f"streaming {flight.flight_id}, {seconds:.0f} s of flight, to {address}; Ctrl-C ends"
+            " it",
             file=sys.stderr,
         )
         return flight.flight_id, stream.send(flight), seconds
@@ -202,7 +205,8 @@ def _run_of(directory: Path, flight_id: str | None) -> "RunData":
     if flight_id not in (recorded := run.recorded()):
         known = ", ".join(recorded[:_NAMED]) + (", ..." if len(recorded) > _NAMED else "")
         raise ReportError(
-            f"'{directory}' has no time history of a flight {flight_id[:80]!r}; it has those of {known or 'none'}"
+            f"'{directory}' has no time history of a flight {flight_id[:80]!r}; it has those of"
+            f" {known or 'none'}"
         )
     return run.of_flight(flight_id)
 
@@ -252,7 +256,10 @@ def command(
         list[str] | None,
         typer.Option(
             metavar="NAME,...",
-            help="Write RUN_DIR/export/... by these exporters, or by FILE.py:NAME, instead of the reports.",
+            help=(
+                "Write RUN_DIR/export/... by these exporters, or by FILE.py:NAME, instead of the"
+                " reports."
+            ),
         ),
     ] = None,
     flight: FlightOption = None,
@@ -285,7 +292,8 @@ def command(
     try:
         if flight is not None and not (export or stream):
             raise ReportError(
-                "--flight is of use beside --export or --stream; reports are of the whole run: leave it out"
+                "--flight is of use beside --export or --stream; reports are of the whole run:"
+                " leave it out"
             )
         if overrides and (export or stream):
             raise ReportError(

@@ -121,7 +121,8 @@ def write_flight(run: RunData, flight_id: str, path: Path) -> None:
         known = [*writers, *exporters]
         guess = did_you_mean(path.suffix, known) or ";"
         raise ReportError(
-            f"'{path.name}' ends in {path.suffix!r}{guess} formats of a flight are {', '.join(known)}"
+            f"'{path.name}' ends in {path.suffix!r}{guess} formats of a flight are"
+            f" {', '.join(known)}"
         )
     source = run.path / time_history_path(flight_id)
     with failure_named(f"flight '{flight_id}' could not be written as '{path.name}'"):
@@ -165,5 +166,6 @@ def _as_csv(source: Path, path: Path) -> None:
 
 def _without_history(flight_id: str) -> ReportError:
     return ReportError(
-        f"flight '{flight_id}' has no time history: it was not flown, or its run kept fewer (histories); fly it alone to have it"
+        f"flight '{flight_id}' has no time history: it was not flown, or its run kept fewer"
+        " (histories); fly it alone to have it"
     )

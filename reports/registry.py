@@ -2,11 +2,13 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 from common.errors import PluginError
 from common.plugins import call_plugin
 from common.provenance import without_folders
 from common.registry import announced, is_file_part, load_announced, part_in_file
+from common.verdict import MET
 from reports.design.content import design_content
 from reports.document.blocks import (
     FAILURES_MAX,
@@ -24,26 +26,33 @@ from reports.document.numbering import numbered
 from reports.document.provenance import provenance_section
 from reports.document.tables import figure_table
 from reports.errors import ReportError
+from reports.flights.answers import premises_exceeded
 from reports.flights.content import flights_content
 from reports.measurement.content import measurement_content
+from reports.monte_carlo.content import probabilities
+from reports.monte_carlo.falsification import nearest_found
 from reports.paper.content import paper_content
 from reports.run.letterhead import letterhead, title
 from reports.run.run_data import RunData
 
 STUDIES: dict[str, Callable[[RunData], Findings]] = {
-    **dict.fromkeys(("flights", "trials", "monte_carlo", "falsify", "premises"), flights_content),
+    **dict.fromkeys(("flights", "trials"), flights_content),
+    "monte_carlo": partial(flights_content, answer=probabilities),
+    "falsify": partial(flights_content, answer=nearest_found),
+    "premises": partial(flights_content, answer=premises_exceeded),
     "paper": paper_content,
     "design": design_content,
     "measurement": measurement_content,
 }
-"""A study, as its manifest names it, and what makes the findings of its report. An installed package
-announces more of them in the group ``plume_flight_study.report``, by the name of their study; the
-class of a study in a file has its own as an attribute ``report``.
+"""A study, as its manifest names it, and what makes the findings of its report; one of flights
+gives ``flights_content`` the answer to its question. An installed package announces more of them in
+the group ``plume_flight_study.report``, by the name of their study; the class of a study in a file
+has its own as an attribute ``report``.
 """
 
 SECTIONS = "report_section"
-"""Group of entry points, ``plume_flight_study.report_section``: functions that return sections which
-reports of every study have at their end, given the run.
+"""Group of entry points, ``plume_flight_study.report_section``: functions that return sections
+which reports of every study have at their end, given the run.
 """
 
 
@@ -67,7 +76,9 @@ def content(run: RunData, settings: Mapping[str, str] | None = None) -> Content:
     except PluginError as error:
         raise ReportError(str(error)) from error
     head = letterhead(run, settings or {})
-    figures = Section(anchor="figures", title="Key figures", blocks=_figures(found.verdict))
+    exit_status = run.judgement.exit_status if run.judgement else MET
+    verdict = replace(found.verdict, exit_status=exit_status)
+    figures = Section(anchor="figures", title="Further figures", blocks=_figures(verdict))
     # What is missing is known once everything has been asked for; it stands first.
     shown = [_without(found.picture, section) for section in (*found.sections, *added)]
     sections = [*missing_sections(run), figures, *shown, provenance_section(run, head)]
@@ -79,7 +90,7 @@ def content(run: RunData, settings: Mapping[str, str] | None = None) -> Content:
         description=_description(run.manifest["config"]["description"], changes),
         changes=", ".join(map(without_folders, changes)),
         flown=found.flown,
-        verdict=found.verdict,
+        verdict=verdict,
         picture=picture,
         sections=sections,
         facts=found.facts,
@@ -103,7 +114,8 @@ def _findings_of(run: RunData) -> Callable[[RunData], Findings]:
             return flights_content
     known = [*STUDIES, *sorted(announced("report"))]
     raise ReportError(
-        f"'{run.path}': study is {study!r}, which has no report; those that have one: {', '.join(known)}"
+        f"'{run.path}': study is {study!r}, which has no report; those that have one:"
+        f" {', '.join(known)}"
     )
 
 
@@ -113,9 +125,9 @@ def _report_of_file(run: RunData, study: str) -> Callable[[RunData], Findings]:
         kind = part_in_file(study)
     except PluginError:
         run.unread.add(study)
-        return flights_content
+        return STUDIES["flights"]
     own: Callable[[RunData], Findings] | None = getattr(kind, "report", None)
-    return (lambda run: call_plugin(f"study '{study}'", own, run)) if own else flights_content
+    return (lambda run: call_plugin(f"study '{study}'", own, run)) if own else STUDIES["flights"]
 
 
 def _added_sections(run: RunData) -> list[Section]:
@@ -149,9 +161,8 @@ def _without(picture: Chart | None, section: Section) -> Section:
 
 
 def _figures(verdict: Verdict) -> list[Block]:
-    """Return every figure of a verdict, and the failures and remarks that page 1 has no room for."""
-    left: list[Block] = [
-        Heading("More failures and remarks"),
-        *map(Text, verdict.failures[FAILURES_MAX:]),
-    ]
-    return [figure_table(verdict), *(left if len(left) > 1 else [])]
+    """Return the figures, failures and remarks that page 1 has no room for."""
+    blocks: list[Block] = [figure_table(verdict.further)] if verdict.further else []
+    if left := verdict.failures[FAILURES_MAX:]:
+        blocks += [Heading("More failures and remarks"), *map(Text, left)]
+    return blocks

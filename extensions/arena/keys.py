@@ -21,7 +21,7 @@ class ConditionConfig(Section):
 
 
 class ArenaConfig(Section):
-    """A comparison of steering laws: which take part, in which conditions, and how each is tuned."""
+    """A comparison of steering laws: which take part, where, and how each is tuned."""
 
     tracking: tuple[str, ...] = ()
     """Laws that track the oscillating reference."""

@@ -25,7 +25,7 @@ MEASURING_FIGURES = (CROSSINGS, PLUME_TIME, SULPHUR, "crossing_distance_mean_m")
 
 
 def _error_of_a_minute(information: float) -> float:
-    """Return the standard uncertainty of the information of a minute: infinite where there is none."""
+    """Return the standard uncertainty of the information of a minute; infinite without any."""
     if math.isnan(information):
         return math.nan
     return 1.0 / math.sqrt(information) if information > 0.0 else math.inf
@@ -183,17 +183,37 @@ class Arena:
 
         return sorted(entrants, key=place)
 
-    def best(self, figure: str, entrants: Iterable[Entrant]) -> Entrant | None:
-        """Return the entrant with the best mean of a figure over all conditions, of those that are
-        compared; none without one.
+    def alike(self, figure: str, entrants: Iterable[Entrant]) -> list[Entrant]:
+        """Return the entrants that cannot be told from the best over all conditions, itself first;
+        none where none is compared.
+
+        An entrant can be told from the best if the bootstrap shows that another is better, and if
+        their 95 % intervals are apart. One flight in each condition tells none from another.
         """
-        ranked = self.ranked(figure, entrants)
-        compared = ranked and self._recorded(figure, ranked[0], self.together).whole
-        return ranked[0] if compared else None
+        ranked = [each for each in self.ranked(figure, entrants) if self._is_compared(figure, each)]
+        if not ranked:
+            return []
+        best = self.of(figure, ranked[0], self.together)
+        others = ((each, self.of(figure, each, self.together)) for each in ranked[1:])
+        return [
+            ranked[0],
+            *(each for each, of in others if self.flights == 1 or of.as_good or _overlap(best, of)),
+        ]
+
+    def compared(self, figure: str, entrants: Iterable[Entrant]) -> int:
+        """Return how many entrants are compared on a figure."""
+        return sum(self._is_compared(figure, each) for each in entrants)
+
+    def _is_compared(self, figure: str, entrant: Entrant) -> bool:
+        return self._recorded(figure, entrant, self.together).whole
 
     def flights_of(self, condition: str) -> int:
         """Return how many flights of each entrant a mean is of, where all were flown."""
         return self.flights * (len(self.conditions) if condition == ALL else 1)
+
+
+def _overlap(one: Estimate, other: Estimate) -> bool:
+    return one.low <= other.high and other.low <= one.high
 
 
 def read_arena(run: RunData) -> Arena | None:

@@ -1,7 +1,7 @@
 """The report of an arena: a reader ranks the laws at a glance, and sees how each was tuned."""
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -22,18 +22,36 @@ from extensions.arena.record import (
     Figure,
     read_arena,
 )
-from reports.design.section import innerloop_section
-from reports.document.blocks import Block, Card, Findings, Heading, Section, Table, Text, Verdict
+from reports.design.section import design_words
+from reports.document.blocks import (
+    Block,
+    Card,
+    Findings,
+    Fold,
+    Heading,
+    Section,
+    Table,
+    Text,
+    Verdict,
+)
 from reports.document.chart import Chart, Line, Note, Panel, Style
 from reports.document.palette import Meaning
 from reports.document.ship_map import ship_panel
-from reports.document.tables import number, outcome, parameter_blocks, parameter_value
+from reports.document.state import state_words
+from reports.document.tables import (
+    Cell,
+    number,
+    outcome,
+    parameter_blocks,
+    parameter_value,
+    rows_table,
+)
 from reports.flights.added import added_sections
 from reports.flights.content import flights_content
 from reports.flights.first_page import flights_in_words
 from reports.flights.names import told_name
 from reports.flights.trials.tables import nearest_cells
-from reports.run.columns import column, flights_flown, lost, total
+from reports.run.columns import Array, column, flights_flown, lost, total
 from reports.run.flight_config import flight_config
 from reports.run.run_data import RunData
 from reports.run.surroundings import surroundings
@@ -41,58 +59,49 @@ from reports.run.time_history import about_the_plume
 from reports.run.trials import read_trials
 
 _BOLD = (
-    "In bold: the laws that may be the best, as the flights do not show with 95 % confidence that"
-    " another is better (multiple comparisons with the best, by a paired bootstrap over starts"
-    " and air). In brackets are 95 % intervals of the mean. A law that lacks flights which"
-    " another flew is not compared: it is never in bold, it stands last, and beside its mean is"
-    " of how many flights that is."
+    "Bold: no flight shows with 95 % confidence that another law is better (multiple comparisons"
+    " with the best, by a paired bootstrap over starts and air). Brackets: 95 % interval of the"
+    " mean. A law that lacks flights which another flew is not compared and stands last; beside its"
+    " mean stands the number of its flights."
 )
 
 _TRACKING = (
-    "Errors are distances to the oscillating reference, as the guidance has it, and the effort is"
-    " the heading rate commanded, both over the end of each flight, settled or not; excess effort"
-    " is what of it differs from the reference's own heading rate. Laws without feedback along"
-    " the track, those on a tangent (M1), depend on where they start. The airspeed law, which is"
-    " the same for all, keeps pace with the reference besides."
+    "Error: distance to the oscillating reference. Effort: heading rate commanded. Both over the"
+    " end of each flight, settled or not. Excess effort is what differs from the reference's"
+    " heading rate. Laws on a tangent (M1) have no feedback along the track, so that their errors"
+    " depend on the start. The airspeed law is the same for all."
 )
 
 _STANDOFF = (
-    "On a circle about the vessel the error is the distance to the circle. It closes in on its"
-    " radius, on which the keep-out guard just need not act, once the law is near it."
+    "Error: distance to the circle about the vessel. Near the circle a law closes in on the radius"
+    " on which the keep-out guard just need not act."
 )
 
 _PLUME = (
-    "Both tasks by what the mission is for: crossings of the plume's axis, time in the plume, and"
-    " the distance from the funnel at which it was crossed. A law that tracks badly may cross as"
-    " often as one that tracks well, but elsewhere and at times that nobody can predict."
+    "Both tasks, by what the mission is for. A law that tracks badly may cross as often as one that"
+    " tracks well, but elsewhere and at times that nobody can predict."
 )
 
 _SULPHUR = (
-    "The plume is the one that the exhaust makes: it rises, spreads, meanders and fluctuates."
-    " Inside is where the concentration is above exp(-2) of that on the axis. Every law carries"
-    " the same sniffer. The sulphur error is the standard uncertainty by noise of the fuel's"
-    " sulphur content that a minute leaves, as the estimator states it: the inverse root of the"
-    " mean information 1/σ², which adds up over minutes and flights, and is 0 of a result that is"
-    " not admitted. Errors of the instrument that do not average out come on top, and are the"
-    " same for every law."
+    "The simulated plume rises, spreads, meanders and fluctuates; inside is where the concentration"
+    " is above exp(-2) of that on the axis. Every law carries the same sniffer. The sulphur error"
+    " of a minute is the standard uncertainty by noise that the estimator states: the inverse root"
+    " of the mean information 1/σ². A result that is not admitted has none. Errors that do not"
+    " average out come on top, and are the same for every law."
 )
 
 _TUNING = (
-    "Each law had the same number of settings to try, the default first, half of them spread"
-    " evenly over the ranges and half by Nelder and Mead's simplex, which tries the best of these"
-    " again, on flights of the kinematic vehicle with the aircraft's lag and with seeds that the"
-    " comparison does not use. The cost is the rms error of the end of a flight and what the"
-    " heading rate in excess of the reference's counts as."
+    "Each law had the same number of settings to try: the default first, half of them spread evenly"
+    " over the ranges, half by Nelder and Mead's simplex, on flights of the kinematic vehicle with"
+    " the aircraft's lag and with seeds that the comparison does not use. The cost is the rms error"
+    " of the end of a flight, and what the excess effort counts as."
 )
 
 _ONCE = (
-    "One flight in each condition says nothing of other starts and other air: intervals have no"
-    " width, and which law is best is not shown."
+    "One flight in each condition says nothing of other starts and other air: there are no"
+    " intervals, and no law can be told from the others."
 )
 """What is said of laws that were flown once in each condition."""
-
-_NONE_BEST = "no law is called best, as each lacks flights"
-"""What is said of a task in which no law is compared."""
 
 
 def arena_content(run: RunData) -> Findings:
@@ -111,15 +120,14 @@ def arena_content(run: RunData) -> Findings:
         _section("tracking", "Tracking the oscillating reference", "Tracking", _tracking(arena)),
         _section("standoff", "Circling the vessel", "Circling", _standoff(arena)),
         _section("plume", "Measuring the plume", "Plume", _plume(arena)),
-        _section(
-            "tuning",
-            "Tuning of each law",
-            "Tuning",
-            [Text(_TUNING), tuning_table(arena), *_refused(arena)],
-        ),
+        _section("tuning", "Tuning of each law", "Tuning", _tuned(arena)),
         *added_sections(run, list(trials.values()), name),
-        *([innerloop_section(run.innerloop)] if run.innerloop else []),
-        _section("parameters", "Parameters", "Parameters", parameter_blocks(run)),
+        _section(
+            "parameters",
+            "Parameters",
+            "Parameters",
+            [*parameter_blocks(run), *design_words(run)],
+        ),
     ]
     both = len(arena.entrants) - len({entrant.law for entrant in arena.entrants})
     laws = f"{len(arena.entrants) - both} steering laws" + f", {both} of them in both tasks" * (
@@ -141,15 +149,16 @@ def _section(anchor: str, title: str, nav_title: str, blocks: list[Block]) -> Se
 def _tracking(arena: Arena) -> list[Block]:
     if not arena.in_task(tracking=True):
         return []
+    first, *others = track_charts(arena, tracking=True) or [None]
+    _, *efforts = effort_charts(arena)
     return [
-        Text(_TRACKING),
-        Heading("Over all conditions"),
-        Text(_BOLD if arena.flights > 1 else _ONCE),
+        Text(f"{_TRACKING} {_BOLD if arena.flights > 1 else _ONCE}"),
         tracking_table(arena, tracking=True),
-        Heading("Tracking error by condition, rms [m]"),
-        by_condition_table(arena, ERROR, tracking=True),
-        *effort_charts(arena),
-        *track_charts(arena, tracking=True),
+        *([first] if first else []),
+        Fold(
+            title="Tracking by condition, and the tracks of the other laws",
+            blocks=[by_condition_table(arena, ERROR, tracking=True), *efforts, *others],
+        ),
     ]
 
 
@@ -159,118 +168,168 @@ def _standoff(arena: Arena) -> list[Block]:
     return [
         Text(_STANDOFF),
         tracking_table(arena, tracking=False),
-        Heading("Distance to the circle by condition, rms [m]"),
-        by_condition_table(arena, ERROR, tracking=False),
-        *track_charts(arena, tracking=False),
-    ]
-
-
-def _plume(arena: Arena) -> list[Block]:
-    measured: list[Block] = [Text(_SULPHUR), worth_chart(arena)] if arena.has(SULPHUR) else []
-    by_condition = [figure for figure in (CROSSINGS, PLUME_TIME, SULPHUR) if arena.has(figure)]
-    return [
-        Text(_PLUME),
-        *measured,
-        plume_table(arena),
-        crossing_chart(arena),
-        *(
-            block
-            for figure in by_condition
-            for block in (
-                Heading(f"{arena.figure(figure).column.row}, by condition"),
-                by_condition_table(arena, figure),
-            )
+        Fold(
+            title="Circling by condition, and the tracks of the laws",
+            blocks=[
+                by_condition_table(arena, ERROR, tracking=False),
+                *track_charts(arena, tracking=False),
+            ],
         ),
     ]
 
 
-def _refused(arena: Arena) -> list[Block]:
-    if not arena.refused:
-        return []
-    return [Heading("Laws that cannot do a task"), refused_table(arena)]
+def _plume(arena: Arena) -> list[Block]:
+    figures = [figure for figure in (CROSSINGS, PLUME_TIME, SULPHUR) if arena.has(figure)]
+    table, has_sulphur = plume_table(arena), arena.has(SULPHUR)
+    # The figure shows the means of the table.
+    shown: list[Block] = [worth_chart(arena)] if has_sulphur else [table]
+    return [
+        Text(f"{_PLUME} {_SULPHUR}" if has_sulphur else _PLUME),
+        *shown,
+        Fold(
+            title="Measuring the plume in figures, and by condition",
+            blocks=[
+                *([table] if has_sulphur else []),
+                crossing_chart(arena),
+                *(by_condition_table(arena, figure) for figure in figures),
+            ],
+        ),
+    ]
+
+
+def _tuned(arena: Arena) -> list[Block]:
+    table = Fold(title="Parameters of each law", blocks=[tuning_table(arena)])
+    refused = [Heading("Laws that cannot do a task"), refused_table(arena)]
+    return [Text(_TUNING), table, *(refused if arena.refused else [])]
 
 
 def _verdict(arena: Arena) -> Verdict:
     verdict, counts = arena.run.verdict, arena.run.verdict.counts
     violations, gone = counts.violated, counts.lost
-    best = [
-        (task, first)
-        for task in (True, False)
-        if (first := arena.best(ERROR, arena.in_task(tracking=task)))
-    ]
     failures = _unflown(arena)
     if violations:
-        laws = [
-            entrant.title for entrant in arena.entrants if total(entrant.rows, "keepout_violations")
-        ]
         failures.append(
-            f"keep-out violations in {violations} of {counts.flown} flights: of {', '.join(laws)}"
+            _VIOLATED.format(
+                flights=violations,
+                flown=counts.flown,
+                laws=_laws_with(arena, lambda rows: total(rows, "keepout_violations") > 0),
+            )
         )
     if gone:
-        laws = [entrant.title for entrant in arena.entrants if lost(entrant.rows).any()]
-        failures.append(f"{gone} flights lost the aircraft: of {', '.join(laws)}")
+        laws = _laws_with(arena, lambda rows: bool(lost(rows).any()))
+        failures.append(_GONE.format(flights=gone, laws=laws))
+    state = state_words(
+        "flights",
+        counts.flown,
+        counts.planned,
+        is_done=verdict.is_done and counts.flown == counts.planned,
+        interrupted=verdict.interrupted,
+    )
+    return Verdict(
+        holds=counts.flown > 0 and not violations and not gone,
+        complete=not state and not counts.unknown,
+        headline=". ".join([*state, _headline(arena) if counts.flown else "Nothing was flown"]),
+        detail=_DETAIL + (_ONCE if arena.flights == 1 else _APART),
+        failures=failures,
+        figures=_cards(arena),
+    )
+
+
+_VIOLATED = "keep-out violations in {flights} of {flown} flights: of {laws}"
+_GONE = "{flights} flights lost the aircraft: of {laws}"
+_DETAIL = "Means over all conditions, over the end of each flight. "
+_APART = (
+    "Two laws can be told apart if the paired bootstrap shows with 95 % confidence that one is"
+    " better, and if their intervals do not overlap."
+)
+
+
+def _laws_with(arena: Arena, has: Callable[[pd.DataFrame], bool]) -> str:
+    return ", ".join(entrant.title for entrant in arena.entrants if has(entrant.rows))
+
+
+def _cards(arena: Arena) -> list[Card]:
+    """Return the best mean of each figure with the laws that cannot be told from it, and what must
+    not happen.
+    """
+    counts = arena.run.verdict.counts
     figures = [
+        ("Tracking error", ERROR, arena.in_task(tracking=True)),
+        ("Circling error", ERROR, arena.in_task(tracking=False)),
         *(
-            Card(
-                f"{'Tracking' if task else 'Circling'} error, rms, of the best: {entrant.title}",
-                f"{arena.text(ERROR, entrant)} m",
-            )
-            for task, entrant in best
-        ),
-        *(
-            Card(
-                f"Best on {arena.figure(figure).column.title.lower()}:"
-                f" {_best_of(arena, first, figure)}",
-                f"{arena.text(figure, first)}{arena.figure(figure).column.after}",
-            )
+            (arena.figure(figure).column.title, figure, arena.entrants)
             for figure in (CROSSINGS, SULPHUR)
-            if (first := arena.best(figure, arena.entrants))
         ),
+    ]
+    best = [
+        Card(
+            f"{title}, best mean: {_few_of(alike)}",
+            f"{arena.text(figure, alike[0])}{arena.figure(figure).column.after}",
+            _interval_of(arena, figure, alike[0]),
+        )
+        for title, figure, entrants in figures
+        if (alike := arena.alike(figure, entrants))
+    ]
+    flown = counts.flown > 0
+    return [
+        *best,
         Card(
             "Keep-out violations",
             f"{counts.keepout_violations:,}",
             "0",
-            counts.flown > 0 and not violations,
+            flown and not counts.violated,
         ),
-        Card("Aircraft lost", f"{gone:,}", "0", counts.flown > 0 and not gone),
-        Card(
-            "Flights flown",
-            f"{counts.flown:,} of {counts.planned:,}",
-            "all",
-            counts.flown == counts.planned,
-        ),
-        Card("Laws in a task", f"{len(arena.entrants)}"),
-        Card(
-            "Conditions, and flights of each law in each",
-            f"{len(arena.conditions)} × {arena.flights}",
-        ),
+        Card("Aircraft lost", f"{counts.lost:,}", "0", flown and not counts.lost),
     ]
-    return Verdict(
-        holds=counts.flown > 0 and not violations and not gone,
-        complete=verdict.is_done and counts.flown == counts.planned and not counts.unknown,
-        headline=_headline(arena, best) if counts.flown else "Nothing was flown",
-        detail="Means over all conditions, over the end of each flight."
-        f" {_ONCE if arena.flights == 1 else _alike(arena, best)}",
-        failures=failures,
-        figures=figures,
+
+
+def _few_of(alike: Sequence[Entrant]) -> str:
+    """Return the first of some laws, and how many cannot be told from it."""
+    more = len(alike) - 1
+    return f"{alike[0].title}, and {more} alike" if more else alike[0].title
+
+
+def _interval_of(arena: Arena, figure: str, entrant: Entrant) -> str:
+    of, text = arena.of(figure, entrant, arena.together), arena.figure(figure).text
+    return "" if math.isnan(of.low) else f"95 %: {text(of.low)} to {text(of.high)}"
+
+
+_NAMED = 3
+"""Laws that the headline names of those that cannot be told apart."""
+
+_TASKS = {True: "Tracking", False: "Circling"}
+
+_WHICH = {
+    "none": "{task}: no law is compared, as each lacks flights",
+    "only": "{task}: only {first} is compared, {error} m rms",
+    "best": "{task}: {first} is best, {error} m rms",
+    "alike": "{task}: {laws} cannot be told apart, {error} m rms",
+}
+"""What the headline says of a task."""
+
+
+def _headline(arena: Arena) -> str:
+    """Return for each task which laws cannot be told from the best."""
+    return "; ".join(
+        _which(arena, title, entrants)
+        for tracking, title in _TASKS.items()
+        if (entrants := arena.in_task(tracking=tracking))
     )
 
 
-def _headline(arena: Arena, best: list[tuple[bool, Entrant]]) -> str:
-    """Return which law is best in each task, or that none can be called so."""
-    found, leads = dict(best), "is best" if arena.flights > 1 else "has the least error"
-    words = [
-        f"{'tracking' if task else 'circling'}: "
-        + (
-            f"{found[task].title} {leads}, {arena.text(ERROR, found[task])} m rms"
-            if task in found
-            else _NONE_BEST
-        )
-        for task in (True, False)
-        if arena.in_task(tracking=task)
-    ]
-    headline = "; ".join(words)
-    return headline[:1].upper() + headline[1:]
+def _which(arena: Arena, task: str, entrants: Sequence[Entrant]) -> str:
+    alike = arena.alike(ERROR, entrants)
+    if not alike:
+        return _WHICH["none"].format(task=task)
+    first, errors = alike[0].title, [arena.text(ERROR, entrant) for entrant in alike]
+    if len(alike) == 1:
+        kind = "only" if arena.compared(ERROR, entrants) == 1 else "best"
+        return _WHICH[kind].format(task=task, first=first, error=errors[0])
+    if len(alike) > _NAMED:
+        laws = f"{first} and {len(alike) - 1} others"
+    else:
+        laws = " and ".join(entrant.title for entrant in alike)
+    return _WHICH["alike"].format(task=task, laws=laws, error=f"{errors[0]} to {errors[-1]}")
 
 
 def _unflown(arena: Arena) -> list[str]:
@@ -296,145 +355,125 @@ def _unflown(arena: Arena) -> list[str]:
     return lines
 
 
-def _alike(arena: Arena, best: list[tuple[bool, Entrant]]) -> str:
-    """Return which laws the flights do not tell from the best of their task."""
-    words = []
-    for task, first in best:
-        others = [
-            entrant.title
-            for entrant in arena.ranked(ERROR, arena.in_task(tracking=task))
-            if entrant is not first and arena.of(ERROR, entrant, arena.together).as_good
-        ]
-        if others:
-            words.append(f"The flights do not tell {' and '.join(others)} from {first.title}.")
-    return " ".join(words)
-
-
-def _best_of(arena: Arena, first: Entrant, figure: str) -> str:
-    """Return the law with the best mean, and how many others have the same, as it is written."""
-    mean = arena.text(figure, first)
-    same = sum(
-        of is not first
-        and arena.of(figure, of, arena.together).whole
-        and arena.text(figure, of) == mean
-        for of in arena.entrants
-    )
-    return f"{first.title} and {same} more" if same else first.title
-
-
 # ---------------------------------------------------------------- Tables
 
 
 def condition_table(arena: Arena) -> Table:
     """Return the conditions, and which keys each sets."""
-    given = arena.run.manifest["config"]["arena"]["conditions"]
-    rows = [
-        [str(of["name"]).replace("_", " "), of["title"], parameter_value(of["set"])] for of in given
+    cells = [
+        Cell("Condition", lambda of: str(of["name"]).replace("_", " ")),
+        Cell("In words", "title", width=2.4),
+        Cell("Keys", lambda of: parameter_value(of["set"]), width=5.0),
     ]
-    return Table(
+    return rows_table(
+        arena.run.manifest["config"]["arena"]["conditions"],
+        cells,
         caption="The conditions, in each of which every law is flown, and the keys that each sets.",
-        head=["Condition", "In words", "Keys"],
-        rows=rows,
-        widths=[1.0, 2.4, 5.0],
         left_columns=3,
         prose=True,
     )
 
 
+_NUMBER = Cell("No.", lambda entrant: str(entrant.number), width=0.4)
+
+
+def _violations(arena: Arena) -> list[Cell]:
+    """Return the column of keep-out violations, where there are any."""
+    if not arena.run.verdict.counts.keepout_violations:
+        return []
+    name = "Keep-out violations"
+    return [Cell(name, lambda entrant: str(total(entrant.rows, "keepout_violations")))]
+
+
+def _law(width: float) -> Cell:
+    return Cell("Law", lambda entrant: entrant.title, width=width)
+
+
 def tracking_table(arena: Arena, *, tracking: bool) -> Table:
     """Return the figures of tracking of the laws of a task, over all conditions."""
-    entrants = arena.ranked(ERROR, arena.in_task(tracking=tracking))
-    head = [
-        "No.",
-        "Law",
-        *(arena.figure(figure).column.row for figure in TRACKING_FIGURES),
-        "Settled",
-        "Settling, median [s]",
-        "Keep-out violations",
+    means = _means(arena, TRACKING_FIGURES, arena.together, (2.0, 2.0, 2.0, 1.6))
+    cells = [
+        Cell("Settled", lambda entrant: f"{len(_settling(entrant))} of {len(entrant.rows)}"),
+        Cell("Settling, median [s]", _settled_at, "{:.0f}", 0.9),
+        *_violations(arena),
     ]
-    extra = [_ending(entrant) for entrant in entrants]
-    what = "Tracking" if tracking else "Circling"
-    widths = [0.4, 2.0, 1.75, 1.9, 1.9, 1.45, 0.85, 0.95, 0.95]
-    return _table(
+    entrants = arena.ranked(ERROR, arena.in_task(tracking=tracking))
+    return _ranked_table(
         arena,
         entrants,
-        TRACKING_FIGURES,
-        head,
-        extra,
-        widths=widths,
-        caption=f"{what}, over all conditions.",
+        [_NUMBER, _law(2.2)],
+        dict(zip(TRACKING_FIGURES, means, strict=True)),
+        cells,
+        caption=f"{_TASKS[tracking]}, over all conditions.",
     )
 
 
-def _ending(entrant: Entrant) -> list[str]:
-    rows = entrant.rows
-    settling = column(rows, "settling_time_s")
-    known = settling[np.isfinite(settling)]
-    return [
-        f"{len(known)} of {len(rows)}",
-        number(float(np.median(known)) if len(known) else None, "{:.0f}"),
-        str(total(rows, "keepout_violations")),
-    ]
+def _settling(entrant: Entrant) -> Array:
+    times = column(entrant.rows, "settling_time_s")
+    return times[np.isfinite(times)]
+
+
+def _settled_at(entrant: Entrant) -> float | None:
+    times = _settling(entrant)
+    return float(np.median(times)) if len(times) else None
 
 
 def plume_table(arena: Arena) -> Table:
     """Return the figures of measuring the plume of every law, over all conditions."""
-    entrants = arena.ranked(CROSSINGS, arena.entrants)
     figures = [figure for figure in MEASURING_FIGURES if arena.has(figure)]
-    head = [
-        "No.",
-        "Law",
-        "Task",
-        *(arena.figure(figure).column.row for figure in figures),
-        "Closest approach [m]",
-        "Keep-out violations",
-    ]
-    extra = [
-        [_closest(entrant), str(total(entrant.rows, "keepout_violations"))] for entrant in entrants
-    ]
-    tasks = [["tracks" if entrant.tracks else "circles"] for entrant in entrants]
-    widths = [0.4, 2.0, 0.6, *(2.4 if figure == SULPHUR else 1.7 for figure in figures), 0.9, 0.95]
-    caption = "Measuring the plume, over all conditions."
-    return _table(
-        arena, entrants, figures, head, extra, widths=widths, caption=caption, before=tasks
+    widths = [2.6 if figure == SULPHUR else 1.9 for figure in figures]
+    means = _means(arena, figures, arena.together, widths)
+    task = Cell("Task", lambda entrant: "tracks" if entrant.tracks else "circles", width=0.6)
+    closest = Cell(
+        "Closest approach [m]", lambda entrant: nearest_cells(entrant.rows)[0], width=0.9
+    )
+    return _ranked_table(
+        arena,
+        arena.ranked(CROSSINGS, arena.entrants),
+        [_NUMBER, _law(2.3), task],
+        dict(zip(figures, means, strict=True)),
+        [closest, *_violations(arena)],
+        caption="Measuring the plume, over all conditions.",
     )
 
 
-def _closest(entrant: Entrant) -> str:
-    return nearest_cells(entrant.rows)[0]
+def _means(
+    arena: Arena, figures: Sequence[str], condition: str, widths: Sequence[float]
+) -> list[Cell]:
+    """Return a column for the mean of each figure, with its interval."""
+
+    def cell(figure: str, width: float) -> Cell:
+        of = arena.figure(figure)
+
+        def text(entrant: Entrant) -> str:
+            estimate = arena.of(figure, entrant, condition)
+            return _interval(estimate, of) + few(arena, estimate, condition)
+
+        return Cell(of.column.row, text, width=width)
+
+    return [cell(figure, width) for figure, width in zip(figures, widths, strict=True)]
 
 
-def _table(
+def _ranked_table(
     arena: Arena,
     entrants: Sequence[Entrant],
-    figures: Sequence[str],
-    head: list[str],
-    extra: Sequence[list[str]],
+    before: Sequence[Cell],
+    means: Mapping[str, Cell],
+    after: Sequence[Cell],
     *,
-    widths: list[float],
     caption: str,
-    before: Sequence[list[str]] = (),
 ) -> Table:
-    rows, bold = [], []
-    for i, entrant in enumerate(entrants):
-        found = [(figure, arena.of(figure, entrant, arena.together)) for figure in figures]
-        ahead = [str(entrant.number), entrant.title, *(before[i] if before else [])]
-        means = [
-            _interval(estimate, arena.figure(figure)) + few(arena, estimate, arena.together)
-            for figure, estimate in found
-        ]
-        rows.append([*ahead, *means, *extra[i]])
-        bold += [
-            (i, len(ahead) + j)
-            for j, (_, estimate) in enumerate(found)
-            if arena.flights > 1 and estimate.as_good
-        ]
-    left = 3 if before else 2
-    return Table(
-        head=head,
-        rows=rows,
-        widths=widths,
-        left_columns=left,
+    """Return a row for each law, with those means in bold that may be the best."""
+    bold = [
+        (i, len(before) + j)
+        for i, entrant in enumerate(entrants)
+        for j, figure in enumerate(means)
+        if arena.flights > 1 and arena.of(figure, entrant, arena.together).as_good
+    ]
+    return rows_table(
+        entrants,
+        [*before, *means.values(), *after],
+        left_columns=len(before),
         bold=bold,
         print_size_pt=6.4,
         breakable=True,
@@ -486,33 +525,44 @@ def by_condition_table(arena: Arena, figure: str, *, tracking: bool | None = Non
         rows.append(["", "limit of any path", *most])
     head = ["No.", "Law", *(condition.replace("_", " ") for condition in conditions)]
     widths = [0.4, 2.4, *(1.0 for _ in conditions)]
-    return Table(head=head, rows=rows, widths=widths, left_columns=2, bold=bold, breakable=True)
+    return Table(
+        head=head,
+        rows=rows,
+        widths=widths,
+        left_columns=2,
+        bold=bold,
+        breakable=True,
+        caption=f"{arena.figure(figure).column.row}, by condition.",
+    )
 
 
 def tuning_table(arena: Arena) -> Table:
-    """Return the tuning of each law: what it makes use of, its parameters, and what either set costs
-    the tuner.
+    """Return the tuning of each law: what it makes use of, its parameters, and what either set
+    costs the tuner.
     """
-    rows = []
-    for entrant in arena.entrants:
-        tuned = entrant.tuned
-        parameters = ", ".join(
-            f"{key} {value:.3g} → {tuned.get(key, value):.3g}"
+
+    def parameters(entrant: Entrant) -> str:
+        pairs = (
+            f"{key} {value:.3g} → {entrant.tuned.get(key, value):.3g}"
             for key, value in entrant.defaults.items()
         )
-        before, after = (
-            number(cost, "{:.2f}") for cost in (entrant.cost_default, entrant.cost_tuned)
-        )
-        costs = f"{before} → {after}"
-        rows.append(
-            [str(entrant.number), entrant.title, entrant.inputs, parameters or "none", costs]
-        )
-    head = ["No.", "Law", "What it makes use of", "Parameters: default → tuned", "Cost [m]"]
-    return Table(
+        return ", ".join(pairs) or "none"
+
+    def costs(entrant: Entrant) -> str:
+        found = (entrant.cost_default, entrant.cost_tuned)
+        return " → ".join(number(cost, "{:.2f}") for cost in found)
+
+    cells = [
+        _NUMBER,
+        _law(1.6),
+        Cell("What it makes use of", lambda entrant: entrant.inputs, width=2.7),
+        Cell("Parameters: default → tuned", parameters, width=3.4),
+        Cell("Cost [m]", costs, width=1.2),
+    ]
+    return rows_table(
+        arena.entrants,
+        cells,
         caption="What each law makes use of, its parameters, and what either set costs the tuner.",
-        head=head,
-        rows=rows,
-        widths=[0.4, 1.6, 2.7, 3.4, 1.2],
         left_columns=5,
         prose=True,
         breakable=True,
@@ -728,7 +778,7 @@ def worth_chart(arena: Arena) -> Chart:
         " the sulphur content come first.",
         panels=panels,
         columns=len(panels),
-        panel_height=0.1 + 0.025 * len(entrants),
+        panel_height=0.1 + 0.02 * len(entrants),
     )
 
 

@@ -41,8 +41,8 @@ TUNING_COLUMNS = described(
         "evaluation": "number of the setting that was tried, from 0",
         "cost_m": "cost of the setting: its error, and its excess times a weight",
         "error_m": "mean over its flights of the rms distance to the reference",
-        "excess_rad_s": "mean over its flights of the rms of the commanded heading rate less that of"
-        " the reference",
+        "excess_rad_s": "mean over its flights of the rms of the commanded heading rate less that"
+        " of the reference",
         "parameters": Column("parameters of the law, as JSON", kind="text"),
         "message": Column("why the setting could not be flown", kind="text"),
         "wall_time_s": Column("computing time", title="Computing time", adds_up=True),

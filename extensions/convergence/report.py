@@ -4,7 +4,7 @@ converge.
 
 import math
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -17,7 +17,8 @@ from common.run_layout import HISTORY_SUFFIX
 from extensions.convergence import COUNTEREXAMPLES, TRAJECTORIES, trajectory_path
 from reports.document.blocks import Block, Card, Findings, Heading, Section, Table, Text, Verdict
 from reports.document.chart import Chart, Line, Panel, Style
-from reports.document.tables import number, parameter_blocks
+from reports.document.state import state_words
+from reports.document.tables import Cell, number, parameter_blocks, rows_table
 from reports.run.columns import Array, column
 from reports.run.run_data import RunData
 
@@ -26,7 +27,7 @@ CURVE_POINTS, HISTORY_POINTS = 200, 500
 DISTANCE_BINS, BIN_TRAJECTORIES = 20, 20
 """Bins of start distances at most, and trajectories for each, on average, above two bins."""
 PANEL_HEIGHT, HISTORIES_PER_LAW, FAILED_ROWS, FAILURES_NAMED = 0.32, 6, 20, 10
-DISTANCE_SHOWN_MIN_M, TIME_SHOWN_MIN_S, RATIO_SHOWN_MIN = 1e-3, 1.0, 1e-2
+DISTANCE_SHOWN_MIN_M, TIME_SHOWN_MIN_S = 1e-3, 1.0
 """Floors of logarithmic axes: distances go to zero, and a start inside the settling band is settled
 at once.
 """
@@ -135,16 +136,13 @@ def predicted(rows: pd.DataFrame) -> "pd.Series[float]":
 def convergence_content(run: RunData) -> Findings:
     """Return the findings of a convergence study."""
     data = Convergence(run)
-    states, laws = (
-        data.rows["trajectory"].nunique(),
-        ", ".join(law.name.lower() for law in data.laws) or "none",
-    )
+    states = data.rows["trajectory"].nunique()
+    laws = ", ".join(law.name.lower() for law in data.laws) or "none"
     charts = _settling_charts(data)
     samples = (
         f"Distance to the reference over time, of up to {HISTORIES_PER_LAW} trajectories per law"
         " that converged."
     )
-    shown = _history_charts(data, "samples", samples, converged=True)
     return Findings(
         flown=f"{len(data.rows):,} trajectories of the paper's kinematic vehicle, from {states:,}"
         f" initial states at random, under these laws: {laws}.",
@@ -159,7 +157,10 @@ def convergence_content(run: RunData) -> Findings:
                 blocks=[*charts, _settling_table(data)] if len(data.rows) else [],
             ),
             Section(
-                anchor="samples", title="Sample trajectories", nav_title="Samples", blocks=shown
+                anchor="samples",
+                title="Sample trajectories",
+                nav_title="Samples",
+                blocks=_history_charts(data, "samples", samples, converged=True),
             ),
             Section(
                 anchor="counterexamples",
@@ -239,75 +240,78 @@ def _failed(data: Convergence) -> list[Block]:
         ).all()
     ):
         blocks.insert(0, Text(_LIMIT_CYCLE))
-    head = [
-        "Trajectory",
-        "Reference",
-        "Start distance [m]",
-        "Start course [rad]",
-        "Start φ [rad]",
-        "Outcome",
-    ]
     for law in data.laws:
-        if not (count := len(rows := failed(data.of(law)))):
+        rows = failed(data.of(law))
+        if not len(rows):
             continue
-        some = (
-            f"; the first {FAILED_ROWS} of {count:,}, all are in {COUNTEREXAMPLES}"
-            if count > FAILED_ROWS
-            else ""
-        )
-        cells = [
-            [
-                f"{row['trajectory']:.0f}",
-                REFERENCES[row["reference"]][0],
-                number(row["start_distance_m"], "{:.1f}"),
-                number(row["start_course_rad"], "{:.4f}"),
-                number(row["start_phi_rad"], "{:.4f}"),
-                _reason(row),
-            ]
-            for _, row in rows.head(FAILED_ROWS).iterrows()
-        ]
+        heading = law.name if law.proven else f"{law.name}, of which the theory says nothing"
+        if len(rows) > FAILED_ROWS:
+            heading += f"; the first {FAILED_ROWS} of {len(rows):,}, all are in {COUNTEREXAMPLES}"
+        first = rows.head(FAILED_ROWS).to_dict("records")
         blocks += [
-            Heading(
-                f"{law.name}{'' if law.proven else ', of which the theory says nothing'}{some}"
-            ),
-            Table(
-                head=head,
-                rows=cells,
-                widths=[1.0, 1.6, 1.0, 1.0, 1.0, 5.4],
-                left_columns=2,
-                breakable=True,
-            ),
+            Heading(heading),
+            rows_table(first, _FAILED, left_columns=2, breakable=True),
         ]
     return blocks
 
 
-def _reason(row: "pd.Series[Any]") -> str:
+def _reason(row: Mapping[Any, Any]) -> str:
     outcome, message = str(row["outcome"]).replace("_", " "), str(row["message"])
     return f"{outcome}: {message}" if message else outcome
 
 
+_FAILED = (
+    Cell("Trajectory", "trajectory", "{:.0f}"),
+    Cell("Reference", lambda row: REFERENCES[row["reference"]][0], width=1.6),
+    Cell("Start distance [m]", "start_distance_m", "{:.1f}"),
+    Cell("Start course [rad]", "start_course_rad", "{:.4f}"),
+    Cell("Start φ [rad]", "start_phi_rad", "{:.4f}"),
+    Cell("Outcome", _reason, width=5.4),
+)
+"""Columns of the tables of what did not converge."""
+
+
 def _settling_table(data: Convergence) -> Table:
     """Return a row per law and kind of reference, and one per law for all."""
-    rows = []
-    for law in data.laws:
-        for key, name in (*((key, name) for key, (name, *_) in REFERENCES.items()), (None, "all")):
-            if count := len(of := data.of(law, key)):
-                largest = of["heading_rate_max_rad_s"].max()
-                times = (settled_time(of["settling_time_s"], fraction) for fraction in QUANTILES)
-                # Under law (24) commands have no limit.
-                rate = number(largest, "{:,.0f}" if largest >= 100.0 else "{:.3f}")
-                rows.append(
-                    [law.name, name, f"{count:,}", f"{count - len(failed(of)):,}", *times, rate]
+    names = {key: name for key, (name, *_) in REFERENCES.items()}
+    groups = [
+        {"law": law.name, "reference": name, "rows": rows}
+        for law in data.laws
+        for key, name in (*names.items(), (None, "all"))
+        if len(rows := data.of(law, key))
+    ]
+    return rows_table(
+        groups,
+        [
+            Cell("Law", "law", width=2.0),
+            Cell("Reference", "reference", width=1.5),
+            Cell("Trajectories", lambda of: len(of["rows"]), "{:,.0f}", 1.1),
+            Cell("Converged", lambda of: converged_count(of["rows"]), "{:,.0f}"),
+            *(
+                Cell(
+                    f"{100.0 * share:.0f} % settled [s]",
+                    lambda of, share=share: settled_time(of["rows"]["settling_time_s"], share),
+                    width=0.9,
                 )
-    head = [f"{100.0 * fraction:.0f} % settled [s]" for fraction in QUANTILES]
-    return Table(
+                for share in QUANTILES
+            ),
+            Cell("Largest command [rad/s]", lambda of: command_words(of["rows"]), width=1.2),
+        ],
         caption="Trajectories that converged, and their settling times, by law and kind of"
         " reference.",
-        head=["Law", "Reference", "Trajectories", "Converged", *head, "Largest command [rad/s]"],
-        rows=rows,
-        widths=[2.0, 1.5, 1.1, 1.0, *[0.9] * len(QUANTILES), 1.2],
         left_columns=2,
     )
+
+
+def converged_count(rows: pd.DataFrame) -> int:
+    """Return how many converged."""
+    return len(rows) - len(failed(rows))
+
+
+def command_words(rows: pd.DataFrame) -> str:
+    """Return the largest heading rate that was commanded [rad/s]; law (24) has no limit."""
+    largest = rows["heading_rate_max_rad_s"].max()
+    return number(largest, "{:,.0f}" if largest >= 100.0 else "{:.3f}")
 
 
 def settled_time(times: "pd.Series[float]", fraction: float) -> str:
@@ -320,91 +324,110 @@ def settled_time(times: "pd.Series[float]", fraction: float) -> str:
     return f"{when:,.0f}" if math.isfinite(when) else "–"
 
 
-def percentage(part: int, whole: int) -> str:
-    """Return a part of a whole in percent, rounded down: 100 % are all."""
-    return f"{math.floor(10_000.0 * part / whole) / 100.0:g} %" if whole else "none flown"
-
-
 def _verdict(data: Convergence) -> Verdict:
     """Judge a study by the laws that the theory is about, if it flew any: it holds if every
     trajectory under them converged.
     """
-    rows, state, planned = data.proven, data.run.manifest.get("state", "unfinished"), data.planned
-    counter_examples, missed, every = failed(rows), len(failed(data.rows)), len(data.rows)
-    complete = state == "complete" and (
-        len(rows) == planned if planned else not (missed or data.lost)
-    )
-    if not planned:
-        headline = (
-            f"{every - missed:,} of {every:,} trajectories converged, under laws that no theory"
-            " covers"
-        )
-    elif not len(rows):
-        headline = "Nothing was flown yet"
-    elif len(counter_examples):
-        headline = f"{len(counter_examples):,} of {len(rows):,} trajectories did not converge"
-    else:
-        headline = f"All {len(rows):,} trajectories {'' if complete else 'so far '}converged"
-        headline += "" if complete else f"; {planned:,} are planned"
+    rows, planned = data.proven, data.planned
+    counter_examples = failed(rows)
+    is_done = data.run.manifest.get("state") == "complete"
+    all_judged = len(rows) == planned if planned else not (len(failed(data.rows)) or data.lost)
     names = {law.key: law.name for law in LAWS}
     lines = [
         f"{names[row['law']]}, trajectory {row['trajectory']}: {_reason(row)}"
-        for _, row in counter_examples.iterrows()
+        for row in counter_examples.head(FAILURES_NAMED).to_dict("records")
     ]
-    if (more := len(lines) - FAILURES_NAMED) > 0:
-        lines = [*lines[:FAILURES_NAMED], f"and {more:,} more, in {COUNTEREXAMPLES}"]
+    if (more := len(counter_examples) - FAILURES_NAMED) > 0:
+        lines.append(f"and {more:,} more, in {COUNTEREXAMPLES}")
     return Verdict(
         holds=not planned or (len(rows) > 0 and not len(counter_examples)),
-        complete=complete,
-        headline=headline,
-        detail=_detail(data, state),
+        complete=is_done and all_judged,
+        headline=_headline(data, is_done=is_done),
+        detail=_detail(data),
         failures=lines,
         figures=_figures(data),
     )
 
 
-def _detail(data: Convergence, state: str) -> str:
-    proven = " and ".join(law.name.lower() for law in data.laws if law.proven)
-    words = (
-        [f"{data.rows['trajectory'].nunique():,} random initial states, each flown with {proven}."]
-        if proven
-        else []
+_CONVERGED = "{converged:,} of {flown:,} trajectories converged"
+_ALL_CONVERGED = "All {flown:,} trajectories converged"
+_COMMANDED = "; {laws}, where ω_max is {limit:g}"
+_CUT = ", with commands cut at ω_max, of which the theory says nothing"
+
+
+def _headline(data: Convergence, *, is_done: bool) -> str:
+    """Return the state, how many converged, and what the laws commanded for it."""
+    rows = data.proven if data.planned else data.rows
+    planned = data.planned or int(data.run.manifest["config"]["ensemble"]["trajectories"])
+    missing = planned - len(rows)
+    state = state_words(
+        "trajectories", len(rows), planned, is_done=is_done and not missing, interrupted=not is_done
     )
-    words += [
-        "The theory says nothing of cut commands, so they have no part in this:"
-        f" under {law.name.lower()}, {len(rows) - len(failed(rows)):,} of {len(rows):,} converged."
+    if not len(rows):
+        return ". ".join([*state, "Nothing was flown yet"])
+    done = converged_count(rows)
+    words = _ALL_CONVERGED if done == len(rows) else _CONVERGED
+    answer = words.format(converged=done, flown=len(rows))
+    if not data.planned:
+        return ". ".join([*state, answer + _CUT])
+    commands = [
+        f"{law.name.lower()} commanded up to {command_words(data.of(law))} rad/s"
         for law in data.laws
-        if not law.proven
-        for rows in [data.of(law)]
+        if law.proven
     ]
-    if data.lost:
-        words.append(
-            f"{data.lost:,} trajectories were lost with their processes, and count as not flown;"
-            " --resume flies them again."
+    limit = float(data.run.manifest["config"]["guidance"]["heading_rate_max_rad_s"])
+    answer += _COMMANDED.format(laws=", ".join(commands), limit=limit)
+    return ". ".join([*state, answer])
+
+
+_STATES = "{states:,} random initial states, each flown with {laws}."
+_NOT_JUDGED = (
+    "Under {law}, of which the theory says nothing, {converged:,} of {flown:,} converged; that is"
+    " not judged."
+)
+_LOST = (
+    "{lost:,} trajectories were lost with their processes, and count as not flown; --resume flies"
+    " them again."
+)
+_RESUME = "The run is {state}; continue it with --resume."
+
+
+def _detail(data: Convergence) -> str:
+    state = data.run.manifest.get("state", "unfinished")
+    proven = [law.name.lower() for law in data.laws if law.proven]
+    others = [law for law in data.laws if not law.proven]
+    sentences = [
+        _NOT_JUDGED.format(
+            law=law.name.lower(), converged=converged_count(rows := data.of(law)), flown=len(rows)
         )
+        for law in others
+    ]
+    if proven:
+        states = data.rows["trajectory"].nunique()
+        sentences.insert(0, _STATES.format(states=states, laws=" and ".join(proven)))
+    if data.lost:
+        sentences.append(_LOST.format(lost=data.lost))
     if state != "complete":
-        words.append(f"The run is {state}; continue it with --resume.")
-    return " ".join(words)
+        sentences.append(_RESUME.format(state=state))
+    return " ".join(sentences)
 
 
 def _figures(data: Convergence) -> list[Card]:
-    fractions, slowest = [], []
+    limit = float(data.run.manifest["config"]["guidance"]["heading_rate_max_rad_s"])
+    converged, commands = [], []
     for law in data.laws:
-        count = len(rows := data.of(law))
-        done = count - len(failed(rows))
-        limit, met = ("100 %", 0 < count == done) if law.proven else ("", None)
-        fractions.append(Card(f"{law.name}: converged", percentage(done, count), limit, met))
-        slowest.append(
-            Card(
-                f"{law.name}: slowest to settle", number(rows["settling_time_s"].max(), "{:,.0f} s")
-            )
-        )
-    farthest = Card("Farthest start", number(data.rows["start_distance_m"].max(), "{:,.0f} m"))
+        rows = data.of(law)
+        done, count = converged_count(rows), len(rows)
+        judged = ("all", 0 < count == done) if law.proven else ()
+        converged.append(Card(f"{law.name}: converged", f"{done:,} of {count:,}", *judged))
+        name = f"{law.name}: largest command, ω_max is {limit:g} rad/s"
+        commands.append(Card(name, f"{command_words(rows)} rad/s"))
+    slowest = number(data.rows["settling_time_s"].max(), "{:,.0f} s")
     ratio = predicted(data.proven if data.planned else data.rows).median()
     return [
-        *fractions,
-        farthest,
-        *slowest,
+        *converged,
+        *commands,
+        Card("Slowest to settle", slowest),
         Card("Settling over predicted, median", number(ratio, "{:.2f}")),
     ]
 
@@ -440,28 +463,12 @@ def _line(reference: str, x: Array, y: Array) -> Line:
 def _settling_charts(data: Convergence) -> list[Chart]:
     """Return the figures of when trajectories settle, for the laws of which any did."""
     laws = [law for law in data.laws if data.of(law)["settling_time_s"].notna().any()]
-
-    def shares(
-        values: Callable[[pd.DataFrame], "pd.Series[float]"], least: float
-    ) -> dict[Law, list[Line]]:
-        found = {
-            law: {
-                of: cumulative(np.maximum(values(data.of(law, of)).to_numpy(), least))
-                for of in REFERENCES
-            }
-            for law in laws
-        }
-        return {
-            law: [_line(of, x, 100.0 * y) for of, (x, y) in curves.items() if len(x)]
-            for law, curves in found.items()
-        }
-
     return [
         *_by_law(
             "settling",
             "Fraction of all trajectories that have settled, over time since their start; a"
             " curve that ends below 100 % leaves out those that never did.",
-            shares(lambda rows: rows["settling_time_s"], TIME_SHOWN_MIN_S),
+            {law: _settled_shares(data, law) for law in laws},
             x_label="Settling time [s]",
             y_label="Settled [%]",
             log_x=True,
@@ -478,17 +485,18 @@ def _settling_charts(data: Convergence) -> list[Chart]:
             log_y=True,
             x_range=(0.0, 1.03 * float(data.rows["start_distance_m"].max())) if laws else None,
         ),
-        *_by_law(
-            "predicted",
-            "Settling time measured over that predicted: fraction of the trajectories up to each"
-            " ratio. 1 is as predicted by the motion averaged over the reference's turns.",
-            shares(predicted, RATIO_SHOWN_MIN),
-            x_label="Measured over predicted [-]",
-            y_label="Trajectories [%]",
-            log_x=True,
-            y_range=(0.0, 103.0),
-        ),
     ]
+
+
+def _settled_shares(data: Convergence, law: Law) -> list[Line]:
+    """Return for each kind of reference the share of a law's trajectories that had settled by a
+    time.
+    """
+    curves = {
+        of: cumulative(np.maximum(data.of(law, of)["settling_time_s"].to_numpy(), TIME_SHOWN_MIN_S))
+        for of in REFERENCES
+    }
+    return [_line(of, x, 100.0 * y) for of, (x, y) in curves.items() if len(x)]
 
 
 def cumulative(values: Array) -> tuple[Array, Array]:

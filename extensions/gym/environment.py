@@ -91,7 +91,8 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
     around her.
 
     Actions are heading rate [rad/s] and airspeed [m/s] that the autopilot is commanded for one step
-    of the guidance; observations are those of ``extensions.gym.observation.MEANINGS``, rewards those
+    of the guidance; observations are those of ``extensions.gym.observation.MEANINGS``,
+    rewards those
     of ``extensions.gym.reward``. An episode is terminated when the keep-out area is entered, the
     aircraft is lost, or every crossing is flown; it is truncated when its time is up.
 
@@ -148,7 +149,8 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
         """
         if self._episode.record is None:
             raise InputError(
-                "the episode has no record: it is under way, or a keep-out violation ended it; fly one to its end"
+                "the episode has no record: it is under way, or a keep-out violation ended it;"
+                " fly one to its end"
             )
         return self._episode.record
 
@@ -173,7 +175,8 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
         super().reset(seed=seed)
         if unknown := [str(key) for key in options or {} if key != _FLIGHT_ID]:
             raise InputError(
-                f"unknown option '{unknown[0]}' of reset; the only one is '{_FLIGHT_ID}', the name of a flight"
+                f"unknown option '{unknown[0]}' of reset; the only one is '{_FLIGHT_ID}', the"
+                " name of a flight"
             )
         name = (options or {}).get(_FLIGHT_ID)
         if name is None:

@@ -110,8 +110,10 @@ class Observer:
             )
             course = tracked.course
         values = (
-            self.along, self.across, self.distance - plan.keepout_radius, *turned(v_north, v_east), heading_rate,
-            *turned(vessel_v_north, vessel_v_east), *turned(own.wind_north, own.wind_east), *reference,
+            self.along, self.across, self.distance - plan.keepout_radius, *turned(v_north, v_east),
+            heading_rate,
+            *turned(vessel_v_north, vessel_v_east), *turned(own.wind_north, own.wind_east),
+            *reference,
             math.cos(course - axis), math.sin(course - axis), time / plan.duration_max,
         )  # fmt: skip
         return np.clip(values, _SPACE.low, _SPACE.high)

@@ -63,7 +63,8 @@ class PatrolKeys(StudyKeys):
     UNUSED: ClassVar[Mapping[str, str]] = {
         "flight.duration_max_s": "flights of a patrol are as long as patrol.patience_s allows: set"
         " that",
-        "flight.crossings": "a flight of a patrol ends with a verdict or its patience: leave it out",
+        "flight.crossings": "a flight of a patrol ends with a verdict or its patience: leave it"
+        " out",
         "criteria.": "a patrol is judged by patrol.oracle_share_min and patrol.wrong_share_max: set"
         " these",
         "histories": "a patrol keeps no time histories: leave it out",

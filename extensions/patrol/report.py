@@ -3,9 +3,9 @@ would have done.
 """
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -15,27 +15,27 @@ from common.verdict import MET
 from extensions.patrol import PHASES, SHIPS
 from extensions.patrol.counts import PatrolCounts
 from measurement.gases import MASS_PERCENT
-from reports.design.section import innerloop_section
+from reports.design.section import design_words
 from reports.document.axes import in_kilometres
-from reports.document.blocks import Card, Findings, Heading, Section, Table, Text, Verdict
+from reports.document.blocks import Card, Findings, Fold, Heading, Section, Table, Text, Verdict
 from reports.document.chart import Chart, Line, Note, Panel, Style
 from reports.document.map_marks import on_map
 from reports.document.palette import Meaning
-from reports.document.tables import number, parameter_blocks, vehicle_flown
+from reports.document.state import state_words
+from reports.document.tables import Cell, approach, parameter_blocks, rows_table, vehicle_flown
 from reports.flights.parameter_tables import distribution
 from reports.run.columns import column, least
 from reports.run.run_data import RunData
 from reports.run.table_file import read_table
 
-_SHOWN = 12
-"""Patrols of which map and ships are shown."""
+_FOLDED = 11
+"""Patrols whose map and ships the screen shows, beside the one that is printed."""
 
 _ORACLE = (
-    "The oracle knows how long each ship takes: as long as a flight beside it that knows where"
-    " its plume is, or as the patrol's own where that took less. It orders the ships for the most"
-    " verdicts within the endurance, and then for the earliest end, as the patrol does: of few"
-    " ships it tries all orders, of many it finds a good one by insertion. It never goes round a"
-    " ship."
+    "The oracle knows how long each ship takes: as long as a flight beside it that knows where the"
+    " plume is, or as the patrol's flight where that was shorter. It orders the ships as the patrol"
+    " does, for the most verdicts within the endurance and then for the earliest end. Up to 8 ships"
+    " it tries every order; of more it builds one by insertion. It never goes round a ship."
 )
 
 _PHASES = {
@@ -58,27 +58,22 @@ stands, over the map's height.
 """
 
 
-class _Column(NamedTuple):
-    """A column of a table: its head, the name or the function of its value, the pattern of a number
-    and its relative width in print.
-    """
-
-    head: str
-    value: str | Callable[[Any], object]
-    pattern: str
-    width: float
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Patrol:
-    """A patrol: its name, its row of the summary, and its ships and phases, which are empty where
-    it failed.
+    """A patrol: its number and name, its row of the summary, and its ships and phases, which are
+    empty where it failed.
     """
 
+    number: int
     name: str
     row: "pd.Series[Any]"
     ships: pd.DataFrame
     phases: pd.DataFrame
+
+    @property
+    def title(self) -> str:
+        """What it is called in the report."""
+        return f"Patrol {self.number}"
 
     def track(self, ship: "pd.Series[Any]") -> tuple[Any, Any]:
         """Return north and east of a ship at the start, and when it was measured or the patrol
@@ -106,12 +101,13 @@ def read_patrols(run: RunData) -> list[Patrol]:
     )
     return [
         Patrol(
+            number=number,
             name=str(row["flight_id"]),
             row=row,
             ships=ships[ships["patrol"] == row["flight_id"]],
             phases=phases[phases["patrol"] == row["flight_id"]],
         )
-        for _, row in run.summary.iterrows()
+        for number, (_, row) in enumerate(run.summary.iterrows())
     ]
 
 
@@ -129,27 +125,31 @@ def counts_of(run: RunData) -> PatrolCounts:
 def patrol_content(run: RunData) -> Findings:
     """Return the findings of patrols."""
     patrols, counts = read_patrols(run), counts_of(run)
-    flown = [(i, patrol) for i, patrol in enumerate(patrols) if len(patrol.phases)]
-    charts = [patrol_chart(patrol) for _, patrol in flown[:_SHOWN]]
-    shown = [
-        (Heading(f"Patrol {i}"), chart, ship_table(patrol, i))
-        for (i, patrol), chart in zip(flown, charts, strict=False)
+    flown = sorted((patrol for patrol in patrols if len(patrol.phases)), key=_matters)
+    first, others = flown[:1], sorted(flown[1:], key=lambda patrol: patrol.number)[:_FOLDED]
+    folded = [
+        block
+        for patrol in others
+        for block in (Heading(patrol.title), patrol_chart(patrol), ship_table(patrol))
     ]
-    lines = [time_lines(patrols)] if len(flown) > 1 else []
     sampled = {
         draw["key"]: distribution(draw, "patrol")
         for draw in run.manifest["config"].get("draws", [])
     }
-    served = f"{counts.served} of {counts.ships} ships were served"
+    patrol_words = "1 patrol" if len(patrols) == 1 else f"{len(patrols)} patrols"
     return Findings(
-        flown=f"{len(patrols)} patrol{'s' * (len(patrols) != 1)} of {vehicle_flown(run)},"
-        f" {counts.hours:.1f} h in all: {served}.",
+        flown=_FLOWN.format(
+            patrols=patrol_words,
+            vehicle=vehicle_flown(run),
+            hours=counts.hours,
+            served=counts.served,
+            ships=counts.ships,
+        ),
         verdict=Verdict(
             holds=counts.holds,
             complete=counts.met and run.verdict.exit_status == MET,
-            headline=_headline(counts),
-            detail=f"{served} in {counts.hours:.1f} h, {counts.per_hour:.1f} an hour;"
-            f" {counts.violations} keep-out violation{'s' * (counts.violations != 1)}.",
+            headline=_headline(run, counts),
+            detail=_DETAIL,
             failures=[
                 f"{row['flight_id']}: {row['message']}"
                 for _, row in run.summary.iterrows()
@@ -157,72 +157,109 @@ def patrol_content(run: RunData) -> Findings:
             ],
             figures=_figures(run, counts),
         ),
-        picture=charts[0] if charts else None,
+        picture=patrol_chart(first[0]) if first else None,
         sections=[
             Section(
                 anchor="patrols",
                 title="Patrols and the oracle",
                 nav_title="Patrols",
-                blocks=[Text(_ORACLE), oracle_table(patrols), *lines],
+                blocks=[
+                    Text(_ORACLE),
+                    oracle_table(patrols),
+                    *([time_lines(patrols)] if len(flown) > 1 else []),
+                ],
             ),
             Section(
                 anchor="ships",
                 title="Ships",
-                blocks=[block for blocks in shown for block in blocks],
+                blocks=[
+                    *map(ship_table, first),
+                    *([Fold(title="The other patrols", blocks=folded)] if folded else []),
+                ],
             ),
-            *([innerloop_section(run.innerloop)] if run.innerloop else []),
-            Section(anchor="parameters", title="Parameters", blocks=parameter_blocks(run, sampled)),
+            Section(
+                anchor="parameters",
+                title="Parameters",
+                blocks=[*parameter_blocks(run, sampled), *design_words(run)],
+            ),
         ],
     )
+
+
+_FLOWN = "{patrols} of {vehicle}, {hours:.1f} h in all: {served} of {ships} ships were served."
+
+_DETAIL = (
+    "The oracle knows every plume and how long each ship takes. A verdict is right where it agrees"
+    " with the fuel."
+)
+
+
+def _matters(patrol: Patrol) -> tuple[bool, float, float, float]:
+    """Return the place of a patrol: first what must not happen, wrong and open verdicts, and then
+    the closest approach.
+    """
+    row = patrol.row
+    nearest = row[["min_distance_m", "others_distance_min_m"]].min()
+    return (bool(row["criteria_met"]), -row["wrong"], -row["open"], nearest)
+
+
+_ANSWER = (
+    "{per_hour:.1f} ships served per hour; verdicts: {correct} right, {wrong} wrong, {open} open,"
+    " of the {oracle} that an oracle reaches"
+)
+_NONE_SERVED = "No ship was served; an oracle reaches {oracle} right verdicts"
+
+
+def _headline(run: RunData, counts: PatrolCounts) -> str:
+    """Return the state, how many ships were served in an hour, and the verdicts."""
+    state = state_words(
+        "patrols",
+        counts.done,
+        counts.planned,
+        is_done=run.verdict.is_done,
+        interrupted=run.verdict.interrupted,
+    )
+    answer = _ANSWER if counts.served else _NONE_SERVED
+    words = answer.format(
+        per_hour=counts.per_hour,
+        correct=counts.correct,
+        wrong=counts.wrong,
+        open=counts.open,
+        oracle=counts.oracle,
+    )
+    if counts.violations:
+        state.append(f"{counts.violations} keep-out violations")
+    return ". ".join([*state, words])
 
 
 def _figures(run: RunData, counts: PatrolCounts) -> list[Card]:
     """Return what the verdict rests on. What nothing was flown or judged for has no criterion:
     nothing would meet it.
     """
-    served, verdicts, oracle = counts.served, counts.verdicts, counts.oracle
-    enough, right = (
-        f"≥ {100.0 * counts.oracle_share_min:g} %",
-        f"≤ {100.0 * counts.wrong_share_max:g} %",
-    )
-    through = ("all", counts.through == counts.done) if served else ()
+    enough = f"≥ {100.0 * counts.oracle_share_min:g} % of the oracle's {counts.oracle}"
+    right = f"≤ {100.0 * counts.wrong_share_max:g} % of {counts.verdicts}"
+    kept_out = counts.served > 0 and not counts.violations
+    lost = [Card("Aircraft lost", f"{gone}", "0", met=False)] if (gone := _lost(run)) else []
     return [
+        Card("Ships served per hour", f"{counts.per_hour:.1f}", "> 0", counts.served > 0),
         Card(
-            "Correct verdicts, over the oracle's",
-            f"{counts.correct} of {oracle}",
-            *((enough, counts.enough) if oracle else ()),
+            "Right verdicts",
+            f"{counts.correct}",
+            *((enough, counts.enough) if counts.oracle else ()),
         ),
         Card(
-            "Wrong verdicts",
-            f"{counts.wrong} of {verdicts}",
-            *((right, counts.right) if verdicts else ()),
+            "Wrong verdicts", f"{counts.wrong}", *((right, counts.right) if counts.verdicts else ())
         ),
-        Card(
-            "Keep-out violations", f"{counts.violations}", "0", served > 0 and not counts.violations
-        ),
-        Card("Ships served", f"{served} of {counts.ships}", "≥ 1", served > 0),
+        *lost,
+        Card("Keep-out violations", f"{counts.violations}", "0", kept_out),
         _closest(run, "a ship that was served", "min_distance_m"),
         _closest(run, "any other ship", "others_distance_min_m"),
-        Card("Ships served an hour", f"{counts.per_hour:.1f}"),
-        Card("Flights beside ships without a verdict", f"{counts.open}"),
-        Card(
-            "Patrols that kept out, with their aircraft",
-            f"{counts.through} of {counts.done}",
-            *through,
-        ),
     ]
 
 
-def _headline(counts: PatrolCounts) -> str:
-    """Return how many verdicts there are, beside the oracle's."""
-    correct, oracle = counts.correct, counts.oracle
-    if not counts.served:
-        return (
-            f"No ship was served, and an oracle has {oracle or 'no'} correct"
-            f" verdict{'s' * (oracle > 1)}"
-        )
-    share = f"{100.0 * correct / oracle:.0f} % of an oracle's" if oracle else "an oracle has none"
-    return f"{correct} correct verdict{'s' * (correct != 1)}, {share}, {counts.wrong} wrong"
+def _lost(run: RunData) -> int:
+    lost = run.summary.get("aircraft_lost")
+    return 0 if lost is None else int(lost.fillna(value=False).astype(bool).sum())
 
 
 def _closest(run: RunData, ship: str, figure: str) -> Card:
@@ -233,86 +270,64 @@ def _closest(run: RunData, ship: str, figure: str) -> Card:
     if nearest is None:
         return Card(name, "–")
     radius = float(run.manifest["config"]["keepout"]["radius_m"])
-    # Rounded down: none is shown larger than it was.
-    return Card(
-        name, f"{math.floor(10.0 * nearest) / 10.0:.1f} m", f"≥ {radius:g} m", nearest >= radius
-    )
+    return Card(name, f"{approach(nearest, radius)} m", f"≥ {radius:g} m", nearest >= radius)
 
 
 def oracle_table(patrols: Sequence[Patrol]) -> Table:
     """Return what each patrol achieved, beside the oracle."""
-    columns = [
-        _Column("Patrol", "number", "{}", 0.7),
-        _Column("Ships", "ships", "{:.0f}", 0.6),
-        _Column("Served", "served", "{:.0f}", 0.7),
-        _Column("Correct", "correct", "{:.0f}", 0.7),
-        _Column("Wrong", "wrong", "{:.0f}", 0.7),
-        _Column("Open", "open", "{:.0f}", 0.6),
-        _Column("Oracle's", "oracle_verdicts", "{:.0f}", 0.8),
-        _Column("Served an hour", "served_per_hour", "{:.1f}", 0.8),
-        _Column(
-            "Duration [min]", lambda row: row.get("duration_s", math.nan) / _MINUTE, "{:.0f}", 0.8
-        ),
-        _Column(
-            "In transit [%]",
-            lambda row: (
-                100.0 * row["transit_s"] / row["duration_s"] if row.get("duration_s") else None
-            ),
-            "{:.0f}",
-            0.8,
-        ),
-        _Column("Wind [m/s]", "wind_speed_mps", "{:.1f}", 0.7),
-        _Column("Served ship [m]", "min_distance_m", "{:.0f}", 0.8),
-        _Column("Other ships [m]", "others_distance_min_m", "{:.0f}", 0.8),
-        _Column("Keep-out violations", "keepout_violations", "{:.0f}", 0.9),
+    cells = [
+        Cell("Patrol", "number", "{:.0f}", 0.7),
+        Cell("Ships", "ships", "{:.0f}", 0.6),
+        Cell("Served", "served", "{:.0f}", 0.7),
+        Cell("Right", "correct", "{:.0f}", 0.7),
+        Cell("Wrong", "wrong", "{:.0f}", 0.7),
+        Cell("Open", "open", "{:.0f}", 0.6),
+        Cell("Oracle's", "oracle_verdicts", "{:.0f}", 0.8),
+        Cell("Served per hour", "served_per_hour", "{:.1f}", 0.8),
+        Cell("Duration [min]", lambda row: _minutes(row.get("duration_s")), "{:.0f}", 0.8),
+        Cell("In transit [min]", lambda row: _minutes(row.get("transit_s")), "{:.0f}", 0.8),
+        Cell("Wind [m/s]", "wind_speed_mps", "{:.1f}", 0.7),
+        Cell("Served ship [m]", "min_distance_m", "{:.0f}", 0.8),
+        Cell("Other ships [m]", "others_distance_min_m", "{:.0f}", 0.8),
+        Cell("Keep-out violations", "keepout_violations", "{:.0f}", 0.9),
     ]
-    caption = (
-        "Each patrol, and the verdicts of an oracle that knows every plume and how long each ship"
-        " takes. Distances are the least to the ship that was served, and to any other. Patrols"
-        " are counted from 0, as in the names of flights."
+    return rows_table(
+        [{**patrol.row, "number": patrol.number} for patrol in patrols],
+        cells,
+        caption="Each patrol, and how many verdicts the oracle reaches. Distances are the least to"
+        " the ship that was served, and to any other. Patrols are counted from 0, as in the names"
+        " of flights.",
+        print_size_pt=6.4,
+        breakable=True,
     )
-    rows = [{**patrol.row, "number": str(i)} for i, patrol in enumerate(patrols)]
-    return _table(rows, columns, caption=caption)
 
 
-def ship_table(patrol: Patrol, index: int) -> Table:
+def _minutes(seconds: float | None) -> float | None:
+    return None if seconds is None else seconds / _MINUTE
+
+
+def ship_table(patrol: Patrol) -> Table:
     """Return the verdict on each ship of a patrol, by its number, and when it came."""
-    columns = [
-        _Column("Ship", lambda ship: str(ship["ship"]), "", 0.5),
-        _Column("Speed [m/s]", "vessel_speed_mps", "{:.1f}", 0.7),
-        _Column("ν", "nu", "{:.2f}", 0.6),
-        _Column("Stack [m]", "plume_source_height_m", "{:.0f}", 0.6),
-        _Column(f"Sulphur, true [{MASS_PERCENT}]", "fsc_fuel_percent", "{:.2f}", 0.8),
-        _Column(f"measured [{MASS_PERCENT}]", "fsc_percent", "{:.3f}", 0.8),
-        _Column("Verdict", _verdict, "", 1.5),
-        _Column("Reached [min]", lambda ship: ship["reached_s"] / _MINUTE, "{:.0f}", 0.8),
-        _Column("Time to find [s]", "time_to_find_s", "{:.0f}", 0.8),
-        _Column("Beside it [s]", lambda ship: ship["ended_s"] - ship["reached_s"], "{:.0f}", 0.8),
-        _Column("known axis [s]", "known_axis_service_s", "{:.0f}", 0.7),
-        _Column("Turn", "position", "{:.0f}", 0.5),
-        _Column("Oracle's turn", "oracle_position", "{:.0f}", 0.7),
+    cells = [
+        Cell("Ship", "ship", "{:.0f}", 0.5),
+        Cell("Speed [m/s]", "vessel_speed_mps", "{:.1f}", 0.7),
+        Cell("ν", "nu", "{:.2f}", 0.6),
+        Cell("Stack [m]", "plume_source_height_m", "{:.0f}", 0.6),
+        Cell(f"Sulphur, true [{MASS_PERCENT}]", "fsc_fuel_percent", "{:.2f}", 0.8),
+        Cell(f"measured [{MASS_PERCENT}]", "fsc_percent", "{:.3f}", 0.8),
+        Cell("Verdict", _verdict, width=1.5),
+        Cell("Reached [min]", lambda ship: _minutes(ship["reached_s"]), "{:.0f}", 0.8),
+        Cell("Time to find [s]", "time_to_find_s", "{:.0f}", 0.8),
+        Cell("Beside it [s]", lambda ship: ship["ended_s"] - ship["reached_s"], "{:.0f}", 0.8),
+        Cell("known axis [s]", "known_axis_service_s", "{:.0f}", 0.7),
+        Cell("Turn", "position", "{:.0f}", 0.5),
+        Cell("Oracle's turn", "oracle_position", "{:.0f}", 0.7),
     ]
-    caption = (
-        f"Ships of patrol {index}: verdicts, and when they came. Ships, and their turns in the"
-        " order, are counted from 0."
-    )
-    ships = patrol.ships.to_dict("records")
-    return _table(ships, columns, caption=caption)
-
-
-def _table(rows: Iterable[Mapping[Any, Any]], columns: Sequence[_Column], *, caption: str) -> Table:
-    """Return a table of rows: text as it is, a dash for what is missing."""
-
-    def cell(row: Mapping[Any, Any], column: _Column) -> str:
-        of = column.value
-        found = of(row) if callable(of) else row.get(of)
-        return found if isinstance(found, str) else number(found, column.pattern)
-
-    return Table(
-        caption=caption,
-        head=[column.head for column in columns],
-        rows=[[cell(row, column) for column in columns] for row in rows],
-        widths=[column.width for column in columns],
+    return rows_table(
+        patrol.ships.to_dict("records"),
+        cells,
+        caption=f"{patrol.title}: the verdict on each ship, and when it came. Ships, and their"
+        " turns in the order, are counted from 0.",
         print_size_pt=6.4,
         breakable=True,
     )
@@ -323,7 +338,7 @@ def _verdict(ship: Mapping[Any, Any]) -> str:
         return "not served"
     if ship["verdict"] == "open":
         return "open"
-    return f"{ship['verdict']}: {'correct' if ship['verdict'] == ship['truth'] else 'wrong'}"
+    return f"{ship['verdict']}: {'right' if ship['verdict'] == ship['truth'] else 'wrong'}"
 
 
 def patrol_chart(patrol: Patrol) -> Chart:
@@ -342,9 +357,9 @@ def patrol_chart(patrol: Patrol) -> Chart:
     )
     return Chart(
         name=patrol.name,
-        caption="Map: where ships went, numbered where they began and until they were measured,"
-        " and the UAV, which began at the ring. Time line: what it did beside or on the way to"
-        " which ship. A diamond is when an oracle would be done with it.",
+        caption=f"{patrol.title}. Map: where ships went, numbered where they began and until they"
+        " were measured, and the UAV, which began at the ring. Time line: what it did beside or on"
+        " the way to which ship. A diamond is when an oracle would be done with it.",
         panels=[in_kilometres(_map(patrol)), times],
         columns=2,
         panel_height=0.5,

@@ -241,8 +241,8 @@ class _Uav:
 
 @dataclass(frozen=True, kw_only=True)
 class PatrolWork(FlightRunner):
-    """Flies patrols; attributes are those of ``FlightRunner``, with one experiment of as many flights
-    as there are patrols.
+    """Flies patrols; attributes are those of ``FlightRunner``, with one experiment of as many
+    flights as there are patrols.
     """
 
     def run(self, task: Task) -> Result:

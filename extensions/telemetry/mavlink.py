@@ -118,7 +118,8 @@ class UdpStream:
                 except OSError as error:
                     host, port = self._host
                     raise ReportError(
-                        f"--stream: cannot send to {host}:{port}: {error.strerror}; check the address"
+                        f"--stream: cannot send to {host}:{port}: {error.strerror}; check the"
+                        " address"
                     ) from None
                 sent += 1
         return sent
@@ -184,8 +185,10 @@ def _of_sample(packer: Packer, flight: GeographicFlight, i: int, time: float) ->
         _centi(uav.north[i]), _centi(uav.east[i]), _centi(-flight.climb_rate[i]), heading,
     )  # fmt: skip
     yield packer.pack(
-        "VFR_HUD", float(flight.airspeed[i]), float(uav.speed[i]), float(uav.altitude[i]), float(flight.climb_rate[i]),
-        round(float(flight.heading[i])) % 360, max(0, min(100, round(100.0 * float(flight.throttle[i])))),
+        "VFR_HUD", float(flight.airspeed[i]), float(uav.speed[i]), float(uav.altitude[i]),
+        float(flight.climb_rate[i]),
+        round(float(flight.heading[i])) % 360, max(0, min(100,
+        round(100.0 * float(flight.throttle[i])))),
     )  # fmt: skip
 
 

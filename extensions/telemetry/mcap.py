@@ -21,8 +21,10 @@ _TIME = {
 
 _SCHEMAS: dict[str, dict[str, Any]] = {
     "foxglove.LocationFix": {
-        "timestamp": _TIME, "frame_id": _TEXT, "latitude": _NUMBER, "longitude": _NUMBER, "altitude": _NUMBER,
-        "position_covariance": {"type": "array", "items": _NUMBER}, "position_covariance_type": {"type": "integer"},
+        "timestamp": _TIME, "frame_id": _TEXT, "latitude": _NUMBER, "longitude": _NUMBER,
+        "altitude": _NUMBER,
+        "position_covariance": {"type": "array", "items": _NUMBER},
+        "position_covariance_type": {"type": "integer"},
     },
     "foxglove.PoseInFrame": {
         "timestamp": _TIME, "frame_id": _TEXT,
@@ -33,7 +35,8 @@ _SCHEMAS: dict[str, dict[str, Any]] = {
     },
     "foxglove.GeoJSON": {"geojson": _TEXT},
     "plume_flight_study.Motion": dict.fromkeys(
-        ("airspeed_mps", "ground_speed_mps", "climb_rate_mps", "heading_deg", "pitch_deg", "roll_deg"), _NUMBER
+        ("airspeed_mps", "ground_speed_mps", "climb_rate_mps", "heading_deg", "pitch_deg",
+        "roll_deg"), _NUMBER
     ),
 }  # fmt: skip
 """Fields of each schema (https://docs.foxglove.dev/docs/visualization/message-schemas), and the
@@ -41,7 +44,8 @@ project's own for plots.
 """
 
 _TOPICS = {
-    "/uav/fix": "foxglove.LocationFix", "/vessel/fix": "foxglove.LocationFix", "/uav/pose": "foxglove.PoseInFrame",
+    "/uav/fix": "foxglove.LocationFix", "/vessel/fix": "foxglove.LocationFix",
+    "/uav/pose": "foxglove.PoseInFrame",
     "/uav/motion": "plume_flight_study.Motion", "/plume": "foxglove.GeoJSON",
 }  # fmt: skip
 
@@ -50,7 +54,7 @@ _DRAWN_EVERY = 1.0
 
 
 class Mcap:
-    """Places, attitude and motion of one flight, and the plume with the keep-out area as GeoJSON."""
+    """Places, attitude and motion of one flight; plume and keep-out area as GeoJSON."""
 
     suffix = ".mcap"
     one_flight = True
@@ -62,8 +66,8 @@ class Mcap:
         """Write one flight."""
         from mcap.writer import Writer
 
-        # The schema says "Altitude in meters"; sensor_msgs/NavSatFix, which the programs show in the
-        # same way, is above the WGS 84 ellipsoid.
+        # The schema says "Altitude in meters"; sensor_msgs/NavSatFix, which the programs show in
+        # the same way, is above the WGS 84 ellipsoid.
         flight = next(recorded_flights(run)).above_ellipsoid()
         drawn = set(flight.every(_DRAWN_EVERY))
         with path.open("wb") as file:
@@ -120,8 +124,10 @@ def _messages(flight: GeographicFlight, i: int, nanoseconds: int) -> dict[str, d
 
 def _fix(body: Body, i: int, stamp: dict[str, int], frame: str) -> dict[str, Any]:
     return {
-        "timestamp": stamp, "frame_id": frame, "latitude": float(body.latitude[i]), "longitude": float(body.longitude[i]),
-        "altitude": float(body.altitude[i]), "position_covariance": [0.0] * 9, "position_covariance_type": 0,
+        "timestamp": stamp, "frame_id": frame, "latitude": float(body.latitude[i]),
+        "longitude": float(body.longitude[i]),
+        "altitude": float(body.altitude[i]), "position_covariance": [0.0] * 9,
+        "position_covariance_type": 0,
     }  # fmt: skip
 
 

@@ -39,14 +39,14 @@ MISSED_OVER_LIMIT = 2.0
 _FAR = 1000.0
 """Deviations beyond which a normal distribution's limits serve [-]."""
 
-_REJECTED = "C"
+REJECTED = "C"
 """Quality of records that have no verdict."""
 
 _COUNTED = {
     ABOVE: "above the limit",
     BELOW: "below the limit",
     OPEN: "with an open verdict",
-    _REJECTED: "without a verdict (quality C)",
+    REJECTED: "without a verdict (quality C)",
 }
 """Words for several records, by their verdict, or by the quality that has none."""
 
@@ -251,8 +251,8 @@ def verdict_words(
     probability_above : that the fuel's sulphur content is above the limit
     """
     limit = limit_words(limit_percent)
-    if quality == _REJECTED:
-        return f"no verdict on the limit of {limit}: quality {_REJECTED} gives none"
+    if quality == REJECTED:
+        return f"no verdict on the limit of {limit}: quality {REJECTED} gives none"
     side = "not shown to be above or below" if verdict == OPEN else verdict
     return f"{side} the limit of {limit}; probability above it: {probability(probability_above)}"
 
@@ -334,9 +334,9 @@ def next_step(
     noise, errors : standard uncertainty by noise, and by each error that further passes do not
         lower, by its words [% m/m]
     """
-    if quality == _REJECTED and not passes:
+    if quality == REJECTED and not passes:
         return "Next: check the CO2 sensor, and measure again in the plume."
-    if quality == _REJECTED:
+    if quality == REJECTED:
         return (
             "Next: correct the reason for quality C (record longer, if it is a short record); or"
             " analyse the parts of the log that are free of it as separate logs, each with a whole"
@@ -355,7 +355,7 @@ def next_step(
 
 def counted_verdicts(records: Iterable[tuple[str, str]]) -> str:
     """Return how many records have each verdict, given verdict and quality of each."""
-    called = [quality if quality == _REJECTED else verdict for verdict, quality in records]
+    called = [quality if quality == REJECTED else verdict for verdict, quality in records]
     return ", ".join(
         f"{called.count(verdict):,} {words}"
         for verdict, words in _COUNTED.items()

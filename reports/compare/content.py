@@ -1,7 +1,10 @@
 """The report of a comparison: what was changed, what came of it, and in which flights."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+
+import numpy as np
 
 from common.verdict import MET
 from reports.compare.charts import pair_charts
@@ -21,7 +24,8 @@ from reports.compare.tracks import most_changed
 from reports.document.blocks import Block, Card, Content, Heading, Section, Text, Verdict
 from reports.document.chart import Chart
 from reports.document.numbering import numbered
-from reports.run.columns import Mask, count, lost, total, violated
+from reports.document.tables import number
+from reports.run.columns import count, lost, met, total, violated
 from reports.run.letterhead import letterhead
 
 TIME_OF_COMPUTING = "wall_time_s"
@@ -30,6 +34,27 @@ TIME_OF_COMPUTING = "wall_time_s"
 _CARDS = ("fsc_percent", *JUDGED)
 _CARDS_MAX = 3
 """Figures at the head of the report on two runs: the first of those that the flights have."""
+
+_PRACTICAL = (
+    "clearance_m",
+    "crossing_interval_mean_s",
+    "crossing_distance_mean_m",
+    "tracking_error_rms_m",
+    "settling_time_s",
+    "guard_time_s",
+    "fsc_percent",
+)
+"""Figures that a headline is about: what a flight is for, and not how."""
+
+_SAME = "No figure differs in {pairs:,} pairs of flights"
+_SAME_BUT_ALONE = "No figure differs in {pairs:,} pairs of flights; other flights have no partner"
+_UNSAFE = (
+    "{new:,} of {pairs:,} shared flights violate the keep-out area or lose the aircraft in {other}"
+    " alone"
+)
+_CHANGE = "{title} {before} in {first}, {after} in {other}"
+_MET = "Of {pairs:,} shared flights {before:,} met their criteria in {first}, {after:,} in {other}"
+_CALLED = "The verdict on the fuel is another in {called:,}"
 
 _NAMED_MAX = 6
 """Keys that a sentence names."""
@@ -255,37 +280,58 @@ def _verdict(runs: Sequence[Run], compared: Sequence[Compared]) -> Verdict:
 
 
 def headline(compared: Sequence[Compared]) -> str:
-    """Return in a sentence what differs."""
+    """Return the largest practical change of each run, and in how many flights criteria are met."""
     pairs = sum(len(of.pairs) for of in compared)
-    what = f"{pairs:,} pair{'s' * (pairs > 1)} of flights"
     if not any(of.differing for of in compared):
-        others = "" if all(of.identical for of in compared) else "; other flights have no partner"
-        return f"No figure differs in {what}{others}"
-    turns = zip(*(_turned(of.pairs) for of in compared), strict=True)
-    worse, better, rest = (sum(count(mask) for mask in masks) for masks in turns)
-    s = "s" * (rest == 1)
-    others = (
-        f"; {rest:,} that met in neither run no longer keep{s} out or complete{s} the mission"
-        if rest
-        else ""
-    )
-    if called := sum(count(of.pairs.other_verdict) for of in compared):
-        others += f"; the verdict on the fuel is another in {called:,}"
-    if not worse and not better:
-        return f"No flight changed between met and not met in {what}{others or '; figures differ'}"
-    turned = [
-        f"{n:,} {words}{'s' * (n == 1)}"
-        for n, words in ((worse, "no longer meet"), (better, "newly meet"))
-        if n
-    ]
-    return f"Of {what}, {' and '.join(turned)} the criteria{others}"
+        words = _SAME if all(of.identical for of in compared) else _SAME_BUT_ALONE
+        return words.format(pairs=pairs)
+    return ". ".join(". ".join(_sentences(of, changes=3 - len(compared))) for of in compared)
 
 
-def _turned(pairs: Pairs) -> tuple[Mask, Mask, Mask]:
-    """Return the flights that are no longer met, those that newly are, and those that are worse
-    without having been met.
+def _sentences(compared: Compared, changes: int) -> Iterator[str]:
+    """Yield what a headline says of a run beside the first: what must never happen, else the largest
+    changes, one at least, and then how many flights met their criteria.
     """
-    return pairs.no_longer_met, pairs.newly_met, pairs.no_longer & ~pairs.no_longer_met
+    pairs, found = compared.pairs, largest_changes(compared)[: max(1, changes)]
+    names = {"first": pairs.first.letter, "other": pairs.other.letter, "pairs": len(pairs)}
+    if new := _new(pairs):
+        yield _UNSAFE.format(new=new, **names)
+    elif found:
+        yield "; ".join(
+            _CHANGE.format(title=of.figure.title, before=before, after=after, **names)
+            for of, before, after in found
+        )
+    yield _MET.format(before=count(met(pairs.before)), after=count(met(pairs.after)), **names)
+    if called := count(pairs.other_verdict):
+        yield _CALLED.format(called=called)
+
+
+def largest_changes(compared: Compared) -> list[tuple[Difference, str, str]]:
+    """Return the figures that differ, with their medians in the first run and in the other, the
+    largest change first.
+
+    A change is as large as its median over what the figure usually is in the first run, or over the
+    limit of its criterion where that is more: errors far below their limit do not matter.
+    """
+    limits = {
+        of.column: abs(float(of.limits[0]))
+        for of in compared.pairs.first.data.verdict.whole.criteria
+        if of.judged and isinstance(of.limits[0], int | float)
+    }
+    sizes = []
+    for name in _PRACTICAL:
+        of = compared.found.get(name)
+        if of is None:
+            continue
+        both = np.isfinite(of.change)
+        before, after = (float(np.median(values[both])) for values in (of.before, of.after))
+        usual = max(abs(before), of.figure.scale * limits.get(name, 0.0))
+        pattern = f"{{:.{of.figure.digits}f}}{of.figure.after}"
+        first, other = number(before, pattern), number(after, pattern)
+        if first != other:
+            size = abs(after - before) / usual if usual > 0.0 else math.inf
+            sizes.append((size, (of, first, other)))
+    return [found for _, found in sorted(sizes, key=lambda sized: -sized[0])]
 
 
 def _new(pairs: Pairs) -> int:

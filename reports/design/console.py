@@ -37,12 +37,13 @@ def print_summary(record: Record) -> None:
             _poles(at_middle(design, design["poles"])[0]),
         ),
         (
-            "Margins, the worst of grid and points between, with servos, engine and computing delay; of all controls at once"
-            " nothing is required",
+            "Margins, the worst of grid and points between, with servos, engine and computing"
+            " delay; of all controls at once nothing is required",
             worst_margin_table(design),
         ),
         (
-            f"Margins when perturbed, the worst of loops, grid and points between; required are {asked}",
+            "Margins when perturbed, the worst of loops, grid and points between; required are"
+            f" {asked}",
             robustness_table(design),
         ),
         ("Step responses", step_table(design)),
@@ -56,11 +57,13 @@ def print_summary(record: Record) -> None:
         console.print(console_table(heading, table))
     console.print(f"\nThe autopilot computes {design['autopilot_rate_hz']:.3g} times a second.")
     console.print(
-        f"The heading rate lags its command by {record['heading_rate_lag_s']:.3f} s in simulated flight."
+        f"The heading rate lags its command by {record['heading_rate_lag_s']:.3f} s in simulated"
+        " flight."
     )
     console.print(reversal_sentences(design), markup=False, highlight=False)
     console.print(
-        f"A heading-rate step overshoots its reference model by {100.0 * excess_overshoot(design):.1f} %."
+        "A heading-rate step overshoots its reference model by"
+        f" {100.0 * excess_overshoot(design):.1f} %."
     )
     verdict = design_verdict(design)
     for line in (verdict.headline, *verdict.failures, limit_cycle_sentence(design)):

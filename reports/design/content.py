@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from common.run_layout import DESIGN_RECORD, MODEL
-from reports.design.data import Record, climbing, complete, reversal_sentences, speed_range
+from reports.design.data import Record, complete, reversal_sentences, speed_range
 from reports.design.loop_charts import loop_charts
 from reports.design.margin_charts import margin_charts
 from reports.design.pole_chart import pole_chart
@@ -21,7 +21,7 @@ from reports.design.tables import (
 )
 from reports.design.trim_charts import trim_charts
 from reports.design.verdict import design_verdict
-from reports.document.blocks import Block, Findings, Heading, Section, Text
+from reports.document.blocks import Block, Findings, Fold, Heading, Section, Text
 from reports.errors import ReportError
 from reports.run.run_data import RunData
 
@@ -35,138 +35,149 @@ def design_content(run: RunData) -> Findings:
     """
     if run.innerloop is None:
         raise ReportError(
-            f"'{run.path}' holds no design record that can be read ({DESIGN_RECORD}); run plume-flight design again"
+            f"'{run.path}' holds no design record that can be read ({DESIGN_RECORD});"
+            " run plume-flight design again"
         )
     design = complete(run.innerloop)
+    bode, nichols = loop_charts(design)
+    more_steps = Fold(title="What else moves in a step", blocks=response_charts(design))
     sections = [
         _margins(design),
-        Section(anchor="loops", title="Loop shapes", blocks=loop_charts(design)),
+        Section(
+            anchor="loops",
+            title="Loop shapes",
+            blocks=[nichols, Fold(title="Bode diagrams", blocks=[bode])],
+        ),
         Section(
             anchor="responses",
             title="Step responses",
-            blocks=[*response_charts(design), step_table(design), Text(reversal_sentences(design))],
+            blocks=[step_table(design), Text(reversal_sentences(design)), more_steps],
         ),
         _equilibria(design),
         Section(anchor="poles", title="Poles", blocks=[pole_chart(design), pole_table(design)]),
-        _verification(design),
-        _weights(design),
+        Section(
+            anchor="linearisation",
+            title="Is the linear model right?",
+            nav_title="Linear model",
+            blocks=[Text(_VERIFICATION), verification_table(design)],
+        ),
+        Section(
+            anchor="weights",
+            title="Weights of the design",
+            nav_title="Weights",
+            blocks=[Text(_WEIGHTS), weight_table(design)],
+        ),
         _elsewhere(run.path / MODEL),
     ]
-    flown = (
-        f"The autopilot of the {design['title']} was designed for {speed_range(design)}, and its step responses were flown in"
-        " JSBSim."
-    )
     return Findings(
-        flown=flown, verdict=design_verdict(design), picture=first_chart(design), sections=sections
+        flown=_FLOWN.format(title=design["title"], speeds=speed_range(design)),
+        verdict=design_verdict(design),
+        picture=first_chart(design),
+        sections=sections,
     )
+
+
+_FLOWN = (
+    "The autopilot of the {title} was designed for {speeds}, and its step responses were flown in"
+    " JSBSim."
+)
+_NOMINAL = (
+    "Worst of the grid, the points between and the largest bank, loop by loop; required are"
+    " {gain_db:g} dB and {phase_deg:g}°"
+)
+_PERTURBED = (
+    "Perturbed or with more delay, worst of loops, grid and points between; required are"
+    " {perturbed_gain_db:g} dB and {perturbed_phase_deg:g}°"
+)
+_EFFECTIVENESS = (
+    "Control effectiveness is that of surfaces and throttle here. The perturbed aircraft of the"
+    " search over reversals differ in the effectiveness of their surfaces alone."
+)
+_RESIDUAL = (
+    "Largest linear or angular acceleration left in any of the {count} equilibria: {largest:.1e}"
+    " (m/s² or rad/s²)."
+)
+_VERIFICATION = (
+    "The linear model's answer to a small input against that of the simulation, in which servos"
+    " have no play here: largest error as a fraction of the largest excursion. An aircraft whose"
+    " servos have play may fly with a limit cycle, which no linear model has; page 1 says so. Of"
+    " jets the throttle's error is the largest: its lag is measured with a throttle step of 0.05,"
+    " as a turbine spools at a steady rate, and here the throttle moves by 0.01."
+)
+_WEIGHTS = (
+    "Gains follow from the linear models by weights. By Bryson's rule the weight of a quantity is"
+    " one over the square of its acceptable deviation. The table lists these deviations, one set"
+    " for the whole grid; the weights of controls follow from them and from the bandwidths at each"
+    " airspeed. Below them: the model that the heading rate follows, the largest errors of altitude"
+    " and airspeed that the autopilot acts on, the anti-windup rate, and the computing rate."
+)
 
 
 def _margins(design: Record) -> Section:
-    required = design["required"]
-    asked = f"{required['perturbed_gain_db']:g} dB and {required['perturbed_phase_deg']:g}°"
+    disk, classical = margin_charts(design)
     blocks: list[Block] = [
-        Heading(
-            f"Worst of the grid, the points between and the largest bank, loop by loop; required are {required['gain_db']:g} dB and"
-            f" {required['phase_deg']:g}°"
-        ),
+        Heading(_NOMINAL.format(**design["required"])),
         worst_margin_table(design),
-        *margin_charts(design),
-        Heading(
-            f"Perturbed or with more delay, worst of loops, grid and points between; required are {asked}"
-        ),
+        classical,
+        Fold(title="Disk margins", blocks=[disk]),
+        Heading(_PERTURBED.format(**design["required"])),
         robustness_table(design),
-        Text(
-            "Control effectiveness is that of surfaces and throttle here; the perturbed aircraft that the search over reversals"
-            " flies have another effectiveness of their surfaces alone."
-        ),
+        Text(_EFFECTIVENESS),
     ]
     return Section(anchor="margins", title="Margins", blocks=blocks)
 
 
 def _equilibria(design: Record) -> Section:
-    envelope = design["envelope"]
-    blocks: list[Block] = [
-        envelope_table(envelope),
-        *(Text(note) for note in envelope["notes"]),
-        *trim_charts(design),
-    ]
-    shown = extreme_trims(design)
-    climbs = any(climbing(t) for t in shown)
-    title = "Level flight and the largest banks" + (
-        ", and the steepest climb and descent" if climbs else ""
-    )
-    blocks += [Heading(title), trim_table(design, shown)]
+    envelope, shown = design["envelope"], extreme_trims(design)
+    *climbs, trims = trim_charts(design)
     residuals = [float(t["residual"]) for t in design["trims"] if t.get("residual") is not None]
-    if residuals:
-        blocks.append(
-            Text(
-                f"Largest linear or angular acceleration left in any of the {len(residuals)} equilibria:"
-                f" {max(residuals):.1e} (m/s² or rad/s²)."
-            )
-        )
-    return Section(anchor="equilibria", title="Equilibria", blocks=blocks)
-
-
-def _verification(design: Record) -> Section:
-    text = (
-        "The linear model's answer to a small input against that of the simulation itself, in which servos have no play here:"
-        " largest error as a fraction of the largest excursion. An aircraft whose servos have play may fly with a limit cycle,"
-        " which no linear model has; it is measured in straight and level flight, and the verdict says it. Of jets the throttle's is the largest, above all because its lag is measured"
-        " with a throttle step of 0.05, as a turbine spools at a steady rate, and here the throttle moves by 0.01."
+    sizes = (
+        [Text(_RESIDUAL.format(count=len(residuals), largest=max(residuals)))] if residuals else []
     )
-    blocks: list[Block] = [Text(text), verification_table(design)]
+    title = "Level flight, the largest banks, and the steepest climb and descent"
     return Section(
-        anchor="linearisation",
-        title="Is the linear model right?",
-        nav_title="Linear model",
-        blocks=blocks,
+        anchor="equilibria",
+        title="Equilibria",
+        blocks=[
+            envelope_table(envelope),
+            *(Text(note) for note in envelope["notes"]),
+            trims,
+            *sizes,
+            Fold(title=title, blocks=[*climbs, trim_table(design, shown)]),
+        ],
     )
 
 
-def _weights(design: Record) -> Section:
-    text = (
-        "Gains follow from the linear models by weights. By Bryson's rule the weight of a quantity is one over the square of its"
-        " acceptable deviation; the table lists these, a set for the whole grid, in SI units. The weights of controls follow from"
-        " them and the bandwidths at each airspeed, and are not listed. Behind the deviations stand the model that the heading rate"
-        " follows, the largest errors of altitude and airspeed that the autopilot acts on, the rate at which integrals come back to"
-        " what controls can give (anti-windup), and how often the autopilot computes."
-    )
-    return Section(
-        anchor="weights",
-        title="Weights of the design",
-        nav_title="Weights",
-        blocks=[Text(text), weight_table(design)],
-    )
+_FILES = (
+    "The directory “model” beside this report is a JSBSim root: {files}. It needs nothing else."
+)
+_FLY = (
+    "To fly it in any JSBSim, from the directory of this report: {commands}. With JSBSim's Python"
+    " package the program is called jsbsim. It writes {written}; the script says how to write"
+    " elsewhere."
+)
 
 
 def _elsewhere(root: Path) -> Section:
     """Return how to fly the design without this project, by the files that are there."""
+    found = {
+        "the aircraft": [p for p in root.glob("aircraft/*/*.xml") if p.stem == p.parent.name],
+        "its autopilot": root.glob("systems/*_autopilot.xml"),
+        "a script": root.glob("scripts/*.xml"),
+    }
     named = [
         (what, path.relative_to(root).as_posix())
-        for what, pattern in (
-            ("the aircraft", "aircraft/*/*.xml"),
-            ("its autopilot", "systems/*_autopilot.xml"),
-            ("a script", "scripts/*.xml"),
-        )
-        for path in sorted(root.glob(pattern))
-        if what != "the aircraft" or path.stem == path.parent.name
-    ]
-    if not named:
-        return Section(anchor="elsewhere", title="Fly it elsewhere", blocks=[])
-    files = "; ".join(f"{what}, {path}" for what, path in named)
-    blocks: list[Block] = [
-        Text(
-            f"The directory “model” beside this report is a JSBSim root: {files}. It needs nothing else."
-        )
+        for what, paths in found.items()
+        for path in sorted(paths)
     ]
     scripts = [path for what, path in named if what == "a script"]
+    blocks = []
+    if named:
+        blocks.append(
+            Text(_FILES.format(files="; ".join(f"{what}, {path}" for what, path in named)))
+        )
     if scripts:
         commands = "; ".join(f"JSBSim --root=model --script={path}" for path in scripts)
         written = "; ".join(f"{MODEL}/{Path(path).stem}.csv" for path in scripts)
-        blocks.append(
-            Text(
-                f"To fly it in any JSBSim, from the directory of this report: {commands}. With JSBSim's Python package the program"
-                f" is called jsbsim. It writes {written}; the script says how to write elsewhere."
-            )
-        )
+        blocks.append(Text(_FLY.format(commands=commands, written=written)))
     return Section(anchor="elsewhere", title="Fly it elsewhere", blocks=blocks)

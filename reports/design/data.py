@@ -182,21 +182,30 @@ def damping(pole: tuple[float, float]) -> float:
     return -pole[0] / size if size else 0.0
 
 
+_REVERSAL = (
+    "A reversal of the turn at {bank_deg:.0f}° of bank is predicted by a dead time of"
+    " {delay_s:.2f} s and a lag of {lag_s:.2f} s. In {reversals} reversals that a search flew the"
+    " aircraft came up to {deviation_max_m:.2f} m nearer to what it turned away from than"
+    " predicted{worst}."
+)
+_OTHERS = "In the {unguided_reversals} others at most {deviation_99_percent_m:.2f} m."
+_OTHERS_OF_MANY = (
+    "In the {unguided_reversals} others at most one in a hundred came nearer by more than"
+    " {deviation_99_percent_m:.2f} m."
+)
+_REPEATED = (
+    "A second search of {reversals} reversals came up to {deviation_max_m:.2f} m nearer{worst}."
+)
+
+
 def reversal_sentences(design: Record) -> str:
     """Return how far reversals stray from their response."""
     own = design["turn_reversal"]
-    exceeding = "none" if own["unguided_reversals"] <= _HUNDRED else "at most one in a hundred"
-    said = (
-        f"A reversal of the turn at {own['bank_deg']:.0f}° of bank is predicted by a dead time of {own['delay_s']:.2f} s and a lag"
-        f" of {own['lag_s']:.2f} s. In {own['reversals']} reversals that a search flew the aircraft came up to"
-        f" {own['deviation_max_m']:.2f} m nearer to what it turned away from than predicted{_worst_case(own)}. Of the"
-        f" {own['unguided_reversals']} that did not follow the worst ones {exceeding} came nearer by more than"
-        f" {own['deviation_99_percent_m']:.2f} m."
-    )
-    more = own.get("repeated_search")
-    if more:
-        said += f" In {more['reversals']} others it came up to {more['deviation_max_m']:.2f} m nearer{_worst_case(more)}."
-    return said
+    others = _OTHERS if own["unguided_reversals"] <= _HUNDRED else _OTHERS_OF_MANY
+    sentences = [_REVERSAL.format(**own, worst=_worst_case(own)), others.format(**own)]
+    if more := own.get("repeated_search"):
+        sentences.append(_REPEATED.format(**more, worst=_worst_case(more)))
+    return " ".join(sentences)
 
 
 def limit_cycle_sentence(design: Record) -> str:
@@ -209,13 +218,14 @@ def limit_cycle_sentence(design: Record) -> str:
     amplitudes = _amplitudes(found)
     if found["is_flown"]:
         return (
-            f"Its servos have play: straight and level in still air it flies with a limit cycle of {found['period_s']:.1f} s,"
-            f" altitude ±{amplitudes[0]} and bank ±{amplitudes[1]}, which no linear model and no margin shows."
+            "Its servos have play: straight and level in still air it flies with a limit cycle of"
+            f" {found['period_s']:.1f} s, altitude ±{amplitudes[0]} and bank ±{amplitudes[1]},"
+            " which no linear model and no margin shows."
         )
     least = _amplitudes(found["counted_from"])
     return (
-        f"Its servos have play; straight and level in still air it flew with no sustained oscillation from {least[0]} of altitude"
-        f" or {least[1]} of bank on."
+        "Its servos have play; straight and level in still air it flew with no sustained"
+        f" oscillation from {least[0]} of altitude or {least[1]} of bank on."
     )
 
 

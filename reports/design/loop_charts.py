@@ -23,6 +23,17 @@ there.
 """
 
 
+_BODE = (
+    "Open loops at {speed} in level flight, one opened at a time and all others closed, with"
+    " servos, engine and computing delay. Dotted: gain 1 and −180 deg."
+)
+_NICHOLS = (
+    "The loops in Nichols' plane. Each has to pass the critical point (gain 1, −180 deg) outside"
+    " the tinted region, whose corners are the required margins of {gain:g} dB and {phase:g} deg;"
+    " its disk margin is dashed."
+)
+
+
 def loop_charts(design: Record) -> list[Chart]:
     """Return the Bode and the Nichols figure of every loop of the record, or nothing where it has
     no loops.
@@ -71,9 +82,7 @@ def _bode(design: Record) -> Chart:
     ]
     return Chart(
         name="bode",
-        caption=f"Open loops at {speed(design['design_airspeed_mps'])} in level flight, one opened at a time and all others closed,"
-        " with servos, engine and computing delay. Dotted: gain 1 and −180 deg."
-        + cut_words(panels),
+        caption=_BODE.format(speed=speed(design["design_airspeed_mps"])) + cut_words(panels),
         panels=panels,
         columns=len(groups),
         share_x=True,
@@ -127,13 +136,11 @@ def _nichols(design: Record) -> Chart:
     ]
     return Chart(
         name="nichols",
-        caption="The same loops in Nichols' plane. Each has to pass the critical point (gain 1, −180 deg) outside the tinted"
-        f" region, whose corners are the required margins of {gain:g} dB and {phase:g} deg; its own disk margin is dashed."
-        + cut_words(panels),
+        caption=_NICHOLS.format(gain=gain, phase=phase) + cut_words(panels),
         panels=panels,
         # No gap after the last, where that can be.
-        columns=2 if len(design["loops"]) % 3 else 3,
-        panel_height=0.26,
+        columns=4 if len(design["loops"]) % 3 else 3,
+        panel_height=0.25,
     )
 
 

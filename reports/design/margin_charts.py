@@ -47,15 +47,16 @@ def margin_charts(design: Record) -> list[Chart]:
             design,
             "diskmargins",
             disk,
-            "Disk margins of each loop: gain and phase may change together by so much. “All controls”: in every control at once,"
-            " each for itself.",
+            "Disk margins of each loop: gain and phase may change together by so much. “All"
+            " controls”: in every control at once, each for itself.",
         ),
         _chart(
             design,
             "classicalmargins",
             classical,
-            "Classical margins: gain alone or phase alone, of one loop, all others closed. A loop without a curve has no such"
-            " margin: no change of its gain, or of its phase, makes it unstable.",
+            "Classical margins: gain alone or phase alone, of one loop, all others closed. A loop"
+            " without a curve has no such margin: no change of its gain, or of its phase, makes it"
+            " unstable.",
         ),
     ]
 
@@ -66,14 +67,17 @@ def _chart(design: Record, name: str, margins: Sequence[_Margin], caption: str) 
     over_bank = len({bank_deg(row) for row in rows}) > 1
     if over_bank:
         panels += [_panel(rows, margin, over_bank=True) for margin in margins]
-        caption += " Above, the worst over bank at each airspeed; below, the worst over airspeed at each bank."
+        caption += (
+            " Above, the worst over bank at each airspeed; below, the worst over airspeed at each"
+            " bank."
+        )
     if any(row["between"] for row in rows):
         caption += (
-            " Diamonds, and rings of dashed and dotted loops: at points between those of the grid and at the largest bank, for"
-            " which nothing was designed."
+            " Diamonds, and rings of dashed and dotted loops: at points between those of the grid"
+            " and at the largest bank, for which nothing was designed."
         )
     return Chart(
-        name=name, caption=caption + cut_words(panels), panels=panels, columns=2, panel_height=0.24
+        name=name, caption=caption + cut_words(panels), panels=panels, columns=2, panel_height=0.21
     )
 
 

@@ -16,19 +16,22 @@ _DAMPING_RATIOS = (0.2, 0.4, 0.6, 0.8)
 
 
 def pole_chart(design: Record) -> Chart:
-    """Return the upper half of the s-plane, whole and about the origin, with rays of equal damping."""
+    """Return the upper half of the s-plane, whole and near the origin, with rays of damping."""
     return Chart(
         name="gridpoles",
-        caption="Poles at every point of the grid, by airspeed; the lower half is its mirror image. Of the bare aircraft"
-        f" with servos and engine, and under the autopilot; then both magnified about the origin. Poles beyond {FAST:g} rad/s"
-        " (servos, delays) are left out. Rays: damping ratio ζ. Those of servos and propeller are as the simulation has them at its"
-        " time step, up to a tenth faster than in continuous time.",
+        caption=(
+            "Poles at every point of the grid, by airspeed; the lower half is its mirror image."
+            " Of the bare aircraft with servos and engine, and under the autopilot; then both"
+            f" magnified about the origin. Poles beyond {FAST:g} rad/s (servos, delays) are left"
+            " out. Rays: damping ratio ζ. Those of servos and propeller are as the simulation has"
+            " them at its time step, up to a tenth faster than in continuous time."
+        ),
         panels=[
             *(_panel(design, kind, title, _reach(design)) for kind, title in _KINDS),
             *(_panel(design, kind, "", _SLOW) for kind, _ in _KINDS),
         ],
         columns=2,
-        panel_height=0.36,
+        panel_height=0.3,
     )
 
 

@@ -45,7 +45,7 @@ was commanded.
 
 
 def response_charts(design: Record) -> list[Chart]:
-    """Return the responses to a step of heading rate, and those to steps of airspeed and altitude."""
+    """Return the responses to steps of heading rate, and of airspeed and altitude."""
     charts = [_turn(design), _climb(design)]
     return [chart for chart in charts if chart.panels]
 
@@ -63,8 +63,9 @@ def first_chart(design: Record) -> Chart | None:
     if not panels:
         return None
     caption = (
-        f"Steps of heading rate, airspeed and altitude from level flight at {speed(design['design_airspeed_mps'])}: as the linear"
-        " design predicts them, and as flown in JSBSim."
+        "Steps of heading rate, airspeed and altitude from level flight at"
+        f" {speed(design['design_airspeed_mps'])}: as the linear design predicts them, and as"
+        " flown in JSBSim."
     )
     return Chart(name="first", caption=caption, panels=panels, columns=2)
 
@@ -78,8 +79,10 @@ def _turn(design: Record) -> Chart:
     )
     return Chart(
         name="turnresponse",
-        caption=f"A step of the heading-rate command by {_size(responses)} rad/s from level flight at"
-        f" {speed(design['design_airspeed_mps'])}; deviations from trim.{model}",
+        caption=(
+            f"A step of the heading-rate command by {_size(responses)} rad/s from level flight at"
+            f" {speed(design['design_airspeed_mps'])}; deviations from trim.{model}"
+        ),
         panels=[_panel(design, responses, channel) for channel in _present(_TURN, responses)],
         columns=2,
         panel_height=0.28,
@@ -96,8 +99,11 @@ def _climb(design: Record) -> Chart:
         ]
     return Chart(
         name="climbresponse",
-        caption=f"Steps of the airspeed command by {_size(responses_of(design, 'airspeed'))} m/s and of the altitude command by"
-        f" {_size(responses_of(design, 'altitude'))} m, and what else moves. Deviations from trim.",
+        caption=(
+            f"Steps of the airspeed command by {_size(responses_of(design, 'airspeed'))} m/s and"
+            f" of the altitude command by {_size(responses_of(design, 'altitude'))} m, and what"
+            " else moves. Deviations from trim."
+        ),
         panels=panels,
         columns=max(1, len(panels) // 2),
         panel_height=0.26,

@@ -180,7 +180,10 @@ def pole_table(design: Record) -> Table:
         rows.append(cells)
     head = ["", "Largest real part [1/s]", "at", "Least damping [-]", "Frequency [rad/s]", "at"]
     return Table(
-        caption="The slowest and the least damped pole, with and without the autopilot, and where they are.",
+        caption=(
+            "The slowest and the least damped pole, with and without the autopilot, and where"
+            " they are."
+        ),
         head=head,
         rows=rows,
         widths=[1.3, 1.2, 1.2, 1.1, 1.1, 1.2],
@@ -255,9 +258,12 @@ def _words(name: str) -> str:
 
 
 _WEIGHT_UNITS = {
-    "airspeed": "m/s", "pitch": "rad", "pitch_rate": "rad/s", "altitude": "m", "airspeed_integral": "m",
-    "altitude_integral": "m s", "roll": "rad", "roll_rate": "rad/s", "sideslip": "rad", "heading_integral": "rad",
-    "sideslip_integral": "rad s", "model_frequency": "rad/s", "model_damping": "-", "altitude_error_max": "m",
+    "airspeed": "m/s", "pitch": "rad", "pitch_rate": "rad/s", "altitude": "m",
+    "airspeed_integral": "m",
+    "altitude_integral": "m s", "roll": "rad", "roll_rate": "rad/s", "sideslip": "rad",
+    "heading_integral": "rad",
+    "sideslip_integral": "rad s", "model_frequency": "rad/s", "model_damping": "-",
+    "altitude_error_max": "m",
     "airspeed_error_max": "m/s", "anti_windup_rate": "1/s",
 }  # fmt: skip
 """Of the weights of a design record, by their names."""
@@ -280,7 +286,10 @@ def weight_table(design: Record) -> Table:
         for i, left in enumerate(pairs[:half])
     ]
     return Table(
-        caption="Acceptable deviations, from which the gains follow; the heading-rate model, limits of errors, and rates.",
+        caption=(
+            "Acceptable deviations, from which the gains follow; the heading-rate model, limits"
+            " of errors, and rates."
+        ),
         head=["Quantity", "Value", "Quantity", "Value"],
         rows=rows,
         widths=[2.0, 0.7, 2.0, 0.7],

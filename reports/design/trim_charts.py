@@ -92,19 +92,22 @@ def trim_map(design: Record) -> Chart:
         _SIDESLIP,
     )
     caption = (
-        "Equilibria over airspeed, a curve per bank; to the left dashed, to the right solid. Upright lines: the limits of the"
-        " commanded airspeed, and the stall where it is near."
+        "Equilibria over airspeed, a curve per bank; to the left dashed, to the right solid."
+        " Upright lines: the limits of the commanded airspeed, and the stall where it is near."
     )
     if any(is_effect(design, quantity.key) for quantity in quantities):
-        caption += " The effect of a surface is proportional to its moment: 0 at the command 0, and 2 from stop to stop."
+        caption += (
+            " The effect of a surface is proportional to its moment: 0 at the command 0, and 2"
+            " from stop to stop."
+        )
     if any(t.get("limits") for t in trims):
         caption += " Diamonds: equilibria at a limit, which the table names."
     return Chart(
         name="trims",
         caption=caption,
         panels=[_map_panel(design, trims, quantity) for quantity in quantities],
-        columns=2,
-        panel_height=0.28,
+        columns=3,
+        panel_height=0.24,
     )
 
 

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from reports.design.data import (
     TOGETHER,
     Record,
-    bank_deg,
     case_name,
     down,
     excess_overshoot,
@@ -87,8 +86,8 @@ def _nominal_failures(design: Record) -> dict[tuple[str, str], str]:
             if row is not None:
                 points = f"{len(short)} of {len(rows)} points"
                 failures[loop, kind] = (
-                    f"{loop_name(row)}: {kind} margin {down(row[key])} {unit} at {where(row)}, required"
-                    f" {design['required'][key]:g} {unit}; short at {points}"
+                    f"{loop_name(row)}: {kind} margin {down(row[key])} {unit} at {where(row)},"
+                    f" required {design['required'][key]:g} {unit}; short at {points}"
                 )
     return failures
 
@@ -101,7 +100,8 @@ def _perturbed_failures(design: Record) -> list[str]:
         unstable = _points([row for row in rows if not row["stable"]])
         if unstable:
             failures.append(
-                f"{case_name(rows[0])}: unstable at {len(unstable)} of {len(_points(rows))} points, as at {unstable[0]}"
+                f"{case_name(rows[0])}: unstable at {len(unstable)} of {len(_points(rows))}"
+                f" points, as at {unstable[0]}"
             )
             continue
         for kind, key, unit in (("gain", "gain_db", "dB"), ("phase", "phase_deg", "deg")):
@@ -110,85 +110,74 @@ def _perturbed_failures(design: Record) -> list[str]:
             if row is not None:
                 loop = str(row[f"{kind}_loop"]).replace("_", " ")
                 failures.append(
-                    f"{case_name(row)}: {kind} margin {down(row[key])} {unit} of {loop} at {where(row)},"
-                    f" required {required:g} {unit}"
+                    f"{case_name(row)}: {kind} margin {down(row[key])} {unit} of {loop} at"
+                    f" {where(row)}, required {required:g} {unit}"
                 )
     return failures
+
+
+_POINTS = "Margins are those of {grid} points of the grid"
+_BETWEEN = (
+    " and {between} points between them and at the largest bank, for which nothing was designed"
+)
+_TRIED = "The same gains were tried on {perturbed} perturbed aircraft{late}."
+_AT_LIMIT = (
+    "{at_limit} of {trims} equilibria are at a limit, which the section on equilibria names."
+)
+_LAG = "Flown heading rate lags its command by {lag:.2f} s."
 
 
 def _detail(design: Record) -> str:
     grid = _points([row for row in design["margins"] if not row["between"]])
     between = _points([row for row in design["margins"] if row["between"]])
-    banks = {bank_deg(row) for row in design["margins"]}
-    detail = f"Margins were computed at {len(grid)} points of the grid over airspeed" + (
-        " and bank" if len(banks) > 1 else ""
-    )
-    detail += (
-        f" and at {len(between)} points between them and at the largest bank, for which nothing was designed."
-        if between
-        else "."
-    )
     perturbed = {row["case"] for row in design["robustness"] if not row["periods_late"]}
     late = dict.fromkeys(case_name(row) for row in design["robustness"] if row["periods_late"])
-    detail += f" The same gains were tried on {' and with '.join([f'{len(perturbed)} perturbed aircraft', *late])}."
-    at_limit = [t for t in grid_trims(design) if t.get("limits")]
-    if at_limit:
-        detail += f" {len(at_limit)} of {len(grid_trims(design))} equilibria are at a limit, which the section on equilibria names."
-    detail += f" Flown heading rate lags its command by {design['heading_rate_lag_s']:.2f} s."
-    return f"{detail} {limit_cycle_sentence(design)}".rstrip()
+    trims = grid_trims(design)
+    at_limit = sum(bool(t.get("limits")) for t in trims)
+    points = _POINTS.format(grid=len(grid))
+    if between:
+        points += _BETWEEN.format(between=len(between))
+    with_delay = "".join(f" and with {case}" for case in late)
+    sentences = [
+        f"{points}.",
+        _TRIED.format(perturbed=len(perturbed), late=with_delay),
+        *([_AT_LIMIT.format(at_limit=at_limit, trims=len(trims))] if at_limit else []),
+        _LAG.format(lag=design["heading_rate_lag_s"]),
+        limit_cycle_sentence(design),
+    ]
+    return " ".join(filter(None, sentences))
 
 
 def _figures(design: Record) -> list[Card]:
-    required = design["required"]
-    margins, robustness = design["margins"], design["robustness"]
+    required, margins = design["required"], design["margins"]
     figures = [
-        _margin_figure("Worst gain margin", margins, "gain_db", "dB", required["gain_db"]),
-        _margin_figure("Worst phase margin", margins, "phase_deg", "°", required["phase_deg"]),
-        _margin_figure(
-            "Worst gain margin", robustness, "gain_db", "dB", required["perturbed_gain_db"]
-        ),
-        _margin_figure(
-            "Worst phase margin", robustness, "phase_deg", "°", required["perturbed_phase_deg"]
+        _margin_figure("Worst gain margin", margins, "gain_db", required["gain_db"]),
+        _margin_figure("Worst phase margin", margins, "phase_deg", required["phase_deg"]),
+        *(
+            _margin_figure(f"Worst {kind} margin, perturbed", design["robustness"], key, least)
+            for kind, key, least in (
+                ("gain", "gain_db", required["perturbed_gain_db"]),
+                ("phase", "phase_deg", required["perturbed_phase_deg"]),
+            )
         ),
     ]
     together = worst((row for row in margins if row["loop"] == TOGETHER), "disk_gain_db")
     if together is not None:
         value = f"{down(together['disk_gain_db'])} dB, {down(together['disk_phase_deg'])}°"
-        figures.append(Card(f"Disk margin, all controls: {where(together)}", value))
-    figures.append(
-        Card(
-            "Heading-rate overshoot beyond the model's", f"{100.0 * excess_overshoot(design):.1f} %"
-        )
-    )
-    figures.append(Card("Flown heading rate lags by", f"{design['heading_rate_lag_s']:.2f} s"))
-    # An input that moves nothing has no error to speak of; the table shows it.
-    errors = [row for row in design["verification"] if row["error"] is not None]
-    if errors:
-        largest = max(errors, key=lambda row: float(row["error"]))
-        moved = f"{largest['output'].replace('_', ' ')} by {largest['input']}"
-        figures.append(
-            Card(
-                f"Linear model against small motions, worst: {moved}",
-                f"{100.0 * largest['error']:.1f} %",
-            )
-        )
-    return figures
+        figures.append(Card("Disk margin, all controls", value, note=where(together)))
+    overshoot = f"{100.0 * excess_overshoot(design):.1f} %"
+    return [*figures, Card("Heading-rate overshoot beyond the model's", overshoot)]
 
 
-def _margin_figure(name: str, rows: Sequence[Record], key: str, unit: str, required: float) -> Card:
-    space = " " if unit == "dB" else ""
-    row = worst(rows, key)
-    if rows and "case" in rows[0]:
-        name += f", {case_name(row)}" if row else ", perturbed"
+_UNITS = {"gain_db": " dB", "phase_deg": "°"}
+
+
+def _margin_figure(name: str, rows: Sequence[Record], key: str, required: float) -> Card:
+    unit, row = _UNITS[key], worst(rows, key)
+    limit = f"≥ {required:g}{unit}"
     if row is None:
-        return Card(name, "unlimited", f"≥ {required:g}{space}{unit}", met=True)
-    loop = str(row.get("loop") or row["gain_loop" if key == "gain_db" else "phase_loop"]).replace(
-        "_", " "
-    )
+        return Card(name, "unlimited", limit, met=True)
+    loop = row.get("loop") or row["gain_loop" if key == "gain_db" else "phase_loop"]
+    at = [str(loop).replace("_", " "), where(row), *([case_name(row)] if "case" in row else [])]
     met = not short_of(rows, key, required)
-    return Card(
-        f"{name}: {loop}, {where(row)}",
-        f"{down(row[key])}{space}{unit}",
-        f"≥ {required:g}{space}{unit}",
-        met,
-    )
+    return Card(name, f"{down(row[key])}{unit}", limit, met, ", ".join(at))

@@ -1,9 +1,10 @@
 """What a report is made of, the same for screen and print."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
+from common.verdict import MET, UNEXPLAINED
 from reports.document.chart import Chart
 from reports.document.scene import Scene
 from reports.run.letterhead import Letterhead
@@ -122,9 +123,17 @@ class Section:
     nav_title: str = ""
 
 
+def folded(section: Section) -> Section:
+    """Return a section whose blocks are behind a fold on the screen, and not in print."""
+    blocks = [block for block in section.blocks if not isinstance(block, Fold | FlightPicker)]
+    kept = [block for block in section.blocks if isinstance(block, Fold | FlightPicker)]
+    fold = [Fold(title="Tables and figures", blocks=blocks)] if blocks else []
+    return replace(section, blocks=[*fold, *kept])
+
+
 class Card(NamedTuple):
-    """A figure that is judged or told: its name, its value, what is required of it, and whether
-    that is met.
+    """A figure that is judged or told: its name, its value, what is required of it, whether that is
+    met, and its small print, such as whose figure it is or how sure it is.
 
     No limit, and None for ``met``, where nothing is required.
     """
@@ -133,6 +142,7 @@ class Card(NamedTuple):
     value: str
     limit: str = ""
     met: bool | None = None
+    note: str = ""
 
     @property
     def required(self) -> str:
@@ -152,6 +162,12 @@ class Card(NamedTuple):
         if self.met is None:
             return self.limit or "no criterion"
         return f"{'✓ met' if self.met else '✗ not met'}, required {self.limit}"
+
+    @property
+    def small_print(self) -> str:
+        """Return what stands below its value: what its criterion says, and its note."""
+        said = self.judgement if self.limit or not self.note else ""
+        return "; ".join(words for words in (said, self.note) if words)
 
     @property
     def tone(self) -> str:
@@ -185,6 +201,20 @@ class UndecidedCard(Card):
         return "open"
 
 
+class LossCard(Card):
+    """A number of lost aircraft where that is allowed: nothing failed, and nothing is met."""
+
+    @property
+    def judgement(self) -> str:
+        """Return that nothing else was required of these flights."""
+        return f"! {self.limit}"
+
+    @property
+    def tone(self) -> str:
+        """Return the colour of its tile: a loss is never green."""
+        return "open"
+
+
 class FuelCard(Card):
     """A verdict on a fuel's limit, which is no criterion of the flight that measured it."""
 
@@ -210,26 +240,36 @@ class Verdict:
 
     Attributes
     ----------
-    holds : nothing happened that must never happen
-    complete : everything that was planned was done, and is as required
     headline, detail : in words
     failures : a line for each failure, and for what else is to be known of the flights
     figures : what it rests on, the most important first: page 1 shows these
     judges : whether figures have criteria, unlike those of a comparison
+    holds, complete : False where something that must never happen did, or where something is left
+        to be done or shown, and no figure says so
+    exit_status : of the run, as ``RunVerdict.exit_status``; whoever puts a report together gives it
     """
 
-    holds: bool
-    complete: bool
     headline: str
     detail: str
     failures: list[str]
     figures: list[Card]
     judges: bool = True
+    holds: bool = True
+    complete: bool = True
+    exit_status: int = MET
 
     @property
     def tone(self) -> str:
-        """Return the colour of the verdict, in a word: good, warn or bad."""
-        return "bad" if not self.holds else "good" if self.complete else "warn"
+        """Return the colour of the verdict, in a word: good, warn or bad.
+
+        It is that of the worst figure, and never better than the exit status.
+        """
+        tones = {card.tone for card in self.figures}
+        if "missed" in tones or not self.holds or self.exit_status == UNEXPLAINED:
+            return "bad"
+        if "open" in tones or not self.complete or self.exit_status != MET:
+            return "warn"
+        return "good"
 
     @property
     def sign(self) -> str:
@@ -238,10 +278,19 @@ class Verdict:
 
     @property
     def cards(self) -> list[Card]:
-        """Return the figures of page 1: six, four or as few as there are; five would leave a gap."""
-        return self.figures[
-            : CARDS_MAX if len(self.figures) >= CARDS_MAX else min(len(self.figures), 4)
-        ]
+        """Return the figures of page 1, six at most, in their order: those that are not met before
+        those that are open, and these before others.
+        """
+        ranks = {"missed": 0, "open": 1}
+        places = range(len(self.figures))
+        worst = sorted(places, key=lambda place: ranks.get(self.figures[place].tone, 2))
+        return [self.figures[place] for place in sorted(worst[:CARDS_MAX])]
+
+    @property
+    def further(self) -> list[Card]:
+        """Return the figures that page 1 does not show."""
+        shown = self.cards
+        return [card for card in self.figures if card not in shown]
 
     @property
     def first_failures(self) -> list[str]:
@@ -250,7 +299,7 @@ class Verdict:
         return (
             self.failures
             if more <= 0
-            else [*self.failures[:FAILURES_MAX], f"and {more:,} more, under “Key figures”"]
+            else [*self.failures[:FAILURES_MAX], f"and {more:,} more, under “Further figures”"]
         )
 
 

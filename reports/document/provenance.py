@@ -18,7 +18,7 @@ def provenance_section(run: RunData, head: Letterhead) -> Section:
         row for rows in (_made(run, head), _vehicle(run), _hashes(run), _host(run)) for row in rows
     ]
     caption = "How the run was made; with the same source, input and seed it can be made again."
-    table = pairs_table(rows, caption=caption, breakable=True, print_size_pt=8.0)
+    table = pairs_table(rows, caption=caption, breakable=True, print_size_pt=6.0)
     return Section(anchor="provenance", title="Provenance", blocks=[table])
 
 
@@ -37,9 +37,10 @@ def _made(run: RunData, head: Letterhead) -> list[list[str]]:
         ["State", manifest["state"]],
     ]
     if "wall_time_s" in manifest:
-        rows.append(["Duration", f"{manifest['wall_time_s']:.1f} s"])
-    if "peak_memory_mib" in manifest:
-        rows.append(["Largest memory of a process", f"{manifest['peak_memory_mib']:.0f} MiB"])
+        used = [f"{manifest['wall_time_s']:.1f} s"]
+        if "peak_memory_mib" in manifest:
+            used.append(f"up to {manifest['peak_memory_mib']:.0f} MiB in a process")
+        rows.append(["Duration", ", ".join(used)])
     return rows
 
 
@@ -98,10 +99,12 @@ def _host(run: RunData) -> list[list[str]]:
     cores = manifest.get("cores")
     return [
         ["Host", manifest["platform"] + (f", {cores} cores" if cores else "")],
-        ["Python", manifest["python"]],
         [
-            "Packages",
-            ", ".join(f"{name} {version}" for name, version in manifest["packages"].items()),
+            "Software",
+            ", ".join(
+                f"{name} {version}"
+                for name, version in {"Python": manifest["python"], **manifest["packages"]}.items()
+            ),
         ],
         ["Format of the run", str(manifest["format"])],
     ]

@@ -168,5 +168,5 @@ def hull_words(hull: Hull) -> str:
     if hull.given:
         return f"her hull is {size}"
     if hull.known:
-        return f"her hull is that of {hull.title}, {size}, as the scenario gives none"
-    return f"her size is not known, and drawn is {hull.title} of {size}"
+        return f"the scenario gives no hull: that of {hull.title}, {size}, is drawn"
+    return f"the scenario gives no hull: {hull.title} of {size} is drawn"

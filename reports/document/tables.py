@@ -2,16 +2,55 @@
 
 import math
 import re
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
 
 from common.provenance import without_folders
-from reports.document.blocks import Block, Fold, Table, Verdict
+from reports.document.blocks import Block, Card, Fold, Table
 from reports.run.columns import Array
 from reports.run.run_data import RunData
+
+
+class Cell(NamedTuple):
+    """How a table of rows writes one of its columns.
+
+    Attributes
+    ----------
+    head : title of the column
+    value : key of its value in a row, or the function that returns it; text stands as it is, and
+        what is missing is a dash
+    pattern : of its numbers
+    width : relative, in print
+    """
+
+    head: str
+    value: str | Callable[[Any], object]
+    pattern: str = "{}"
+    width: float = 1.0
+
+
+def rows_table(rows: Iterable[Any], cells: Sequence[Cell], **others: Any) -> Table:
+    """Return a table with a row for each of ``rows``, which are mappings or rows of a data frame.
+
+    Parameters
+    ----------
+    rows, cells : what is written, and how
+    others : further attributes of ``Table``
+    """
+    return Table(
+        head=[cell.head for cell in cells],
+        rows=[[_written(row, cell) for cell in cells] for row in rows],
+        widths=[cell.width for cell in cells],
+        **others,
+    )
+
+
+def _written(row: Any, cell: Cell) -> str:
+    value = cell.value(row) if callable(cell.value) else row.get(cell.value)
+    return value if isinstance(value, str) else number(value, cell.pattern)
 
 
 def pairs_table(
@@ -44,8 +83,9 @@ def parameter_blocks(run: RunData, sampled: Mapping[str, str] | None = None) -> 
         for row, p in zip(every, run.manifest["parameters"], strict=True)
         if p["key"] in known or "default" not in p or p["value"] != p["default"]
     ]
+    brief = [row[:-1] for row in own]
     return [
-        _parameter_table("Parameters that differ from their defaults.", own),
+        _parameter_table("Parameters that differ from their defaults.", brief),
         Fold(
             title="Every parameter",
             blocks=[_parameter_table("Every parameter, with its unit and meaning.", every)],
@@ -54,25 +94,30 @@ def parameter_blocks(run: RunData, sampled: Mapping[str, str] | None = None) -> 
 
 
 def _parameter_table(caption: str, rows: list[list[str]]) -> Table:
+    """Return parameters with their units and, where rows have them, their meanings."""
+    head, widths = ["Parameter", "Value", "Unit", "Meaning and equation"], [2.7, 1.9, 0.7, 3.6]
+    is_brief = all(len(row) < len(head) for row in rows)
+    shown = head[:-1] if is_brief else head
     return Table(
         caption=caption,
-        head=["Parameter", "Value", "Unit", "Meaning and equation"],
+        head=shown,
         rows=rows,
-        widths=[2.7, 1.9, 0.7, 3.6],
-        left_columns=4,
+        widths=[2.6, 5.0, 0.7] if is_brief else widths,
+        left_columns=len(shown),
         prose=True,
         breakable=True,
     )
 
 
-def figure_table(verdict: Verdict) -> Table:
-    """Return every figure of a verdict; page 1 has the most important."""
-    rows = [[card.name, card.value, card.required, card.result] for card in verdict.figures]
+def figure_table(figures: Sequence[Card]) -> Table:
+    """Return figures of a verdict, those that page 1 has no tile for."""
+    rows = [[card.name, card.note, card.value, card.required, card.result] for card in figures]
     return Table(
-        head=["Figure", "Value", "Required", ""],
+        head=["Figure", "Flight", "Value", "Required", ""],
         rows=rows,
-        widths=[3.0, 1.4, 1.4, 0.6],
-        caption="Every figure of the verdict; a dash where nothing is required of it.",
+        widths=[3.0, 2.0, 1.4, 1.4, 0.6],
+        left_columns=2,
+        caption="Figures beside those of page 1; a dash where nothing is required.",
     )
 
 
@@ -193,8 +238,14 @@ def outcome(row: "pd.Series[Any]") -> str:
     """Return how a flight ended, in words, and which criteria it failed."""
     if row["criteria_met"]:
         return "met"
-    ended, message = str(row["outcome"]).replace("_", " "), in_symbols(str(row["message"]))
+    ended = str(row["outcome"]).replace("_", " ")
+    message = first_sentence(in_symbols(str(row["message"])))
     return f"{ended}: {message}" if message else ended
+
+
+def first_sentence(message: str) -> str:
+    """Return the message of a flight without the advice that follows it."""
+    return re.split(r"\. (?=[A-Z])", message, maxsplit=1)[0]
 
 
 _ADVICE = ": allow more time"

@@ -148,7 +148,7 @@ class GeographicFlight:
         )
 
     def above_ellipsoid(self) -> "GeographicFlight":
-        """Return the flight with altitudes above the WGS 84 ellipsoid, for formats that need them."""
+        """Return the flight with altitudes above the ellipsoid WGS 84, as some formats need."""
         if self.ellipsoidal:
             return self
         return replace(

@@ -143,10 +143,13 @@ def _plume(flight: GeographicFlight, i: int, until: int) -> ET.Element:
     line = ET.SubElement(placemark, _kml("LineString"))
     _text(line, "altitudeMode", "absolute")
     ends = [(flight.vessel, flight.source_height), (flight.plume_end, None)]
-    _text(line, "coordinates", " ".join(
-        f"{body.longitude[i]:.8f},{body.latitude[i]:.8f},{body.altitude[i] if height is None else height:.3f}"
-        for body, height in ends if body is not None
-    ))  # fmt: skip
+    places = [
+        (body.longitude[i], body.latitude[i], body.altitude[i] if height is None else height)
+        for body, height in ends
+        if body is not None
+    ]
+    words = (f"{east:.8f},{north:.8f},{height:.3f}" for east, north, height in places)
+    _text(line, "coordinates", " ".join(words))
     return placemark
 
 
@@ -164,7 +167,7 @@ def _keepout(flight: GeographicFlight, i: int, until: int) -> ET.Element:
 
 
 def _whiles(flight: GeographicFlight) -> Iterator[tuple[int, int]]:
-    """Yield samples from which on, and until which, plume and keep-out area are drawn as they were."""
+    """Yield from and until which samples plume and keep-out area are drawn as they were."""
     seconds = max(_SHOWN_EVERY, float(flight.time[-1] - flight.time[0]) / _SHOWN)
     shown = flight.every(seconds)
     yield from pairwise(shown)

@@ -10,7 +10,8 @@ from reports.export.exporter import EXPORTERS
 from reports.run.run_data import RunData
 
 COLUMNS = (
-    "time_s", "north_m", "east_m", "altitude_m", "velocity_north_mps", "velocity_east_mps", "vessel_north_m", "vessel_east_m",
+    "time_s", "north_m", "east_m", "altitude_m", "velocity_north_mps", "velocity_east_mps",
+    "vessel_north_m", "vessel_east_m",
 )  # fmt: skip
 """Columns beside the flight's name. Positions are from the flight's local origin."""
 

@@ -35,10 +35,10 @@ def search_table(variants: list[Variant]) -> Table:
                 variant.name,
                 f"{len(variant.rows):,}",
                 percent(variant.share_found(FOUND_WITHIN)),
-                _time(float(np.median(variant.times))),
+                seconds_words(float(np.median(variant.times))),
                 # That of a flight: there is nothing between a time and never.
-                _time(float(np.quantile(variant.times, 0.95, method="inverted_cdf"))),
-                _share(column(variant.rows, "hit_rate_found")),
+                seconds_words(float(np.quantile(variant.times, 0.95, method="inverted_cdf"))),
+                hits_words(variant),
                 number(_rms(column(variant.rows, "fsc_percent") - column(variant.rows, "fsc_expected_percent")), "{:.4f}"),
                 number(_median(column(variant.rows, "fsc_uncertainty_percent")), "{:.4f}"),
                 *(_over(variant, told, f"fsc_{of}_percent") for of in ("uncertainty", "noise")),
@@ -92,11 +92,16 @@ def height_table(variants: list[Variant]) -> Table | None:
     )
 
 
-def _time(value: float) -> str:
+def seconds_words(value: float) -> str:
+    """Return a time to find to a second; infinite ones are those of plumes that were not found."""
     return f"{value:.0f}" if math.isfinite(value) else "not found"
 
 
-def _share(shares: Array) -> str:
+def hits_words(variant: Variant) -> str:
+    """Return the share of a variant's passes that hit the plume once it was found, the mean over
+    its flights.
+    """
+    shares = column(variant.rows, "hit_rate_found")
     known = shares[np.isfinite(shares)]
     return percent(float(np.mean(known))) if len(known) else "–"
 

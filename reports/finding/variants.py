@@ -9,7 +9,11 @@ import pandas as pd
 from reports.document.chart import VARIANT_STYLES, Style
 from reports.document.palette import VARIANTS, Meaning
 from reports.run.columns import Array, column, study_flight
-from reports.run.trials import AS_IN_THE_STUDY, Trial
+from reports.run.run_data import RunData
+from reports.run.trials import AS_IN_THE_STUDY, Trial, read_trials
+
+_SEVERAL = 2
+"""Flights of which there is a share that found the plume."""
 
 _MARKERS: tuple[Style, ...] = ("diamonds", "square", "ring")
 """Markers of comparisons, in their order: told apart in grey. Those of the study's own flights are
@@ -39,6 +43,11 @@ class Variant:
         the plume.
         """
         return np.nan_to_num(column(self.rows, "time_to_find_s"), nan=math.inf)
+
+    @property
+    def found(self) -> int:
+        """Number of flights that found the plume."""
+        return int(np.isfinite(self.times).sum())
 
     def share_found(self, within: float) -> float:
         """Return the share of flights that found the plume within a time [s]; at least one flight
@@ -79,6 +88,18 @@ def variants_of(trial: Trial) -> list[Variant]:
         for i, name in enumerate(names)
     ]
     return [variant for variant in (own, *others) if len(variant.rows)]
+
+
+def searching_variants(run: RunData) -> list[Variant]:
+    """Return the variants of a run of one trial in which several flights search for the plume; none
+    of any other.
+    """
+    trials = read_trials(run)
+    if len(trials) != 1 or len(trials[0].rows) < _SEVERAL:
+        return []
+    rows = trials[0].rows
+    searches = "axis_height_end_m" in rows and rows["axis_height_end_m"].notna().any()
+    return variants_of(trials[0]) if searches else []
 
 
 def _on_orbit(rows: pd.DataFrame) -> pd.DataFrame:

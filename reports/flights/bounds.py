@@ -2,8 +2,9 @@
 anything.
 """
 
-from common.intervals import TELLING
-from common.verdict import Bound
+from collections.abc import Sequence
+
+from common.intervals import TELLING, percent
 from reports.run.run_data import RunData
 from reports.run.trials import Trial
 
@@ -25,23 +26,25 @@ def violation_bound(run: RunData) -> tuple[float, float] | None:
     return (bound.upper, bound.confidence) if bound and bound.upper <= TELLING else None
 
 
-def counted_as_violations(bound: Bound | None) -> str:
-    """Return, in a sentence, how many flights a bound counts as violations though none is known of
-    them; no word without such.
+def bound_note(run: RunData, trials: Sequence[Trial]) -> list[str]:
+    """Return what bound on the rate of keep-out violations follows from the flights, as small print
+    of how many kept out; nothing where the headline has it.
     """
-    if bound is None or not bound.unknown:
-        return ""
-    flights = "1 flight" if bound.unknown == 1 else f"{bound.unknown:,} flights"
-    each = "a keep-out violation" if bound.unknown == 1 else "keep-out violations"
-    return f" The bound counts {flights} of unknown end as {each}."
+    if run.statistics is not None:
+        return []
+    if not all(trial.sampled_at_random for trial in trials):
+        return ["no random sample, so no bound on the rate"]
+    if (found := violation_bound(run)) is None:
+        return ["too few for a bound on the rate"]
+    upper, confidence = found
+    words = f"rate of violations below {percent(upper)} at {percent(confidence)}"
+    bound = run.verdict.whole.bound
+    if bound and bound.unknown:
+        words += f", with {bound.unknown:,} unknown as violated"
+    return [words]
 
 
 def trial_bound(trial: Trial) -> float | None:
     """Return the bound that follows from the flights of one trial."""
     bound = trial.verdict.bound
     return bound.upper if bound and bound.upper <= TELLING else None
-
-
-def sampled(trials: list[Trial]) -> bool:
-    """Return whether the flights of all trials are a random sample."""
-    return all(trial.sampled_at_random for trial in trials)

@@ -5,13 +5,16 @@ from typing import Any
 
 import pandas as pd
 
-from reports.design.section import innerloop_section
-from reports.document.blocks import Block, Findings, Section, Text
+from reports.design.section import design_words
+from reports.document.blocks import Block, Findings, Section, Text, folded
 from reports.document.chart import Chart
+from reports.document.panels import COUNTED_MIN
 from reports.finding.flights import finding_sections
+from reports.finding.variants import searching_variants
 from reports.flights.added import added_sections
+from reports.flights.answers import kept_out_and_finished
 from reports.flights.comparison import comparison_section
-from reports.flights.first_page import closest_and_typical, flights_in_words
+from reports.flights.first_page import flights_in_words, telling_and_typical
 from reports.flights.names import flight_name, flown_elsewhere, swept_column, told_name
 from reports.flights.parameter_tables import parameter_blocks
 from reports.flights.selection import flight_section
@@ -25,9 +28,10 @@ from reports.flights.trials.tables import (
     flight_table,
     trial_table,
 )
-from reports.flights.verdict import flight_verdict
+from reports.flights.verdict import Answer, flight_verdict
 from reports.measurement.facts import flown_facts
 from reports.measurement.flights import sulphur_sections
+from reports.measurement.method import is_of_the_method
 from reports.monte_carlo.content import monte_carlo_sections
 from reports.monte_carlo.falsification import falsification_sections
 from reports.run.columns import flights_flown
@@ -38,39 +42,64 @@ _LISTED_MAX = 12
 """Flights of a run's only trial that are all listed; of a sweep they are, however many."""
 
 
-def flights_content(run: RunData) -> Findings:
-    """Return the findings of flights."""
+def flights_content(run: RunData, answer: Answer = kept_out_and_finished) -> Findings:
+    """Return the findings of flights.
+
+    Parameters
+    ----------
+    run : the run
+    answer : to the question of its study, with which page 1 begins
+    """
     trials = read_trials(run)
     by_key = {trial.key: trial for trial in trials}
 
     def name(row: "pd.Series[Any]") -> str:
         return told_name(by_key[row["trial"]], row)
 
-    sections = [
-        *monte_carlo_sections(run),
-        *falsification_sections(run),
-        *finding_sections(run, trials, name),
-        *sulphur_sections(run, name),
-        _overview(trials),
+    of_search, of_fuel = finding_sections(run, trials, name), sulphur_sections(run, name)
+    of_flights = [
         *(_trial(trial, only=len(trials) == 1) for trial in trials if len(trial.rows)),
         *added_sections(run, trials, name),
         comparison_section(run, trials),
+    ]
+    of_probabilities = [*monte_carlo_sections(run), *falsification_sections(run)]
+    # Whether these flights keep out is then not the question.
+    is_search = bool(searching_variants(run))
+    asks_otherwise = is_of_the_method(run) or is_search
+    if is_search:
+        of_fuel = [folded(of) for of in of_fuel]
+    if asks_otherwise:
+        of_probabilities, of_flights = (
+            [folded(of) for of in sections] for sections in (of_probabilities, of_flights)
+        )
+    sections = [
+        *of_probabilities,
+        *of_search,
+        *of_fuel,
+        _overview(trials),
+        *of_flights,
         Section(
             anchor="failed",
             title="Flights that failed a criterion",
             nav_title="Failed",
             blocks=failed_blocks(trials),
         ),
-        flight_section(trials),
-        *([innerloop_section(run.innerloop)] if run.innerloop else []),
-        Section(anchor="parameters", title="Parameters", blocks=parameter_blocks(run, trials)),
+        flight_section(trials, only_failed=asks_otherwise),
+        Section(
+            anchor="parameters",
+            title="Parameters",
+            blocks=[
+                *parameter_blocks(run, trials),
+                *design_words(run),
+            ],
+        ),
     ]
     flown = flights_flown(run.summary)
     return Findings(
         flown=f"{flights_in_words(run, flown)}.",
-        verdict=flight_verdict(run, trials),
+        verdict=flight_verdict(run, trials, answer),
         # Without a flight the first figure would be that of an aircraft that did not fly.
-        picture=(closest_and_typical(trials) or _picture(sections)) if len(flown) else None,
+        picture=(telling_and_typical(trials) or _picture(sections)) if len(flown) else None,
         sections=sections,
         facts=flown_facts(run),
     )
@@ -85,16 +114,17 @@ def _picture(sections: list[Section]) -> Chart | None:
 
 
 def _overview(trials: list[Trial]) -> Section:
-    criteria = criteria_table(trials)
+    table = criteria_table(trials)
+    criteria = [table] if table.rows else []
     if len(trials) == 1:
-        return Section(anchor="trials", title="Criteria", blocks=[criteria])
+        return Section(anchor="trials", title="Criteria", blocks=criteria)
     meaning = (
         "Completed: the aircraft came through, settled, and flew the crossings that were asked for, or one at least. Met: it kept"
         " out, completed, and met every other criterion. Kept out: known to have kept out to its end. Distances are from the"
         " keep-out sphere's centre, or horizontal where the keep-out area is a cylinder."
     )
     return Section(
-        anchor="trials", title="Trials", blocks=[Text(meaning), trial_table(trials), criteria]
+        anchor="trials", title="Trials", blocks=[Text(meaning), trial_table(trials), *criteria]
     )
 
 
@@ -102,7 +132,8 @@ def _trial(trial: Trial, *, only: bool) -> Section:
     table: list[Block] = []
     if trial.kind is Kind.FAULTS and len(trial.flown):
         table.append(fault_table(trial))
-    if trial.swept or (only and len(trial.rows) <= _LISTED_MAX):
+    # Page 1 says of a flight alone what a table of one row would.
+    if trial.swept or (only and 1 < len(trial.rows) <= _LISTED_MAX):
         head, name = swept_column(trial) if trial.swept else ("Flight", partial(flight_name, trial))
         caption = " ".join(
             [
@@ -130,7 +161,9 @@ def _trial(trial: Trial, *, only: bool) -> Section:
         if list(trial.swept) == ["nu"]
         else "Flights"
     )
-    charts = trial_charts(trial)
+    # Of few flights a table or page 1 says more than a figure.
+    few = not trial.swept and len(trial.flown) < COUNTED_MIN
+    charts = [] if few else trial_charts(trial)
     blocks = [*text, *charts, *table] if trial.swept else [*text, *table, *charts]
     return Section(
         anchor=trial.name,

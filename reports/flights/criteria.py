@@ -1,7 +1,7 @@
 """The criteria of the verdict in words: what each is about, its limit, the worst of its figure."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import pandas as pd
@@ -14,15 +14,18 @@ from reports.run.trials import Trial
 
 TRACKING = "tracking_error_rms_m"
 
-MEASURED = (
-    "crossing_interval_error",
-    TRACKING,
-    "airspeed_error_rms_mps",
-    "altitude_error_max_m",
-    "tracking_error_end_m",
-    "resumes_within_periods",
-    "time_to_find_s",
-)
+_WORST = {
+    "crossing_interval_error": "interval {} off",
+    TRACKING: "tracking {}",
+    "airspeed_error_rms_mps": "airspeed {}",
+    "altitude_error_max_m": "altitude {}",
+    "tracking_error_end_m": "tracking at the end {}",
+    "resumes_within_periods": "resumed after {}",
+    "time_to_find_s": "found after {}",
+}
+"""What a headline says of the worst of a figure."""
+
+MEASURED = tuple(_WORST)
 """Criteria that are upper limits of a figure, in the order of the verdict's tiles."""
 
 _AT_LEAST = ("keep_out", "crossing_clearance")
@@ -101,6 +104,11 @@ def worst_words(run: RunData, criterion: Criterion, worst: Worst | None) -> str:
     return f"{_on_its_side(value, of, worst.limit)}{of.after}"
 
 
+def worst_in_words(run: RunData, criterion: Criterion) -> str:
+    """Return the worst of a figure over all flights, in words of a headline."""
+    return _WORST[criterion.key].format(worst_words(run, criterion, criterion.worst_of_all))
+
+
 def _on_its_side(value: float, of: Column, bound: Any) -> str:
     if isinstance(bound, list):
         low, high = (of.scale * end for end in bound)
@@ -114,23 +122,12 @@ def _on_its_side(value: float, of: Column, bound: Any) -> str:
     return limit(value)
 
 
-def switched_off(trials: list[Trial]) -> list[tuple[str, str]]:
-    """Return name and worst value of figures that criteria limit by default, and no criterion of
-    these trials.
-
-    Without the tracking error, which is a figure of its own whether or not it is limited.
-    """
-    run = trials[0].run
+def limited_by_default(trials: Sequence[Trial], key: str) -> bool:
+    """Return whether a criterion limits its figure by default, in any trial."""
     by_default = {
         str(of["key"]) for trial in trials for of in trial.parameters() if of.get("default")
     }
-    return [
-        (f"{criterion_title(run, of)}, worst", worst_words(run, of, of.worst_of_all))
-        for key in MEASURED
-        if key != TRACKING and f"criteria.{key}" in by_default
-        for of in [run.verdict.whole.criterion(key)]
-        if not of.judged and of.worst_of_all
-    ]
+    return f"criteria.{key}" in by_default
 
 
 def counted(values: "Iterable[Any] | pd.Series[Any]") -> str:

@@ -3,6 +3,7 @@ and of a typical one.
 """
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -13,18 +14,22 @@ from reports.document.tables import approach, vehicle_flown
 from reports.flights.names import told_name
 from reports.flights.tracks import track_picture
 from reports.run.columns import (
+    SEVERE,
     Array,
     Mask,
-    beside_vessel,
+    by_severity,
     clearance,
     column,
     radii_differ,
     recorded_at,
-    total,
+    severity,
 )
 from reports.run.flight_config import flight_configs, wind_changes
 from reports.run.run_data import RunData
 from reports.run.trials import Trial
+
+_TELLING = ("Lost", "Diverged", "Violated", "Closest")
+"""What a flight is shown for, by its severity."""
 
 _NAME_MAX = 30
 """Letters of a flight's name that there is room for above its picture."""
@@ -66,7 +71,7 @@ def simulated(flown: pd.DataFrame) -> str:
     """Return how long all flights took together; less than an hour is told in minutes, less than
     two minutes in seconds.
     """
-    time = total(flown, "duration_s") / SECONDS_PER_HOUR
+    time = float(np.nansum(column(flown, "duration_s"))) / SECONDS_PER_HOUR
     if 60.0 * time < _MINUTES_MIN:
         return f"{SECONDS_PER_HOUR * time:.0f} s simulated"
     if time < 1.0:
@@ -79,51 +84,51 @@ def _range(values: Array) -> str:
     return low if low == high else f"{low} to {high}"
 
 
-def closest_and_typical(trials: Sequence[Trial]) -> Chart | None:
-    """Return the tracks of the flight that came closest and of the one with the median closest
+def telling_and_typical(trials: Sequence[Trial]) -> Chart | None:
+    """Return the tracks of the flight that matters most, and of the one with the median closest
     approach, if any has a record.
 
-    The median is that of all flights that were flown: of those with a record, among which is every
-    flight that failed, it would be another. Where the flight at the median has none, the one
-    nearest to it takes its place. Without a vessel there is no approach: shown is the first flight.
+    What matters most is a flight that lost its aircraft, diverged or violated the keep-out area,
+    else the closest one. The median is that of all flights that were flown: of those with a record,
+    among which is every flight that failed, it would be another. Where the flight at the median has
+    none, the one nearest to it takes its place. Without a vessel there is no approach: shown is the
+    first flight.
     """
-    flown = [(trial, beside_vessel(trial.rows)) for trial in trials]
-    recorded = np.concatenate([trial.run.with_history(rows) for trial, rows in flown])
-    if not recorded.any():
+    flown = [(trial, row) for trial in trials for _, row in trial.flown.iterrows()]
+    rows = pd.concat([trial.flown for trial in trials])
+    recorded, distances = trials[0].run.with_history(rows), clearance(rows)
+    near = recorded & np.isfinite(distances)
+    if not near.any():
         return _first_recorded(trials)
-    distances = np.concatenate([clearance(rows) for _, rows in flown])
-    beyond = radii_differ(pd.concat([rows for _, rows in flown]))
-    closest = int(np.argmin(np.where(recorded, distances, np.inf)))
-    typical, median = recorded_at(distances, recorded, len(distances) // 2)
-    flights = [(trial, rows, i) for trial, rows in flown for i in range(len(rows))]
-    shown, names = [], {}
-    for what, place in {
-        "Closest": closest,
-        **({"Typical": typical} if typical != closest else {}),
-    }.items():
-        trial, rows, i = flights[place]
-        row = rows.iloc[i]
-        names[what] = told_name(trial, row)
-        distance, radius = float(row["min_distance_m"]), float(row["keepout_radius_m"])
-        shown.append(
-            (
-                trial,
-                row,
-                f"{approach(distance - radius, 0.0)} m beyond r_min"
-                if beyond
-                else f"{approach(distance, radius)} m",
-            )
-        )
+    # The place of each flight goes with its row.
+    matters = by_severity(rows.assign(place=np.arange(len(rows)))[recorded]).iloc[:1]
+    telling, first = _TELLING[severity(matters)[0]], int(matters["place"].iloc[0])
+    beside = np.flatnonzero(np.isfinite(distances))
+    found, median = recorded_at(distances[beside], near[beside], len(beside) // 2)
+    typical = int(beside[found])
+    chosen = {telling: first} | ({"Typical": typical} if typical != first else {})
+    beyond = radii_differ(rows)
+    names = {what: told_name(*flown[place]) for what, place in chosen.items()}
     # Longer names would touch above the panels; a flight that is alone has none there.
-    long = len(shown) == 1 or any(len(name) > _NAME_MAX for name in names.values())
+    if len(chosen) == 1 or any(len(name) > _NAME_MAX for name in names.values()):
+        above, below = dict.fromkeys(names, ""), names
+    else:
+        above, below = names, dict.fromkeys(names, "")
     shown = [
-        (trial, row, f"{what}: {distance}" if long else f"{what}: {name}, {distance}")
-        for (trial, row, distance), (what, name) in zip(shown, names.items(), strict=True)
+        (*flown[place], _panel_title(flown[place][1], what, above[what], beyond=beyond))
+        for what, place in chosen.items()
     ]
-    told = _told(
-        recorded, names if long else dict.fromkeys(names, ""), median=median, beyond=beyond
-    )
-    return track_picture(shown, told=told * (len(flights) > 1))
+    told = _told(recorded, below, median=median, beyond=beyond)
+    return track_picture(shown, told=told * (len(flown) > 1))
+
+
+def _panel_title(row: "pd.Series[Any]", what: str, name: str, *, beyond: bool) -> str:
+    """Return what a flight is shown for, its name unless that is empty, and how near it came."""
+    distance, radius = float(row["min_distance_m"]), float(row["keepout_radius_m"])
+    nearest = f"{approach(distance, radius)} m"
+    if beyond:
+        nearest = f"{approach(distance - radius, 0.0)} m beyond r_min"
+    return f"{what}: {name}, {nearest}" if name else f"{what}: {nearest}"
 
 
 def _first_recorded(trials: Sequence[Trial]) -> Chart | None:
@@ -155,7 +160,11 @@ def _told(recorded: Mask, names: Mapping[str, str], *, median: bool, beyond: boo
         if median
         else "of these the one nearest to the median of all flights"
     )
-    meanings = {"Closest": f"the flight with the {what}{of}", "Typical": near}
+    meanings = {
+        **{word: f"a flight that {did}" for word, did in zip(_TELLING, SEVERE, strict=False)},
+        "Closest": f"the flight with the {what}{of}",
+        "Typical": near,
+    }
     return "".join(
         f" {what}: {f'{name}, ' if name else ''}{meanings[what]}." for what, name in names.items()
     )

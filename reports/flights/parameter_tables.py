@@ -3,7 +3,7 @@
 import re
 from typing import Any
 
-from reports.document.blocks import Block, Fold, Heading, Table, Text
+from reports.document.blocks import Block, Fold, Table, Text
 from reports.document.tables import in_symbols, parameter_value, span
 from reports.flights.names import flown_elsewhere, manoeuvre_name, swept_column
 from reports.flights.trials.tables import OSCILLATION_COLUMNS, flight_table
@@ -15,6 +15,10 @@ from reports.run.trials import Parameters, Trial
 _HEAD = ["Parameter", "Value", "Default", "Unit", "Meaning and equation"]
 _WIDTHS = [2.5, 1.5, 0.9, 0.5, 4.1]
 
+_ALL = "Parameters that differ from their defaults; report.html and the manifest have all, and what they mean."
+
+_VALUE, _NO_DEFAULT = "{value} ({default})", " ()"
+"""How a value and its default are written, and what is left of that without a default."""
 
 _OWN = "a table of one's own"
 """Value of a key whose table has its keys in rows of their own."""
@@ -43,7 +47,9 @@ def parameter_blocks(run: RunData, trials: list[Trial]) -> list[Block]:
             )
         )
     if len(trials) == 1:
-        blocks += [Heading(trials[0].title), _table(_rows(trials[0]) + _derived(run, trials[0]))]
+        rows = _rows(trials[0]) + _derived(run, trials[0])
+        blocks.append(_in_two_columns(rows))
+        more.append(_table(rows))
     else:
         # What a trial is about stands above its figures.
         blocks.append(Text("What each trial sets is in the manifest, and in report.html."))
@@ -51,6 +57,26 @@ def parameter_blocks(run: RunData, trials: list[Trial]) -> list[Block]:
     every = [[p["key"], "", _default(p), p["unit"], p["meaning"]] for p in trials[0].parameters()]
     title = "Every parameter, with its default"
     return [*blocks, Fold(title=title, blocks=[*more, _table(every)])]
+
+
+def _in_two_columns(rows: list[list[str]]) -> Table:
+    """Return parameters with their values and defaults, without their meanings."""
+    half = -(-len(rows) // 2)
+    cells = [
+        [row[0], _VALUE.format(value=f"{row[1]} {row[3]}".strip(), default=row[2])] for row in rows
+    ]
+    short = [[name, value.removesuffix(_NO_DEFAULT)] for name, value in cells]
+    short += [["", ""]] * (2 * half - len(short))
+    return Table(
+        caption=_ALL,
+        head=["Parameter", "Value, and its default"] * 2,
+        rows=[[*left, *right] for left, right in zip(short[:half], short[half:], strict=True)],
+        widths=[2.4, 2.6, 2.4, 2.6],
+        left_columns=4,
+        prose=True,
+        breakable=True,
+        print_size_pt=6.0,
+    )
 
 
 def _table(rows: list[list[str]]) -> Table:

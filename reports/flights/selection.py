@@ -16,13 +16,14 @@ from reports.flights.names import flown_elsewhere, told_name
 from reports.flights.single_flight import flight_charts
 from reports.replay.flight_scene import flight_scene
 from reports.run.columns import (
+    SEVERE,
     beside_vessel,
+    by_severity,
     clearance,
-    column,
     met,
     radii_differ,
     recorded_at,
-    violated,
+    severity,
 )
 from reports.run.flight_config import wind_changes
 from reports.run.trials import Trial
@@ -33,7 +34,7 @@ PICKED_MAX = 12
 SWEPT_MAX = 24
 """Flights of a sweep that are all shown one by one; of longer ones some are."""
 
-_VIOLATION, _FAILED = "deepest keep-out violation", "did not meet every criterion"
+_FAILED = "did not meet every criterion"
 
 _CLOSEST, _MEDIAN = "closest approach", "median of closest approaches"
 
@@ -43,47 +44,56 @@ _LEAST_BEYOND, _MEDIAN_BEYOND = (
 )
 """The same of flights with different r_min."""
 
-_BY_CLEARANCE = "; where r_min differs, by the distance beyond each flight's own"
-
 _ALONE = "without a vessel"
 
-PRINTED_MAX = 2
+_ORDER = (*SEVERE, _FAILED, _CLOSEST, _LEAST_BEYOND, _ALONE)
+"""Why flights are shown, the most telling reason first."""
+
+PRINTED_MAX = 1
 """Flights that have a page in print, the most telling first: the page on the screen has all."""
 
-_TYPICAL = (_MEDIAN, _MEDIAN_BEYOND)
-"""Why a flight is shown that page 1 shows already, or that stands for many."""
+Picked = tuple[Trial, "pd.Series[Any]", str]
+"""A flight that is shown: its trial, its row, and why it is."""
+
+_CHOSEN = (
+    "{which}: one that lost its aircraft, diverged, violated the keep-out area or failed a"
+    " criterion, the closest approach, and the median of closest approaches. report.pdf shows the"
+    " first of these that there is."
+)
+_SWEPT = (
+    "report.html shows every flight of the sweep; report.pdf shows {printed} of them: {why}. The"
+    " option --all-flights of plume-flight report prints them all."
+)
+_SWEPT_WITHOUT = (
+    "report.html lists every flight of the sweep; none has a time history (histories), and so"
+    " report.pdf shows none."
+)
 
 
-def flight_section(trials: list[Trial]) -> Section:
-    """Return the section of single flights."""
+def flight_section(trials: list[Trial], *, only_failed: bool = False) -> Section:
+    """Return the section of single flights; with ``only_failed``, of flights that are not swept
+    those alone are printed that came to grief or failed a criterion.
+    """
     swept = len(trials) == 1 and bool(trials[0].swept) and len(trials[0].rows) <= SWEPT_MAX
     picked = picked_flights(trials)
+    printed = _printed(picked)
+    if only_failed:
+        printed = [of for of in printed if picked[of][2] in (*SEVERE, _FAILED)]
     if swept and len(trials[0].rows) > 1:
-        telling = {str(row["flight_id"]): why for _, row, why in picked if not _is_typical(why)}
+        telling = {str(picked[i][1]["flight_id"]): picked[i][2] for i in printed}
         flights = [
             _of_sweep(trials[0], row, telling.get(str(row["flight_id"]), ""))
             for _, row in trials[0].rows.iterrows()
         ]
-        text = (
-            f"report.html shows every flight of the sweep, report.pdf {len(telling)} of them, by what each shows:"
-            f" {', '.join(telling.values())}. With the option --all-flights, plume-flight report prints them all."
-            if telling
-            else "report.html lists every flight of the sweep; none has a time history (histories), and so report.pdf shows none."
-        )
+        why = ", ".join(telling.values())
+        text = _SWEPT.format(printed=len(telling), why=why) if telling else _SWEPT_WITHOUT
     else:
-        several = any(radii_differ(beside_vessel(trial.rows)) for trial in trials)
-        printed = _printed([why for _, _, why in picked])
         flights = [
             replace(_content(trial, row, _state(row, why)), printed=number in printed)
             for number, (trial, row, why) in enumerate(picked)
         ]
-        text = (
-            f"{'Of each trial t' if len(trials) > 1 else 'T'}he flight with the deepest keep-out violation, and one with a"
-            " criterion that is not met, if there are such; of those with a time history the closest approach, and the one nearest"
-            f" to the median of all closest approaches{_BY_CLEARANCE * several}."
-            if len(flights) > 1
-            else _only(trials)
-        )
+        which = "Of each trial" if len(trials) > 1 else "Of the flights"
+        text = _CHOSEN.format(which=which) if len(flights) > 1 else _only(trials)
     blocks: list[Block] = [Text(text), FlightPicker(flights=flights)]
     return Section(
         anchor="flights",
@@ -93,16 +103,14 @@ def flight_section(trials: list[Trial]) -> Section:
     )
 
 
-def _is_typical(why: str) -> bool:
-    return any(words in why for words in _TYPICAL)
-
-
-def _printed(reasons: Sequence[str]) -> set[int]:
-    """Return the numbers of the flights that are printed, given why each is shown."""
-    order = (_VIOLATION, _FAILED, _CLOSEST, _LEAST_BEYOND, _ALONE)
-    rank = {why: number for number, why in enumerate(order)}
-    by_rank = sorted(range(len(reasons)), key=lambda of: rank.get(reasons[of], len(order)))
-    return set(by_rank[:PRINTED_MAX])
+def _printed(picked: Sequence[Picked]) -> list[int]:
+    """Return the numbers of the flights that are printed, those with a time history first."""
+    told = [
+        (not trial.run.has_history(str(row["flight_id"])), _ORDER.index(why), number)
+        for number, (trial, row, why) in enumerate(picked)
+        if why in _ORDER
+    ]
+    return [number for *_, number in sorted(told)[:PRINTED_MAX]]
 
 
 def _only(trials: list[Trial]) -> str:
@@ -161,10 +169,10 @@ def _content(trial: Trial, row: "pd.Series[Any]", state: str) -> FlightContent:
 
 
 def _state(row: "pd.Series[Any]", why: str) -> str:
-    return why if row["criteria_met"] or why in (_VIOLATION, _FAILED) else f"{why}, {_FAILED}"
+    return why if row["criteria_met"] or why in (*SEVERE, _FAILED) else f"{why}, {_FAILED}"
 
 
-def picked_flights(trials: list[Trial]) -> list[tuple[Trial, "pd.Series[Any]", str]]:
+def picked_flights(trials: list[Trial]) -> list[Picked]:
     """Return the flights to be shown, at most ``PICKED_MAX``, in the trials' order, and why each of
     them is.
 
@@ -175,20 +183,28 @@ def picked_flights(trials: list[Trial]) -> list[tuple[Trial, "pd.Series[Any]", s
     turns = [
         (i, k) for k in range(deep) for i, flights in enumerate(candidates) if k < len(flights)
     ]
+    # Where there are too many trials, those whose flights matter less have none.
+    turns.sort(key=lambda turn: (turn[1], _rank(candidates[turn[0]][turn[1]][1])))
     chosen = sorted(turns[:PICKED_MAX])
     return [(trials[i], *candidates[i][k]) for i, k in chosen]
+
+
+def _rank(why: str) -> int:
+    """Return how telling a reason is: its place in ``_ORDER``, and last what is not in it."""
+    return _ORDER.index(why) if why in _ORDER else len(_ORDER)
 
 
 def _candidates(trial: Trial) -> Iterator[tuple["pd.Series[Any]", str]]:
     """Yield a trial's flights to look at, the most important first: one of each sort, none twice."""
     rows, near = trial.rows, beside_vessel(trial.rows)
-    inside, failed = rows[violated(rows)], rows[~met(rows) & ~violated(rows)]
+    severe = [rows[severity(rows) == place] for place in range(len(SEVERE))]
+    failed = rows[~met(rows) & (severity(rows) == len(SEVERE))]
     # Of the others, those that have a time history: they are chosen for their figures.
     recorded, distances = trial.run.with_history(near), clearance(near)
     least, middle = (_LEAST_BEYOND, _MEDIAN_BEYOND) if radii_differ(near) else (_CLOSEST, _MEDIAN)
-    chosen = []
-    if len(inside):
-        chosen.append((inside.iloc[int(np.argmax(column(inside, "keepout_depth_m")))], _VIOLATION))
+    chosen = [
+        (by_severity(of).iloc[0], what) for what, of in zip(SEVERE, severe, strict=True) if len(of)
+    ]
     if len(failed):
         # One to look at, if there is any.
         shown = failed[trial.run.with_history(failed)]

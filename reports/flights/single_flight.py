@@ -84,7 +84,7 @@ class _Histories:
             panels=panels,
             columns=columns,
             share_x=True,
-            panel_height=min(0.2, 0.45 / -(-len(panels) // columns)),
+            panel_height=min(0.2, 0.33 / -(-len(panels) // columns)),
         )
 
     @property

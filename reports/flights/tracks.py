@@ -55,7 +55,7 @@ _FILLED, _HIGHER, _GROUND = 0.5, 1.5, 0.19
 """Part of that panel's width that the tracks fill at least, or else it is higher, by this factor;
 and its height, over the width of the page."""
 
-_TURNED, _LEGS, _NORTH_UP = math.radians(10.0), 40, 0.34
+_TURNED, _LEGS, _NORTH_UP = math.radians(10.0), 40, 0.25
 """Change of the ship's course from which north is up over the ground, parts of the flight that have
 one, and that map's height.
 """
@@ -141,7 +141,7 @@ class _Tracks:
             + other_ship_words(self._others),
             panels=[in_kilometres(panel) for panel in [*panels, *([ground] if ground else [])]],
             columns=len(panels),
-            panel_height=0.35,
+            panel_height=0.3,
             last_height=height,
         )
 

@@ -175,11 +175,14 @@ def channels_chart(samples: pd.DataFrame, x_label: str = _TIME) -> Chart:
     ]
     panels.append(Panel(x_label=x_label, y_label="ΔSO2 [ppb]", lines=equal))
     caption = (
-        "Readings. ΔSO2, above the background. Orange: SO2, corrected and smoothed to the slowest sensor; black: CO2, smoothed"
-        " alike, times the slope."
+        "Readings. ΔSO2, above the background. Orange: SO2, corrected and smoothed to the slowest"
+        " sensor; black: CO2, smoothed alike, times the slope."
     )
     if not np.isfinite(column(rows, "co2_ppm")).all():
-        caption += " Lines end where the log has no readings, and where a channel of another delay has none yet or no more."
+        caption += (
+            " Lines end where the log has no readings, and where a channel of another delay has"
+            " none yet or no more."
+        )
     return Chart(
         name="channels", caption=caption, panels=panels, columns=2, share_x=True, panel_height=0.125
     )
@@ -230,8 +233,8 @@ def regression_chart(samples: pd.DataFrame, record: Record) -> Chart | None:
         else ""
     )
     caption = (
-        "SO2 over CO2 without background, at the response of the slowest channel; the sulphur content by regression is"
-        f" {factor:.4f} times the slope{corrected}."
+        "SO2 over CO2 without background, at the response of the slowest channel; the sulphur"
+        f" content by regression is {factor:.4f} times the slope{corrected}."
         + " Groups of passes: neighbouring ones together, with their noise, 1σ."
         * (len(panels) > 1)
     )
@@ -314,7 +317,10 @@ def logged_track_chart(samples: pd.DataFrame) -> Chart | None:
             )
     if not panels:
         return None
-    caption = "CO2 reading by the colour of the track. The reading is late by the delay and the response of its channel."
+    caption = (
+        "CO2 reading by the colour of the track. The reading is late by the delay and the"
+        " response of its channel."
+    )
     if len(rows) < POINTS_MAX:
         caption += " Where the log has no readings, no track is drawn."
     return Chart(

@@ -44,7 +44,10 @@ def measurement_content(run: RunData) -> Findings:
         ),
     ]
     figures = record["estimate"]["figures"]
-    flown = f"A flight of {figures['duration_s']:.0f} s with {figures['passes']} passes through the plume."
+    flown = (
+        f"A flight of {figures['duration_s']:.0f} s with {figures['passes']} passes through the"
+        " plume."
+    )
     pictures = _there(
         over_time_chart(record),
         *([] if samples is None else _there(regression_chart(samples, record))),

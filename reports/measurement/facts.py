@@ -24,7 +24,10 @@ _CONFIGURED = " (by the configuration)"
 def position_words(latitude: float, longitude: float) -> str:
     """Return a place [deg] to a metre: 57.20000° N, 11.30000° E."""
     longitude = (longitude + 180.0) % 360.0 - 180.0
-    return f"{abs(latitude):.5f}° {'N' if latitude >= 0.0 else 'S'}, {abs(longitude):.5f}° {'E' if longitude >= 0.0 else 'W'}"
+    return (
+        f"{abs(latitude):.5f}° {'N' if latitude >= 0.0 else 'S'}, {abs(longitude):.5f}°"
+        f" {'E' if longitude >= 0.0 else 'W'}"
+    )
 
 
 def logged_facts(run: RunData, record: Record) -> list[Fact]:
@@ -61,7 +64,10 @@ def _time_words(flight: dict[str, Any]) -> str:
         return "not in the log, whose times are seconds, and not in the configuration"
     if flight["utc_from"] != FROM_LOG:
         return f"{span_words(first, last)} (start by the configuration; the log counts seconds)"
-    return f"{span_words(first, last)} (by the log{'' if flight['offset'] else ', whose times have no offset: taken as UTC'})"
+    return (
+        f"{span_words(first, last)} (by the"
+        f" log{'' if flight['offset'] else ', whose times have no offset: taken as UTC'})"
+    )
 
 
 def _place_words(flight: dict[str, Any]) -> str:
@@ -129,4 +135,7 @@ def _times(rows: pd.DataFrame) -> str:
     ]
     if not spans:
         return ""
-    return f"{span_words(min(first for first, _ in spans), max(last for _, last in spans))} (by the scenario)"
+    return (
+        f"{span_words(min(first for first, _ in spans), max(last for _, last in spans))} (by the"
+        " scenario)"
+    )

@@ -91,7 +91,8 @@ def error_chart(rows: pd.DataFrame) -> Chart:
         lines.append(Line(x=ends, y=ends, label="perfect", colour="black", style="dash"))
         panels.append(
             Panel(
-                x_label=f"A perfect instrument [{MASS_PERCENT}]", y_label=f"Measured [{MASS_PERCENT}]", title=title, lines=lines,
+                x_label=f"A perfect instrument [{MASS_PERCENT}]",
+                y_label=f"Measured [{MASS_PERCENT}]", title=title, lines=lines,
                 log_x=wide, log_y=wide, y_range=limits,
             )
         )  # fmt: skip
@@ -216,8 +217,9 @@ def trajectory_chart(run: RunData, rows: pd.DataFrame) -> Chart | None:
         _shares(rows, interval),
     ]
     caption = (
-        "What a trajectory is worth to a sensor: the standard deviation by noise that a minute of crossings leaves, over their"
-        " interval and their distance; and the share of the truth that each method reads."
+        "What a trajectory is worth to a sensor: the standard deviation by noise that a minute of"
+        " crossings leaves, over their interval and their distance; and the share of the truth"
+        " that each method reads."
     )
     return Chart(
         name="sulphur-trajectory", caption=caption, panels=panels, columns=2, panel_height=0.36
@@ -272,7 +274,8 @@ def sulphur_track_chart(history: pd.DataFrame, about: Surroundings) -> Chart:
     distance = np.hypot(right, along)
     crossed = np.flatnonzero(np.diff(np.signbit(right)))
     axis = Line(
-        x=distance[crossed], y=(height - above)[crossed], label="plume's mean axis, where it was crossed", colour="orange",
+        x=distance[crossed], y=(height - above)[crossed],
+        label="plume's mean axis, where it was crossed", colour="orange",
         style="diamonds",
     )  # fmt: skip
     track = Line(x=right, y=along, label="", colour=Meaning.FLOWN, style="points", values=co2)
@@ -291,8 +294,8 @@ def sulphur_track_chart(history: pd.DataFrame, about: Surroundings) -> Chart:
         ),
     ]
     caption = (
-        "The true CO2 concentration, as the colour of the track; in height with the plume's mean axis where it was crossed."
-        f" {ship_words(about, panels=panels)}"
+        "The true CO2 concentration, as the colour of the track; in height with the plume's mean"
+        f" axis where it was crossed. {ship_words(about, panels=panels)}"
     )
     return Chart(
         name="sulphur-track",

@@ -1,5 +1,6 @@
 """Tables of flights that measured the fuel: their results, and how the method does."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import pandas as pd
@@ -7,7 +8,7 @@ import pandas as pd
 from common.intervals import percent
 from measurement.gases import MASS_PERCENT
 from reports.document.blocks import Table
-from reports.document.tables import number
+from reports.document.tables import Cell, number, rows_table
 from reports.measurement.data import METHODS, Record, measured_minutes, share_read
 from reports.run.run_data import RunData
 from reports.run.trials import Name
@@ -15,140 +16,126 @@ from reports.run.trials import Name
 _BEST = 3
 """Trajectories that are listed for each sensor."""
 
+_SENSOR = Cell("Sensor", "sensor", width=1.4)
+
 
 def interval_words(row: "pd.Series[Any]") -> str:
     """Return the ends of the 95 % interval of a flight's sulphur content [% m/m]."""
-    return (
-        f"{number(row['fsc_low_percent'], '{:.3f}')} to {number(row['fsc_high_percent'], '{:.3f}')}"
-    )
+    ends = (row["fsc_low_percent"], row["fsc_high_percent"])
+    return " to ".join(number(end, "{:.3f}") for end in ends)
 
 
 def flight_table(rows: pd.DataFrame, name: Name) -> Table:
     """Return a row per flight: result, uncertainty, verdict."""
-    return Table(
+    cells = [
+        Cell("Flight", name, width=2.2),
+        _SENSOR,
+        Cell(f"Fuel [{MASS_PERCENT}]", "fsc_fuel_percent", "{:.3f}", 0.8),
+        Cell(f"Perfect [{MASS_PERCENT}]", "fsc_expected_percent", "{:.3f}", 0.9),
+        Cell(f"Measured [{MASS_PERCENT}]", "fsc_percent", "{:.3f}"),
+        Cell(f"95 % interval [{MASS_PERCENT}]", interval_words, width=1.5),
+        Cell("Quality", "sulphur_quality", width=0.7),
+        Cell("P(above)", "probability_above", "{:.3f}", 0.8),
+        Cell("Verdict", "sulphur_verdict", width=0.8),
+    ]
+    return rows_table(
+        (row for _, row in rows.iterrows()),
+        cells,
         caption="The flights, a row each: result, uncertainty and verdict.",
-        head=[
-            "Flight",
-            "Sensor",
-            f"Fuel [{MASS_PERCENT}]",
-            f"Perfect [{MASS_PERCENT}]",
-            f"Measured [{MASS_PERCENT}]",
-            f"95 % interval [{MASS_PERCENT}]",
-            "Quality",
-            "P(above)",
-            "Verdict",
-        ],
-        rows=[
-            [
-                name(row),
-                str(row["sensor"]),
-                number(row["fsc_fuel_percent"], "{:.3f}"),
-                number(row["fsc_expected_percent"], "{:.3f}"),
-                number(row["fsc_percent"], "{:.3f}"),
-                interval_words(row),
-                str(row["sulphur_quality"]),
-                number(row["probability_above"], "{:.3f}"),
-                str(row["sulphur_verdict"]),
-            ]
-            for _, row in rows.iterrows()
-        ],
-        widths=[2.2, 1.3, 0.8, 0.9, 1.0, 1.5, 0.7, 0.8, 0.8],
         left_columns=2,
         breakable=True,
     )
+
+
+def _share(key: str) -> Any:
+    """Return what writes a share in per cent; a dash where there is none."""
+
+    def cell(entry: Mapping[str, Any]) -> str:
+        return "–" if entry[key] is None else percent(entry[key])
+
+    return cell
+
+
+def _interval(key: str) -> Any:
+    return lambda entry: " to ".join(percent(bound) for bound in entry[key])
 
 
 def accuracy_table(statistics: Record) -> Table:
     """Return bias, spread and coverage by sensor and method."""
-    rows = [entry for entry in statistics["accuracy"] if entry["fsc_fuel_percent"] is None]
-    return Table(caption="Bias, spread and coverage, by sensor and method.",
-        head=[
-            "Sensor", "Method", "Flights", f"Bias [{MASS_PERCENT}]", "Share read", "Predicted", f"Spread, 1σ [{MASS_PERCENT}]",
-            f"Stated, 1σ [{MASS_PERCENT}]", f"Of it noise [{MASS_PERCENT}]", "Covered",
+    cells = [
+        Cell("Sensor", "sensor", width=1.6),
+        Cell("Method", lambda entry: METHODS[entry["method"]], width=2.1),
+        Cell("Flights", "flights", "{:,.0f}", 0.7),
+        Cell(f"Bias [{MASS_PERCENT}]", "bias_percent", "{:+.4f}"),
+        Cell("Share read", _share("share_read"), width=0.92),
+        Cell("Predicted", _share("share_predicted"), width=1.1),
+        Cell(f"Spread, 1σ [{MASS_PERCENT}]", "spread_percent", "{:.4f}"),
+        Cell(f"Stated, 1σ [{MASS_PERCENT}]", "stated_percent", "{:.4f}"),
+        Cell(f"Of it noise [{MASS_PERCENT}]", "stated_noise_percent", "{:.4f}"),
+        Cell("Covered", _share("coverage"), width=0.95),
+        Cell(
             f"Interval at {percent(statistics['confidence'])}",
-        ],
-        rows=[
-            [
-                entry["sensor"],
-                METHODS[entry["method"]],
-                f"{entry['flights']:,}",
-                number(entry["bias_percent"], "{:+.4f}"),
-                *("–" if share is None else percent(share) for share in (entry["share_read"], entry["share_predicted"])),
-                number(entry["spread_percent"], "{:.4f}"),
-                number(entry["stated_percent"], "{:.4f}"),
-                number(entry["stated_noise_percent"], "{:.4f}"),
-                percent(entry["coverage"]),
-                " to ".join(percent(bound) for bound in entry["coverage_interval"]),
-            ]
-            for entry in rows
-        ],
-        widths=[1.6, 2.1, 0.7, 1.0, 0.92, 1.1, 1.0, 1.0, 1.0, 0.95, 1.7],
+            _interval("coverage_interval"),
+            width=1.7,
+        ),
+    ]
+    return rows_table(
+        [entry for entry in statistics["accuracy"] if entry["fsc_fuel_percent"] is None],
+        cells,
+        caption="Bias, spread and coverage, by sensor and method.",
         left_columns=2,
-    )  # fmt: skip
+    )
 
 
 def calls_table(statistics: Record) -> Table:
     """Return how often ships of each fuel were called above the limit."""
-    return Table(
+    cells = [
+        _SENSOR,
+        Cell(f"Fuel [{MASS_PERCENT}]", "fsc_fuel_percent", "{:g}", 0.8),
+        Cell(f"Limit [{MASS_PERCENT}]", "limit_percent", "{:g}", 0.8),
+        Cell("Flights", "flights", "{:,.0f}", 0.7),
+        Cell("Called above", _share("above")),
+        Cell("Interval", _interval("above_interval"), width=1.5),
+        Cell("Above after 2 min", _share("above_2min"), width=1.2),
+        Cell("Open at the end", _share("open")),
+    ]
+    return rows_table(
+        statistics["operating_curve"],
+        cells,
         caption="How often ships of each fuel were called above the limit.",
-        head=[
-            "Sensor",
-            f"Fuel [{MASS_PERCENT}]",
-            f"Limit [{MASS_PERCENT}]",
-            "Flights",
-            "Called above",
-            "Interval",
-            "Above after 2 min",
-            "Open at the end",
-        ],
-        rows=[
-            [
-                entry["sensor"],
-                f"{entry['fsc_fuel_percent']:g}",
-                f"{entry['limit_percent']:g}",
-                f"{entry['flights']:,}",
-                percent(entry["above"]),
-                " to ".join(percent(bound) for bound in entry["above_interval"]),
-                percent(entry["above_2min"]),
-                percent(entry["open"]),
-            ]
-            for entry in statistics["operating_curve"]
-        ],
-        widths=[1.4, 0.8, 0.8, 0.7, 1.0, 1.5, 1.2, 1.0],
         breakable=True,
     )
+
+
+_HITS = {
+    "plume_axis_crossings": ("Crossings of the plume's mean axis, with smoke or without", "{:.0f}"),
+    "smoke_passes": ("Of these with smoke", "{:.0f}"),
+    "hit_rate": ("Share of these that hit the plume, peak above 0.6 of its axis [-]", "{:.2f}"),
+    "axis_height_error_rms_m": ("Height off the plume's axis, rms [m]", "{:.1f}"),
+    "seconds_in_plume_s": ("Time in the plume [s]", "{:.0f}"),
+    "dose_per_pass_ppm_s": ("CO2 dose of a pass [ppm s]", "{:.0f}"),
+    "co2_signal_to_noise": ("CO2 signal to noise [-]", "{:.0f}"),
+    "verdict_time_s": ("Time to a verdict, of flights that reached one [s]", "{:.0f}"),
+}
+"""Figures of passes by their columns: title and pattern."""
 
 
 def hit_table(rows: pd.DataFrame) -> Table:
     """Return figures of the passes: over all flights, median and the tenth that is worst on either
     side.
     """
-    named = {
-        "plume_axis_crossings": (
-            "Crossings of the plume's mean axis, with smoke or without",
-            "{:.0f}",
-        ),
-        "smoke_passes": ("Of these with smoke", "{:.0f}"),
-        "hit_rate": ("Share of these that hit the plume, peak above 0.6 of its axis [-]", "{:.2f}"),
-        "axis_height_error_rms_m": ("Height off the plume's axis, rms [m]", "{:.1f}"),
-        "seconds_in_plume_s": ("Time in the plume [s]", "{:.0f}"),
-        "dose_per_pass_ppm_s": ("CO2 dose of a pass [ppm s]", "{:.0f}"),
-        "co2_signal_to_noise": ("CO2 signal to noise [-]", "{:.0f}"),
-        "verdict_time_s": ("Time to a verdict, of flights that reached one [s]", "{:.0f}"),
-    }
-    return Table(
-        head=["Figure", "Lowest tenth", "Median", "Highest tenth", "Flights"],
-        rows=[
-            [
-                title,
-                *(number(rows[name].quantile(q), pattern) for q in (0.1, 0.5, 0.9)),
-                f"{rows[name].notna().sum():,}",
-            ]
-            for name, (title, pattern) in named.items()
-            if name in rows
-        ],
-        widths=[3.0, 1.0, 1.0, 1.0, 0.8],
-    )
+
+    def quantile(share: float) -> Any:
+        return lambda name: number(rows[name].quantile(share), _HITS[name][1])
+
+    cells = [
+        Cell("Figure", lambda name: _HITS[name][0], width=3.0),
+        Cell("Lowest tenth", quantile(0.1)),
+        Cell("Median", quantile(0.5)),
+        Cell("Highest tenth", quantile(0.9)),
+        Cell("Flights", lambda name: rows[name].notna().sum(), "{:,.0f}", 0.8),
+    ]
+    return rows_table([name for name in _HITS if name in rows], cells)
 
 
 def best_table(run: RunData, rows: pd.DataFrame) -> Table:
@@ -158,28 +145,22 @@ def best_table(run: RunData, rows: pd.DataFrame) -> Table:
     noise = (rows["fsc_noise_percent"] * measured_minutes(run, rows) ** 0.5).rename("minute")
     ranked = pd.concat([rows, noise], axis=1).sort_values("minute")
     best = pd.concat([group.head(_BEST) for _, group in ranked.groupby("sensor")])
-    return Table(
-        caption="Trajectories that leave the least noise after a minute, by sensor, and what each method reads on them.",
-        head=[
-            "Sensor",
-            "ν",
-            "Interval [s]",
-            "Distance [m]",
-            f"1σ in a minute [{MASS_PERCENT}]",
-            "Regression reads",
-            "Areas read",
-        ],
-        rows=[
-            [
-                str(row["sensor"]),
-                number(row["nu"], "{:.2f}"),
-                number(row["crossing_interval_mean_s"], "{:.1f}"),
-                number(row["crossing_distance_mean_m"], "{:.0f}"),
-                number(row["minute"], "{:.4f}"),
-                number(share_read(row["fsc_percent"], row["fsc_expected_percent"]), "{:.2f}"),
-                number(share_read(row["areas_fsc_percent"], row["fsc_expected_percent"]), "{:.2f}"),
-            ]
-            for _, row in best.iterrows()
-        ],
-        widths=[1.6, 0.6, 0.9, 0.9, 1.3, 1.1, 0.9],
+
+    def reads(column: str) -> Any:
+        return lambda row: share_read(row[column], row["fsc_expected_percent"])
+
+    cells = [
+        Cell("Sensor", "sensor", width=1.6),
+        Cell("ν", "nu", "{:.2f}", 0.6),
+        Cell("Interval [s]", "crossing_interval_mean_s", "{:.1f}", 0.9),
+        Cell("Distance [m]", "crossing_distance_mean_m", "{:.0f}", 0.9),
+        Cell(f"1σ in a minute [{MASS_PERCENT}]", "minute", "{:.4f}", 1.3),
+        Cell("Regression reads", reads("fsc_percent"), "{:.2f}", 1.1),
+        Cell("Areas read", reads("areas_fsc_percent"), "{:.2f}", 0.9),
+    ]
+    return rows_table(
+        best.to_dict("records"),
+        cells,
+        caption="Trajectories that leave the least noise after a minute, by sensor, and what each"
+        " method reads on them.",
     )

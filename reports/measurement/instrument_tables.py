@@ -93,11 +93,16 @@ def instrument_table(record: Record) -> Table:
             "pressure_effect",
         ),
     ]
-    estimated = f" “{_FOUND.capitalize()}”: not stated, and estimated; its 1σ is without what lies between readings."
+    estimated = (
+        f" “{_FOUND.capitalize()}”: not stated, and estimated; its 1σ is without what lies"
+        " between readings."
+    )
     found = estimated if any(_FOUND in cell for row in rows for cell in row) else ""
     return Table(
-        caption=f"The channels as the analysis used them.{found} What has no unit of its own is in that of its column."
-        f" Instrument: {instrument['title']}.",
+        caption=(
+            f"The channels as the analysis used them.{found} What has no unit of its own is in"
+            f" that of its column. Instrument: {instrument['title']}."
+        ),
         head=["Property", *(f"{gas.upper()} [{UNITS[gas]}]" for gas in gases)],
         rows=rows,
         widths=[2.2, *(1.0 for _ in gases)],
@@ -136,7 +141,10 @@ def _t90(found: Record) -> Callable[[_Channel, _Channel], str]:
 
     def cell(stated: _Channel, _: _Channel) -> str:
         if stated["t90_sd"] is None:
-            return f"{number(found['so2_t90_s'], '{:.1f}')} ± {number(found['so2_t90_sd_s'], '{:.1f}')}, {_FOUND}"
+            return (
+                f"{number(found['so2_t90_s'], '{:.1f}')} ±"
+                f" {number(found['so2_t90_sd_s'], '{:.1f}')}, {_FOUND}"
+            )
         return _with_deviation(stated["t90_s"], stated["t90_s"] * stated["t90_sd"])
 
     return cell
@@ -149,7 +157,10 @@ def _delay(found: Record) -> Callable[[_Channel, _Channel], str]:
 
     def cell(stated: _Channel, _: _Channel) -> str:
         if stated["delay_sd_s"] is None:
-            return f"{number(found['delay_s'], '{:.2f}')} ± {number(found['delay_sd_s'], '{:.2f}')} after CO2, {_FOUND}"
+            return (
+                f"{number(found['delay_s'], '{:.2f}')} ± {number(found['delay_sd_s'], '{:.2f}')}"
+                f" after CO2, {_FOUND}"
+            )
         return _with_deviation(stated["delay_s"], stated["delay_sd_s"])
 
     return cell
@@ -180,6 +191,31 @@ def _response(gas: str) -> Callable[[_Channel, _Channel], str]:
     return cell
 
 
+_CARBON = (
+    "{share} by mass ± {deviation} of it (1σ): {factor:.4f} % of sulphur per ppb of SO2 per ppm of"
+    " CO2"
+)
+_SULPHATE = "{share} of the sulphur leaves as sulphate: stated, not corrected"
+_SCRUBBER = (
+    "none is assumed: of a ship with a scrubber the content is that of a fuel which emits as much"
+    " SO2 per CO2 without one, and not that of the fuel on board"
+)
+_VERDICT = (
+    "“above” where the content is more than {guard:.3f} standard uncertainties above the limit;"
+    " “below” where the fuel is below it with a probability of more than {confidence}, given that"
+    " no content is below 0"
+)
+_INTERVAL = (
+    "the shortest that holds {confidence}, given that no content is below 0: {coverage:.3f}"
+    " standard uncertainties on either side far above 0, fewer nearer to it. An interval that"
+    " starts at 0 is a one-sided 95 % limit"
+)
+_QUALITY_A = (
+    "CO2 signal to noise of {snr:g}, a standard uncertainty of {uncertainty:g} times the lowest"
+    " limit, {passes} passes that agree with p ≥ {agreement:g}"
+)
+
+
 def assumption_table(run: RunData, record: Record) -> Table:
     """Return how the log was read, and the thresholds and assumptions of the analysis."""
     flight, found, carbon = record["flight"], record["estimate"], float(record["carbon"])
@@ -198,30 +234,39 @@ def assumption_table(run: RunData, record: Record) -> Table:
         record["instrument"]["source"]
         or "as the configuration states them, but for those that are marked as assumed"
     )
+    configured = f"{settings}, SHA-256 {run.manifest['settings_hash']}"
     rows = [
-        ["Configuration", f"{settings}, SHA-256 {run.manifest['settings_hash']}" if settings else "none was given"],
+        ["Configuration", configured if settings else "none was given"],
         ["Columns of time and place", _columns(flight["columns"])],
         ["Columns multiplied", factors],
         ["Table", flight.get("table") or "not recorded"],
         ["Codes of missing readings", missing],
         ["Figures of the instrument", source.replace("\n", " ")],
         ["Method", METHODS[found["method"]]],
-        ["Carbon in the fuel", f"{percent(carbon)} by mass ± {percent(CARBON_SD)} of it (1σ): {fsc_factor(carbon):.4f} % of sulphur"
-         " per ppb of SO2 per ppm of CO2"],
+        [
+            "Carbon in the fuel",
+            _CARBON.format(
+                share=percent(carbon), deviation=percent(CARBON_SD), factor=fsc_factor(carbon)
+            ),
+        ],
         ["NO and NO2", _unmeasured(record)],
-        ["Sulphate", f"{percent(SULPHATE_SHARE)} of the sulphur leaves as sulphate: stated, not corrected"],
-        ["Exhaust gas cleaning", "none is assumed: of a ship with a scrubber the content is that of a fuel which emits as much SO2"
-         " per CO2 without one, and not that of her own fuel"],
+        ["Sulphate", _SULPHATE.format(share=percent(SULPHATE_SHARE))],
+        ["Exhaust gas cleaning", _SCRUBBER],
         ["A pass", f"a peak of CO2 of {SNR_LEAST:g} times its noise"],
         ["Limits", f"{limits} m/m"],
-        ["A verdict", f"“above” where the content is more than {GUARD:.3f} standard uncertainties above the limit; “below” where"
-         f" the fuel is below it with a probability of more than {percent(CONFIDENCE)}, given that no content is below 0"],
+        ["A verdict", _VERDICT.format(guard=GUARD, confidence=percent(CONFIDENCE))],
         *_rates(record),
-        ["Interval", f"the shortest that holds {percent(CONFIDENCE)}, given that no content is below 0: {COVERAGE:.3f} standard"
-         " uncertainties on either side far above 0, fewer nearer to it, and one that begins at 0 next to it"],
-        ["Quality A", f"CO2 signal to noise of {SNR_GOOD:g}, a standard uncertainty of {UNCERTAINTY_GOOD:g} times the lowest"
-         f" limit, {PASSES_GOOD} passes that agree with p ≥ {AGREEMENT_LEAST:g}"],
-    ]  # fmt: skip
+        ["Interval", _INTERVAL.format(coverage=COVERAGE, confidence=percent(CONFIDENCE))],
+        [
+            "Quality A",
+            _QUALITY_A.format(
+                snr=SNR_GOOD,
+                uncertainty=UNCERTAINTY_GOOD,
+                passes=PASSES_GOOD,
+                agreement=AGREEMENT_LEAST,
+            ),
+        ],
+    ]
     caption = "How the log was read, and the thresholds and assumptions of the analysis."
     return pairs_table(rows, widths=(1.0, 3.0), caption=caption, breakable=True)
 
@@ -254,10 +299,12 @@ def _unmeasured(record: Record) -> str:
             told.append(f"{gas.upper()} is measured, and SO2 corrected for it")
         elif measured:
             told.append(
-                f"{gas.upper()} is measured, but SO2 not corrected for it, as its response is not stated"
+                f"{gas.upper()} is measured, but SO2 not corrected for it, as its response is not"
+                " stated"
             )
         else:
             told.append(
-                f"{gas.upper()} is not measured: taken as {ratio:g} ± {deviation:g} ppb per ppm of CO2 (1σ)"
+                f"{gas.upper()} is not measured: taken as {ratio:g} ± {deviation:g} ppb per ppm"
+                " of CO2 (1σ)"
             )
     return "; ".join(told)

@@ -28,21 +28,26 @@ def result_table(record: Record) -> Table:
             number(found["fsc_percent"], _PERCENT),
             number(found["noise_percent"], _PERCENT),
             number(found["total_percent"], _PERCENT),
-            f"{number(found['low_percent'], '{:.3f}')} to {number(found['high_percent'], _PERCENT)}",
+            f"{number(found['low_percent'], '{:.3f}')} to"
+            f" {number(found['high_percent'], _PERCENT)}",
             found["quality"],
         ])  # fmt: skip
     head = [
-        "Method", f"Sulphur content [{MASS_PERCENT}]", f"Noise, 1σ [{MASS_PERCENT}]", f"Standard uncertainty, 1σ [{MASS_PERCENT}]",
+        "Method", f"Sulphur content [{MASS_PERCENT}]", f"Noise, 1σ [{MASS_PERCENT}]",
+        f"Standard uncertainty, 1σ [{MASS_PERCENT}]",
         f"95 % interval [{MASS_PERCENT}]", "Quality",
     ]  # fmt: skip
     caption = (
-        "The result by each method. Interval and probabilities come from a normal distribution of content and standard"
-        " uncertainty, cut off at 0. Where the interval begins at 0, the probability of a content above its end"
-        " is 5 %."
+        "The result by each method. Interval and probabilities come from a normal distribution of"
+        " content and standard uncertainty, cut off at 0. An interval that starts at 0 is a"
+        " one-sided 95 % limit."
     )
     other = record.get("other")
     if other is not None and other["quality"] == "C":
-        caption += f" Why {METHODS[other['method']]} have quality C: {'; '.join(other['quality_reasons'])}."
+        caption += (
+            f" Why {METHODS[other['method']]} have quality C:"
+            f" {'; '.join(other['quality_reasons'])}."
+        )
     return Table(caption=caption, head=head, rows=rows, widths=[1.8, 1.2, 0.8, 1.9, 1.5, 0.7])
 
 
@@ -79,8 +84,9 @@ def over_time_table(record: Record, since: str = SINCE) -> Table | None:
         *(f"Limit {limit_words(float(v))}" for v in limits),
     ]
     caption = (
-        f"Result after each time since {since}. A pass is a peak of CO2 of {SNR_LEAST:g} times its noise: where smoke"
-        " meanders, not every crossing of the plume's axis meets it. With quality C there is no verdict."
+        f"Result after each time since {since}. A pass is a peak of CO2 of {SNR_LEAST:g} times"
+        " its noise: where smoke meanders, not every crossing of the plume's axis meets it. With"
+        " quality C there is no verdict."
     )
     return Table(
         caption=caption,
@@ -107,15 +113,18 @@ def record_table(record: Record) -> Table:
         ["Gaps", gaps.gap_words],
         [
             "Passes",
-            f"{figures['passes']}, every {number(figures['interval_s'], '{:.1f} s')}; agreement p = {agreement}",
+            f"{figures['passes']}, every {number(figures['interval_s'], '{:.1f} s')}; agreement p"
+            f" = {agreement}",
         ],
         [
             "In the plume",
-            f"{figures['seconds_in_plume']:.0f} s of {figures['duration_s']:.0f} s; CO2 dose of a pass {dose}",
+            f"{figures['seconds_in_plume']:.0f} s of {figures['duration_s']:.0f} s; CO2 dose of a"
+            f" pass {dose}",
         ],
         [
             "Signal to noise",
-            f"CO2 peaks {number(figures['co2_snr'], '{:.0f}')}, SO2 {number(figures['so2_snr'], '{:.1f}')}",
+            f"CO2 peaks {number(figures['co2_snr'], '{:.0f}')}, SO2"
+            f" {number(figures['so2_snr'], '{:.1f}')}",
         ],
         ["Background", _background_words(figures)],
         ["Passes of another fuel", _excluded_words(found["excluded"])],
@@ -138,7 +147,10 @@ def _background_words(figures: dict[str, Any]) -> str:
     co2 = number(figures["background_ppm"], "{:.2f} ppm")
     length = number(figures["background_s"], "{:.0f} s")
     rest = number(figures["background_ppb"], "{:.2f} ppb")
-    return f"CO2 varies by {co2} (1σ) with a correlation length of {length}; SO2 beside the plume by {rest}"
+    return (
+        f"CO2 varies by {co2} (1σ) with a correlation length of {length}; SO2 beside the plume by"
+        f" {rest}"
+    )
 
 
 def _excluded_words(excluded: list[dict[str, float]]) -> str:

@@ -18,8 +18,8 @@ from reports.document.blocks import Card, FuelCard, UndecidedCard, Verdict
 from reports.document.tables import number
 from reports.measurement.data import WORDS, Record, errors, value
 
-CONTENT_NAME, INTERVAL_NAME = "Fuel sulphur content", "Fuel sulphur content, 95 % interval"
-"""Names of the tiles of a result."""
+CONTENT_NAME = "Fuel sulphur content"
+"""Name of the tile of a result."""
 
 
 def measurement_verdict(record: Record) -> Verdict:
@@ -49,7 +49,7 @@ def measurement_verdict(record: Record) -> Verdict:
 
 
 def sentence(verdict: dict[str, Any], quality: str, *, known: bool) -> str:
-    """Return a verdict in words; that there is none without a result, or of a record of quality C."""
+    """Return a verdict in words; there is none without a result, or with quality C."""
     limit = float(verdict["limit_percent"])
     if not known:
         return f"Nothing can be said of the limit of {limit_words(limit)}: there is no result"
@@ -76,7 +76,10 @@ def _result(record: Record) -> str:
     content = content_words(
         value(found, "fsc_percent"), value(found, "low_percent"), value(found, "high_percent")
     )
-    return f"Fuel sulphur content {content}, from {passes} in {figures['duration_s']:.0f} s. Quality {found['quality']}."
+    return (
+        f"Fuel sulphur content {content}, from {passes} in {figures['duration_s']:.0f} s. Quality"
+        f" {found['quality']}."
+    )
 
 
 def _decision(record: Record) -> str:
@@ -142,8 +145,8 @@ def _figures(record: Record) -> list[Card]:
         Card(
             CONTENT_NAME,
             number(found["fsc_percent"] if _known(found) else None, f"{{:.3f}} {MASS_PERCENT}"),
+            note=f"95 % interval {_interval(found)}" if _known(found) else "",
         ),
-        Card(INTERVAL_NAME, _interval(found) if _known(found) else "–"),
         *chances,
         Card("Quality", str(found["quality"])),
         *times,

@@ -2,14 +2,15 @@
 sensitivity.
 """
 
+import math
 from typing import Any
 
-from common.intervals import percent
+from common.intervals import CONFIDENCE, clopper_pearson, percent
 from reports.document.blocks import Block, Heading, Section, Text
 from reports.monte_carlo.driver_charts import driver_charts, scatter_charts
 from reports.monte_carlo.names import documented_units
 from reports.monte_carlo.spread_charts import spread_charts
-from reports.monte_carlo.subset import subset_sections
+from reports.monte_carlo.subset import subset_headline, subset_sections
 from reports.monte_carlo.tables import ending_table, left_out_rows, quantile_table, violation_table
 from reports.run.columns import radii_differ
 from reports.run.run_data import RunData
@@ -17,6 +18,44 @@ from reports.run.trials import measured_from, shape_words
 
 _RARE = 0.5
 """Probability below which it is told as one flight in so many."""
+
+
+_PROBABILITIES = (
+    "Probability of violation {violation}, of loss {loss}, of not finishing {unfinished},"
+    " at {confidence} confidence"
+)
+
+
+def probabilities(run: RunData) -> str:
+    """Return the probabilities of a violation, of a loss and of a flight that does not finish; no
+    word of flights without a vessel.
+    """
+    statistics, counts = run.statistics or {}, run.verdict.counts
+    if run.verdict.whole.closest is None:
+        return ""
+    if statistics.get("method") == "subset":
+        return subset_headline(statistics)
+    # That of a study that was looked at repeatedly is its own.
+    level = float(statistics.get("interval_confidence", CONFIDENCE))
+    return _PROBABILITIES.format(
+        violation=_probability(run, level, counts.violated, counts.unknown),
+        loss=_probability(run, level, counts.lost),
+        unfinished=_probability(run, level, counts.done - counts.completed),
+        confidence=percent(level),
+    )
+
+
+def _probability(run: RunData, level: float, events: int, unknown: int = 0) -> str:
+    """Return the share of flights with an event and the interval of its probability, which has each
+    unknown flight as one at its upper end.
+
+    Flights that share what is random count as one.
+    """
+    done, bound = run.verdict.counts.done, run.verdict.whole.bound
+    samples = bound.samples if bound else done
+    low = clopper_pearson(math.floor(events * samples / done), samples, level).low
+    high = clopper_pearson(math.ceil((events + unknown) * samples / done), samples, level).high
+    return f"{percent(events / done)} ({100.0 * low:.3g} to {percent(high)})"
 
 
 def monte_carlo_sections(run: RunData) -> list[Section]:
@@ -41,11 +80,18 @@ def monte_carlo_sections(run: RunData) -> list[Section]:
             nav_title="Distributions",
             blocks=_spread(run, statistics),
         ),
-        Section(
-            anchor="drivers",
-            title="Sensitivity",
-            nav_title="Sensitivity",
-            blocks=_drivers(run, statistics),
+        # Of figures that have indices: few flights have none.
+        *(
+            [
+                Section(
+                    anchor="drivers",
+                    title="Sensitivity",
+                    nav_title="Sensitivity",
+                    blocks=_drivers(run, statistics),
+                )
+            ]
+            if any(found["inputs"] for found in statistics["sensitivity"].values())
+            else []
         ),
     ]
 
@@ -124,12 +170,7 @@ def _drivers(run: RunData, statistics: dict[str, Any]) -> list[Block]:
         " the true index less often, as δ comes out a tenth too low of some hundred flights."
     )
     return [
-        # Of indices that there are: nobody needs to know how to read others.
-        *(
-            [Text(text)]
-            if any(found["inputs"] for found in statistics["sensitivity"].values())
-            else []
-        ),
+        Text(text),
         *(Text(line) for line in left_out_rows(run, statistics["sensitivity"])),
         *driver_charts(run, statistics),
         *scatter_charts(run, statistics),

@@ -36,6 +36,34 @@ _IN_WORDS = {
 }
 
 
+_NEAREST = (
+    "Nearest of {flown:,} flights: {beyond} m beyond r_min, {flight} (fault {fault},"
+    " wind {wind:.1f} m/s); {violated:,} violated, {lost:,} lost, {diverged:,} diverged,"
+    " {unknown:,} unknown"
+)
+
+
+def nearest_found(run: RunData) -> str:
+    """Return the nearest flight that a search found, where, and what was violated or lost; no word
+    of flights without a vessel.
+    """
+    counts, nearest = run.verdict.counts, run.verdict.whole.closest
+    if nearest is None:
+        return ""
+    row = run.summary[run.summary["flight_id"] == nearest.flight].iloc[0]
+    return _NEAREST.format(
+        flown=counts.flown,
+        beyond=approach(nearest.distance_m - nearest.radius_m, 0.0),
+        flight=nearest.flight,
+        fault=str(row["fault"]).replace("_", " "),
+        wind=row["wind_speed_mps"],
+        violated=counts.violated,
+        lost=counts.lost - counts.diverged,
+        diverged=counts.diverged,
+        unknown=counts.unknown,
+    )
+
+
 def falsification_sections(run: RunData) -> list[Section]:
     """Return the section of a run that searched for the worst flight, and none of any other."""
     config = next(iter(run.manifest["trials"].values()))

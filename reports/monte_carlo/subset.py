@@ -59,17 +59,6 @@ def subset_headline(statistics: Record) -> str:
     return f"Subset simulation reached no keep-out violation: a probability of {bound} in a flight"
 
 
-def plain_bound_in_words(statistics: Record) -> str:
-    """Return what the first levels alone bound, in a sentence: of few flights that may be less than
-    the simulation does.
-    """
-    plain = statistics["violation"]["first_levels"]
-    return (
-        f"Its first levels alone, a plain random sample of {plain['flights']:,} flights with {plain['events']:,} violations, bound"
-        f" the probability by {percent(plain['upper'])} at the same confidence."
-    )
-
-
 def probability_in_words(statistics: Record) -> str:
     """Return the probability of a keep-out violation, with its confidence and what it assumes."""
     confidence, found = percent(statistics["confidence"]), statistics["violation"]

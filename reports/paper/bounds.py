@@ -4,13 +4,14 @@ from typing import Any
 
 import numpy as np
 
-from reports.document.blocks import Heading, Section, Table, Text
+from reports.document.blocks import Fold, Heading, Section, Table, Text
 from reports.document.chart import Chart, Line, Panel
-from reports.document.tables import number
+from reports.document.tables import Cell, rows_table
 
 
 def bounds_section(record: dict[str, Any]) -> Section:
     """Return the section on a record of bounds: how tight they are, and what a guarantee costs."""
+    paid = any("bound_rad_s" in row for row in record["guaranteed"])
     return Section(
         anchor="bounds",
         title="Actuation bounds: the largest demand of the law, over all states",
@@ -25,128 +26,101 @@ def bounds_section(record: dict[str, Any]) -> Section:
                 if record["guaranteed_for"]
                 else []
             ),
-            *(
-                [_cost_chart(record["guaranteed"])]
-                if any("bound_rad_s" in row for row in record["guaranteed"])
-                else []
-            ),
-            _cost_table(record["guaranteed"]),
+            *([_cost_chart(record["guaranteed"])] if paid else []),
+            Fold(title="The cost of each reserve", blocks=[_cost_table(record["guaranteed"])]),
         ],
     )
 
 
 _BOUND = (
-    "The paper's abstract announces sufficient conditions for the heading rate to stay within its bound; its text does not"
-    " print them. docs/actuation_bounds.md derives one. The bound holds for law (30) in every state, at any distance and on any"
-    " course; beside it stands the largest command that was found by a search over {samples:,} states, refined from the worst of"
-    " them."
+    "The paper's abstract announces sufficient conditions for the heading rate to stay within its"
+    " bound; its text does not print them. docs/actuation_bounds.md derives one. The bound holds"
+    " for law (30) in every state, at any distance and on any course; beside it stands the largest"
+    " command that was found by a search over {samples:,} states, refined from the worst of them."
 )
 
 _COST = (
-    "On the reference itself the law demands ω_r plus what h and V/R add, so a reference that spends all of ω_max, as the"
-    " paper's Simulation 3 does, leaves no ε, R and h that keep commands within ω_max. A reserve buys them. The parameters below"
-    " converge fastest among those that keep every command within ω_max; the price is a longer look-ahead, hence slower"
-    " convergence, and a longer crossing interval. The catalog's Simulation 3 and sweep do not pay it: their commands are cut at"
-    " ω_max on the way to the reference. guidance.tuning=bounded with a guidance.reserve of some tenths flies with the"
-    " guarantee."
+    "On the reference itself the law demands ω_r plus what h and V/R add, so a reference that"
+    " spends all of ω_max, as the paper's Simulation 3 does, leaves no ε, R and h that keep"
+    " commands within ω_max. A reserve buys them. The parameters below converge fastest among"
+    " those that keep every command within ω_max; the price is a longer look-ahead, hence slower"
+    " convergence, and a longer crossing interval. The catalog's Simulation 3 and sweep do not pay"
+    " it: their commands are cut at ω_max on the way to the reference. guidance.tuning=bounded"
+    " with a guidance.reserve of some tenths flies with the guarantee."
 )
 
 _COST_FOR = (
-    "For speeds up to {speed_mps:g} m/s, which is the largest commanded airspeed and for an aircraft a margin, and ω_max ="
-    " {heading_rate_max_rad_s:g} rad/s; the time is estimated from {distance_from_m:g} m to {distance_to_m:g} m."
+    "For speeds up to {speed_mps:g} m/s, which is the largest commanded airspeed and for an"
+    " aircraft a margin, and ω_max = {heading_rate_max_rad_s:g} rad/s; the time is estimated from"
+    " {distance_from_m:g} m to {distance_to_m:g} m."
 )
 
 
 def _tightness_table(rows: list[dict[str, Any]]) -> Table:
     cells = [
-        [
-            ", ".join(row["flights"]),
-            "searched" if row["tuning"] == "bounded" else "given",
-            f"{row['speed_mps']:.2f}",
-            f"{row['epsilon_per_m']:.4f}",
-            f"{row['look_ahead_m']:.1f}",
-            f"{row['steering_max_rad_s']:.3f}",
-            f"{row['reference_heading_rate_max_rad_s']:.3f}",
-            f"{row['bound_rad_s']:.5f}",
-            f"{row['largest_found_rad_s']:.5f}",
-            f"{row['bound_rad_s'] / row['largest_found_rad_s']:.4f}",
-            f"{row['heading_rate_max_rad_s']:.5f}",
-        ]
-        for row in rows
+        Cell("Flights", lambda row: ", ".join(row["flights"]), width=2.2),
+        Cell("Parameters", lambda row: _PARAMETERS.get(row["tuning"], "given")),
+        Cell("Speed [m/s]", "speed_mps", "{:.2f}", 0.8),
+        Cell("ε [1/m]", "epsilon_per_m", "{:.4f}", 0.8),
+        Cell("R [m]", "look_ahead_m", "{:.1f}", 0.8),
+        Cell("|h| max [rad/s]", "steering_max_rad_s", "{:.3f}", 0.9),
+        Cell("|ω_r| max [rad/s]", "reference_heading_rate_max_rad_s", "{:.3f}", 0.9),
+        Cell("Bound [rad/s]", "bound_rad_s", "{:.5f}", 0.9),
+        Cell("Largest found [rad/s]", "largest_found_rad_s", "{:.5f}"),
+        Cell("ω_max [rad/s]", "heading_rate_max_rad_s", "{:.5f}", 0.9),
     ]
-    head = [
-        "Flights", "Parameters", "Speed [m/s]", "ε [1/m]", "R [m]", "|h| max [rad/s]", "|ω_r| max [rad/s]", "Bound [rad/s]",
-        "Largest found [rad/s]", "Ratio [-]", "ω_max [rad/s]",
-    ]  # fmt: skip
-    return Table(
+    return rows_table(
+        rows,
+        cells,
         caption="The largest demand of the law: its bound, and the largest that was found.",
-        head=head,
-        rows=cells,
-        widths=[2.2, 1.0, 0.8, 0.8, 0.8, 0.9, 0.9, 0.9, 1.0, 0.8, 0.9],
         left_columns=2,
     )
 
 
+_PARAMETERS = {"bounded": "searched"}
+"""How the parameters of a flight were found, by its tuning; others are given."""
+
+
 def _cost_table(rows: list[dict[str, Any]]) -> Table:
     cells = [
-        [
-            f"{100.0 * row['reserve']:g}",
-            number(row["crossing_interval_s"], "{:.2f}"),
-            number(row.get("epsilon_per_m"), "{:.4f}"),
-            number(row.get("look_ahead_m"), "{:.0f}"),
-            number(row.get("steering_max_rad_s"), "{:.4f}"),
-            number(row.get("bound_rad_s"), "{:.4f}"),
-            number(row.get("convergence_time_s"), "{:.0f}")
-            if "bound_rad_s" in row
-            else "no such parameters",
-        ]
-        for row in rows
+        Cell("Reserve [% of ω_max]", lambda row: 100.0 * row["reserve"], "{:g}"),
+        Cell("Crossing interval [s]", "crossing_interval_s", "{:.2f}"),
+        Cell("ε [1/m]", "epsilon_per_m", "{:.4f}"),
+        Cell("R [m]", "look_ahead_m", "{:.0f}"),
+        Cell("|h| max [rad/s]", "steering_max_rad_s", "{:.4f}"),
+        Cell("Bound [rad/s]", "bound_rad_s", "{:.4f}"),
+        Cell("Estimated time to settle [s]", _settling, "{:.0f}"),
     ]
-    head = [
-        "Reserve [% of ω_max]", "Crossing interval [s]", "ε [1/m]", "R [m]", "|h| max [rad/s]", "Bound [rad/s]",
-        "Estimated time to settle [s]",
-    ]  # fmt: skip
-    return Table(
-        caption="What it costs that the demand of the law stays within ω_max.",
-        head=head,
-        rows=cells,
-        widths=[1.0] * 7,
-        left_columns=0,
-    )
+    caption = "What it costs that the demand of the law stays within ω_max."
+    return rows_table(rows, cells, caption=caption, left_columns=0)
+
+
+def _settling(row: dict[str, Any]) -> object:
+    return row.get("convergence_time_s") if "bound_rad_s" in row else "no such parameters"
 
 
 def _cost_chart(rows: list[dict[str, Any]]) -> Chart:
     kept = [row for row in rows if "bound_rad_s" in row and row["reserve"] >= 0.05]
     reserve = np.array([100.0 * row["reserve"] for row in kept])
-    x_label = "Reserve of ω_max left to feedback [%]"
+
+    def panel(key: str, label: str) -> Panel:
+        y = np.array([row[key] for row in kept])
+        return Panel(
+            x_label="Reserve of ω_max left to feedback [%]",
+            y_label=label,
+            lines=[Line(x=reserve, y=y, label="", colour="black")],
+        )
+
     return Chart(
         name="boundcost",
-        caption=f"What it costs that the demand of the law stays within ω_max in every state, at ν = {rows[0]['nu']:g}.",
+        caption=(
+            "What it costs that the demand of the law stays within ω_max in every state, at ν ="
+            f" {rows[0]['nu']:g}."
+        ),
         panels=[
-            Panel(
-                x_label=x_label,
-                y_label="Estimated time to settle [s]",
-                lines=[
-                    Line(
-                        x=reserve,
-                        y=np.array([row["convergence_time_s"] for row in kept]),
-                        label="",
-                        colour="black",
-                    )
-                ],
-            ),
-            Panel(
-                x_label=x_label,
-                y_label="Crossing interval [s]",
-                lines=[
-                    Line(
-                        x=reserve,
-                        y=np.array([row["crossing_interval_s"] for row in kept]),
-                        label="",
-                        colour="black",
-                    )
-                ],
-            ),
+            panel("convergence_time_s", "Estimated time to settle [s]"),
+            panel("crossing_interval_s", "Crossing interval [s]"),
         ],
         columns=2,
+        panel_height=0.24,
     )

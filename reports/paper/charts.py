@@ -25,21 +25,26 @@ def sim_1_charts(run: RunData) -> list[Chart]:
     """Return figures 3, 4 and 5: a circular reference, opposite initial headings."""
     return [
         _side_by_side(
-            run, ["sim1"], _figure_3, name="fig3", aspect=0.9, panel_height=0.55, labels=("East [m]", "North [m]"),
-            caption="To put beside the paper's figure 3: the circular reference and the UAV. Rings: where each is at the start.",
+            run, ["sim1"], _figure_3, name="fig3", aspect=0.9, panel_height=0.44,
+            labels=("East [m]", "North [m]"),
+            caption=(
+                "To put beside the paper's figure 3: the circular reference and the UAV. Rings:"
+                " where each is at the start."
+            ),
         ),
         _side_by_side(
             run, ["sim1"], _figure_4, name="fig4", labels=("Time [s]", "Angle [rad]"),
             caption="The paper's figure 4: "
-            "φ, course of the UAV against that of z, goes to zero first; then φ_r follows as the unforced system"
-            " does.",
+            "φ, course of the UAV against that of z, goes to zero first; then φ_r follows as the"
+            " unforced system does.",
         ),
         _side_by_side(
-            run, ["sim1"], _figure_5, name="fig5", labels=("Time [s]", "Distance to the reference [m]"),
+            run, ["sim1"], _figure_5, name="fig5", labels=("Time [s]",
+            "Distance to the reference [m]"),
             caption="The paper's figure 5: "
-            "while |φ| ≤ |φ_r| the distance does not rise. Where φ_r = φ the rate of V₁ vanishes, eq. (35): a"
-            " peak or a trough of the distance while φ is not zero, a saddle point once it is. The aircraft closes in there too,"
-            " for it trims its airspeed.",
+            "while |φ| ≤ |φ_r| the distance does not rise. Where φ_r = φ the rate of V₁ vanishes,"
+            " eq. (35): a peak or a trough of the distance while φ is not zero, a saddle point"
+            " once it is. The aircraft closes in there too, for it trims its airspeed.",
         ),
     ]  # fmt: skip
 
@@ -51,20 +56,28 @@ def sim_2_charts(run: RunData) -> list[Chart]:
     cases = ["sim2_los", "sim2_delta"]
     return [
         _side_by_side(
-            run, cases, _figure_6, name="fig6", aspect=1.2, panel_height=0.42, labels=("East [m]", "North [m]"),
-            caption="The paper's figure 6: both UAVs start in front of the reference and fly the other way. UAV 1 steers by the"
-            " line of sight, UAV 2 by the δ formulation. Rings: starts.",
+            run, cases, _figure_6, name="fig6", aspect=1.2, panel_height=0.36, labels=("East [m]",
+            "North [m]"),
+            caption=(
+                "The paper's figure 6: both UAVs start in front of the reference and fly the"
+                " other way. UAV 1 steers by the line of sight, UAV 2 by the δ formulation. Rings:"
+                " starts."
+            ),
         ),
         _side_by_side(
             run, cases, _figure_7, name="fig7", labels=("Time [s]", "Heading-rate demand [rad/s]"),
             caption="The paper's figure 7: "
-            "the heading-rate demand of each law. Dashed: ±ω_max. The kinematic UAV 1 flies its demand, as in the"
-            " paper; the aircraft's commands are cut at ω_max.",
+            "the heading-rate demand of each law. Dashed: ±ω_max. The kinematic UAV 1 flies its"
+            " demand, as in the paper; the aircraft's commands are cut at ω_max.",
         ),
         _side_by_side(
-            run, cases, _distances, name="sim2distance", labels=("Time [s]", "Distance to the reference [m]"),
-            caption="Not in the paper: UAV 1 is near sooner, but at constant speed stays behind the reference. The aircraft trims"
-            " its airspeed and catches up, and there its line of sight swings again and again. UAV 2 gets onto the reference.",
+            run, cases, _distances, name="sim2distance", labels=("Time [s]",
+            "Distance to the reference [m]"),
+            caption=(
+                "Not in the paper: UAV 1 is near sooner, but at constant speed stays behind the"
+                " reference. The aircraft trims its airspeed and catches up, and there its line of"
+                " sight swings again and again. UAV 2 gets onto the reference."
+            ),
         ),
     ]  # fmt: skip
 
@@ -112,16 +125,21 @@ def sim_3_charts(run: RunData) -> list[Chart]:
 
     return [
         _side_by_side(
-            run, ["sim3"], figure_8, name="fig8", aspect=4.6, labels=("East [m]", "North [m]"), shown_after=100.0, columns=1,
+            run, ["sim3"], figure_8, name="fig8", aspect=4.6, labels=("East [m]", "North [m]"),
+            shown_after=100.0, columns=1,
             panel_height=0.2,
-            caption="The paper's figure 8: over the ground. The UAV starts at a random place behind the ship. Diamonds: plume"
-            " crossings after settling, of which the first hundred seconds are shown; ship, plume and keep-out area at the end of"
-            " them.",
+            caption=(
+                "The paper's figure 8: over the ground. The UAV starts at a random place behind"
+                " the ship. Diamonds: plume crossings after settling, of which the first hundred"
+                " seconds are shown; ship, plume and keep-out area at the end of them."
+            ),
         ),
         _side_by_side(
-            run, ["sim3"], figure_9, name="fig9", labels=("Time [s]", "Distance to the vessel [m]"), shown_after=math.inf,
+            run, ["sim3"], figure_9, name="fig9", labels=("Time [s]", "Distance to the vessel [m]"),
+            shown_after=math.inf,
             caption="The paper's figure 9: "
-            "distance between the vessel, at its funnel, and the UAV; dashed the radius of the keep-out area.",
+            "distance between the vessel, at its funnel, and the UAV; dashed the radius of the"
+            " keep-out area.",
         ),
     ]  # fmt: skip
 
@@ -150,7 +168,7 @@ def _side_by_side(
     aspect: float = 0.0,
     shown_after: float = 20.0,
     columns: int = 2,
-    panel_height: float = 0.4,
+    panel_height: float = 0.27,
 ) -> Chart:
     """Return a panel for each vehicle that has flown every case, up to ``shown_after`` [s] after
     the last of them has settled.

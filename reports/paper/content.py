@@ -3,38 +3,47 @@ number beside ours.
 """
 
 import json
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from common.run_layout import BOUNDS
-from reports.design.section import innerloop_section
+from reports.design.section import design_words
 from reports.document.blocks import (
     Findings,
     FlightContent,
     FlightPicker,
+    Fold,
     Heading,
     Section,
     Table,
     Text,
 )
 from reports.document.chart import Chart
-from reports.document.tables import approach, kinematic, length, number, outcome, parameter_blocks
+from reports.document.tables import (
+    Cell,
+    approach,
+    kinematic,
+    length,
+    outcome,
+    parameter_blocks,
+    rows_table,
+)
 from reports.flights.flight_view import flight_view
 from reports.flights.single_flight import flight_charts
 from reports.flights.tracks import track_picture
 from reports.paper.bounds import bounds_section
 from reports.paper.charts import sim_1_charts, sim_2_charts, sim_3_charts
-from reports.paper.checks import (
-    DISTANCE_PRINTED,
-    INTERVAL_PRINTED,
+from reports.paper.flown import VEHICLES, find_flight, vehicle_name
+from reports.paper.statements import (
+    NEAR,
+    SHORT,
+    paper_statements,
     paper_verdict,
     rows_by_id,
     vehicles,
 )
-from reports.paper.flown import VEHICLES, find_flight, vehicle_name
 from reports.replay.flight_scene import flight_scene
 from reports.run.run_data import RunData
 from reports.run.trials import read_trials
@@ -42,22 +51,20 @@ from reports.run.trials import read_trials
 
 def paper_content(run: RunData) -> Findings:
     """Return the findings of the paper's simulations."""
-    bounds = run.path / BOUNDS
     sections = [
         Section(
             anchor="numbers",
             title="The paper's numbers, and ours",
             nav_title="Numbers",
-            blocks=[Text(_NUMBERS), _number_table(run), _flight_table(run)],
+            blocks=[
+                Text(_NUMBERS),
+                statement_table(run),
+                Fold(title="The flights, one by one", blocks=[_flight_table(run)]),
+            ],
         ),
-        *(
-            Section(anchor=f"sim{i}", title=f"Simulation {i}: {title}", nav_title=f"Sim. {i}", blocks=[Text(text), *charts])
-            for i, (title, text, figures) in enumerate(_SIMULATIONS, start=1)
-            if (charts := [chart for chart in figures(run) if chart.panels])
-        ),
-        *([bounds_section(json.loads(bounds.read_text(encoding="utf-8")))] if bounds.is_file() else []),
+        *_simulations(run),
+        *_bounds(run),
         _detail(_flights(run)),
-        *([innerloop_section(run.innerloop)] if run.innerloop else []),
         Section(
             anchor="parameters",
             title="Parameters",
@@ -65,12 +72,36 @@ def paper_content(run: RunData) -> Findings:
                 Heading("What each simulation sets"),
                 _case_table(run),
                 *parameter_blocks(run),
+                *design_words(run),
             ],
         ),
-    ]  # fmt: skip
+    ]
     return Findings(
         flown=_flown(run), verdict=paper_verdict(run), picture=_picture(run), sections=sections
     )
+
+
+def _simulations(run: RunData) -> list[Section]:
+    """Return a section for each simulation that has a figure."""
+    shown = (
+        (i, title, text, [chart for chart in figures(run) if chart.panels])
+        for i, (title, text, figures) in enumerate(_SIMULATIONS, start=1)
+    )
+    return [
+        Section(
+            anchor=f"sim{i}",
+            title=f"Simulation {i}: {title}",
+            nav_title=f"Sim. {i}",
+            blocks=[Text(text), *charts],
+        )
+        for i, title, text, charts in shown
+        if charts
+    ]
+
+
+def _bounds(run: RunData) -> list[Section]:
+    path = run.path / BOUNDS
+    return [bounds_section(json.loads(path.read_text(encoding="utf-8")))] if path.is_file() else []
 
 
 def _flown(run: RunData) -> str:
@@ -100,29 +131,30 @@ def _picture(run: RunData) -> Chart | None:
 
 
 _NUMBERS = (
-    "The same guidance steers both vehicles, from the same starts. The kinematic vehicle keeps its speed, as in the paper; the"
-    " aircraft is flown as everywhere in this study, its airspeed trimmed by the along-track error. The paper prints neither"
-    " gains nor starts: what can be compared are the numbers and statements of its section V."
+    "The same guidance steers both vehicles, from the same starts. The kinematic vehicle keeps"
+    " its speed, as in the paper; the aircraft is flown as everywhere in this study, its airspeed"
+    " trimmed by the along-track error. The paper prints neither gains nor starts: what can be"
+    " compared are the numbers and statements of its section V."
 )
 
-_DEMAND, _END = "heading_rate_demand_max_rad_s", "tracking_error_end_m"
-
 _SIM_ONE = (
-    "The UAV starts beside the reference and heads the other way. Look-ahead and steering are those that converge fastest while"
-    " the heading-rate demand of the law stays within ω_max in every state (see the section on actuation bounds). That is why it"
-    " turns so gently, and strays hundreds of metres before it comes back: the price of the guarantee."
+    "The UAV starts beside the reference and heads the other way. Look-ahead and steering are"
+    " those that converge fastest while the heading-rate demand of the law stays within ω_max in"
+    " every state (see the section on actuation bounds). That is why it turns so gently, and"
+    " strays hundreds of metres before it comes back: the price of the guarantee."
 )
 
 _SIM_TWO = (
-    "Both UAVs start in front of the reference and fly towards it. Passing it, the line of sight turns arbitrarily fast: there"
-    " is the singularity that the δ formulation takes away. The paper has UAV 1 converge fast onto the reference; with our gain"
-    " it is near within seconds, but at constant speed stays behind for good."
+    "Both UAVs start in front of the reference and fly towards it. Passing it, the line of sight"
+    " turns arbitrarily fast: there is the singularity that the δ formulation takes away. The"
+    " paper has UAV 1 converge fast onto the reference. That is not reproduced: with our gain it"
+    " is near within seconds, but at constant speed stays behind for good."
 )
 
 _SIM_THREE = (
-    "A vessel on a straight course, the UAV from a random place behind it. In the paper the vessel has half the UAV's speed,"
-    " and the reference spends all of ω_max; then no parameters keep the demand of the law within it, and commands are cut at"
-    " ω_max."
+    "A vessel on a straight course, the UAV from a random place behind it. In the paper the"
+    " vessel has half the UAV's speed, and the reference spends all of ω_max; then no parameters"
+    " keep the demand of the law within it, and commands are cut at ω_max."
 )
 
 _SIMULATIONS = (
@@ -143,124 +175,70 @@ def _detail(picker: FlightPicker) -> Section:
 
 
 def _flight_table(run: RunData) -> Table:
-    rows = []
-    for flight_id, row in rows_by_id(run).items():
-        end = row[_END]
-        rows.append([
-            flight_id,
-            number(row["settling_time_s"], "{:.1f}"),
-            "–" if pd.isna(end) else length(float(end)),
-            number(row[_DEMAND], "{:.3f}"),
-            number(row["crossing_interval_mean_s"], "{:.3f}"),
-            number(row["crossing_distance_mean_m"], "{:.2f}"),
-            approach(float(row["min_distance_m"]), float(row["keepout_radius_m"])),
-            outcome(row),
-        ])  # fmt: skip
-    head = [
-        "Flight", "Settled [s]", "Distance at the end", "Demand [rad/s]", "Interval [s]", "Crossing [m]", "Closest [m]",
-        "Outcome",
-    ]  # fmt: skip
-    return Table(
-        caption="The flights, a row each, with their outcome.",
-        head=head,
-        rows=rows,
-        widths=[1.9, 0.9, 1.1, 1.1, 0.9, 1.0, 1.0, 1.6],
+    cells = [
+        Cell("Flight", "flight_id", width=1.9),
+        Cell("Settled [s]", "settling_time_s", "{:.1f}", 0.9),
+        Cell("Distance at the end", lambda row: _length(row["tracking_error_end_m"]), width=1.1),
+        Cell("Demand [rad/s]", "heading_rate_demand_max_rad_s", "{:.3f}", 1.1),
+        Cell("η [rad]", "eta", "{:.6f}", 0.9),
+        Cell("Interval [s]", "crossing_interval_mean_s", "{:.4f}", 0.9),
+        Cell("Crossing [m]", "crossing_distance_mean_m", "{:.2f}"),
+        Cell("Closest [m]", _closest),
+        Cell(f"Within {NEAR:g} m for good", lambda row: _near_for_good(run, row["flight_id"])),
+        Cell("Outcome", outcome, width=1.6),
+    ]
+    return rows_table(
+        rows_by_id(run).values(), cells, caption="The flights, a row each, with their outcome."
     )
 
 
-def _number_table(run: RunData) -> Table:
-    rows = rows_by_id(run)
+def _length(metres: float) -> str:
+    return "–" if pd.isna(metres) else length(float(metres))
 
-    def both(case: str, show: Callable[["pd.Series[Any]"], str], key: str) -> list[str]:
-        """Return a cell per vehicle; a dash where there is no such flight, or its row has nothing
-        under ``key``.
-        """
-        found = [rows.get(f"{case}_{fidelity}") for fidelity in VEHICLES]
-        return ["–" if row is None or pd.isna(row[key]) else show(row) for row in found]
 
-    def against(key: str, printed: float, pattern: str) -> Callable[["pd.Series[Any]"], str]:
-        return lambda row: (
-            f"{number(row[key], pattern)} ({number(100.0 * (float(row[key]) / printed - 1.0), '{:+.2f} %')})"
-        )
+def _closest(row: "pd.Series[Any]") -> str:
+    return approach(float(row["min_distance_m"]), float(row["keepout_radius_m"]))
 
-    def omega(row: "pd.Series[Any]") -> str:
-        demand, limit = float(row[_DEMAND]), float(row["heading_rate_limit_rad_s"])
-        return f"{demand:.3f} rad/s ({'within' if demand <= limit else 'exceeds'} {limit:g})"
 
-    def end(row: "pd.Series[Any]") -> str:
-        return f"{length(float(row[_END]))} after {float(row['duration_s']):.0f} s"
-
-    def near(row: "pd.Series[Any]") -> str:
-        return _near_for_good(run, str(row["flight_id"]))
-
-    def falls(row: "pd.Series[Any]") -> str:
-        return _rise_once_inside(run, str(row["flight_id"]))
-
-    interval, distance, closest = (
-        "crossing_interval_mean_s",
-        "crossing_distance_mean_m",
-        "min_distance_m",
-    )
-    radius = f"{float(run.manifest['config']['keepout']['radius_m']):g} m"
-    table = [
-        ["Sim. 3", "smoke plume measurements every", "9.5 s",
-         *both("sim3", against(interval, INTERVAL_PRINTED, "{:.4f} s"), interval)],
-        ["Sim. 3", "distance from the vessel there", "214 m",
-         *both("sim3", against(distance, DISTANCE_PRINTED, "{:.2f} m"), distance)],
-        ["Sim. 3", f"never enters the keep-out area of {radius}: closest approach", "> 200 m",
-         *both("sim3", lambda row: f"{float(row[closest]):.2f} m", closest)],
-        ["Sim. 3", "η = J₀⁻¹(ν), eq. (6)", "not printed", *both("sim3", lambda row: f"{float(row['eta']):.6f} rad", "eta")],
-        ["Sim. 1", "converges onto the circle: distance at the end", "→ 0", *both("sim1", end, _END)],
-        ["Sim. 1", "largest rise of d in a sample with |φ| < |φ_r|", "none", *both("sim1", falls, _END)],
-        ["Sim. 2", "δ law: largest heading-rate demand", "feasible", *both("sim2_delta", omega, _DEMAND)],
-        ["Sim. 2", "δ law: distance at the end", "→ 0", *both("sim2_delta", end, _END)],
-        ["Sim. 2", "line of sight: largest heading-rate demand", "saturates", *both("sim2_los", omega, _DEMAND)],
-        ["Sim. 2", "line of sight: within 30 m for good", "fast", *both("sim2_los", near, _END)],
-        ["Sim. 2", "line of sight: distance at the end", "not printed", *both("sim2_los", end, _END)],
-    ]  # fmt: skip
-    head = ["", "What section V says", "Printed", "Kinematic", "Six degrees of freedom"]
-    return Table(
-        caption="What section V of the paper prints, and what both vehicles show.",
-        head=head,
-        rows=table,
-        widths=[0.6, 2.6, 0.9, 1.7, 1.7],
+def statement_table(run: RunData) -> Table:
+    """Return what section V of the paper says, and what each vehicle showed."""
+    cells = [
+        Cell("", lambda of: of.simulation, width=0.6),
+        Cell("What section V says", lambda of: of.words, width=2.6),
+        Cell("Printed", lambda of: of.printed, width=1.2),
+        *(
+            Cell(SHORT[vehicle].capitalize(), lambda of, vehicle=vehicle: of.values[vehicle])
+            for vehicle in vehicles(run)
+        ),
+        Cell("", lambda of: of.card.result, width=1.0),
+    ]
+    return rows_table(
+        paper_statements(run),
+        cells,
+        caption="What section V of the paper prints, and what each vehicle showed.",
         left_columns=2,
     )
 
 
-def _rise_once_inside(run: RunData, flight_id: str) -> str:
-    """Return the largest rise of the distance between samples that both have |phi| < |phi_r|, eq.
-    (35).
-    """
-    flown = find_flight(run, flight_id)
-    if flown is None:
-        return "–"
-    phi, phi_r = np.abs(flown.column("phi_rad")), np.abs(flown.column("phi_r_rad"))
-    inside = np.maximum(phi[:-1], phi[1:]) < np.minimum(phi_r[:-1], phi_r[1:])
-    rise = float(np.max(np.diff(flown.distance)[inside], initial=0.0))
-    return "none" if rise < 1e-6 else f"{1000.0 * rise:.2g} mm"
-
-
 def _near_for_good(run: RunData, flight_id: str) -> str:
-    """Return the time after which a flight stays within 30 m of its reference."""
+    """Return the time after which a flight stays near its reference."""
     flown = find_flight(run, flight_id)
-    if flown is None or flown.distance[-1] >= 30.0:
+    if flown is None or flown.distance[-1] >= NEAR:
         return "never"
-    return f"after {float(np.max(flown.time[flown.distance >= 30.0], initial=0.0)):.0f} s"
+    return f"after {float(np.max(flown.time[flown.distance >= NEAR], initial=0.0)):.0f} s"
 
 
 def _case_table(run: RunData) -> Table:
     def words(values: dict[str, Any]) -> str:
         return ", ".join(f"{key} = {json.dumps(value)}" for key, value in values.items())
 
-    rows = [
-        [case["name"], words(case["set"]), words(case["set_kinematic"])]
-        for case in run.manifest["config"]["cases"]
+    cells = [
+        Cell("Simulation", "name", width=0.9),
+        Cell("Both vehicles", lambda case: words(case["set"]), width=3.4),
+        Cell("Kinematic vehicle besides", lambda case: words(case["set_kinematic"]), width=1.8),
     ]
-    head = ["Simulation", "Both vehicles", "Kinematic vehicle besides"]
-    return Table(
-        head=head, rows=rows, widths=[0.9, 3.4, 1.8], left_columns=3, prose=True, breakable=True
-    )
+    cases = run.manifest["config"]["cases"]
+    return rows_table(cases, cells, left_columns=3, prose=True, breakable=True)
 
 
 def _flights(run: RunData) -> FlightPicker:
@@ -287,6 +265,8 @@ def _flights(run: RunData) -> FlightPicker:
                 label=f"{name} · {vehicle_name(run, fidelity)}",
                 title=f"{name}: {vehicle_name(run, fidelity)}",
                 charts=flight_charts(view),
+                # Simulation 3 has figures of its own.
+                printed=False,
                 scene=flight_scene(trial, row, view.whole) if view else None,
             )
         )
@@ -294,7 +274,7 @@ def _flights(run: RunData) -> FlightPicker:
 
 
 def _is_elsewhere(values: dict[str, Any]) -> bool:
-    """Return whether a case sets anything of the world that the figures of a flight are drawn in."""
+    """Return whether a case sets the world that the figures of a flight are drawn in."""
     return any(
         key.startswith(("vessel", "plume", "keepout", "guidance.airspeed_mps")) for key in values
     )

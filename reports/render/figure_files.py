@@ -16,7 +16,7 @@ from common.interrupt import follow_parent
 from reports.document.chart import Chart
 from reports.render.matplotlib_charts import draw
 
-_FIGURES_PER_PROCESS = 6
+_FIGURES_PER_PROCESS = 2
 """Below which a process takes longer to start than it saves [-]."""
 
 _RESOLUTION = 200

@@ -58,13 +58,15 @@ def _data(report: Content, directory: Path, figures: Figures, *, all_flights: bo
         for block in section.blocks
         if isinstance(block, FlightPicker)
     ]
-    sections = [_section(section, figures) for section in _in_print(report.sections)]
     # Flights have pages of their own before parameters and provenance, and their figures the
     # numbers after all others.
     numbers = count(figures_in(report.picture, report.sections) + 1)
     flights = [
         flight for picker in pickers for flight in picker.flights if all_flights or flight.printed
     ]
+    # Without a flight in print nothing is left to be said of single flights.
+    without = [] if flights else [of for of in report.sections if _is_of_flights(of)]
+    sections = [_section(of, figures) for of in _in_print(report.sections) if of not in without]
     head, verdict = report.letterhead, report.verdict
     if head.logo:
         (directory / f"logo{head.logo.suffix}").write_bytes(head.logo.content)
@@ -97,9 +99,7 @@ def _in_print(sections: Sequence[Section]) -> list[Section]:
     """Return the sections with that of single flights right before the flights, which are printed
     before the last two.
     """
-    of_flights = [
-        any(isinstance(block, FlightPicker) for block in section.blocks) for section in sections
-    ]
+    of_flights = list(map(_is_of_flights, sections))
     flights, others = (
         [s for s, of in zip(sections, of_flights, strict=True) if of is which]
         for which in (True, False)
@@ -107,12 +107,16 @@ def _in_print(sections: Sequence[Section]) -> list[Section]:
     return [*others[:-_AFTER_FLIGHTS], *flights, *others[-_AFTER_FLIGHTS:]]
 
 
+def _is_of_flights(section: Section) -> bool:
+    return any(isinstance(block, FlightPicker) for block in section.blocks)
+
+
 def _card(card: Card, *, judges: bool) -> Data:
     return {
         "name": card.name,
         "value": unbroken(card.value),
         "tone": card.tone,
-        "judgement": card.judgement if judges else "",
+        "small": unbroken(card.small_print) if judges else card.note,
     }
 
 

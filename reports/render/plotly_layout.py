@@ -228,7 +228,7 @@ def _legend_rows(labels: Sequence[str], width: float) -> int:
 def _axes(
     panel: Panel, number: str, room: tuple[float, float], *, show_x: bool
 ) -> tuple[Data, Data]:
-    """Return abscissa and ordinate of a panel, given how many letters there is room for along each."""
+    """Return abscissa and ordinate of a panel, given room for how many letters each has."""
     x_label, y_label = (
         "<br>".join(wrapped(*of)) for of in zip((panel.x_label, panel.y_label), room, strict=True)
     )

@@ -7,7 +7,7 @@ import numpy.typing as npt
 import pandas as pd
 
 from common.columns import Column
-from common.verdict import COMPLETED, GONE, KeepOut
+from common.verdict import COMPLETED, DIVERGED, GONE, LOST, KeepOut
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -105,6 +105,25 @@ def kept_out(rows: pd.DataFrame) -> Mask:
 def lost(rows: pd.DataFrame) -> Mask:
     """Return which flights lost their aircraft, also where a fault was flown on purpose."""
     return rows["outcome"].isin(GONE).to_numpy(dtype=np.bool_)
+
+
+SEVERE = ("lost its aircraft", "diverged", "violated the keep-out area")
+"""What a flight did that matters more than how near others came, the worst first."""
+
+
+def severity(rows: pd.DataFrame) -> npt.NDArray[np.int64]:
+    """Return of each flight its place in ``SEVERE``; ``len(SEVERE)`` of one that did none of these."""
+    outcomes = rows["outcome"]
+    did = [outcomes == LOST, outcomes == DIVERGED, violated(rows)]
+    places = np.select([np.asarray(of) for of in did], range(len(SEVERE)), len(SEVERE))
+    return places.astype(np.int64)
+
+
+def by_severity(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return flights with the one that matters most first: by ``severity``, and by how near to their
+    keep-out area they came.
+    """
+    return rows.iloc[np.lexsort((clearance(rows), severity(rows)))]
 
 
 def completed(rows: pd.DataFrame) -> Mask:

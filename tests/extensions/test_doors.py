@@ -51,8 +51,12 @@ from reports.document.blocks import Section, Text
 from reports.flights.content import flights_content
 
 
+def woven(run):
+    return f"Wove in {run.verdict.counts.completed} of {run.verdict.counts.planned} flights"
+
+
 def weaving_content(run):
-    found = flights_content(run)
+    found = flights_content(run, woven)
     text = (run.path / "weaving.txt").read_text(encoding="utf-8")
     found.sections.append(Section(anchor="weaving", title="Weaving", blocks=[Text(f"Wove {text}.")]))
     return found
@@ -122,7 +126,10 @@ def test_its_scenario_is_in_the_catalog_and_flies_its_study_with_its_keys_and_re
         assert len(list(csv.DictReader(file))) == 1
     config = json.loads((run / "manifest.json").read_text(encoding="utf-8"))["config"]
     assert (config["weaves"], config["weaving"]) == (3, {"width_m": 12.0})
-    assert "Wove 3 times 12 m." in unescape((run / "report.html").read_text(encoding="utf-8"))
+    html = unescape((run / "report.html").read_text(encoding="utf-8"))
+    assert "Wove 3 times 12 m." in html
+    # Page 1 answers the question of the study in its own words.
+    assert "<strong>✓ Wove in 1 of 1 flights</strong>" in html
     assert (run / "report.pdf").is_file()
 
 

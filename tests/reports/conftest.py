@@ -13,10 +13,10 @@ def without_single_flights(monkeypatch):
     """
     monkeypatch.setattr(
         "reports.flights.content.flight_section",
-        lambda _: Section(anchor="flights", title="", blocks=[]),
+        lambda _, **__: Section(anchor="flights", title="", blocks=[]),
     )
     monkeypatch.setattr(
-        "reports.flights.content.closest_and_typical",
+        "reports.flights.content.telling_and_typical",
         lambda _: Chart(
             name="picture", caption="", panels=[Panel(x_label="", y_label="", lines=[])]
         ),

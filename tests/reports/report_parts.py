@@ -1,13 +1,19 @@
 """What the tests of reports look up in a report."""
 
 import re
+from dataclasses import replace
 
+import pypdfium2
+import pytest
 from matplotlib.figure import Figure
 
 from reports.build import build_reports
 from reports.document.blocks import Fold
 from reports.document.chart import Chart
+from reports.registry import content
 from reports.render import matplotlib_charts
+from reports.render.pdf import write_pdf
+from reports.run.run_data import read_run
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
@@ -81,3 +87,26 @@ def assert_axes_read_quantity_and_unit(charts):
                     chart.name,
                     label,
                 )
+
+
+def numbers_on_page_1(path, folder):
+    """Return the numbers in headline, detail and tiles of page 1 of the PDF of a run, as they are
+    printed, with no picture drawn; those in names of flights are none.
+    """
+    report = content(read_run(path))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("reports.render.figure_files.draw", lambda _: Figure(figsize=(1.0, 1.0)))
+        write_pdf(replace(report, sections=report.sections[-1:]), folder / "report.pdf")
+    document = pypdfium2.PdfDocument(folder / "report.pdf")
+    text = " ".join(document[0].get_textpage().get_text_range().split())
+    document.close()
+    begins = text.index(" ".join(report.verdict.headline.split()[:3]))
+    ends = text.index(report.facts[0].name if report.facts else "Figure 1.")
+    shown = text[begins:ends].replace("\N{MINUS SIGN}", "-")
+    assert all(
+        card.value.split()[0].replace("\N{MINUS SIGN}", "-") in shown
+        for card in report.verdict.cards
+    )
+    return {
+        number.replace(",", "") for number in re.findall(r"(?<![\w.])\d[\d,]*(?:\.\d+)?", shown)
+    }

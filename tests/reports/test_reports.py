@@ -15,11 +15,10 @@ from report_parts import (
     blocks_of,
     built,
     draw_all_but,
-    named_charts,
 )
 
 from reports.build import build_reports
-from reports.document.blocks import FlightPicker, Table
+from reports.document.blocks import FlightPicker, Table, Text
 from reports.document.chart import Chart
 from reports.document.tables import limit
 from reports.errors import ReportError
@@ -37,7 +36,6 @@ from tests.run_tables import change_manifest, manifest_of, write_manifest
 # Three crossings are too few for the study's own criteria.
 CRITERIA = ["criteria.tracking_error_rms_m=5.0", "criteria.crossing_interval_error=0.1"]
 OVERRIDES = ["sweep.nu=[0.5, 0.9, 1.0]", "flight.crossings=3", "comparison.nu=[0.5]", *CRITERIA]
-AUTOPILOT = ["step1", "step2", "step3", "levelmargins", "leveldiskmargins", "loops", "poles"]
 
 
 @pytest.fixture(scope="module")
@@ -71,9 +69,8 @@ def charts_of(report):
 
 
 def test_both_reports_are_built_from_disk_alone(copy, monkeypatch):
-    # Those of single flights are drawn in the report of trials, and page 1's in its own tests; of
-    # steps and margins one is enough.
-    draw_all_but(monkeypatch, "first", "tracks", "histories", "step2", "step3", "leveldiskmargins")
+    # Those of single flights are drawn in the report of trials, and page 1's in its own tests.
+    draw_all_but(monkeypatch, "first", "tracks", "histories")
     text = built(copy)
     assert "Sweep of the speed ratio" in text
     figures = json.loads(re.search(r'id="flight-figures">(.*?)</script>', text, re.DOTALL)[1])
@@ -83,22 +80,21 @@ def test_both_reports_are_built_from_disk_alone(copy, monkeypatch):
 
 def test_the_sweep_shows_everything_in_its_place(report):
     assert [section.anchor for section in report.sections] == [
-        "figures", "trials", "trial1", "comparison", "failed", "flights", "innerloop", "parameters", "provenance",
+        "figures", "trials", "trial1", "comparison", "failed", "flights", "parameters", "provenance",
     ]  # fmt: skip
     names = {
         section.anchor: [c.name for c in blocks_of(report, Chart, section.anchor)]
         for section in report.sections
     }
     assert names["trial1"] == [
-        f"trial1-nu1-{what}" for what in ("interval", "distance", "errors", "command")
+        f"trial1-nu1-{what}" for what in ("interval", "distance", "errors", "bank")
     ]
     assert names["comparison"] == ["trial1-comparison"]
-    assert names["innerloop"] == AUTOPILOT
     tables = {
         section.anchor: len(blocks_of(report, Table, section.anchor)) for section in report.sections
     }
     assert tables == {
-        "figures": 1, "trials": 1, "trial1": 1, "comparison": 1, "failed": 1, "flights": 0, "innerloop": 3, "parameters": 3,
+        "figures": 1, "trials": 1, "trial1": 1, "comparison": 1, "failed": 1, "flights": 0, "parameters": 4,
         "provenance": 1,
     }  # fmt: skip
     assert all(
@@ -140,15 +136,15 @@ def test_no_curve_is_empty_or_not_a_number_where_there_is_data(report):
 
 @pytest.mark.usefixtures("without_single_flights")
 def test_a_violation_is_in_the_headline(report, copy):
-    assert report.verdict.holds
     run = read_run(copy)
     inside = run.summary["flight_id"] == run.summary["flight_id"][0]
     violations = run.summary["keepout_violations"].mask(inside, 1.0)
     depth = run.summary["keepout_depth_m"].mask(inside, 0.5)
     summary = run.summary.assign(keepout_violations=violations, keepout_depth_m=depth)
     verdict = content(changed(run, summary=summary)).verdict
-    assert not verdict.holds
-    assert verdict.headline == "Keep-out violations in 1 of 3 flights, 1 in all"
+    assert verdict.tone == "bad"
+    assert verdict.headline.startswith("1 of 3 speed ratios kept out, ")
+    assert verdict.cards[0].note.startswith("1 violated the area; 1 unknown")
 
 
 def test_a_flight_of_a_comparison_is_drawn(run_path):
@@ -172,10 +168,8 @@ def test_without_time_histories_no_flight_is_said_to_be_printed(copy):
 def test_an_infeasible_flight_is_in_the_report_with_its_reason(report):
     (table,) = blocks_of(report, Table, "trial1")
     assert "must be below 1" in table.rows[2][1]
-    assert not report.verdict.complete
-    assert report.verdict.headline.startswith(
-        "1 could not be flown, of 3 flights; 2 of 3 flights kept"
-    )
+    assert report.verdict.tone == "bad"
+    assert report.verdict.headline.startswith("2 of 3 speed ratios kept out, 2 finished. ")
     assert "must be below 1" in report.verdict.failures[0]
     assert flights_of(report)[2].title.endswith("not flown, infeasible: speed ratio ν is 1")
     assert flights_of(report)[2].charts == []
@@ -183,7 +177,8 @@ def test_an_infeasible_flight_is_in_the_report_with_its_reason(report):
 
 def test_every_key_that_acts_is_among_the_parameters(run_path, report):
     config = manifest_of(run_path)["config"]
-    *_, parameters = blocks_of(report, Table, "parameters")
+    # Behind the fold of the parameters, and before those of the autopilot.
+    parameters = blocks_of(report, Table, "parameters")[-4]
     listed, scenario = {row[0] for row in parameters.rows}, load_study("sweep_nu", OVERRIDES)
     for section, values in config.items():
         if isinstance(values, dict) and section not in ("sweep", "comparison"):
@@ -238,25 +233,8 @@ def test_a_record_of_another_aircraft_over_airspeed_and_bank_is_shown_in_the_swe
     (copy / "innerloop.json").write_text(json.dumps(design), encoding="utf-8")
     report = content(read_run(copy))
     assert f"of the {design['title']} in six degrees of freedom" in html_of(report, copy)
-    assert [chart.name for chart in blocks_of(report, Chart, "innerloop")] == AUTOPILOT
-    shown = blocks_of(report, Table, "innerloop")
-    assert len(shown) == 3
-    assert all(table.rows for table in shown)
-
-
-@pytest.mark.usefixtures("without_single_flights")
-def test_poles_are_shown_as_far_out_as_the_aircraft_has_them(copy):
-    # Else those of an airliner would be one dot at the origin. One at -80 1/s is a servo's, and off
-    # the figure.
-    design = record()
-    slow = [[-3.0, 1.0], [-3.0, -1.0], [-80.0, 0.0]]
-    for poles in design["poles"]:
-        poles["open_loop"] = poles["closed_loop"] = slow
-    (copy / "innerloop.json").write_text(json.dumps(design), encoding="utf-8")
-    panel = named_charts(content(read_run(copy)))["poles"].panels[0]
-    # A tenth beyond the farthest, to the left and with 0.45 of that either way.
-    assert panel.x_range == pytest.approx((-3.3, 0.165), rel=1e-9)
-    assert panel.y_range == pytest.approx((-1.485, 1.485), rel=1e-9)
+    (line,) = blocks_of(report, Text, "parameters")
+    assert f"plume-flight design {design['aircraft']}" in line.text
 
 
 @pytest.mark.parametrize(

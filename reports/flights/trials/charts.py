@@ -178,7 +178,7 @@ def _over_key(trial: Trial, key: str, name: str) -> list[Chart]:
     over = PanelsOver(trial, key, by_words(trial), by_words=True)
     interval = over.interval()
     settling = over.figure("settling_time_s")
-    bank = f"Largest commanded heading rate against ω_max, {'largest bank, and settling time' if settling else 'and largest bank'}."
+    bank = "Largest bank, and settling time." if settling else "Largest bank."
     if trial.setting("fidelity") == "kinematic":
         bank += " The kinematic vehicle has no bank: shown is that of a coordinated turn."
     charts = [
@@ -205,13 +205,8 @@ def _over_key(trial: Trial, key: str, name: str) -> list[Chart]:
             0.32, columns=3,
         ),
         _chart(
-            trial, f"{name}-command", bank,
-            [
-                over.command(),
-                over.figure("bank_max_deg"),
-                settling,
-            ],
-            0.32, columns=3,
+            trial, f"{name}-bank", bank,
+            [over.figure("bank_max_deg"), settling], 0.28,
         ),
     ]  # fmt: skip
     return charts if len(trial.flown) > 1 else charts[:_OVER_THEORY]
@@ -255,7 +250,7 @@ def _distances(trial: Trial) -> list[Chart]:
     caption = (
         f"Closest approach of each flight from its first second, {trial.measured_from}, {shown}"
     )
-    return [_chart(trial, "distances", caption, [counted, other], 0.36)]
+    return [_chart(trial, "distances", caption, [counted, other], 0.3)]
 
 
 def _errors(trial: Trial) -> list[Chart]:
@@ -288,10 +283,12 @@ def _errors(trial: Trial) -> list[Chart]:
         f"Each flight, with errors as they are after settling: {'; '.join(words for words, _ in row)}."
         for row in in_rows
     ]
+    # A Monte Carlo study has its distributions: one row beside them.
+    rows_shown = len(in_rows) if trial.run.statistics is None else 1
     return [
         _chart(trial, f"errors{i}", caption, [panel for _, panel in row], 0.34)
         for i, (caption, row) in enumerate(zip(captions, in_rows, strict=True), start=1)
-    ]
+    ][:rows_shown]
 
 
 def _starts(trial: Trial) -> list[Chart]:

@@ -11,7 +11,7 @@ import pandas as pd
 from common.faults import faults_in
 from common.premises import TITLES, ratio_column
 from common.verdict import Premises, RunVerdict
-from reports.document.tables import ending, in_symbols, number, span
+from reports.document.tables import ending, first_sentence, in_symbols, number, span
 from reports.flights.criteria import counted, criterion_title, limits_words
 from reports.flights.names import told_name
 from reports.run.columns import (
@@ -31,6 +31,17 @@ _NAMED_MAX = 3
 _SEVERAL = {False: ", ", True: "; "}
 """Between the names of flights, whether or not these have commas of their own."""
 
+
+_LOST_TRACK = (
+    "{far:,} of the {settled:,} settled flights lost their track again, by up to {most:.3g} m rms;"
+    " no criterion limits it: {causes}."
+)
+_LOST_TRACK_ALONE = (
+    "The flight lost its track again, by {most:.3g} m rms; no criterion limits it: {causes}."
+)
+_CAUSE = "{what} in {here:,} of these and in {there:,} of the others"
+_NO_CAUSE = "nothing in the summary sets them apart"
+_NOTHING = "nothing in the summary explains it"
 
 _USUAL_MODES = (
     "approach",
@@ -105,9 +116,12 @@ def _not_flown(trial: Trial, flights: pd.DataFrame) -> str:
 
 
 def _reason(row: "pd.Series[Any]") -> str:
-    """Return why a flight failed a criterion; that it did not settle its message says already."""
+    """Return why a flight failed a criterion, without advice; that it did not settle its message
+    says already.
+    """
     ended = "" if row["outcome"] == "not_settled" else str(row["outcome"]).replace("_", " ")
-    return "; ".join(words for words in (ended, in_symbols(str(row["message"]))) if words)
+    message = first_sentence(in_symbols(str(row["message"])))
+    return "; ".join(words for words in (ended, message) if words)
 
 
 def noteworthy(verdict: RunVerdict, flown: pd.DataFrame) -> list[str]:
@@ -159,7 +173,7 @@ def _in_flights(some: int, flown: int) -> str:
 
 
 def tracking_lines(trial: Trial, *, only: bool = True) -> list[str]:
-    """Return in a line which flights left the band again in which they had settled, and what
+    """Return in a line how many flights left the band again in which they had settled, and what
     happened after that.
 
     It is about flights whose tracking error no criterion limits: of the others the criterion tells.
@@ -169,62 +183,36 @@ def tracking_lines(trial: Trial, *, only: bool = True) -> list[str]:
     trial : whose flights
     only : whether it is the run's only one, else the line begins with its title
     """
-    criteria, flown, band = (
-        trial.criteria,
-        trial.flown,
-        float(trial.setting("flight.settling_band_m")),
-    )
+    criteria, flown = trial.criteria, trial.flown
     if criteria.get("tracking_error_rms_m") and criteria.get("settles", True):
         return []
+    band = float(trial.setting("flight.settling_band_m"))
     errors = column(flown, "tracking_error_rms_m")
-    far = flown[errors > band]
+    far, others = flown[errors > band], flown[errors <= band]
     if not len(far):
         return []
-    alone = len(flown) == 1
-    known = count(np.isfinite(errors))
-    which = (
-        "The"
-        if alone
-        else f"In {len(far):,} of {known:,} flights{' that settled' if known < len(flown) else ''} the"
-    )
-    told = ", ".join(_told_apart(far, flown[errors <= band]))
-    nothing = f"nothing that the summary records {'explains it' if alone else 'sets them apart'}"
-    why = f"after settling {told}" if told else nothing
-    line = (
-        f"{which} tracking error, rms after settling, is {'up to ' * (len(far) > 1)}{np.nanmax(errors):.3g} m, above the"
-        f" {band:g} m within which a flight counts as settled, and no criterion limits it: {why}."
-    )
-    return [line if only else f"{trial.title}: {line[0].lower()}{line[1:]}"]
+    most = float(np.nanmax(errors))
+    if len(flown) == 1:
+        happened = [what for what, mask in _after_settling(far).items() if mask.any()]
+        line = _LOST_TRACK_ALONE.format(most=most, causes=", ".join(happened) or _NOTHING)
+    else:
+        line = _LOST_TRACK.format(
+            far=len(far),
+            settled=len(far) + len(others),
+            most=most,
+            causes=", ".join(_causes(far, others)) or _NO_CAUSE,
+        )
+    return [line if only else f"{trial.title}: {line}"]
 
 
-def _told_apart(far: pd.DataFrame, others: pd.DataFrame) -> list[str]:
-    """Return what happened to flights that left the band, and to how many of them and of the
-    others; not what happened to all.
+def _causes(far: pd.DataFrame, others: pd.DataFrame) -> Iterator[str]:
+    """Yield what happened after settling, in how many of the flights that left the band and in how
+    many of the others; not what happened in all.
     """
-    happened = _after_settling(pd.concat([far, others]))
-    if len(far) + len(others) == 1:
-        return [words for words, mask in happened.items() if mask.any()]
-    told = []
-    for words, mask in happened.items():
+    for what, mask in _after_settling(pd.concat([far, others])).items():
         here, there = count(mask[: len(far)]), count(mask[len(far) :])
         if here and here + there < len(mask):
-            these = (
-                [f"in {'all' if here == len(far) else f'{here:,} of'} these {len(far):,}"]
-                if len(far) > 1
-                else []
-            )
-            elsewhere = (
-                [f"in {f'{there:,}' if there else 'none'} of the {len(others):,} others"]
-                if len(others) > 1
-                else []
-            )
-            elsewhere = (
-                ["also in the other" if there else "not in the other"]
-                if len(others) == 1
-                else elsewhere
-            )
-            told.append(f"{words} ({', '.join([*these, *elsewhere])})")
-    return told
+            yield _CAUSE.format(what=what, here=here, there=there)
 
 
 def _after_settling(rows: pd.DataFrame) -> dict[str, Mask]:

@@ -167,13 +167,6 @@ class PanelsOver:
         ]
         return self._panel("Distance from the funnel [m]", lines)
 
-    def command(self) -> Panel | None:
-        """Return the largest commanded heading rate, and its limit."""
-        command = self._points("heading_rate_command_max_rad_s", "largest command", Meaning.ASKED)
-        return self._panel(
-            "Heading rate [rad/s]", [*command, self._limit("heading_rate_limit_rad_s", "ω_max")]
-        )
-
     def margin(self) -> Panel | None:
         """Return what of the planned margin was left, over the margin if flights differ in it by
         much.

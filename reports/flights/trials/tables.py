@@ -14,9 +14,16 @@ from common.verdict import Criterion
 from reports.document.blocks import Block, Table, Text
 from reports.document.tables import approach, ending, number, outcome, span
 from reports.flights.bounds import trial_bound
-from reports.flights.criteria import counted, criterion_title, limits_words, worst_words
+from reports.flights.criteria import (
+    MEASURED,
+    counted,
+    criterion_title,
+    limits_words,
+    worst_words,
+)
 from reports.flights.names import told_name
 from reports.run.columns import (
+    by_severity,
     clearance,
     column,
     completed,
@@ -26,13 +33,17 @@ from reports.run.columns import (
     met,
     radii_differ,
     total,
-    violated,
     was_flown,
 )
 from reports.run.faults import names_of_faults
 from reports.run.run_data import RunData
 from reports.run.time_history import keepout_distance
 from reports.run.trials import Trial
+
+_FAILED = (
+    "Flights that did not meet every criterion: {failed:,}, of which {listed:,} are listed, lost ones,"
+    " diverged ones and keep-out violations first. {summary} has all, with what to do about each."
+)
 
 FAILED_MAX = 40
 """Flights that failed a criterion and are listed."""
@@ -191,6 +202,9 @@ def trial_table(trials: list[Trial]) -> Table:
 def criteria_table(trials: list[Trial]) -> Table:
     """Return a row per criterion of each trial: its limit, the worst among the flights that it
     judges and among all of them, how many it judges, and how many failed it.
+
+    What every flight has to meet, as keeping out, has a row where one of several trials failed it:
+    of a trial that is alone the tiles of page 1 say it.
     """
     rows = [
         [
@@ -204,7 +218,7 @@ def criteria_table(trials: list[Trial]) -> Table:
         ]
         for trial in trials
         for of in trial.verdict.criteria
-        if of.judged
+        if of.judged and (of.key in MEASURED or (of.failed and len(trials) > 1))
     ]
     head = ["Trial", "Criterion", "Limit", "Worst judged", "Worst of all", "Judged", "Not met"]
     widths = [1.6, 2.2, 1.0, 1.0, 1.8, 0.8, 0.6]
@@ -281,8 +295,8 @@ def _closest_after(trial: Trial, row: "pd.Series[Any]", *, beyond: bool) -> floa
 
 
 def failed_blocks(trials: Sequence[Trial]) -> list[Block]:
-    """Return the flights that failed a criterion, keep-out violations first, ``FAILED_MAX`` at
-    most, each with its reason.
+    """Return the flights that failed a criterion, the most severe first, ``FAILED_MAX`` at most,
+    each with its reason.
     """
     run = trials[0].run
     by_key, summary = (
@@ -293,13 +307,6 @@ def failed_blocks(trials: Sequence[Trial]) -> list[Block]:
     if not len(failed):
         return []
     differ = radii_differ(summary)
-    order = np.lexsort(
-        (
-            np.arange(len(failed)),
-            -np.nan_to_num(column(failed, "keepout_depth_m")),
-            ~violated(failed),
-        )
-    )
     rows = [
         [
             told_name(by_key[row["trial"]], row),
@@ -309,7 +316,7 @@ def failed_blocks(trials: Sequence[Trial]) -> list[Block]:
             *([_cell(row, "clearance_m", run.column("clearance_m"))] if differ else []),
             ending(row),
         ]
-        for _, row in failed.iloc[order[:FAILED_MAX]].iterrows()
+        for _, row in by_severity(failed).iloc[:FAILED_MAX].iterrows()
     ]
     margin = [_BEYOND] if differ else []
     ended = "How it ended, and the criteria that it failed"
@@ -321,9 +328,8 @@ def failed_blocks(trials: Sequence[Trial]) -> list[Block]:
         *margin,
         ended,
     ]
-    first = count(violated(failed)) > 0
     table = Table(
-        caption=f"Flights that failed a criterion, {'keep-out violations first, ' * first}each with its reason.",
+        caption="Flights that failed a criterion, each with its reason.",
         head=head,
         rows=rows,
         widths=[
@@ -338,13 +344,5 @@ def failed_blocks(trials: Sequence[Trial]) -> list[Block]:
         left_columns=len(head),
         breakable=True,
     )
-    more = len(failed) - len(rows)
-    flights = "flights did" if len(failed) > 1 else "flight did"
-    text = f"{len(failed)} {flights} not meet every criterion{'; those with keep-out violations come first' * first}."
-    return [
-        Text(
-            text
-            + (f" The first {len(rows)} are listed, {more} more are in {SUMMARY}." if more else "")
-        ),
-        table,
-    ]
+    words = _FAILED.format(failed=len(failed), listed=len(rows), summary=SUMMARY)
+    return [Text(words), table]

@@ -13,6 +13,8 @@ from extensions.arena.entrants import Entrant
 from extensions.arena.paired_bootstrap import Estimate
 from extensions.arena.record import CROSSINGS, ERROR, PLUME_TIME, SULPHUR, Figure, read_arena
 from extensions.arena.report import (
+    _cards,
+    _headline,
     _interval,
     arena_content,
     by_condition_table,
@@ -27,12 +29,12 @@ from extensions.arena.report import (
 )
 from extensions.arena.results import estimates
 from extensions.arena.window import WINDOW_COLUMNS
-from reports.document.blocks import Table
+from reports.document.blocks import CARDS_MAX, Table
 from reports.document.chart import Chart
 from reports.registry import content
 from reports.run.run_data import read_run
 from scenarios.scenario.files import load_study
-from tests.reports.report_parts import blocks_of, built, flown
+from tests.reports.report_parts import blocks_of, built, flown, numbers_on_page_1
 
 QUICK = (
     "fidelity=kinematic", "guidance.rate_hz=5", "flight.log_rate_hz=5",
@@ -82,8 +84,8 @@ def test_there_is_one_mark_a_law_numbered_as_in_the_tables(arena):
     assert {note.text for note in panel.notes} == {"1", "2"}
     # Page 1 has the first one: the section does not show it once more.
     assert [chart.name for chart in blocks_of(content(arena.run), Chart, "tracking")] == [
-        "efforts",
         "tracks1",
+        "efforts",
     ]
     assert len(each.panels) == 2
     # The ordinate is logarithmic: its marks are powers of ten.
@@ -168,11 +170,45 @@ def test_what_the_conditions_set_is_said_in_words(arena):
     assert rows["wind"][1].startswith("wind.speed_mps = ")
 
 
-def test_the_headline_names_the_best_of_each_task(run):
-    verdict = arena_content(run).verdict
-    assert re.match(
-        r"Tracking: npfg is best, \d+\.\d\d m rms; circling: npfg \(circle\) is best",
-        verdict.headline,
+def with_errors(arena, *errors):
+    """Return the arena with other errors of its laws: mean, half-width of the interval, and whether
+    the bootstrap lets the law be the best; None for a law that is not compared.
+    """
+    estimates = dict(arena._estimates)
+    for entrant, error in zip(arena.entrants, errors, strict=True):
+        if error is None:
+            found = Estimate(mean=1.0, flights=1)
+        else:
+            mean, half, as_good = error
+            found = Estimate(
+                mean=mean, low=mean - half, high=mean + half, flights=4, whole=True, as_good=as_good
+            )
+        estimates[ERROR, arena.together, entrant.name] = found
+    return replace(arena, _estimates=estimates)
+
+
+@pytest.mark.parametrize(
+    ("errors", "words"),
+    [
+        (((1.0, 0.1, True), (2.0, 0.1, False)), "npfg is best, 1.00 m rms"),
+        (
+            ((1.0, 0.1, True), (1.1, 0.1, True)),
+            "npfg and pure pursuit cannot be told apart, 1.00 to 1.10 m rms",
+        ),
+        # The bootstrap tells them apart, but a reader sees intervals that overlap.
+        (
+            ((1.0, 0.1, True), (1.1, 0.1, False)),
+            "npfg and pure pursuit cannot be told apart, 1.00 to 1.10 m rms",
+        ),
+        (((1.0, 0.1, True), None), "only npfg is compared, 1.00 m rms"),
+        ((None, None), "no law is compared, as each lacks flights"),
+    ],
+)
+def test_the_headline_says_which_laws_cannot_be_told_from_the_best(arena, errors, words):
+    found = with_errors(arena, *errors, (3.0, 0.1, True))
+    assert (
+        _headline(found)
+        == f"Tracking: {words}; Circling: only npfg (circle) is compared, 3.00 m rms"
     )
 
 
@@ -181,10 +217,19 @@ def test_of_one_flight_in_each_condition_no_law_is_called_best(run, monkeypatch)
     monkeypatch.setattr("extensions.arena.report.read_arena", lambda _: once)
     found = arena_content(run)
     assert ", each flown once in each of " in found.flown
-    assert re.match(
-        r"Tracking: npfg has the least error, \d+\.\d\d m rms; circling: ", found.verdict.headline
+    assert " cannot be told apart, " in found.verdict.headline
+    assert "no law can be told from the others" in found.verdict.detail
+
+
+def test_tiles_are_six_at_most_and_name_how_many_laws_are_alike(arena):
+    alike = with_errors(arena, (1.0, 0.1, True), (1.1, 0.1, True), (3.0, 0.1, True))
+    cards = _cards(alike)
+    assert len(cards) <= CARDS_MAX
+    assert cards[0][:3] == (
+        "Tracking error, best mean: npfg, and 1 alike",
+        "1.00 m",
+        "95 %: 0.90 to 1.10",
     )
-    assert "which law is best is not shown" in found.verdict.detail
 
 
 def test_a_mean_of_single_flights_stands_without_an_interval():
@@ -238,7 +283,7 @@ def of_a_few_flights(run, path, missing):
 
 def test_a_law_that_lacks_flights_is_named_and_not_called_best(run, tmp_path):
     found = of_a_few_flights(run, tmp_path, "wind_npfg_kinematic_00001")
-    assert found.verdict.headline.startswith("Tracking: pure pursuit is best, ")
+    assert "Tracking: only pure pursuit is compared, " in found.verdict.headline
     assert found.verdict.tone == "warn"
     assert found.verdict.failures == [
         "npfg: 1 of 4 flights could not be flown, and it is not compared: infeasible: too near"
@@ -254,7 +299,8 @@ def test_a_law_that_lacks_flights_is_named_and_not_called_best(run, tmp_path):
 
 def test_an_arena_of_which_nothing_was_flown_is_red(run, tmp_path):
     verdict = of_a_few_flights(run, tmp_path, "kinematic").verdict
-    assert (verdict.headline, verdict.tone) == ("Nothing was flown", "bad")
+    assert verdict.headline.endswith(". Nothing was flown")
+    assert verdict.tone == "bad"
     assert "npfg: 4 of 4 flights could not be flown: infeasible: too near" in verdict.failures
     assert not any("best" in card.name.lower() for card in verdict.figures)
     assert {card.name: card.met for card in verdict.figures}["Keep-out violations"] is False
@@ -264,9 +310,7 @@ def test_where_each_law_lacks_another_flight_none_is_called_best(run, tmp_path):
     headline = of_a_few_flights(
         run, tmp_path, "calm_npfg_kinematic_00000|wind_pure_pursuit_kinematic_00001"
     ).verdict.headline
-    assert headline.startswith(
-        "Tracking: no law is called best, as each lacks flights; circling: npfg (circle) is best"
-    )
+    assert "Tracking: no law is compared, as each lacks flights; Circling: only npfg" in headline
 
 
 def test_an_arena_that_was_not_evaluated_is_reported_as_flights(path, run):
@@ -275,3 +319,25 @@ def test_an_arena_that_was_not_evaluated_is_reported_as_flights(path, run):
         assert "plume" not in {section.anchor for section in arena_content(run).sections}
     finally:
         (path / "gone").rename(path / "arena.json")
+
+
+def test_every_number_on_page_1_is_that_of_the_evaluation(path, tmp_path):
+    record = json.loads((path / "arena.json").read_text(encoding="utf-8"))
+    counts = json.loads((path / "verdict.json").read_text(encoding="utf-8"))["whole"]["counts"]
+    ends = [
+        value
+        for entry in record["estimates"]
+        if entry["condition"] == "all"
+        for value in (entry["mean"], entry["low"], entry["high"])
+        if value is not None
+    ]
+    expected = {
+        *(f"{value:.2f}" for value in ends),
+        # The sulphur error of a minute is the inverse root of its mean information.
+        *(f"{1.0 / math.sqrt(value):.4f}" for value in ends if value > 0.0),
+        *(f"{counts[name]}" for name in ("keepout_violations", "lost", "violated", "flown")),
+        *map(str, range(1, len(record["entrants"]))),
+        # Confidence of the intervals, and what is required of violations and losses.
+        *("95", "0"),
+    }
+    assert numbers_on_page_1(path, tmp_path) <= expected

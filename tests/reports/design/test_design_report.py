@@ -2,20 +2,26 @@
 
 import json
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from design_runs import AIRSPEEDS, BANKS_DEG, CASES, LOOPS, REVERSALS, record, write_design
-from report_parts import assert_axes_read_quantity_and_unit, blocks_of, built, draw_all_but
+from report_parts import (
+    assert_axes_read_quantity_and_unit,
+    blocks_of,
+    built,
+    draw_all_but,
+    numbers_on_page_1,
+)
 
 from reports.build import build_reports
 from reports.design.console import print_summary
 from reports.design.data import complete, excess_overshoot, reversal_sentences, where
 from reports.design.loop_charts import disk_region, turned
 from reports.design.margin_charts import margin_charts
-from reports.design.section import innerloop_section
-from reports.design.section_charts import loop_charts
-from reports.document.blocks import Heading, Table, Text
+from reports.design.section import design_words
+from reports.document.blocks import Table, Text
 from reports.document.chart import Chart
 from reports.errors import ReportError
 from reports.registry import content
@@ -34,10 +40,8 @@ def report(path):
 
 
 def test_both_reports_are_built_from_disk_alone(path, monkeypatch):
-    # Page 1 has the figure of disk margins, and a sweep's report, which is printed too, curves and
-    # steps like these; every figure is laid out below.
-    alike = ("bode", "nichols", "turnresponse", "climbresponse", "climbs", "trims")
-    draw_all_but(monkeypatch, "first", "classicalmargins", *alike)
+    # Every figure is laid out below.
+    draw_all_but(monkeypatch, "first", "classicalmargins", "nichols", "trims")
     assert "Autopilot of the Cessna 172" in built(path)
 
 
@@ -47,11 +51,10 @@ def test_everything_is_in_its_place(report):
         for section in report.sections
     }
     assert shown == {
-        "figures": [],
-        "margins": ["diskmargins", "classicalmargins"],
-        "loops": ["bode", "nichols"],
+        "margins": ["classicalmargins", "diskmargins"],
+        "loops": ["nichols", "bode"],
         "responses": ["turnresponse", "climbresponse"],
-        "equilibria": ["climbs", "trims"],
+        "equilibria": ["trims", "climbs"],
         "poles": ["gridpoles"],
         "linearisation": [],
         "weights": [],
@@ -82,27 +85,26 @@ def test_a_design_with_every_margin_is_called_good(report):
         verdict.headline
         == "Every loop has at least 6 dB and 45° of margin at every point of the grid and between"
     )
-    assert (
-        "45 points of the grid over airspeed and bank and at 20 points between them"
-        in verdict.detail
-    )
+    assert "45 points of the grid and 20 points between them" in verdict.detail
     # Four of the five cases change the aircraft, and one delays its autopilot.
-    assert "tried on 4 perturbed aircraft and with one more period of delay." in verdict.detail
+    assert "4 perturbed aircraft and with one more period of delay." in verdict.detail
     assert "1 of 45 equilibria are at a limit" in verdict.detail
     # At the corner of the grid: 11 dB less 2.2 dB for each of airspeed and bank.
     assert verdict.figures[0] == (
-        "Worst gain margin: elevator, 45 m/s, −33°",
+        "Worst gain margin",
         "6.6 dB",
         "≥ 6 dB",
         True,
+        "elevator, 45 m/s, −33°",
     )
     # Of the cases the last has the least margins, 8.5 - 0.5 x 4 dB less 1 dB for each of airspeed
     # and bank.
     worst = (
-        "Worst gain margin, one more period of delay: elevator, 45 m/s, −33°",
+        "Worst gain margin, perturbed",
         "4.5 dB",
         "≥ 4 dB",
         True,
+        "elevator, 45 m/s, −33°, one more period of delay",
     )
     assert verdict.figures[2] == worst
 
@@ -215,28 +217,15 @@ def test_how_to_fly_it_elsewhere_names_the_files_that_are_there(report, tmp_path
     assert len(blocks_of(content(read_run(path)), Text, "elsewhere")) == 1
 
 
-def test_a_sweeps_report_takes_from_a_design_only_what_belongs_to_level_flight():
-    design = record()
-    line, fold = innerloop_section(design).blocks
-    # In print there is the line alone.
-    assert "innerloop.json; plume-flight design" in line.text
-    steps, margins, trims = (block for block in fold.blocks if isinstance(block, Table))
-    assert len(steps.rows) == len(design["responses"])
-    assert [row[0] for row in margins.rows] == [
-        *(loop.replace("_", " ") for loop in LOOPS),
-        "all controls",
-    ]
-    # Of all banks the one that the envelope says is flown.
-    assert {float(row[1]) for row in trims.rows} == {0.0, 27.0}
-    assert fold.blocks[-2] == Heading("Equilibria: level, and at 27 degrees of bank")
-    curves = loop_charts(complete(design))[0].panels[0].lines
-    assert all(line.x.tolist() == AIRSPEEDS for line in curves)
-    assert len(loop_charts(complete(design))[2].panels[1].lines) == len(LOOPS)
+def test_a_report_of_flights_says_where_the_design_is_and_no_more():
+    (line,) = design_words(SimpleNamespace(innerloop=record()))
+    assert "innerloop.json; plume-flight design c172x" in line.text
+    assert design_words(SimpleNamespace(innerloop=None)) == []
 
 
 def test_a_limit_is_drawn_only_for_margins_of_which_something_is_required():
-    classical, disk = loop_charts(complete(record()))[:2]
-    assert [panel.lines[-1].label for panel in classical.panels] == ["required"] * 2
+    disk, classical = margin_charts(complete(record()))
+    assert [panel.lines[0].label for panel in classical.panels] == ["required"] * 4
     # The verdict asks nothing of disk margins: nor does a line.
     assert "required" not in {line.label for panel in disk.panels for line in panel.lines}
 
@@ -281,8 +270,8 @@ def test_how_far_reversals_stray_is_said():
     said = reversal_sentences(record())
     assert "a dead time of 0.25 s and a lag of 0.25 s. In 100 reversals" in said
     assert said.endswith(
-        "up to 4.39 m nearer to what it turned away from than predicted. Of the 64 that did not follow the worst ones none"
-        " came nearer by more than 2.37 m."
+        "up to 4.39 m nearer to what it turned away from than predicted. In the 64 others at most"
+        " 2.37 m."
     )
     more = {
         "reversals": 10000,
@@ -291,7 +280,10 @@ def test_how_far_reversals_stray_is_said():
         "worst_airspeed_before_mps": 18.2,
     }
     repeated = record() | {"turn_reversal": REVERSALS | {"repeated_search": more}}
-    assert reversal_sentences(repeated) == f"{said} In 10000 others it came up to 7.21 m nearer."
+    assert (
+        reversal_sentences(repeated)
+        == f"{said} A second search of 10000 reversals came up to 7.21 m nearer."
+    )
 
 
 def test_the_report_and_the_console_say_how_far_reversals_stray(tmp_path, capsys):
@@ -304,3 +296,41 @@ def test_the_report_and_the_console_say_how_far_reversals_stray(tmp_path, capsys
     ]
     print_summary(record())
     assert "4.39 m nearer" in " ".join(capsys.readouterr().out.split())
+
+
+def test_every_number_on_page_1_is_that_of_the_record(path, tmp_path):
+    design = json.loads((path / "innerloop.json").read_text(encoding="utf-8"))
+    margins = [
+        abs(math.floor(10.0 * row[key] + 1e-6) / 10.0)
+        for row in [*design["margins"], *design["robustness"]]
+        for key in ("gain_db", "phase_deg", "disk_gain_db", "disk_phase_deg")
+        if row.get(key) is not None
+    ]
+    points = {
+        (row["airspeed_mps"], round(math.degrees(row["bank_rad"]), 1)) for row in design["margins"]
+    }
+    flown, model = (
+        next(
+            r["overshoot"]
+            for r in design["responses"]
+            if (r["kind"], r["command"]) == (kind, "heading_rate")
+        )
+        for kind in ("flown", "model")
+    )
+    on_grid = {
+        (row["airspeed_mps"], row["bank_rad"]) for row in design["margins"] if not row["between"]
+    }
+    expected = {
+        *(f"{value:.1f}" for value in margins),
+        *(f"{abs(value):g}" for point in points for value in point),
+        *(f"{value:g}" for value in design["required"].values()),
+        f"{len(on_grid)}",
+        f"{len(points) - len(on_grid)}",
+        f"{len({row['case'] for row in design['robustness'] if not row['periods_late']})}",
+        f"{sum(bool(t['limits']) for t in design['trims'])}",
+        f"{design['heading_rate_lag_s']:.2f}",
+        f"{100.0 * max(0.0, flown - model):.1f}",
+        # Per cent of the perturbations.
+        "20",
+    }
+    assert numbers_on_page_1(path, tmp_path) <= expected

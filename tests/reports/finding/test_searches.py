@@ -1,12 +1,19 @@
 """Figures of a flight that searched for its plume, against its time history."""
 
 import math
+import re
 from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 import pytest
-from report_parts import assert_axes_read_quantity_and_unit, blocks_of, flown, named_charts
+from report_parts import (
+    assert_axes_read_quantity_and_unit,
+    blocks_of,
+    flown,
+    named_charts,
+    numbers_on_page_1,
+)
 
 from reports.document.blocks import Text
 from reports.finding.flights import _picked
@@ -130,3 +137,45 @@ def test_the_typical_search_is_at_the_median_of_all_errors_or_nearest_to_it(kept
     assert picked[0][1].startswith(why)
     # The largest error is that of the last flight, which is typical where it alone is left.
     assert [row["flight_id"] for row, _ in picked[1:]] == ["4"] * (typical != "4")
+
+
+@pytest.fixture(scope="module")
+def several(tmp_path_factory):
+    quick = [of for of in QUICK if not of.startswith(("start.place_m", "start.course_deg"))]
+    variants = "comparison.variants=[{name='told', set={following={plume='told'}}}]"
+    return flown(tmp_path_factory, "sulphur", (*quick, "flights=2", variants))
+
+
+def test_page_1_says_in_how_many_flights_the_plume_was_found_beside_those_that_were_told(several):
+    report = content(read_run(several))
+    rows = read_run(several).summary
+    found = rows["time_to_find_s"].notna().sum()
+    assert report.verdict.headline.startswith(f"Plume found in {found} of 2 flights, median ")
+    assert ", told " in report.verdict.headline
+    assert report.verdict.cards[0][:2] == ("Flights that found the plume", f"{found} of 2")
+
+
+def test_every_number_on_page_1_is_that_of_the_flights(several, tmp_path):
+    run = read_run(several)
+    times = run.summary["time_to_find_s"].fillna(math.inf).to_numpy()
+    hits = [100.0 * of["hit_rate_found"].mean() for of in (run.summary, run.comparison)]
+    verdict = run.verdict.whole
+    closest = run.summary[run.summary["flight_id"] == verdict.closest.flight].iloc[0]
+    known = {
+        *(f"{time:.0f}" for time in (np.median(times), times.max())),
+        *(f"{share:.3g}" for share in hits),
+        *(f"{share:.4g}" for share in hits),
+        f"{int(np.isfinite(times).sum())}",
+        f"{closest['min_distance_m']:.1f}",
+        f"{closest['horizontal_distance_min_m']:.1f}",
+        f"{closest['keepout_radius_m']:g}",
+        *(
+            f"{getattr(verdict.counts, name)}"
+            for name in ("kept_out", "beside", "completed", "done")
+        ),
+        # The time that a quantile is of, the time that is required, and the confidence of a bound.
+        *("95", "300"),
+    }
+    failures = " ".join(content(run).verdict.failures)
+    told = set(re.findall(r"\d+(?:\.\d+)?", failures))
+    assert numbers_on_page_1(several, tmp_path) <= known | told

@@ -10,11 +10,21 @@ import pypdfium2
 import pytest
 from matplotlib.figure import Figure
 
+from common.verdict import INTERRUPTED, MET, NOT_MET, UNEXPLAINED
 from reports.build import build_reports
-from reports.document.blocks import CARDS_MAX, Card, Heading, Section, Table, Verdict
+from reports.document.blocks import (
+    CARDS_MAX,
+    Card,
+    Heading,
+    LossCard,
+    Section,
+    Table,
+    UndecidedCard,
+    Verdict,
+)
 from reports.document.chart import Chart
 from reports.document.numbering import figures_in, numbered
-from reports.flights.first_page import closest_and_typical, flights_in_words
+from reports.flights.first_page import flights_in_words, telling_and_typical
 from reports.flights.selection import picked_flights
 from reports.registry import content
 from reports.render import matplotlib_charts
@@ -137,9 +147,10 @@ def test_a_figure_says_in_words_whether_its_criterion_is_met(report):
     )
     assert closest.met
     assert closest.judgement == "✓ met, required ≥ 200 m"
+    assert closest.small_print.startswith("✓ met, required ≥ 200 m; short_0000")
     assert not tracking.met
     assert tracking.judgement == "✗ not met, required ≤ 0.0001 m"
-    assert card(report, "Probability").judgement == "no criterion"
+    assert card(report, "Plume crossings").judgement == "no criterion"
 
 
 def test_colours_on_the_screen_are_those_of_the_criteria(built):
@@ -149,7 +160,7 @@ def test_colours_on_the_screen_are_those_of_the_criteria(built):
     assert len(cards) == CARDS_MAX
     meaning = {" met": "✓ met, ", " missed": "✗ not met, ", "": "no criterion"}
     assert all(words.startswith(meaning[colour]) for colour, words in cards)
-    assert {colour for colour, _ in cards} == set(meaning)
+    assert {colour for colour, _ in cards} == {" met", " missed"}
 
 
 def test_page_1_holds_everything_that_is_for_the_client(built, report):
@@ -216,7 +227,7 @@ def test_the_provenance_is_last_and_names_command_hashes_and_kind_of_host(built,
     assert rows["Hash of the scenario"].endswith(
         ", of its keys and files: the first 16 digits of the SHA-256"
     )
-    assert "Provenance" in built[1][-1]
+    assert "Format of the run" in built[1][-1]
 
 
 def test_figures_and_tables_are_numbered_in_reading_order_without_gaps(report):
@@ -250,11 +261,48 @@ def test_a_heading_right_before_a_table_is_its_caption():
     assert [block.text for block in section.blocks if isinstance(block, Heading)] == ["Kept"]
 
 
-@pytest.mark.parametrize(("figures", "shown"), [(0, 0), (3, 3), (4, 4), (5, 4), (6, 6), (9, 6)])
-def test_page_1_has_as_many_figures_as_fill_its_rows(figures, shown):
+@pytest.mark.parametrize(("figures", "shown"), [(0, 0), (3, 3), (4, 4), (5, 5), (6, 6), (9, 6)])
+def test_page_1_has_six_figures_at_most(figures, shown):
     cards = [Card(str(i), "1") for i in range(figures)]
-    verdict = Verdict(holds=True, complete=True, headline="", detail="", failures=[], figures=cards)
+    verdict = Verdict(headline="", detail="", failures=[], figures=cards)
     assert verdict.cards == cards[:shown]
+    assert verdict.further == cards[shown:]
+
+
+@pytest.mark.parametrize(
+    ("card", "exit_status", "tone"),
+    [
+        (Card("a", "1", "≤ 2", met=True), MET, "good"),
+        (Card("a", "1"), MET, "good"),
+        (UndecidedCard("a", "1", "2"), MET, "warn"),
+        (LossCard("a", "1", "allowed"), MET, "warn"),
+        (Card("a", "3", "≤ 2", met=False), MET, "bad"),
+        (Card("a", "1", "≤ 2", met=True), NOT_MET, "warn"),
+        (Card("a", "1", "≤ 2", met=True), INTERRUPTED, "warn"),
+        (Card("a", "1", "≤ 2", met=True), UNEXPLAINED, "bad"),
+    ],
+)
+def test_the_box_has_the_colour_of_its_worst_tile_and_is_never_better_than_the_exit_status(
+    card, exit_status, tone
+):
+    others = [Card(str(i), "1", "1", met=True) for i in range(9)]
+    verdict = Verdict(
+        headline="", detail="", failures=[], figures=[*others, card], exit_status=exit_status
+    )
+    assert verdict.tone == tone
+    # The tile that makes the colour is on page 1.
+    assert (card in verdict.cards) is (card.tone in ("missed", "open"))
+
+
+def test_every_kind_of_study_has_its_exit_status_from_one_place(report, run_path):
+    run = read_run(run_path)
+    for study in ("flights", "trials", "monte_carlo", "falsify", "premises"):
+        of_study = replace(run, manifest=run.manifest | {"study": study})
+        for interrupted in (False, True):
+            judgement = of_study.verdict.once_interrupted(interrupted=interrupted)
+            verdict = content(replace(of_study, judgement=judgement)).verdict
+            assert verdict.exit_status == judgement.exit_status
+            assert verdict.headline.startswith("INTERRUPTED") is interrupted
 
 
 def test_a_run_without_time_histories_shows_its_first_figure(run_path, tmp_path):
@@ -283,7 +331,7 @@ def test_the_typical_flight_is_at_the_median_of_all_flights_or_nearest_to_it(
     run_path, tmp_path, gone, nearest
 ):
     run, distances = without_histories(run_path, tmp_path, gone)
-    picture = closest_and_typical(read_trials(run))
+    picture = telling_and_typical(read_trials(run))
     typical = min(nearest, key=lambda rank: abs(distances[rank] - distances[2]))
     closest = min(set(range(5)) - set(gone))
     told = "the flight with the closest approach" + (
@@ -324,9 +372,9 @@ def test_flights_shown_one_by_one_have_one_at_the_median_of_all_or_nearest_to_it
 
 def test_long_names_of_flights_stand_below_the_picture(run_path, monkeypatch):
     trials = read_trials(read_run(run_path))
-    named = closest_and_typical(trials)
+    named = telling_and_typical(trials)
     monkeypatch.setattr("reports.flights.first_page._NAME_MAX", 3)
-    bare = closest_and_typical(trials)
+    bare = telling_and_typical(trials)
     for with_name, without in zip(named.panels, bare.panels, strict=True):
         what, name, distance = re.fullmatch(
             r"(\w+): (short_0000\d), (.+ m)", with_name.title

@@ -13,10 +13,9 @@ import pytest
 from judged_runs import judged
 from report_parts import assert_axes_read_quantity_and_unit
 
-from reports.document.blocks import Table, Text
+from reports.document.blocks import Table
 from reports.document.chart import Chart
 from reports.document.tables import minus
-from reports.flights.verdict import flight_verdict
 from reports.monte_carlo.content import bound_in_words, monte_carlo_sections
 from reports.monte_carlo.driver_charts import NEAREST, SCATTER_MAX, scatter_charts, thinned
 from reports.monte_carlo.names import documented_units, input_label, input_name, input_unit
@@ -25,7 +24,6 @@ from reports.monte_carlo.tables import percent
 from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import RunData, read_run
-from reports.run.trials import read_trials
 from scenarios.scenario.documentation import documented_keys
 from scenarios.scenario.files import load_study
 from scenarios.statistics.estimates import study_statistics
@@ -112,12 +110,12 @@ def lines_of(panel):
 
 def test_a_study_comes_first_in_the_report_and_a_run_without_statistics_has_no_such_sections(run):
     anchors = [section.anchor for section in content(run).sections]
-    assert anchors[:5] == ["figures", "study", "spread", "drivers", "trials"]
+    assert [of for of in anchors if of != "figures"][:4] == ["study", "spread", "drivers", "trials"]
     assert monte_carlo_sections(replace(run, statistics=None)) == []
 
 
 def headline_of(run):
-    verdict = flight_verdict(run, read_trials(run))
+    verdict = content(run).verdict
     words = verdict.headline
     # A unit belongs to its number.
     assert len(words.split(" ")) <= 25
@@ -125,7 +123,7 @@ def headline_of(run):
 
 
 def test_page_1_answers_with_the_probability_of_a_violation_a_loss_and_of_not_finishing(run):
-    words, tone = headline_of(run)
+    words, tone = headline_of(replace(run, manifest=run.manifest | {"study": "monte_carlo"}))
     # Clopper and Pearson: of 250 one violated, 1 - 0.975^(1/250), and one is unknown, which may
     # have been a second; none was lost, 1 - 0.025^(1/250).
     assert re.fullmatch(
@@ -294,15 +292,10 @@ def test_a_flight_far_from_all_others_does_not_squeeze_them_whatever_they_are_dr
     assert [len(lines_of(panel)["beyond the panel: 500 m"].x) for panel in (wind, level)] == [1, 1]
 
 
-def test_why_there_are_no_indices_is_said():
+def test_of_too_few_flights_for_indices_there_is_no_section_on_them():
     rows, inputs = study_rows(50)
-    section = monte_carlo_sections(run_of(rows, inputs))[2]
-    texts = [block.text for block in section.blocks if isinstance(block, Text)]
-    # Two figures have indices at all here, each of 50 flights: one sentence, and not a word on how
-    # to read indices.
-    without = "Distance kept beyond r_min (50 flights); Settling time (50 flights)"
-    assert texts == [f"No sensitivity indices of {without}: indices take 200 at least."]
-    assert charts_of(section) == {}
+    anchors = [section.anchor for section in monte_carlo_sections(run_of(rows, inputs))]
+    assert anchors == ["study", "spread"]
 
 
 def test_of_ten_thousand_flights_so_many_are_drawn_as_is_said_and_always_the_nearest():

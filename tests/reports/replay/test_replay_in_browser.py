@@ -325,7 +325,7 @@ def test_a_ship_of_unknown_size_is_pale_and_the_key_and_the_caption_say_so(brows
             "ship" if known else "ship, size not known",
             known,
         )
-        assert ("her size is not known" in words) == (not known)
+        assert ("is drawn" in words and "that of" not in words) == (not known)
 
 
 def test_distances_are_shown_as_far_as_in_the_figures_and_words_say_where_they_are_not(

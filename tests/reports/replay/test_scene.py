@@ -210,7 +210,7 @@ def test_a_ship_whose_size_is_not_known_is_told_from_one_of_a_known_class(scene)
     ]
     assert (
         sent[0]["words"]
-        == "Of the ship: her size is not known, and drawn is a merchant ship of 150 m by 23 m."
+        == "Of the ship: the scenario gives no hull: a merchant ship of 150 m by 23 m is drawn."
     )
     assert "a coaster, 90 m by 14 m" in sent[1]["words"]
 

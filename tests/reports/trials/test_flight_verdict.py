@@ -11,8 +11,7 @@ from judged_runs import changed, judged
 from report_parts import blocks_of
 from trial_runs import rows_of, with_criterion, with_values
 
-from reports.document.blocks import Card, Table
-from reports.flights import verdict
+from reports.document.blocks import Table
 from reports.registry import content
 from reports.run.columns import interval_error
 
@@ -21,8 +20,8 @@ pytestmark = pytest.mark.usefixtures("without_single_flights")
 
 def test_one_keep_out_violation_decides_the_verdict_of_the_whole_run(run):
     verdict = content(run).verdict
-    assert verdict.headline.startswith("No keep-out violation in 4 flights (")
-    assert verdict.holds
+    assert verdict.headline.startswith("4 of 4 flights kept out, 4 finished. Worst: ")
+    assert verdict.tone == "good"
     judged = content(
         with_values(
             run,
@@ -33,13 +32,16 @@ def test_one_keep_out_violation_decides_the_verdict_of_the_whole_run(run):
             criteria_met=False,
         )
     )
-    assert not judged.verdict.holds
-    assert judged.verdict.headline == "Keep-out violations in 1 of 4 flights, 2 in all"
+    assert judged.verdict.tone == "bad"
+    assert judged.verdict.headline.startswith(
+        "3 of 4 flights kept out, 4 finished, 1 violated. Worst: −1.5 m beyond r_min, "
+    )
     assert (
         "Closest approach, from the keep-out sphere's centre",
         "198.5 m",
         "≥ 200 m",
         False,
+        "turns_00001",
     ) in judged.verdict.figures
     assert judged.verdict.failures == ["turns_00001: completed"]
     # Keep-out violations and the closest approach, from r_min too, are in the trial's row.
@@ -63,13 +65,9 @@ def test_the_closest_approach_as_shown_agrees_with_its_judgement(
     for i in range(4):
         closest = with_values(closest, i, min_distance_m=distance, keepout_radius_m=radius)
     report = content(closest)
-    assert (
-        "Closest approach, from the keep-out sphere's centre",
-        shown,
-        required,
-        met,
-    ) in report.verdict.figures
-    assert f"from its first second: {shown} from" in report.verdict.detail
+    name = "Closest approach, from the keep-out sphere's centre"
+    assert (name, shown, required, met) in [card[:4] for card in report.verdict.figures]
+    assert report.verdict.tone == ("good" if met else "bad")
 
 
 def test_a_limit_that_is_scaled_to_the_aircraft_says_so_on_page_1_and_in_the_table(run):
@@ -104,10 +102,9 @@ LOST = {
 
 def test_a_flight_that_lost_its_aircraft_fails_a_run_of_which_it_is_required_to_complete(run):
     report = content(with_values(run, 1, **LOST))
-    assert report.verdict.headline.startswith(
-        "1 lost the aircraft, of 4 flights; 3 of 4 flights kept out ("
-    )
-    assert (report.verdict.holds, report.verdict.complete) == (False, False)
+    assert report.verdict.headline.startswith("3 of 4 flights kept out, 3 finished, 1 lost. ")
+    assert report.verdict.tone == "bad"
+    assert ("Aircraft lost", "1", "0", False, "steady_00001") in report.verdict.figures
     assert report.verdict.failures == ["steady_00001: aircraft lost; it came down on the sea"]
     # Planned, flown, completed, met, lost, kept out.
     assert rows_of(report, "Steady")[0][:6] == ["2", "2", "1", "1", "1", "1"]
@@ -116,28 +113,25 @@ def test_a_flight_that_lost_its_aircraft_fails_a_run_of_which_it_is_required_to_
 def test_where_a_fault_is_flown_on_purpose_a_lost_aircraft_is_shown_and_keeping_out_judged(run):
     report = content(with_values(run, 1, required="keep_out", **LOST))
     # Amber: nothing that must never happen did, but not every flight is met.
-    assert (report.verdict.holds, report.verdict.complete) == (True, False)
-    assert report.verdict.headline.startswith("1 lost the aircraft, of 4 flights; 3 of 4 flights ")
-    assert (
-        "1 flight is required only to stay outside of the keep-out area, and not to complete; 4 of 4 flights did what is required"
-        in report.verdict.detail
+    assert (report.verdict.tone, report.verdict.exit_status) == ("warn", 0)
+    assert report.verdict.headline.startswith("3 of 4 flights kept out, 3 finished, 1 lost. ")
+    assert report.verdict.detail == (
+        "Of the flights, 1 had only to stay outside of the keep-out area: 1 did, and 0 also finished."
     )
-    kept = (
-        "Flights that kept out",
-        "3 of 4, 1 ended outside",
-        "not required of every flight",
-        None,
-    )
-    assert kept in report.verdict.figures
-    assert ("Aircraft lost", "1", "not required of every flight", None) in report.verdict.figures
+    tiles = {card.name: card for card in report.verdict.cards}
+    assert tiles["Kept out"][1:4] == ("3 of 4", "not required of every flight", None)
+    assert tiles["Kept out"].note.startswith("1 lost or failed outside; ")
+    # A loss is never green.
+    assert (tiles["Aircraft lost"].value, tiles["Aircraft lost"].tone) == ("1", "open")
     assert rows_of(report, "Steady")[0][:6] == ["2", "2", "1", "1", "1", "1"]
 
 
 def test_a_mission_that_was_not_completed_is_not_met_and_said(run):
     values = {"outcome": "incomplete", "message": "flew 1 of 3 crossings", "criteria_met": False}
     report = content(with_values(run, 0, **values))
-    assert (report.verdict.holds, report.verdict.complete) == (True, False)
-    assert report.verdict.headline.endswith("; of 4, 1 did not complete the mission")
+    assert report.verdict.tone == "bad"
+    assert report.verdict.headline.startswith("4 of 4 flights kept out, 3 finished. ")
+    assert ("Finished", "3 of 4", "all", False, "") in report.verdict.cards
     assert report.verdict.failures == ["steady_00000: incomplete; flew 1 of 3 crossings"]
 
 
@@ -157,9 +151,9 @@ def test_of_a_flight_alone_the_headline_says_what_it_failed_and_no_figure_is_tol
         manifest=limited.manifest | {"flights_planned": 1},
     )
     verdict = content(alone).verdict
-    assert (
-        verdict.headline
-        == "No keep-out violation in 1 flight (64 s simulated); it did not complete the mission"
+    # Keeping out, and completing.
+    assert verdict.headline == (
+        "The flight kept out and did not finish; it met 1 of the 2 criteria that judge it"
     )
     # It did not complete, and is not judged by its tracking error.
     names = [card.name for card in verdict.figures if card.name.startswith("Tracking error")]
@@ -203,10 +197,13 @@ def test_of_a_single_flight_the_words_are_of_one(run):
         "trials": {"steady": run.manifest["trials"]["steady"]},
     }
     alone = changed(run, manifest=manifest, summary=run.summary.iloc[:1].copy())
-    assert content(alone).verdict.headline.endswith("; it met its criteria")
+    assert re.fullmatch(
+        r"The flight kept out and finished; it met (\d) of the \1 criteria that judge it",
+        content(alone).verdict.headline,
+    )
     lost = content(with_values(alone, 0, fault="engine", fault_time_s=20.0, **LOST)).verdict
     assert lost.headline.startswith(
-        "The flight lost the aircraft; it ended outside of the keep-out area"
+        "The flight stayed outside of the keep-out area and lost its aircraft; "
     )
     assert (
         lost.failures[-1] == "In the flight a fault began, as the scenario has it: engine, at 20 s."
@@ -232,12 +229,10 @@ def test_a_flight_that_could_not_be_flown_is_told_and_makes_no_other_flights_fig
         if name.startswith("Tracking error, rms after settling")
     )
     assert worst.met
-    assert ("Keep-out violations", "0 known, unknown in 1 flight", "0", False) in figures.values()
+    assert figures["Kept out"][1:4] == ("3 of 4", "all", False)
+    assert figures["Kept out"].note.startswith("1 unknown; ")
     # Of all that were planned, not of those that were flown.
-    assert (figures["Missions completed"].value, figures["Missions completed"].met) == (
-        "3 of 4",
-        False,
-    )
+    assert figures["Finished"][1:4] == ("3 of 4", "all", False)
     (row,) = (row for row in rows_of(report, "Steady") if row[1] == "≤ 50 m")
     # As on page 1: it fails the mission, and is not judged by what could not be measured.
     assert row[-2:] == ["1 of 2", "0"]
@@ -266,11 +261,10 @@ def test_of_a_run_in_which_nothing_was_flown_no_figure_is_met_and_no_picture_sho
     report = content(nothing)
     assert report.verdict.headline == "Nothing was flown: of 4, 4 infeasible"
     assert [tuple(card) for card in report.verdict.figures] == [
-        ("Keep-out violations", "none flown", "not judged", None),
-        ("Flights flown", "0 of 4", "all", False),
+        ("Flights flown", "0 of 4", "all", False, "")
     ]
     assert report.picture is None
-    assert not report.verdict.holds
+    assert report.verdict.tone == "bad"
 
 
 def test_flights_of_one_reason_share_a_line(run):
@@ -291,11 +285,11 @@ def test_flights_that_are_not_flown_yet_are_not_failed_ones(run):
     manifest["trial_flights"] = {"steady": 198, "turns": 2}
     report = content(judged(replace(run, manifest=manifest), interrupted=True))
     assert report.verdict.headline.startswith(
-        "Interrupted after 4 of 200 flights. 4 of 4 flights kept out ("
+        "INTERRUPTED after 4 of 200 flights. 4 of 4 flights kept out, 4 finished. "
     )
     assert report.verdict.failures == ["Steady: 196 of 198 not flown yet"]
-    assert "200 planned, 4 flown, 4 completed, 4 met every criterion" in report.verdict.detail
-    assert (report.verdict.holds, report.verdict.complete) == (True, False)
+    assert report.verdict.detail == "The run did not end; continue it with --resume."
+    assert report.verdict.tone == "warn"
     assert rows_of(report, "Steady")[0][:4] == ["198", "2", "2", "2"]
     assert "failed" not in {section.anchor for section in report.sections}
 
@@ -310,23 +304,21 @@ def test_the_verdict_claims_what_was_flown_and_the_bound_that_follows(run):
         manifest=run.manifest | {"flights_planned": 8},
     )
     verdict = content(eight).verdict
-    # Clopper and Pearson, none of eight: 1 - 0.05^(1/8).
-    assert (
-        "at most 31.2 % of such flights violate the area, at 95 % confidence"
-        in verdict.headline.replace("\N{NO-BREAK SPACE}", " ")
-    )
+    # Clopper and Pearson, none of eight: 1 - 0.05^(1/8). It is said once, where it belongs.
+    bound = "rate of violations below 31.2 % at 95 %"
     texts = [
         verdict.headline,
         verdict.detail,
         *verdict.failures,
-        *(text for figure in verdict.figures for text in figure[:3]),
+        *(text for figure in verdict.figures for text in (*figure[:3], figure.note)),
     ]
+    said = [text for text in texts if bound in text.replace("\N{NO-BREAK SPACE}", " ")]
+    assert said == [verdict.figures[0].note]
     assert not any(re.search(r"\bsafe", text, re.IGNORECASE) for text in texts)
     # Those of a search are no random sample: no bound follows from them.
     manifest = run.manifest | {"sampled_at_random": {"steady": False, "turns": True}}
     chosen = content(changed(run, manifest=manifest)).verdict
-    assert "confidence" not in chosen.headline
-    assert "No bound on a probability follows from these flights" in chosen.detail
+    assert chosen.figures[0].note == "no random sample, so no bound on the rate"
 
 
 def test_a_flight_that_could_not_be_flown_counts_as_a_violation_in_the_bound(run):
@@ -341,29 +333,21 @@ def test_a_flight_that_could_not_be_flown_counts_as_a_violation_in_the_bound(run
         manifest=run.manifest | {"flights_planned": 16},
     )
     verdict = content(sixteen).verdict
-    assert verdict.headline.startswith("1 could not be flown, of 16 flights; 15 of 16 flights kept")
-    assert "No keep-out violation" not in verdict.headline
+    assert verdict.headline.startswith(
+        "15 of 16 flights kept out, 15 finished, 1 could not be flown. "
+    )
     # Clopper and Pearson, one of sixteen: (1 - p)^16 + 16 p (1 - p)^15 = 0.05; none of fifteen
     # would be 18.1 %.
-    detail = verdict.detail.replace("\N{NO-BREAK SPACE}", " ")
-    assert "violates the keep-out area with a probability of at most 26.4 %" in detail
-    assert "The bound counts 1 flight of unknown end as a keep-out violation." in detail
+    assert verdict.figures[0].note.replace("\N{NO-BREAK SPACE}", " ") == (
+        "1 unknown; rate of violations below 26.4 % at 95 %, with 1 unknown as violated"
+    )
 
 
 def test_a_handful_of_flights_states_no_bound_as_it_would_say_nothing(run):
     # None of four, 1 - 0.05^(1/4): 52.7 %; none of the two of a trial: 77.6 %.
     report = content(run)
-    assert "at most" not in report.verdict.headline
-    assert (
-        "So few flights set no bound on the probability of a keep-out violation"
-        in report.verdict.detail
-    )
-    assert not any(card.name.startswith("Probability") for card in report.verdict.figures)
+    assert report.verdict.figures[0].note == "too few for a bound on the rate"
     assert rows_of(report, "Steady")[0][6] == "–"
-    alone = content(changed(run, summary=run.summary.iloc[:1])).verdict
-    assert (
-        "A single flight sets no bound on the probability of a keep-out violation" in alone.detail
-    )
 
 
 def test_what_no_criterion_asks_for_is_on_the_first_page_too(run):
@@ -377,11 +361,11 @@ def test_what_no_criterion_asks_for_is_on_the_first_page_too(run):
             manoeuvres_unflown=1,
         )
     )
-    largest = "Tracking error, rms after settling, largest of the flights"
-    (tracking,) = (value for name, value, *_ in report.verdict.figures if name == largest)
-    assert tracking == "107 m"
+    largest = "Tracking error, rms after settling, worst"
+    (tracking,) = (card for card in report.verdict.cards if card.name == largest)
+    assert (tracking.value, tracking.note) == ("107 m", "turns_00000")
     assert report.verdict.failures[0].startswith(
-        "Turns: in 1 of 2 flights the tracking error, rms after settling, is 107 m"
+        "Turns: 1 of the 2 settled flights lost their track again, by up to 107 m rms"
     )
     assert report.verdict.failures[1:] == [
         "In 1 of 4 flights the guard could not hold its own radius, for up to 3.2 s.",
@@ -389,27 +373,37 @@ def test_what_no_criterion_asks_for_is_on_the_first_page_too(run):
     ]
 
 
-def test_the_quantile_of_tracking_errors_is_told_of_a_hundred_flights_at_least_and_of_fewer_the_largest_once():
-    rows = pd.DataFrame({"tracking_error_rms_m": np.arange(1.0, 101.0)})
-    error = "Tracking error, rms after settling"
-    # Of 100 values 1 to 100: between the 99th and the 100th.
-    assert verdict._tracking(rows, error, told=True)[0].value == "99 m, largest 100 m"
-    (few,) = verdict._tracking(rows[:99], error, told=False)
-    assert few == Card("Tracking error, rms after settling, largest of the flights", "99 m")
-    assert verdict._tracking(rows[:99], error, told=True) == []
+@pytest.mark.parametrize(("flights", "told"), [(100, "99 % of flights below 99 m"), (99, "")])
+def test_what_nearly_all_tracking_errors_are_below_is_told_of_a_hundred_flights_at_least(
+    run, flights, told
+):
+    # Of 100 values 1 to 100 the quantile is between the 99th and the 100th.
+    rows = pd.concat([run.summary.iloc[:1]] * flights, ignore_index=True).assign(
+        flight_id=[f"steady_{i:05}" for i in range(flights)],
+        tracking_error_rms_m=np.arange(1.0, flights + 1.0),
+    )
+    report = content(changed(run, summary=rows))
+    (card,) = (of for of in report.verdict.figures if of.name.startswith("Tracking error, rms"))
+    assert card.value == f"{flights} m"
+    # The flight that has the largest one is named.
+    assert card.note == "; ".join(
+        filter(None, [f"steady_{flights - 1:05}", told.replace(" %", "\N{NO-BREAK SPACE}%")])
+    )
 
 
 def test_the_shape_of_the_keep_out_area_is_said_where_a_distance_is_printed(run):
-    assert " m from the keep-out sphere's centre, in " in content(run).verdict.detail
-    report = content(changed(run, summary=run.summary.assign(keepout_shape="cylinder")))
-    assert " m horizontal, from the keep-out cylinder's axis, in " in report.verdict.detail
+    def closest(changed_run):
+        figures = content(changed_run).verdict.figures
+        return next(card for card in figures if card.name.startswith("Closest approach"))
+
+    assert closest(run).name == "Closest approach, from the keep-out sphere's centre"
+    cylinder = closest(changed(run, summary=run.summary.assign(keepout_shape="cylinder")))
+    assert cylinder.name == "Closest approach, horizontal, from the keep-out cylinder's axis"
     # Beside the funnel, far above it: a sphere is narrower there.
-    rising = content(
-        with_values(run, 0, min_distance_m=200.5, horizontal_distance_min_m=80.2)
-    ).verdict.detail
-    assert (
-        "200.5 m from the keep-out sphere's centre, in steady_00000; 80.2 m horizontally from the funnel"
-        in rising
+    rising = closest(with_values(run, 0, min_distance_m=200.5, horizontal_distance_min_m=80.2))
+    assert (rising.value, rising.note) == (
+        "200.5 m",
+        "steady_00000, 80.2 m horizontally from the funnel",
     )
 
 
@@ -427,7 +421,7 @@ def test_a_flight_that_was_flown_before_an_instrument_failed_counts_with_its_vio
             run, 1, **failed, keepout_violations=1, keepout_depth_m=1.5, min_distance_m=198.5
         )
     ).verdict
-    assert judged.headline == "Keep-out violations in 1 of 4 flights, 1 in all"
+    assert judged.headline.startswith("3 of 4 flights kept out, 3 finished, 1 violated. ")
     assert judged.failures[0] == "steady_00001: failed; no such gas"
 
 
@@ -452,8 +446,8 @@ def test_a_violation_that_no_premise_explains_comes_before_anything_else(run):
         "keepout_depth_m": 3.0,
     }
     report = content(with_values(run, 0, **values))
-    assert report.verdict.headline.startswith("The keep-out guard is wrong: in 1 flight ")
-    assert not report.verdict.holds
+    assert report.verdict.headline.startswith("The keep-out guard is wrong in 1 of 4 flights: ")
+    assert (report.verdict.tone, report.verdict.exit_status) == ("bad", 3)
     assert ("Violations with every premise of the guard held", "1", "0", False) in [
         (figure.name, figure.value, figure.limit, figure.met) for figure in report.verdict.figures
     ]

@@ -134,9 +134,9 @@ def test_a_trial_of_both_shapes_says_so_and_page_1_says_which_the_closest_flight
     )
     report = content(apart)
     # Without height a distance is shorter.
-    assert " m horizontal, from the keep-out cylinder's axis (" in report.verdict.detail
-    assert "Closest approach" in [figure.name for figure in report.verdict.figures]
-    assert "The keep-out cylinder or sphere is about her funnel" in report.picture.caption
+    (closest,) = [card for card in report.verdict.figures if card.name == "Closest approach"]
+    assert closest.note.endswith(", horizontal, from the keep-out cylinder's axis")
+    assert "The keep-out cylinder or sphere is about the funnel" in report.picture.caption
     (picker,) = blocks_of(report, FlightPicker)
     assert [flight.scene.keepout_shape for flight in picker.flights] == [shape for shape, _ in OWN]
 

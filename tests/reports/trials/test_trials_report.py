@@ -74,7 +74,7 @@ def test_of_nothing_flown_nothing_is_claimed(run):
     )
     empty = changed(run, summary=unflown)
     verdict = content(empty).verdict
-    assert not verdict.holds
+    assert verdict.tone == "bad"
     assert verdict.headline.startswith("Nothing was flown: of 4, 4 infeasible")
 
 
@@ -217,7 +217,7 @@ def test_a_run_without_any_history_and_with_a_trial_not_begun_is_reported_on(run
     interrupted = judged(replace(whole, summary=steady), interrupted=True).verdict
     (path / "verdict.json").write_text(json.dumps(interrupted.to_json()), encoding="utf-8")
     report = content(read_run(path))
-    assert not report.verdict.complete
+    assert report.verdict.tone != "good"
     assert "Turns: 2 of 2 not flown yet" in report.verdict.failures
     assert [
         section.anchor
@@ -320,13 +320,13 @@ def test_altitudes_that_have_to_be_kept_are_a_criterion_on_the_time_outside(run)
 def test_a_flight_has_one_name_in_a_report_which_is_that_of_its_files(report, run):
     text = json.dumps(
         [
-            report.verdict.detail,
+            [card.note for card in report.verdict.figures],
             report.verdict.failures,
             report.picture.caption,
             *(p.title for p in report.picture.panels),
         ]
     )
-    assert "in steady_0000" in text or "in turns_0000" in text
+    assert '"steady_0000' in text or '"turns_0000' in text
     (picker,) = blocks_of(report, FlightPicker)
     assert {flight.label.partition(" · ")[0] for flight in picker.flights} <= set(
         run.summary["flight_id"]
