@@ -621,10 +621,16 @@ def check_flyable(request: FlightRequest) -> None:
     InputError : it has some
     """
     scenario = request.scenario
-    if scenario.fault.kind != NO_FAULT.kind:
+    for number, fault in enumerate(scenario.faults):
+        if fault.kind != NO_FAULT.kind:
+            key = scenario.fault_key(number, "kind")
+            raise InputError(
+                f"{key} is '{fault.kind}'; a companion makes nothing fail: set {key}=none"
+            )
+    if scenario.has_traffic:
         raise InputError(
-            f"fault.kind is '{scenario.fault.kind}'; a companion makes nothing fail: set"
-            " fault.kind=none"
+            "the scenario has other ships, and a companion knows the measured one alone: leave"
+            " [[traffic]] out, and give a file of AIS reports in which she is alone"
         )
     if scenario.payload.instruments:
         names = ", ".join(scenario.payload.instruments)
