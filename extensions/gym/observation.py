@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from gymnasium import spaces
 
+from common.hull import ship_frame
 from scenarios.flight.closed_loop import ClosedLoop
 
 Array = npt.NDArray[np.float64]
@@ -27,7 +28,7 @@ MEANINGS: dict[str, tuple[str, str, float]] = {
         _DISTANCE,
     ),
     "clearance_m": (
-        "distance from the vessel less the keep-out radius, horizontal",
+        "distance from the vessel, or its hull, less the keep-out radius, horizontal",
         "m",
         _DISTANCE,
     ),
@@ -79,7 +80,7 @@ class Observer:
     Attributes
     ----------
     along, across : place of the last observation, as in ``MEANINGS`` [m]
-    distance : from the vessel in it, horizontal [m]
+    distance : from what the keep-out area is about in it, the vessel or its hull, horizontal [m]
     """
 
     def __init__(self, loop: ClosedLoop) -> None:
@@ -102,6 +103,10 @@ class Observer:
 
         self.along, self.across = turned(north - vessel_north, east - vessel_east)
         self.distance = math.hypot(self.along, self.across)
+        if plan.keepout_hull is not None:
+            seen = np.array(north - vessel_north), np.array(east - vessel_east)
+            heading = np.array(world.vessel.course(time))
+            self.distance = float(plan.keepout_hull.distance(*ship_frame(*seen, heading)))
         own, reference, course = guidance.own, (0.0, 0.0), axis
         if guidance.mission.orbit is not None:
             tracked = guidance.mission.tracker.reference
