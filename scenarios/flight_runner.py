@@ -44,7 +44,7 @@ from scenarios.instruments.instrument import (
 from scenarios.measures.criteria import failed_criteria
 from scenarios.measures.crossings import crossing_rows
 from scenarios.measures.figures import flight_figures, plan_row
-from scenarios.measures.finding import finding_figures
+from scenarios.measures.finding import TRUE_CO2, finding_figures
 from scenarios.measures.own_instruments import check_instruments, evaluated
 from scenarios.measures.traffic import traffic_record, traffic_rows
 from scenarios.planning.flight_plan import FlightPlan
@@ -168,7 +168,8 @@ class Findings:
         """Add how the plume was searched for and the fuel judged, in a flight with a gas reader."""
         plan, record, history = flown.plan, flown.record, self.history
         reader = next((each for each in flown.instruments if isinstance(each, GasReader)), None)
-        if reader is not None and history is not None:
+        # What was in the air is known of a simulated one alone.
+        if reader is not None and history is not None and TRUE_CO2 in history:
             self.row |= finding_figures(
                 history[:: plan.log_interval] if flown.every_step else history,
                 flown.request.scenario.flight,

@@ -5,6 +5,7 @@ import re
 import sys
 import tempfile
 from collections.abc import Sequence
+from contextlib import closing, nullcontext
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal, TypeVar
@@ -81,6 +82,13 @@ def vehicle(
     ] = None,
     flight: FlightOption = None,
     overrides: SetOption = None,
+    sniffer: Annotated[
+        str | None,
+        typer.Option(
+            metavar="udp://HOST:PORT",
+            help="Send what the scenario's sniffer reads there, in lines.",
+        ),
+    ] = None,
     log: LogOption = None,
 ) -> None:
     """Fly a scenario's aircraft, with its vessel and its air, as a MAVLink vehicle.
@@ -92,7 +100,7 @@ def vehicle(
         _need_pymavlink()
         status = _serve(
             scenario, listen, lockstep, mode, home, duration, parameters or [], flight,
-            overrides or [], log,
+            overrides or [], sniffer, log,
         )  # fmt: skip
     except RefusedError as error:
         status = refuse(error)
@@ -112,11 +120,12 @@ def _serve(
     parameters: Sequence[str],
     flight: str | None,
     overrides: Sequence[str],
+    sniffer: str | None,
     log: Path | None,
 ) -> int:
     from extensions.companion.plane import PlaneMode
     from extensions.companion.ports import Port, opened
-    from extensions.companion.simulation import COMPONENT, Server, Simulation
+    from extensions.companion.simulation import COMPONENT, Server, Simulation, send_readings
     from scenarios.engine.run_directory import RunDirectory
     from scenarios.flight_runner import FlightRunner
     from scenarios.studies.base import SingleFlight
@@ -130,6 +139,8 @@ def _serve(
         request = work.request(single.task)
         plan, setup = work.plan(request), work.setup_of(request)
         simulation = Simulation(plan, setup, home=origin, mode=PlaneMode[mode], parameters=given)
+        if sniffer is not None:
+            send_readings(simulation, request, plan, opened("--sniffer", sniffer, listening=False))
         line = opened("--listen", listen, listening=True)
         with Port(line, system=_SYSTEM, component=COMPONENT, log=log) as port:
             print(f"vehicle: {request.scenario.aircraft} at {listen}, mode {mode}", flush=True)
@@ -181,6 +192,13 @@ def companion(
     wait: Annotated[
         float, typer.Option(help="For how long vehicle, vessel and GUIDED are waited for, in s.")
     ] = 3600.0,
+    sniffer: Annotated[
+        str | None,
+        typer.Option(
+            metavar="udpin://HOST:PORT|serial://DEVICE:BAUD",
+            help="Where lines of a sniffer's readings come in: age_s,so2_ppb,co2_ppm,no_ppb,no2_ppb.",
+        ),
+    ] = None,
     out: Annotated[
         Path | None, typer.Option(help="Run directory; default runs/NAME-DATE-TIME.")
     ] = None,
@@ -199,7 +217,7 @@ def companion(
     try:
         _need_pymavlink()
         status = _fly(
-            scenario, connect, by, link, simulate_link, lockstep, mmsi, wait, out, flight,
+            scenario, connect, by, link, simulate_link, lockstep, mmsi, wait, sniffer, out, flight,
             overrides or [], log, no_report,
         )  # fmt: skip
     except RefusedError as error:
@@ -219,6 +237,7 @@ def _fly(
     lockstep: bool,
     mmsi: int | None,
     wait: float,
+    sniffer: str | None,
     out: Path | None,
     flight: str | None,
     overrides: Sequence[str],
@@ -239,7 +258,11 @@ def _fly(
     RunDirectory(directory).refuse_taken()
     single = _flight(CompanionFlight, name, overrides, flight)
     line = opened("--connect", connect, listening=False)
-    with Port(line, system=_SYSTEM, component=COMPONENT, log=log) as port:
+    readings = opened("--sniffer", sniffer, listening=False) if sniffer else None
+    with (
+        closing(readings) if readings else nullcontext(),
+        Port(line, system=_SYSTEM, component=COMPONENT, log=log) as port,
+    ):
         single.companion = Companion(
             link=VehicleLink(port, quality, lockstep=lockstep, simulated=simulated),
             quality=quality,
@@ -247,6 +270,7 @@ def _fly(
             lockstep=lockstep,
             mmsi=mmsi,
             patience=wait,
+            sniffer=readings,
             say=lambda words: print(words, flush=True),
         )
         single.companion.meet()

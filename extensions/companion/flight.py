@@ -17,6 +17,7 @@ from common.geodesy import LocalFrame
 from common.physics import bank_for_heading_rate
 from extensions.companion.fields import equivalent_over_true
 from extensions.companion.plane import PlaneMode
+from extensions.companion.ports import Line
 from extensions.companion.quality import Link
 from extensions.companion.remote_vehicle import (
     COURSE,
@@ -25,6 +26,7 @@ from extensions.companion.remote_vehicle import (
     Limits,
     RemoteVehicle,
 )
+from extensions.companion.sniffer_line import HeardSniffer
 from extensions.companion.vehicle_link import VehicleLink
 from gnc.estimation.vessel import ReachableSet, ReportedTarget, Tube, VesselReport
 from gnc.guidance import ReportedVessel
@@ -34,7 +36,7 @@ from scenarios.experiment.requests import FlightRequest
 from scenarios.flight.closed_loop import ClosedLoop, record_of
 from scenarios.flight.record import FlightRecord
 from scenarios.flight_runner import FlightRunner, Flown, payload_of, reader_of
-from scenarios.instruments.instrument import Instrument
+from scenarios.instruments.instrument import EvaluatedInstrument, Instrument
 from scenarios.planning.flight_plan import FlightPlan, Start
 from scenarios.planning.missions import check_start
 from scenarios.scenario.sections.equipment import SensorsConfig
@@ -50,6 +52,9 @@ _NEEDED = {
     "greatest airspeed [m/s]": ("AIRSPEED_MAX", "ARSPD_FBW_MAX"),
 }
 """Parameters without which no vehicle is flown, by what they say: their name, and the former one."""
+
+SNIFFER = "sniffer"
+"""The instrument whose readings may come on a line."""
 
 _LOITER_RADIUS, _GUIDED_TIMEOUT, _GUIDED_P = "WP_LOITER_RAD", "GUIDED_TIMEOUT", "GUIDED_P"
 _DEFAULTS = {_LOITER_RADIUS: 60.0, _GUIDED_TIMEOUT: 3.0, _GUIDED_P: 5000.0}
@@ -153,6 +158,7 @@ class Companion:
     lockstep : whether the vehicle's clock waits
     mmsi : of the vessel; None for the only one
     patience : for how long a vehicle, a vessel and GUIDED are waited for [s]
+    sniffer : line that its readings come on, or none
     say : tells the user what is going on
     """
 
@@ -162,6 +168,7 @@ class Companion:
     lockstep: bool
     mmsi: int | None
     patience: float
+    sniffer: Line | None = None
     say: Say
 
     # ------------------------------------------------------------ before the flight
@@ -451,6 +458,7 @@ class Companion:
             world=replace(
                 world,
                 place=place,
+                exhaust=None,
                 vessel=heard,
                 plume=HeardPlume(heard, self._plume_heading(plan)),
             ),
@@ -508,7 +516,10 @@ class CompanionRunner(FlightRunner):
         """Return a planned flight, flown on the vehicle."""
         with _asked_back() as asked_back:
             vehicle, plan, heard = self.companion.take_over(plan, asked_back)
-            instruments = payload_of(request, plan)
+            sniffer = self._sniffer(request)
+            instruments: list[Instrument | EvaluatedInstrument] = (
+                [sniffer] if sniffer else payload_of(request, plan)
+            )
             loop = ClosedLoop(
                 plan,
                 vehicle,
@@ -517,11 +528,13 @@ class CompanionRunner(FlightRunner):
                 every_step=every_step,
             )
             self._connect(loop, vehicle, heard, plan)
-            record = _flown(loop, vehicle)
+            record = _flown(loop, vehicle, sniffer)
             vehicle.finish()
         self.companion.say(f"given back: {vehicle.given_back}")
         if vehicle.extrapolated:
             self.companion.say(f"steps without telemetry of their own: {vehicle.extrapolated}")
+        if sniffer and sniffer.unreadable:
+            self.companion.say(f"lines of the sniffer that were no readings: {sniffer.unreadable}")
         return Flown(
             request=request,
             plan=plan,
@@ -529,6 +542,11 @@ class CompanionRunner(FlightRunner):
             record=record,
             every_step=every_step,
         )
+
+    def _sniffer(self, request: FlightRequest) -> HeardSniffer | None:
+        """Return the sniffer whose readings come on a line, in a flight that has one."""
+        line = self.companion.sniffer
+        return HeardSniffer(line, request.scenario) if line and _has_sniffer(request) else None
 
     @staticmethod
     def _connect(
@@ -550,7 +568,7 @@ class CompanionRunner(FlightRunner):
         vehicle.pass_reports_to(report)
 
 
-def _flown(loop: ClosedLoop, vehicle: RemoteVehicle) -> FlightRecord:
+def _flown(loop: ClosedLoop, vehicle: RemoteVehicle, sniffer: HeardSniffer | None) -> FlightRecord:
     """Fly; the flight ends where the vehicle is given back."""
     steps = loop.steps()
     follow = steps.send
@@ -558,6 +576,8 @@ def _flown(loop: ClosedLoop, vehicle: RemoteVehicle) -> FlightRecord:
         commands = next(steps)
         while True:
             loop.ending.given_back = vehicle.given_back
+            if sniffer is not None:
+                sniffer.hear(vehicle.time)
             commands = follow(commands)
     except StopIteration as over:
         return record_of(over)
@@ -600,7 +620,7 @@ class CompanionFlight(SingleFlight):
         parts = {field.name: getattr(work, field.name) for field in fields(FlightRunner)}
         runner = CompanionRunner(**parts, companion=self.companion)
         request = runner.request(self.task)
-        check_flyable(request)
+        check_flyable(request, heard=self.companion.sniffer is not None)
         plan = FlightRunner.plan(runner, request)
         if plan.sensing is not None and plan.sensing.received is None:
             raise InputError(
@@ -613,8 +633,13 @@ class CompanionFlight(SingleFlight):
         return runner
 
 
-def check_flyable(request: FlightRequest) -> None:
-    """Refuse a flight with parts that are simulated in a study, and would not be on a vehicle.
+def _has_sniffer(request: FlightRequest) -> bool:
+    return request.scenario.payload.instruments == (SNIFFER,)
+
+
+def check_flyable(request: FlightRequest, *, heard: bool) -> None:
+    """Refuse a flight with parts that are simulated in a study, and would not be on a vehicle;
+    ``heard`` says whether readings of a sniffer come on a line.
 
     Raises
     ------
@@ -632,9 +657,17 @@ def check_flyable(request: FlightRequest) -> None:
             "the scenario has other ships, and a companion knows the measured one alone: leave"
             " [[traffic]] out, and give a file of AIS reports in which she is alone"
         )
-    if scenario.payload.instruments:
-        names = ", ".join(scenario.payload.instruments)
+    if scenario.following.plume == "told":
         raise InputError(
-            f"payload.instruments has {names}, which a study simulates; a companion does not: set"
-            " payload.instruments=[]"
+            "following.plume is 'told', which only a simulation can; set predicted or estimated"
+        )
+    instruments = scenario.payload.instruments
+    if instruments and not (heard and _has_sniffer(request)):
+        raise InputError(
+            f"payload.instruments has {', '.join(instruments)}, which a study simulates; a companion"
+            " reads a sniffer on a line (--sniffer), and nothing else: set payload.instruments"
+        )
+    if heard and not instruments:
+        raise InputError(
+            '--sniffer: the scenario has no sniffer; set payload.instruments=["sniffer"]'
         )

@@ -150,6 +150,11 @@ class RemoteVehicle:
         """Time of the vehicle's clock that the step belongs to [s]."""
         return self._began + self._step * self._time_step
 
+    @property
+    def time(self) -> float:
+        """Time since the first step [s], of what is sent on board now."""
+        return self._link.now - self._began
+
     def motion(self) -> MeasuredMotion:
         """Return the motion at the step, in the local frame."""
         state = self._state

@@ -20,10 +20,15 @@ from extensions.companion.fields import (
     wind,
 )
 from extensions.companion.plane import ACCEPTED, DENIED, UNSUPPORTED, Plane, PlaneMode
-from extensions.companion.ports import Peer, Port
+from extensions.companion.ports import Line, Peer, Port
+from extensions.companion.sniffer_line import reading_line
 from gnc.estimation.vessel import VesselReport
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from scenarios.errors import InputError
+from scenarios.experiment.requests import FlightRequest
 from scenarios.flight.closed_loop import release
+from scenarios.flight_runner import payload_of
+from scenarios.instruments.instrument import GasReader
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 
@@ -527,3 +532,35 @@ class Server:
                 name.encode(), parameters[name], _PARAMETER, len(names), names.index(name)
             )
             self._port.send(value, peer)
+
+
+def send_readings(
+    simulation: Simulation, request: FlightRequest, plan: FlightPlan, line: Line
+) -> None:
+    """Have a flight's sniffer read along, and its readings be sent in lines.
+
+    Raises
+    ------
+    InputError : the flight has no sniffer
+    """
+    sniffers = [each for each in payload_of(request, plan) if isinstance(each, GasReader)]
+    if not sniffers:
+        raise InputError("--sniffer: the scenario has no sniffer; set payload.instruments")
+    sniffer, vehicle = sniffers[0], simulation.plane.vehicle
+    every = round(plan.time_step * plan.log_interval / simulation.plane.time_step)
+    step, sent = simulation.step, -math.inf
+    (peer,) = line.connected()
+
+    def stepped() -> None:
+        nonlocal sent
+        step()
+        if simulation.plane.steps % every:
+            return
+        now = simulation.time
+        if sniffer.follow(now, vehicle.motion(), vehicle.sample()):
+            new = sniffer.readings(math.nextafter(sent, math.inf))
+            for at, values in zip(new.time.tolist(), new.values.tolist(), strict=True):
+                line.send(reading_line(max(0.0, now - at), values), peer)
+                sent = at
+
+    simulation.step = stepped  # type: ignore[method-assign]

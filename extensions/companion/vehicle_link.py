@@ -14,6 +14,7 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from aircraft.state import euler_rates
 from extensions.companion.fields import AircraftState, VesselState, from_degrees_e7
 from extensions.companion.ports import Port
 from extensions.companion.quality import Link, SimulatedLink
@@ -26,6 +27,9 @@ _ASK_AGAIN, _GIVE_UP = 0.5, 10.0
 
 _JUMP = 1.0
 """By how much a vehicle's clock may differ from what is expected [s]; one that restarted does."""
+
+_ATTITUDE_AGE = 1.0
+"""Longest time over which a heading is extrapolated to its place [s]."""
 
 _IDLE = 0.05
 """Longest wait for a message [s]."""
@@ -275,6 +279,10 @@ class VehicleLink:
         if self.state is not None and stamp < self.state.time:
             # Overtaken on its way.
             return
+        rates = attitude.rollspeed, attitude.pitchspeed, attitude.yawspeed
+        # The last attitude may be older than the place: one was lost, or sent at another time.
+        older = min(_ATTITUDE_AGE, max(-_ATTITUDE_AGE, stamp - 1e-3 * attitude.time_boot_ms))
+        turned = older * euler_rates(rates, attitude.roll, attitude.pitch)[2]
         self.state = AircraftState(
             time=stamp,
             latitude=from_degrees_e7(message.lat),
@@ -286,8 +294,8 @@ class VehicleLink:
             climb=-0.01 * message.vz,
             roll=attitude.roll,
             pitch=attitude.pitch,
-            yaw=attitude.yaw,
-            rates=(attitude.rollspeed, attitude.pitchspeed, attitude.yawspeed),
+            yaw=attitude.yaw + turned,
+            rates=rates,
             airspeed=hud.airspeed,
             throttle=0.01 * hud.throttle,
         )

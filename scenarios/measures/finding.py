@@ -13,6 +13,9 @@ from scenarios.scenario.sections.flight import FlightConfig
 
 Array = npt.NDArray[np.float64]
 
+TRUE_CO2 = "co2_ppm"
+"""Column of what was in the air along the path, of a simulated sniffer."""
+
 SIGNAL_TO_NOISE = 5.0
 """Of a reading, from which the plume counts as detected [-] (Kattner 2015, of CO2)."""
 
@@ -77,7 +80,7 @@ def _detected(history: pd.DataFrame, noise: float, step: float) -> npt.NDArray[n
         _BASE_QUANTILE
     )
     there = (
-        (history["co2_ppm"] - history["co2_background_ppm"])
+        (history[TRUE_CO2] - history["co2_background_ppm"])
         .rolling(max(1, round(_MEMORY / step)), min_periods=1)
         .max()
     )

@@ -11,7 +11,7 @@ from typing import Any
 from extensions.companion import command
 from extensions.companion.plane import PlaneMode
 from extensions.companion.ports import Port, opened
-from extensions.companion.simulation import COMPONENT, Server, Simulation
+from extensions.companion.simulation import COMPONENT, Server, Simulation, send_readings
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.studies.base import SingleFlight
 from tests.in_process import run_command
@@ -49,7 +49,8 @@ def free_port(kind=socket.SOCK_STREAM):
 @contextmanager
 def served(scenario, *settings, lockstep=True, mode="GUIDED", scheme="tcp", flight=None,
            parameters=None, muted=(), home=HOME, change=lambda message: message,
-           at_step=lambda _: None, duration=1e6):  # fmt: skip
+           at_step=lambda _: None,
+    sniffer=None, duration=1e6):  # fmt: skip
     """Serve the vehicle of a flight.
 
     Parameters
@@ -58,6 +59,7 @@ def served(scenario, *settings, lockstep=True, mode="GUIDED", scheme="tcp", flig
     muted : times of the vehicle between which it tells nothing but its clock [s]
     change : of each message that it tells; None for none
     at_step : called before each step
+    sniffer : where the readings of the scenario's sniffer are sent, or none
     """
     single = command._flight(SingleFlight, scenario, list(settings), flight)
     with tempfile.TemporaryDirectory() as folder:
@@ -65,6 +67,9 @@ def served(scenario, *settings, lockstep=True, mode="GUIDED", scheme="tcp", flig
         request = work.request(single.task)
         simulation = Simulation(work.plan(request), work.setup_of(request), home=home,
                                 mode=PlaneMode[mode], parameters=parameters)  # fmt: skip
+        readings = sniffer and opened("--sniffer", sniffer, listening=False)
+        if readings:
+            send_readings(simulation, request, work.plan(request), readings)
     kind = socket.SOCK_DGRAM if scheme == "udp" else socket.SOCK_STREAM
     url = f"{scheme}://127.0.0.1:{free_port(kind)}"
     port = Port(opened("--listen", url, listening=True), system=1, component=COMPONENT)
@@ -104,6 +109,8 @@ def served(scenario, *settings, lockstep=True, mode="GUIDED", scheme="tcp", flig
         finally:
             server.stopping.set()
             thread.join()
+            if readings:
+                readings.close()
     assert not found.failures
 
 
