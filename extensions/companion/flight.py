@@ -627,6 +627,12 @@ class CompanionFlight(SingleFlight):
                 "this scenario knows the vessel exactly at all times; over a link it is known by"
                 " its reports: set reports.interval_s, as in --set reports.interval_s=[10,10]"
             )
+        if plan.world is not None and plan.world.traffic:
+            raise InputError(
+                f"the scenario has {len(plan.world.traffic)} ships besides the measured one, which a"
+                " companion does not know: leave [[traffic]] out, or give a file of AIS reports in"
+                " which the vessel is alone"
+            )
         self.companion.check_limits(
             FlightRunner.setup_of(runner, request), plan.heading_rate_max, plan.altitude
         )
@@ -652,11 +658,6 @@ def check_flyable(request: FlightRequest, *, heard: bool) -> None:
             raise InputError(
                 f"{key} is '{fault.kind}'; a companion makes nothing fail: set {key}=none"
             )
-    if scenario.has_traffic:
-        raise InputError(
-            "the scenario has other ships, and a companion knows the measured one alone: leave"
-            " [[traffic]] out, and give a file of AIS reports in which she is alone"
-        )
     if scenario.following.plume == "told":
         raise InputError(
             "following.plume is 'told', which only a simulation can; set predicted or estimated"
