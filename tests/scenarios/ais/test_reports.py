@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import asdict
+from datetime import UTC, datetime
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from common.physics import METRES_PER_SECOND_PER_KNOT
 from scenarios.errors import InputError
 from scenarios.scenario.files import CATALOG
 from scenarios.world.ais import ShipSize, read_ais
+from scenarios.world.ais.reports import read_others
 from scenarios.world.ais.synthetic import SYNTHETIC, danish_file, marine_cadastre_file
 
 PLAIN = "time_utc,mmsi,lat_deg,lon_deg,sog_kn,cog_deg"
@@ -565,3 +567,23 @@ def test_a_track_over_the_date_line_from_0_to_360_in_another_dialect_is_the_plai
     # Across the line longitudes go on from -180 degrees.
     expected = [179.99, 179.993465, 179.996931, -179.999604, -179.996139, -179.992674]
     assert np.degrees(found.longitude) == pytest.approx(expected, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    "written",
+    ["2026-06-01T12:{:02d}:00+02:00", "2026-06-01 10:{:02d}:00", "2026-06-01T10:{:02d}:00Z"],
+    ids=["with an offset", "without one", "of UTC"],
+)
+def test_other_ships_are_found_however_their_times_are_written(tmp_path, written):
+    """Lines of another hour are passed over unread; an hour with an offset may be of any."""
+    rows = [
+        f"{written.format(minute)},{mmsi},{55.0 + 0.001 * minute + at},10.0,10.0,0.0"
+        for minute in range(10)
+        for mmsi, at in ((219999001, 0.0), (219999002, 0.01))
+    ]
+    late = f"2026-06-01T23:00:00Z,219999003,{55.0},10.0,10.0,0.0"
+    path = tmp_path / "two.csv"
+    path.write_text("\n".join([PLAIN, *rows, late]) + "\n")
+    begin = datetime(2026, 6, 1, 10, 0, tzinfo=UTC).timestamp()
+    others = read_others(path, without=219999001, only=None, begin=begin, end=begin + 600.0)
+    assert [(reports.mmsi, len(reports.time)) for reports in others] == [(219999002, 10)]
