@@ -103,7 +103,7 @@ def test_a_lost_sign_beside_the_meridian_of_greenwich_is_asked_about(logged, tab
         ship, latitude=0.0 * ship.time + 50.5, longitude=0.0 * ship.time - 0.05
     )
     beside = table.assign(latitude_deg=50.5, longitude_deg=0.0501)
-    with pytest.raises(MeasurementError, match="7.1 km to .* with the other sign of longitude"):
+    with pytest.raises(MeasurementError, match=r"7\.1 km to .* with the other sign of longitude"):
         read(beside, logged, lying)
     assert read(beside.assign(longitude_deg=-0.0501), logged, lying)
 
