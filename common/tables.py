@@ -43,7 +43,7 @@ class TableFormat:
 
     Attributes
     ----------
-    separator : of columns: one letter, or "whitespace"
+    separator : of columns: one mark, or "whitespace"
     decimal : mark of decimals, "." or ","
     encoding : a name that Python knows
     time_format : of dates and times, as of ``datetime.strptime``
@@ -78,10 +78,13 @@ def table_format(given: Mapping[str, Any]) -> TableFormat:
             raise TableError(f"table.{key} is not known{did_you_mean(key, known)}")
         if not isinstance(value, str) or not value:
             raise TableError(f"table.{key} is {value!r}; it must be a text")
+        if not value.replace("\t", "").isprintable():
+            raise TableError(f"table.{key} is {value!r}; it must be a text of one line")
     chosen = TableFormat(**given)
-    if chosen.separator not in (None, "whitespace") and len(chosen.separator or "") != 1:
+    separator = chosen.separator
+    if separator not in (None, "whitespace") and not _is_mark(separator or ""):
         raise TableError(
-            f"table.separator is {chosen.separator!r}; it must be one letter, or 'whitespace'"
+            f"table.separator is {separator!r}; it must be one mark, as ';', or 'whitespace'"
         )
     if chosen.decimal not in (None, ".", ","):
         raise TableError(f"table.decimal is {chosen.decimal!r}; it must be '.' or ','")
@@ -89,13 +92,37 @@ def table_format(given: Mapping[str, Any]) -> TableFormat:
         raise TableError(
             f"table.time_unit is {chosen.time_unit!r}; it must be one of {', '.join(_TIME_UNITS)}"
         )
+    if chosen.time_format is not None:
+        _check_dated(chosen.time_format)
     if chosen.encoding is not None:
         try:
             # Refuses codecs that are none of text, too, as "hex".
             io.TextIOWrapper(io.BytesIO(), encoding=chosen.encoding)
-        except LookupError:
+        except (LookupError, UnicodeError):
             raise TableError(f"table.encoding is {chosen.encoding!r}; Python knows none") from None
     return chosen
+
+
+def _is_mark(separator: str) -> bool:
+    """Return whether a text can stand between columns, and in no number."""
+    return len(separator) == 1 and not separator.isalnum() and separator not in "\"'.-+"
+
+
+def _check_dated(pattern: str) -> None:
+    """Raise a TableError for a format of times by which days or years are the same."""
+    try:
+        days = {datetime(*day, tzinfo=UTC).strftime(pattern) for day in _DAYS}
+    except ValueError:
+        days = set()
+    if "%" not in pattern or len(days) < len(_DAYS):
+        raise TableError(
+            f"table.time_format is {pattern!r}; it must have year, month and day, as"
+            ' "%d.%m.%Y %H:%M:%S"; times of the day, as 12:00:00, need none'
+        )
+
+
+_DAYS = ((2026, 6, 1), (2026, 6, 2), (2026, 7, 1), (2025, 6, 1))
+"""Days that a format of times has to tell apart."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -110,6 +137,7 @@ class Moments:
     offset : whether the table says what they are off UTC; those without are taken as UTC
     leap : number of rows with a leap second
     plain : whether they are numbers of seconds in the table
+    numeric : whether they are numbers
     """
 
     seconds: Array
@@ -117,6 +145,7 @@ class Moments:
     offset: bool
     leap: int = 0
     plain: bool = False
+    numeric: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -226,7 +255,29 @@ class Table:
         ------
         TableError : a cell cannot be read
         """
-        return _times(self, name, day, self.format.time_format or usual)
+        moments = _times(self, name, day, self.format.time_format or usual)
+        if self.format.time_unit and not moments.numeric and len(self):
+            raise TableError(
+                f"table.time_unit is '{self.format.time_unit}', and times in column '{name}' are no"
+                f" numbers, but as {self.column(name)[0]!r}; leave it out"
+            )
+        return moments
+
+    def dated_times(self, name: str, *, usual: str = "") -> Array:
+        """Return a column as times since 1970 in UTC [s]; parameters as of ``times``.
+
+        Raises
+        ------
+        TableError : a cell cannot be read, or the times have no date
+        """
+        moments = self.times(name, usual=usual)
+        if not moments.dated and len(self):
+            raise TableError(
+                f"times in column '{name}' have no date, as {self.column(name)[0]!r} (row"
+                f" {self.lines[0]}); give dates and times, as 2026-06-01T12:00:00Z, or seconds"
+                " since 1970"
+            )
+        return moments.seconds
 
 
 _SEPARATOR_NAMES = {
@@ -278,7 +329,7 @@ def read_table(
     with text:
         try:
             return _read(text, given, encoding, keep, head)
-        except UnicodeDecodeError:
+        except UnicodeError:
             raise TableError(
                 f"not text in {encoding}; save it in UTF-8, or give table.encoding"
             ) from None
@@ -303,7 +354,7 @@ def _read(
         raise TableError("not a table as text; save it as CSV in UTF-8")
     separator, place = _layout([line for _, line in first], given.separator, head)
     head_line, heading = first[place]
-    names = [name.strip() for name in _cells(_uncommented(heading), separator)]
+    names = [name.strip("\ufeff \t\r\n\u00a0") for name in _cells(_uncommented(heading), separator)]
     while names and not names[-1]:
         names.pop()
     if not names:
@@ -481,6 +532,11 @@ def _layout(lines: list[str], given: str | None, head: Sequence[str]) -> tuple[s
             # A comment is a head only if nothing else would be one: of rows it is the first.
             score = named + (fitting + rows[place] + 0.5) / (sum(rows) + 1.0)
             best = max(best, (score, -place, count, separator), key=lambda of: of[:3])
+    if given and best[0] < 0.0:
+        raise TableError(
+            f"table.separator is {given!r}, which none of the first {len(lines)} lines has; leave"
+            " it out, or give the one that the table has"
+        )
     return best[3], -best[1]
 
 
@@ -722,7 +778,7 @@ def _numeric_times(table: Table, name: str, numbers: Array) -> Moments:
         _refuse_clock(table, name, numbers)
     seconds = _TIME_UNITS[unit] * numbers
     dated = _TIME_UNITS[unit] * least >= _UNIX_FROM
-    return Moments(seconds=seconds, dated=dated, offset=dated, plain=unit == "s")
+    return Moments(seconds=seconds, dated=dated, offset=dated, plain=unit == "s", numeric=True)
 
 
 def _time_unit_by_size(number: float) -> str:

@@ -85,11 +85,12 @@ def distance_words(places: LoggedPlaces, ship: ShipTrack) -> str:
     mistake, better = min(_mistaken(places, ship), key=lambda of: of[1])
     explained = better < min(DISTANCE_MOST, least / _NEARER)
     if least > DISTANCE_MOST or (least > _SUSPECT and explained):
-        fits = f"; with {mistake} it would be {_km(better)}" if explained else ""
+        beyond = f", and exhaust is measured within {_km(DISTANCE_MOST)} at most"
         raise MeasurementError(
             f"the log comes no nearer than {_km(least)} to {ship.name} (row"
-            f" {places.lines[nearest]}){fits}; exhaust is measured within {_km(DISTANCE_MOST)} at"
-            " most: correct places, times or the ship"
+            f" {places.lines[nearest]}){beyond if least > DISTANCE_MOST else ''}"
+            f"{f'; with {mistake} it would be {_km(better)}' if explained else ''}: correct places,"
+            " times or the ship"
         )
     when = "" if places.time is not None or not len(ship.time) else ", whenever it was there"
     return f"{_km(least)} to {_km(most)} from {ship.name}{when}"

@@ -303,7 +303,7 @@ def _rows(path: Path, table: Table) -> Iterator[_Row]:
         )
     there = {column: table.names[names.index(column)] for column in COLUMNS if column in names}
     nothing = np.full(len(table), math.nan)
-    times = table.times(there["time_utc"]).seconds if "time_utc" in there else nothing
+    times = table.dated_times(there["time_utc"]) if "time_utc" in there else nothing
     heights = table.numbers(there["height_m"]) if "height_m" in there else nothing
     speeds, directions = (table.numbers(there[column]) for column in _SPEED_AND_DIRECTION)
     # Where no wind blows it comes from nowhere.

@@ -276,7 +276,14 @@ def test_a_cell_that_is_no_number_is_named_with_its_row(tmp_path, cell, words):
     [
         ({"seperator": ";"}, "separator"),
         ({"decimal": "x"}, "'.' or ','"),
-        ({"separator": ";;"}, "one letter"),
+        ({"separator": ";;"}, "one mark"),
+        ({"separator": "1"}, "one mark"),
+        ({"separator": '"'}, "one mark"),
+        ({"separator": "\n"}, "a text of one line"),
+        ({"encoding": "utf8\0"}, "a text of one line"),
+        # Words of pandas, of which one guesses the order of day and month.
+        ({"time_format": "mixed"}, "must have year, month and day"),
+        ({"time_format": "%H:%M:%S"}, "must have year, month and day"),
         ({"time_unit": "h"}, "s, ms, us"),
         ({"encoding": "klingon"}, "Python knows none"),
         ({"time_format": 3}, "must be a text"),
@@ -395,6 +402,14 @@ def test_a_hard_file_is_read_right_or_refused_in_a_line(tmp_path, data, expected
     for name, values in expected.items():
         # Times of today have a microsecond's worth of digits.
         assert found[name] == pytest.approx(values, abs=1e-6, nan_ok=True)
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "punycode", "undefined", "ascii"])
+def test_a_table_in_another_encoding_than_is_given_is_refused(tmp_path, encoding):
+    path = tmp_path / "log.csv"
+    path.write_bytes("t,x,ö\n1:0,2,3\n".encode())
+    with pytest.raises(TableError, match=f"not text in {encoding}"):
+        read_table(path, table_format({"encoding": encoding}))
 
 
 def test_a_codec_that_is_none_of_text_is_no_encoding():

@@ -477,7 +477,7 @@ class TableConfig(Section):
     file: Annotated[TableKey | None, _TWO_TABLES] = None
     """The table that the other keys are of, where there are two; both if not given."""
     separator: str | None = None
-    """Separator of columns: one letter, or whitespace."""
+    """Separator of columns: one mark, or whitespace."""
     decimal: str | None = None
     """Mark of decimals: a point or a comma."""
     encoding: str | None = None

@@ -642,7 +642,7 @@ def _from_table(
     if layout.signed:
         speed = np.where(speed < 0.0, speed + _SIGNED_SPEED, speed)
         course = np.where(course < 0.0, course + _SIGNED_COURSE, course)
-    seconds = table.times(time, usual=layout.time_format).seconds
+    seconds = table.dated_times(time, usual=layout.time_format)
     columns = seconds, latitude, longitude_within(longitude), speed, course
     said = _said_by_rows(table, identities, columns, _sizes(table, heads))
     return _Contents(table.described(), said)

@@ -93,8 +93,19 @@ def test_a_log_that_lies_far_from_its_ship_is_refused_with_what_explains_it(
     said = str(refusal.value)
     assert words in said
     assert re.search(r"\(row \d+\)", said)
-    assert "exhaust is measured within 20.0 km at most" in said
+    assert ", and exhaust is measured within 20.0 km at most" in said
     assert "\n" not in said
+
+
+def test_a_lost_sign_beside_the_meridian_of_greenwich_is_asked_about(logged, table, ship):
+    # 7.1 km apart in the Channel, where exhaust might still be measured: 0.1 deg at 50.5 deg north.
+    lying = dataclasses.replace(
+        ship, latitude=0.0 * ship.time + 50.5, longitude=0.0 * ship.time - 0.05
+    )
+    beside = table.assign(latitude_deg=50.5, longitude_deg=0.0501)
+    with pytest.raises(MeasurementError, match=r"7\.1 km to .* with the other sign of longitude"):
+        read(beside, logged, lying)
+    assert read(beside.assign(longitude_deg=-0.0501), logged, lying)
 
 
 def test_a_log_of_another_time_than_the_ships_file_is_refused_with_both(table, logged, ship):

@@ -108,11 +108,16 @@ def test_reports_are_read_as_the_scenario_and_python_say(tmp_path):
 @pytest.mark.parametrize(
     ("key", "value", "words"),
     [
-        ("separator", ";;", "table.separator is ';;'; it must be one letter, or 'whitespace'"),
+        (
+            "separator",
+            ";;",
+            "table.separator is ';;'; it must be one mark, as ';', or 'whitespace'",
+        ),
         ("separator", "", "table.separator is ''; it must be a text"),
         ("decimal", ";", "table.decimal is ';'; it must be '.' or ','"),
         ("encoding", "hex", "table.encoding is 'hex'"),
         ("encoding", "utf-9", "table.encoding is 'utf-9'"),
+        ("time_format", "%H:%M", "table.time_format is '%H:%M'; it must have year, month and day"),
         ("time_unit", "min", "table.time_unit is 'min'; it must be one of s, ms, us"),
         ("separator", 5, "table.separator is 5; input should be a valid string"),
         ("file", "wind", "table.file is 'wind'; input should be 'vessel.track' or 'wind.table'"),
@@ -124,6 +129,42 @@ def test_values_that_cannot_be_are_refused_with_the_key_and_the_limit(tmp_path, 
         east_wind(tmp_path, DIALECTS["milliseconds"][0], {key: value})
     assert words in str(refusal.value)
     assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    ("dialect", "table", "words"),
+    [
+        ("milliseconds", {"separator": ";"}, "table.separator is ';', which none of the first 3"),
+        ("milliseconds", {"encoding": "utf-16"}, "not text in utf-16"),
+        ("milliseconds", {"time_format": "%d.%m.%Y"}, "time '1780304400000' in column 'time_utc'"),
+        ("milliseconds", {"time_unit": "us"}, "have no date, as '1780304400000' (row 2)"),
+        (
+            "order of day and month",
+            {"time_format": "%d.%m.%Y %H:%M", "time_unit": "s"},
+            "table.time_unit is 's', and times in column 'time_utc' are no numbers",
+        ),
+        ("order of day and month", {}, 'table.time_format = "%d.%m.%Y %H:%M"'),
+    ],
+)
+def test_keys_that_contradict_the_table_are_refused(tmp_path, dialect, table, words):
+    scenario = east_wind(tmp_path, DIALECTS[dialect][0], table)
+    with pytest.raises(InputError) as refusal:
+        mean_wind(scenario, vessel_of(scenario))
+    assert words in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
+def test_times_of_reports_and_of_a_wind_need_a_date(tmp_path):
+    text = DIALECTS["milliseconds"][0].replace("1780304400000", "09:00:00")
+    scenario = east_wind(tmp_path, text.replace("1780318800000", "13:00:00"), {})
+    with pytest.raises(InputError, match=r"wind\.csv: times in column 'time_utc' have no date"):
+        mean_wind(scenario, vessel_of(scenario))
+    # Days since 1900, as spreadsheets have them.
+    rows = [f"46174.{part};219999001;57,{part};11,3;12,0;0,0" for part in (416667, 416782)]
+    head = "time_utc;mmsi;lat_deg;lon_deg;sog_kn;cog_deg"
+    (tmp_path / "ship.csv").write_text("\n".join([head, *rows]), encoding="utf-8")
+    with pytest.raises(InputError, match=r"ship\.csv: times in column 'time_utc' have no date, as"):
+        read_ais(tmp_path / "ship.csv")
 
 
 def test_keys_of_tables_without_a_table_have_no_effect_and_are_refused(tmp_path):
