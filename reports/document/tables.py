@@ -267,7 +267,8 @@ def parameter_value(value: Any, key: str = "") -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, list):
-        between = " to " if key in _RANGES else ", "
+        # The entries of a list have the keys of one.
+        between = " to " if re.sub(r"\.\d+\.", ".", key) in _RANGES else ", "
         return between.join(_entry_in_words(entry) for entry in value) or "none"
     if isinstance(value, Mapping):
         return ", ".join(f"{name} = {_in_braces(of, name)}" for name, of in value.items()) or "none"

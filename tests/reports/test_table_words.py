@@ -32,6 +32,7 @@ def test_a_parameter_is_written_in_words(value, words):
     ("key", "words"),
     [
         ("fault.at_s", "100 to 250"),
+        ("fault.1.at_s", "100 to 250"),
         ("start.place_m", "100, 250"),
         ("sweep.keepout.radius_m", "100, 250"),
     ],

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
-from flight_cases import fly
+from flight_cases import fly, scenario
 
 from scenarios.errors import InputError
 from scenarios.scenario.files import CATALOG
@@ -13,6 +13,7 @@ from scenarios.scenario.sections.world import VesselConfig
 from scenarios.world.ais.synthetic import SYNTHETIC
 from scenarios.world.ais.track import ais_vessel, with_size_of_file
 from scenarios.world.vessel import largest_inconsistency
+from scenarios.world.world import vessel_of
 
 DANISH, MARINE = "synthetic_danish.csv", "synthetic_marine_cadastre.csv"
 HOUR = 3600.0
@@ -152,3 +153,17 @@ def test_a_funnel_outside_of_the_hull_that_a_file_says_is_refused_with_both(size
         with_size_of_file(sized_file.model_copy(update={"stack_from_bow_m": 500.0}))
     assert f"{sized_file.track} says 120 m by 18 m" in str(told.value)
     assert "\n" not in str(told.value)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"keepout": {"from": "hull"}}, r"keepout\.from 'hull' needs the size of the ship"),
+        ({"vessel": {"stack_from_bow_m": 90.0}}, r"vessel\.stack_from_bow_m needs the size"),
+    ],
+)
+def test_a_file_without_a_size_is_refused_where_one_is_needed(changes, words):
+    track = {"track": str(CATALOG / "ais" / DANISH), "mmsi": SYNTHETIC[DANISH]}
+    given = scenario(**{**changes, "vessel": track | changes.get("vessel", {})})
+    with pytest.raises(InputError, match=words):
+        vessel_of(given)

@@ -213,3 +213,28 @@ def test_reports_measure_the_distance_from_the_hull_as_the_flight_does():
     nearest = 200.0 + flown.row["crossing_clearance_min_m"]
     assert found.min() == pytest.approx(flown.row["min_distance_m"], abs=0.02)
     assert found.min() <= nearest
+
+
+def test_a_size_alone_changes_no_bit_of_a_flight(point):
+    sized = {**TRACK, "length_m": 120.0, "beam_m": 18.0}
+    flown = fly(vessel=sized, **SEA)
+    assert flown.history[list(point.history)].equals(point.history)
+    assert set(flown.history) - set(point.history) == {"vessel_heading_rad"}
+    same = {name: repr(value) for name, value in point.row.items() if name != "wall_time_s"}
+    assert {name: repr(flown.row[name]) for name in same} == same
+
+
+def test_a_circle_about_the_ship_keeps_r_min_from_the_bow():
+    vessel = {"speed_mps": 7.0, "length_m": 120.0, "beam_m": 18.0}
+    flown = fly(
+        vessel=vessel,
+        keepout={"from": "hull", "shape": "cylinder"},
+        guidance={"mission": "standoff"},
+        start={"distance_m": (500.0, 600.0)},
+        flight={"crossings": 0, "duration_max_s": 250.0},
+    )
+    assert flown.row["keepout_shape"] == "hull prism"
+    assert flown.row["keepout_violations"] == 0
+    # About the funnel, 96 m from the bow: most of the circle is farther from the hull.
+    assert 200.0 <= flown.row["min_distance_m"] < 260.0
+    assert flown.row["horizontal_distance_min_m"] >= flown.row["guarded_radius_m"]

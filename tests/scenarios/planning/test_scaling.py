@@ -34,7 +34,9 @@ NOT_SCALED = {
     "turbulence.gust_speed_mps", "turbulence.gust_length_s", "reports.interval_s", "reports.position_sigma_m",
     "wind.stability_per_s", "reports.velocity_sigma_mps",
     "reports.latency_max_s", "sensors.position_sigma_m", "sensors.velocity_sigma_mps",
-    "sensors.airspeed_sigma_mps", "sensors.airspeed_bias_mps", "fault.at_s", "fault.vessel_data_s", "fault.satellite_navigation_s",
+    "sensors.airspeed_sigma_mps", "sensors.airspeed_bias_mps", "vessel.length_m", "vessel.beam_m", "vessel.stack_from_bow_m", "vessel.stack_from_port_m",
+    "vessel.antenna_from_bow_m", "vessel.antenna_from_port_m", "reports.turn_rate_sigma_deg_s",
+    "fault.at_s", "fault.vessel_data_s", "fault.satellite_navigation_s",
     # What a ship does, how well it is known, and how often the keep-out area may be touched.
     "following.apparent_wind_min_mps", "following.vessel_acceleration_mps2", "following.vessel_speed_max_mps",
     "following.speed_error_mps", "following.drift_rate_mps", "following.touches_per_hour", "statistics.distance_quantile_width_m",
