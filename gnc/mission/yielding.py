@@ -171,9 +171,10 @@ class Yielding:
         soon = _SOON + (_CLEAR if self.to else 0.0)
         areas = [self._area(vessel, time, own.ground_north, own.ground_east) for vessel in near]
         wanted = self._wanted(order, own, target, orbit)
-        if order.heading_rate is TRACK:
+        blocking: int | None = None
+        if order.mode not in LEAVING and _is_near(own, target, orbit):
             blocking = self._entering(target, orbit, own, areas, soon)
-        else:
+        if blocking is None and order.heading_rate is not TRACK:
             blocking = _in_the_way(wanted, own, areas, soon)
         if blocking is None:
             self.to, self._side = "", 0.0
@@ -262,6 +263,13 @@ class Yielding:
         self._course = best if least_cost < math.inf else clearest
         off = wrap(self._course - wanted)
         self._side = math.copysign(1.0, off) if off else self._side
+
+
+def _is_near(own: OwnMotion, target: TargetMotion, orbit: OrbitStatus) -> bool:
+    """Return whether the vehicle may be on its orbit within the horizon."""
+    north = target.north + orbit.centre.x - own.ground_north
+    east = target.east + orbit.centre.y - own.ground_east
+    return math.hypot(north, east) < HORIZON * own.speed
 
 
 def _clearance(course: float, own: OwnMotion, areas: Sequence[Area], duration: float) -> float:

@@ -16,6 +16,7 @@ from common.run_layout import (
     LOGO,
     SAMPLES,
     STATISTICS,
+    TRAFFIC,
     WORST,
 )
 from reports.document.blocks import Block, Section, Table, Text
@@ -31,6 +32,7 @@ _SHOWN: Mapping[str, str] = {
     COMPARISON: "comparisons",
     CROSSINGS: "crossings in the figures of single flights",
     INTERVENTIONS: "nothing: the report counts interventions by flight",
+    TRAFFIC: "nothing: the report has closest approaches from the flights",
     DRAWS: "figures over swept and sampled keys",
     FLIGHTS: "figures of this flight over time",
     WORST: "nothing: a scenario file of one of the worst flights",

@@ -136,8 +136,8 @@ def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Cr
 
     Keep-out, guard and limits count from the first second, and crossings from settling. Tracking,
     airspeed and altitude count from settling until the vehicle leaves for good, but not while it
-    gives way to other ships, until it is back within the settling band. Nor do intervals between
-    crossings with such a time in them.
+    gives way to other ships, until it is back within the settling band. Intervals between crossings
+    count until it first does so.
 
     Returns
     -------
@@ -415,10 +415,10 @@ def _crossing_figures(
         times = np.array([crossing.time for crossing in crossings[: last + 1]])
         intervals = np.diff(times)
         if yielded.any():
-            before = np.cumsum(yielded)[np.searchsorted(record.column("time_s"), times) - 1]
-            # Of whole periods, too: its halves may take different times.
-            period = np.arange(len(intervals)) // alike
-            intervals = intervals[~np.isin(period, period[np.diff(before) > 0])]
+            # The orbit closes in again after that, which takes some periods.
+            left = record.column("time_s")[int(np.argmax(yielded))]
+            whole_periods = (np.count_nonzero(times < left) - 1) // alike * alike
+            intervals = intervals[: max(0, whole_periods)]
         if len(intervals):
             row |= {
                 "crossing_interval_mean_s": float(np.mean(intervals)),

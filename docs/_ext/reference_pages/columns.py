@@ -9,6 +9,7 @@ from reports.export.tracks_csv import COLUMNS as TRACK_COLUMNS
 from scenarios.flight.guard_belief import GuardBelief
 from scenarios.flight.onboard import BELIEF_COLUMNS
 from scenarios.flight.record import HISTORY_COLUMNS
+from scenarios.flight.traffic_belief import TrafficBelief
 from scenarios.instruments.sniffer import SnifferOnBoard
 from scenarios.measures.columns import (
     CROSSING_COLUMNS,
@@ -20,6 +21,8 @@ from scenarios.measures.columns import (
     INTERVENTION_COLUMNS,
     SEARCH_COLUMNS,
     SUMMARY_COLUMNS,
+    TRAFFIC_COLUMNS,
+    TRAFFIC_FIGURES,
     further_faults,
 )
 from scenarios.statistics.estimates import TABLE_COLUMNS as PREMISE_COLUMNS
@@ -51,12 +54,15 @@ def tables() -> dict[str, Table]:
         "derived figures": DERIVED_COLUMNS,
         "crossings.csv": CROSSING_COLUMNS,
         "interventions.csv": INTERVENTION_COLUMNS,
+        "summary.csv, of flights with other ships": TRAFFIC_FIGURES,
+        "traffic.csv": TRAFFIC_COLUMNS,
         "draws.csv": INPUT_COLUMNS | SEARCH_COLUMNS,
         "overrides.csv": FLIGHT_COLUMNS,
         sulphur: FLIGHT_COLUMNS | of_sulphur,
         "flights/ID.parquet": HISTORY_COLUMNS,
         "flights/ID.parquet, of flights with a sniffer": SnifferOnBoard.COLUMNS,
         "flights/ID.parquet, of flights with a keep-out guard": GuardBelief.COLUMNS,
+        "flights/ID.parquet, of flights with other ships": TrafficBelief.COLUMNS,
         "flights/ID.parquet, of flights that search for the plume": BELIEF_COLUMNS,
         "premises.csv": PREMISE_COLUMNS,
         "samples.csv of the log of a flight": described(SAMPLE_MEANINGS),

@@ -41,6 +41,7 @@ wind = { speed_mps = 4.0, from_deg = 60.0 }
 reports.interval_s = [2.0, 5.0]
 following.vessel_acceleration_mps2 = 0.15
 fault = { kind = "satellite_navigation", at_s = [70.0, 80.0] }
+traffic = [{ place_m = [700.0, 700.0], course_deg = 10.0, manoeuvres = [{ at_s = 2.0, turn_deg = 20.0, speed_mps = 7.0 }] }]
 flight.crossings = 0
 start.distance_m = [300.0, 400.0]
 """,
@@ -121,6 +122,12 @@ VALUES = {
     "vessel.length_m": 120.0, "vessel.beam_m": 18.0, "vessel.stack_from_bow_m": 90.0, "vessel.stack_from_port_m": 4.0,
     "vessel.antenna_from_bow_m": 20.0, "vessel.antenna_from_port_m": 3.0, "keepout.from": "stack",
     "reports.heading_sigma_deg": 3.0, "reports.turn_rate_sigma_deg_s": 0.2,
+    "traffic": [{"place_m": [900.0, 900.0]}], "traffic.0.name": "other", "traffic.0.track": "lane.csv", "traffic.0.mmsi": 219999001,
+    "traffic.0.place_m": [400.0, 800.0], "traffic.0.latitude_deg": 57.0, "traffic.0.longitude_deg": 11.0,
+    "traffic.0.speed_mps": 6.0, "traffic.0.course_deg": 200.0, "traffic.0.radius_m": 120.0,
+    "traffic.0.manoeuvres": [{"at_s": 3.0, "turn_deg": 30.0}],
+    "traffic.0.manoeuvres.0.at_s": 3.0, "traffic.0.manoeuvres.0.turn_deg": 30.0, "traffic.0.manoeuvres.0.turn_rate_deg_s": 0.4,
+    "traffic.0.manoeuvres.0.speed_mps": 6.0, "traffic.0.manoeuvres.0.acceleration_mps2": 0.1, "keepout.other_radius_m": 150.0,
     "plume.direction": "apparent_wind", "plume.heading_deg": 170.0, "plume.elevation_deg": 10.0, "plume.source_height_m": 80.0,
     "emission.ship": "cruise", "emission.fuel": "mgo", "emission.sulphur_percent": 0.2, "emission.load": 0.5,
     "wind.temperature_c": 30.0, "wind.stability_per_s": 0.03, "flight.after_settling_s": 60.0, "flight.measured_s": 15.0,
@@ -215,6 +222,9 @@ ELSEWHERE = {
 """Kinds of study, texts, experiments, parts, reports and exports, which tests of their own are about
 (test_extension_points, test_experiments, test_report_settings, test_heights)."""
 
+LISTS = {"vessel.manoeuvres", "traffic", "traffic.0.manoeuvres"}
+"""Keys of lists of tables, whose keys are keys as well."""
+
 LEVEL = {"criteria.airspeed_error_rms_mps", "criteria.altitude_error_max_m"}
 """Criteria that the kinematic vehicle always meets: it is level and as fast as commanded."""
 
@@ -276,9 +286,9 @@ def test_every_key_has_another_value_here():
     keys = {
         key
         for key in known_keys(Scenario)
-        if key not in sections | {"vessel.manoeuvres"} and not key.startswith(entries)
+        if key not in sections | LISTS and not key.startswith(entries)
     }
-    assert keys - ELSEWHERE == VALUES.keys() - {"vessel.manoeuvres"}
+    assert keys - ELSEWHERE == VALUES.keys() - LISTS
 
 
 def beginning_of(base):
