@@ -212,7 +212,7 @@ def test_a_design_flies_as_many_reversals_as_a_thousand_seconds_hold(bank_deg, a
 
 
 def test_a_repeated_search_reports_part_by_part_and_counts_all(designs, x8_root, monkeypatch):
-    monkeypatch.setattr(turn_reversal, "PART", 8)
+    monkeypatch.setattr(turn_reversal, "REVERSALS_PER_TASK", 8)
     told = []
     made = designs("x8")
     found = repeat_search(
