@@ -69,6 +69,9 @@ _PATIENCE = 10.0
 _ASK_INTERVAL, _LOOK = 1.0, 0.1
 """Time between requests, and between looks at whether something has come [s]."""
 
+_FRESH = 1.5
+"""Age up to which a place is of now, over the time step of the guidance [-]."""
+
 _VELOCITY_MAX = 0.3
 """Difference from the scenario's velocity up to which a steady vessel counts as that one [m/s]."""
 
@@ -323,6 +326,14 @@ class Companion:
         )
         if asked_back():
             raise InputError("given back on request, before the vehicle was in GUIDED")
+        fresh = _FRESH * plan.time_step
+        self._wait(
+            lambda: (
+                self.lockstep or (link.state is not None and link.now - link.state.time < fresh)
+            ),
+            _PATIENCE,
+            f"the vehicle did not tell its place every {plan.time_step:g} s",
+        )
         assert link.state is not None
         began = link.now if self.lockstep else link.state.time
         frame, mmsi = self._frame(plan, began)

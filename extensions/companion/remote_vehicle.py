@@ -362,7 +362,9 @@ class RemoteVehicle:
             self.given_back = f"the pilot took over (mode {_mode_name(link.mode)})"
         elif link.rival is not None:
             self.given_back = f"another companion ({link.rival[0]}/{link.rival[1]}) is on the link"
-        elif link.gone or silent > self._limits.silent_after:
+        elif link.gone:
+            self.given_back = "the vehicle no longer answers"
+        elif silent > self._limits.silent_after:
             self._leave(f"telemetry was silent for {silent:.1f} s")
         elif self._asked_back():
             self._leave("given back on request")
@@ -376,8 +378,6 @@ class RemoteVehicle:
         """Send the vehicle to its retreat, and turn it away until that is what it flies."""
         self.given_back = reason
         motion, link = self.motion(), self._link
-        if link.gone:
-            return
         self._retreat_at = -math.inf
         course = math.atan2(motion.velocity_east, motion.velocity_north)
         away = course

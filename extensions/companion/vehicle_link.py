@@ -22,8 +22,10 @@ from extensions.companion.quality import Link, SimulatedLink
 COMPONENT = mavlink.MAV_COMP_ID_ONBOARD_COMPUTER
 
 _HEARTBEAT_INTERVAL = 1.0
-_ASK_AGAIN, _GIVE_UP = 0.5, 10.0
-"""After how long a vehicle in lockstep is asked once more for its time, and counts as gone [s]."""
+_ASK_AGAIN, _GIVE_UP = 0.5, 60.0
+"""After how long a vehicle in lockstep is asked once more for its time, and counts as gone [s]: it may
+have to compute for long.
+"""
 
 _JUMP = 1.0
 """By how much a vehicle's clock may differ from what is expected [s]; one that restarted does."""
@@ -163,15 +165,17 @@ class VehicleLink:
                 self._deliver()
                 if self.now >= until - 1e-9 or self.gone:
                     return
-        while not enough():
+        # What has come already is taken first: a step that is late must not make the next one late.
+        left = 0.0
+        while True:
+            for _, message in self._port.receive(min(left, _IDLE)):
+                self._receive(message)
             self.now = self._estimate()
             self._flush()
             self._deliver()
             left = until - self.now
             if left <= 0.0 or enough():
                 return
-            for _, message in self._port.receive(min(left, _IDLE)):
-                self._receive(message)
 
     def _estimate(self) -> float:
         if self._offset is None:
