@@ -231,7 +231,7 @@ def paper_statements(run: RunData) -> list[Statement]:
 
 
 def _statement(
-    rows: Mapping[str, Row],
+    rows: Mapping[str, Any],
     flown: Sequence[str],
     case: str,
     words: str,
