@@ -9,7 +9,7 @@ PYTHON ?= $(or $(SYSTEM_PYTHON),python3)
 BIN := .venv/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt
 
-.PHONY: sweep_nu test fast check docs bench lock clean
+.PHONY: sweep_nu test fast check docs bench package lock clean
 
 sweep_nu: .venv
 	@$(BIN)/python -m scenarios.run sweep_nu
@@ -40,6 +40,15 @@ bench: .venv/.developer
 	@[ -n "$$PLUME_FLIGHT_SOURCES" ] || $(BIN)/python -c 'import gnc.compiled as c; c.compiled_modules() or exit(1)' || \
 		$(MAKE) --no-print-directory fast || true
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python -m benchmarks.closed_loop
+
+# Builds sdist and wheel, installs the wheel into an empty environment, and flies from it in an empty directory.
+package: .venv/.developer
+	@rm -rf build/package && mkdir -p build/package/empty
+	@$(BIN)/python -m build --outdir build/package . > build/package/log 2>&1 || { tail -5 build/package/log; exit 1; }
+	@$(PYTHON) -m venv build/package/.venv
+	@build/package/.venv/bin/python -m pip install --quiet --disable-pip-version-check -c constraints.txt build/package/*.whl
+	@cd build/package/empty && ../.venv/bin/plume-flight run sweep_nu
+	@ls build/package/*.whl build/package/*.tar.gz
 
 .venv: .venv/.installed
 

@@ -148,8 +148,10 @@ def _report(times: dict[str, list[float]]) -> None:
         )
     scaled = REFERENCE_STEP * over_raw * SIMULATED_TIME / TIME_STEP
     print(
-        f"a flight of {SIMULATED_TIME:g} s: {median:.3f} s, {over_raw:.2f} times JSBSim alone (limit {LOOP_MAX:g});"
-        f" {scaled:.3f} s where a step of JSBSim takes {1e6 * REFERENCE_STEP:g} us (limit {FLIGHT_MAX:g} s)"
+        f"a flight of {SIMULATED_TIME:g} s: {median:.3f} s, {over_raw:.2f} times JSBSim alone"
+        f" (limit {LOOP_MAX:g});"
+        f" {scaled:.3f} s where a step of JSBSim takes {1e6 * REFERENCE_STEP:g} us (limit"
+        f" {FLIGHT_MAX:g} s)"
     )
 
 

@@ -53,7 +53,10 @@ def main() -> int:
         try:
             built = build(Path(folder))
         except (BaseError, CompileError, LinkError) as error:
-            remedy = "it needs a C compiler and the headers of Python (Debian: apt install gcc python3-dev)"
+            remedy = (
+                "it needs a C compiler and the headers of Python (Debian: apt install gcc"
+                " python3-dev)"
+            )
             print(
                 f"error: guidance and closed loop cannot be compiled: {error}; {remedy}",
                 file=sys.stderr,
@@ -70,13 +73,14 @@ def main() -> int:
     write_json(INDEX, {"sources": sources, "modules": modules})
     count = sum(len(names) for names in MODULES.values())
     print(
-        f"{count} modules of guidance and closed loop are compiled; they are run until a source of the program is edited"
+        f"{count} modules of guidance and closed loop are compiled; they are run until a source"
+        " of the program is edited"
     )
     return 0
 
 
 def build(folder: Path) -> Path:
-    """Compile the modules in a folder of their own, and return the one that holds them by packages."""
+    """Compile the modules in a folder of their own; return the one that holds them by packages."""
     files = [
         str(ROOT / package / f"{name}.py") for package, names in MODULES.items() for name in names
     ]

@@ -157,8 +157,14 @@ def limits(guidance: GuidanceConfig) -> dict[str, object]:
             else None
         )
     return {
-        "what": "shortest crossing interval times omega_max, two crossings a period, by speed ratio; null where not solved for",
-        "source": f"python -m benchmarks.crossing_limit --write; CasADi {version('casadi')} with IPOPT, {PIECES} pieces a period",
+        "what": (
+            "shortest crossing interval times omega_max, two crossings a period, by speed"
+            " ratio; null where not solved for"
+        ),
+        "source": (
+            f"python -m benchmarks.crossing_limit --write; CasADi {version('casadi')} with"
+            f" IPOPT, {PIECES} pieces a period"
+        ),
         "bank_deg": guidance.bank_deg,
         "roll_rate_over_omega_max": round(ratio, 6),
         "nu": list(RATIOS),
@@ -249,7 +255,8 @@ def main() -> None:
         CROSSING_LIMITS.write_text(json.dumps(limits(guidance), indent=1) + "\n", encoding="utf-8")
     found = json.loads(CROSSING_LIMITS.read_text(encoding="utf-8"))
     print(
-        "| nu | optimal control, oscillating | fastest | optimal control, going round | loiter | sinusoid |"
+        "| nu | optimal control, oscillating | fastest | optimal control, going round | loiter"
+        " | sinusoid |"
     )
     print("|---|---|---|---|---|---|")
     for i, nu in enumerate(found["nu"]):

@@ -51,8 +51,10 @@ def report_engine(rounds: int, jsbsim: Callable[[], float]) -> None:
         statistics.median(a / b for a, b in zip(one, times, strict=True)) for times in (two, bare)
     )
     print(
-        f"{FLIGHTS} flights of 300 s, journal and tables included, {rounds} interleaved rounds: {statistics.median(one):.2f} s with"
-        f" one process, {statistics.median(two):.2f} s with two, a speed-up of {ratio:.2f}; two processes without the engine reach"
+        f"{FLIGHTS} flights of 300 s, journal and tables included, {rounds} interleaved rounds:"
+        f" {statistics.median(one):.2f} s with"
+        f" one process, {statistics.median(two):.2f} s with two, a speed-up of {ratio:.2f}; two"
+        " processes without the engine reach"
         f" {bare_ratio:.2f}"
     )
     with tempfile.TemporaryDirectory() as folder:
@@ -67,8 +69,10 @@ def report_engine(rounds: int, jsbsim: Callable[[], float]) -> None:
     over_jsbsim = statistics.median(a / b for a, b in zip(seconds, alone, strict=True))
     scaled = REFERENCE_STEP / TIME_STEP * over_jsbsim
     print(
-        f"a flight over the sea: {1e3 * starting:.1f} ms to start and to evaluate, {1e3 * per_second:.3f} ms per simulated second,"
-        f" {over_jsbsim:.2f} times JSBSim alone; {1e3 * scaled:.3f} ms where a step of JSBSim takes {1e6 * REFERENCE_STEP:g} us"
+        f"a flight over the sea: {1e3 * starting:.1f} ms to start and to evaluate,"
+        f" {1e3 * per_second:.3f} ms per simulated second,"
+        f" {over_jsbsim:.2f} times JSBSim alone; {1e3 * scaled:.3f} ms where a step of JSBSim"
+        f" takes {1e6 * REFERENCE_STEP:g} us"
         f" (limit {1e3 * SECOND_MAX:g} ms)"
     )
 

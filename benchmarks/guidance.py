@@ -98,7 +98,8 @@ def report_guidance(rounds: int, setup: VehicleSetup) -> None:
     of_paper, of_following = (statistics.median(times) for times in zip(*pairs, strict=True))
     added = statistics.median((b - a) / a for a, b in pairs)
     print(
-        f"a step of the guidance: {of_paper:.1f} us in the paper's composition, {of_following:.1f} us in the one that follows a"
+        f"a step of the guidance: {of_paper:.1f} us in the paper's composition,"
+        f" {of_following:.1f} us in the one that follows a"
         f" plume, {100.0 * added:.0f} % more"
     )
     for name, speed in (("slow", 3.0), ("fast", 12.0)):
@@ -109,7 +110,8 @@ def report_guidance(rounds: int, setup: VehicleSetup) -> None:
         without, with_it = (statistics.median(times) for times in zip(*pairs, strict=True))
         ratio = statistics.median(b / a for a, b in pairs)
         print(
-            f"  beside a {name} ship: {without:.1f} us without a search, {with_it:.1f} us with one, {ratio:.2f} times as long"
+            f"  beside a {name} ship: {without:.1f} us without a search, {with_it:.1f} us with"
+            f" one, {ratio:.2f} times as long"
         )
 
 
@@ -167,7 +169,7 @@ def _flown(scenario: Scenario, setup: VehicleSetup) -> tuple[FlightPlan, Measure
 
 
 def _plume_readings(history: pd.DataFrame) -> PlumeReadings:
-    """Return what a search gets at each step of a flight, in parcels as the sniffer passes them on."""
+    """Return what a search gets at each step of a flight, in parcels as the sniffer passes them."""
     if "co2_reading_ppm" not in history:
         return []
     result: list[tuple[float, tuple[tuple[float, float], ...]] | None] = []

@@ -203,7 +203,7 @@ class Draw:
             self.keys["keepout.shape"] = "cylinder"
 
     def _mission(self) -> bool:
-        """Draw the mission; return whether the vessel may be other than steady and known exactly."""
+        """Draw the mission; return whether the vessel may be unsteady or not known exactly."""
         mission = self._one_of(standoff=0.5, follow=0.35, track=0.15)
         self.keys["guidance.mission"] = mission
         if mission == "standoff":

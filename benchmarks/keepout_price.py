@@ -66,7 +66,8 @@ DECLARATIONS: dict[str, tuple[str, ...]] = {
     "AIS every 2 to 10 s, a ship that keeps its course and speed": AIS,
     "AIS, a ship that may accelerate by 0.1 m/s²": (*AIS, "following.vessel_acceleration_mps2=0.1"),
     "AIS, by 0.25 m/s²": (*AIS, *SHIP),
-    "AIS every 30 s, by 0.1 m/s²": ("reports.interval_s=[2,30]", AIS[1], "following.vessel_acceleration_mps2=0.1"),
+    ("AIS every 30 s, by 0.1"
+" m/s²"): ("reports.interval_s=[2,30]", AIS[1], "following.vessel_acceleration_mps2=0.1"),
     "AIS every 30 s, by 0.25 m/s²": ("reports.interval_s=[2,30]", AIS[1], *SHIP),
     "all of sea_together": TOGETHER,
     "all of it, and turns that deviate by 6.8 m": (*TOGETHER, "following.turn_deviation_m=6.8"),

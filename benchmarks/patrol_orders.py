@@ -39,7 +39,8 @@ def main() -> None:
         pairs.append((inserted, exact))
     print(compared(pairs))
     print(
-        f"{1e3 * seconds[0] / given.patrols:.1f} ms by insertion, {1e3 * seconds[1] / given.patrols:.1f} ms exact, a patrol"
+        f"{1e3 * seconds[0] / given.patrols:.1f} ms by insertion,"
+        f" {1e3 * seconds[1] / given.patrols:.1f} ms exact, a patrol"
     )
 
 
@@ -67,8 +68,10 @@ def compared(pairs: list[tuple[Order, Order]]) -> str:
     ]
     later = np.array([inserted.ends - exact.ends for inserted, exact in alike])
     return (
-        f"as many expected verdicts in {len(alike)} of {len(pairs)} patrols, {np.mean(less):.3f} fewer in the mean,"
-        f" {np.max(less):.2f} at most; where as many, {np.mean(later):.1f} s later in the mean, {np.max(later):.0f} s at most"
+        f"as many expected verdicts in {len(alike)} of {len(pairs)} patrols,"
+        f" {np.mean(less):.3f} fewer in the mean,"
+        f" {np.max(less):.2f} at most; where as many, {np.mean(later):.1f} s later in the mean,"
+        f" {np.max(later):.0f} s at most"
     )
 
 

@@ -21,8 +21,6 @@ _EXAMPLES = _HOUSE / "docs" / "examples"
 
 COMMANDS = {
     "sweep": ("scenarios.run", "sweep_nu"),
-    "paper": ("scenarios.run", "paper"),
-    "trials": ("scenarios.run", "sea_trial", "--set", "share=0.02"),
     "monte_carlo": ("scenarios.run", "monte_carlo", "--set", "flights=64"),
     "sulphur": ("scenarios.run", "sulphur"),
     "measuring": (
@@ -60,7 +58,8 @@ def draw_first_page(report: Path, picture: Path) -> int:
     drawn.quantize(COLOURS, dither=Image.Dither.NONE).save(picture, optimize=True)
     if (size := picture.stat().st_size) > SIZE_MAX:
         raise SystemExit(
-            f"error: '{picture.name}' has {size / 1000:.0f} kB, the limit is {SIZE_MAX / 1000:.0f} kB; lower WIDTH"
+            f"error: '{picture.name}' has {size / 1000:.0f} kB, the limit is"
+            f" {SIZE_MAX / 1000:.0f} kB; lower WIDTH"
         )
     return size
 
@@ -76,7 +75,8 @@ def make_picture(name: str, folder: Path) -> None:
         )
         if done.returncode not in _FLOWN:
             raise SystemExit(
-                f"error: the run for '{name}' ended with status {done.returncode}; see its message above"
+                f"error: the run for '{name}' ended with status {done.returncode}; see its"
+                " message above"
             )
         folder.mkdir(parents=True, exist_ok=True)
         size = draw_first_page(run / REPORT_PDF, folder / f"{name}.png")

@@ -38,9 +38,10 @@ def report_reports(rounds: int) -> None:
         elapsed, computed = zip(*(_report(run) for _ in range(rounds)), strict=True)
         screen, printed = ((run / name).stat().st_size / 1e6 for name in (REPORT_HTML, REPORT_PDF))
     print(
-        f"reports of {SWEEP}: {statistics.median(elapsed):.1f} s, of a core {statistics.median(computed):.1f} s (limit"
-        f" {REPORT_MAX:g} s); HTML {screen:.1f} MB (limit {HTML_MAX:g} MB), PDF {printed:.1f} MB (limit {PDF_MAX:g} MB);"
-        f" its flights took {flown:.1f} s"
+        f"reports of {SWEEP}: {statistics.median(elapsed):.1f} s, of a core"
+        f" {statistics.median(computed):.1f} s (limit"
+        f" {REPORT_MAX:g} s); HTML {screen:.1f} MB (limit {HTML_MAX:g} MB), PDF {printed:.1f}"
+        f" MB (limit {PDF_MAX:g} MB); its flights took {flown:.1f} s"
     )
 
 

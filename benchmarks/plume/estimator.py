@@ -116,7 +116,8 @@ def main() -> None:
         for seed in range(given.first, given.first + given.cases)
     ]
     print(
-        f"{given.cases} cases, {given.sensor}, {given.search}, {given.estimator}{', knowing the axis' if given.knowing else ''}"
+        f"{given.cases} cases, {given.sensor}, {given.search},"
+        f" {given.estimator}{', knowing the axis' if given.knowing else ''}"
     )
     for name, value in figures(flights).items():
         print(f"  {name:40s} {value:8.2f}")

@@ -68,7 +68,7 @@ class Case:
 
 
 def draw_case(seed: int) -> Case:
-    """Return a case in which the vehicle is faster than the ship through the air, by 0.25 to 0.9."""
+    """Return a case in which the ship has 0.25 to 0.9 of the vehicle's speed through the air."""
     generator = np.random.default_rng(seed)
     while True:
         speed, bearing = generator.uniform(*SPEEDS), generator.uniform(0.0, 2.0 * math.pi)

@@ -1,4 +1,4 @@
-"""Writes the pages and the sketch that are made from the program before Sphinx reads them."""
+"""Writes the pages and the pictures that are made from the program before Sphinx reads them."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from reference_pages.columns import columns_page
 from reference_pages.commands import commands_page
 from reference_pages.frames import frames_svg
+from reference_pages.house import house_svg
 from reference_pages.keys import keys_page
 from reference_pages.modules import module_pages
 from repository_links import extension_pages
@@ -26,6 +27,7 @@ def pages() -> dict[str, str]:
         "columns.md": columns_page(),
         "command_line.md": commands_page(),
         "frames.svg": frames_svg(),
+        "house.svg": house_svg(),
         "modules.md": _contents("Modules", [f"modules/{name}" for name in modules]),
         **{f"modules/{name}.md": text for name, text in modules.items()},
         "extensions.md": _contents("Extensions", [f"extensions/{name}" for name in extensions]),

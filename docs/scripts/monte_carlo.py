@@ -9,11 +9,13 @@ if __name__ == "__main__":
     violation = found.violation
     print(f"{violation.events} of {violation.flights} flights violated the keep-out area:")
     print(
-        f"{violation.low:.1%} to {violation.high:.1%} of flights do, at {found.confidence:.0%} confidence"
+        f"{violation.low:.1%} to {violation.high:.1%} of flights do, at {found.confidence:.0%}"
+        " confidence"
     )
     nearest = found.quantile("min_distance_m", 0.5)
     print(
-        f"median of the closest approach {nearest.value:.1f} m, {nearest.low:.1f} to {nearest.high:.1f} m"
+        f"median of the closest approach {nearest.value:.1f} m, {nearest.low:.1f} to"
+        f" {nearest.high:.1f} m"
     )
     for name, flight in study.flights.items():
         if not flight.met:

@@ -10,7 +10,8 @@ print(
     f"closest approach {flight.row['min_distance_m']:.1f} {unit}, {len(flight.crossings)} crossings"
 )
 print(
-    f"steepest bank {flight.history['roll_rad'].abs().max():.2f} {flight.history.attrs['units']['roll_rad']}"
+    f"steepest bank {flight.history['roll_rad'].abs().max():.2f}"
+    f" {flight.history.attrs['units']['roll_rad']}"
 )
 
 flight.plot().savefig("flight.png")

@@ -1,4 +1,4 @@
-"""Fly a steering law of your own over the speed ratio: pursuit of a point ahead of the reference."""
+"""Fly a steering law of your own over the speed ratio: pursue a point ahead on the reference."""
 
 import math
 from dataclasses import dataclass

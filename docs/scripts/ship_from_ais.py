@@ -15,9 +15,11 @@ flight = fly(
     flight={"duration_max_s": 300.0},
 )
 print(
-    f"{len(flight.crossings)} crossings in {flight.row['duration_s']:.0f} s, from {flight.row['start_utc']} on"
+    f"{len(flight.crossings)} crossings in {flight.row['duration_s']:.0f} s, from"
+    f" {flight.row['start_utc']} on"
 )
 print(
-    f"closest approach {flight.row['min_distance_m']:.1f} m, keep-out violations: {flight.row['keepout_violations']:.0f}"
+    f"closest approach {flight.row['min_distance_m']:.1f} m, keep-out violations:"
+    f" {flight.row['keepout_violations']:.0f}"
 )
 flight.export("flight.kmz")

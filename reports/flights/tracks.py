@@ -137,7 +137,7 @@ class _Tracks:
             caption=_words([about], panels) + (_ground_words(ground) if ground else ""),
             panels=[in_kilometres(panel) for panel in [*panels, *([ground] if ground else [])]],
             columns=len(panels),
-            panel_height=0.3,
+            panel_height=0.28,
             last_height=height,
         )
 

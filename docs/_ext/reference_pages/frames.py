@@ -26,11 +26,13 @@ _SCALE = 105.0
 
 _STYLE = (
     "text{font:15px sans-serif;fill:#222}.thin{stroke:#555;stroke-width:1.2;fill:none}"
-    ".dash{stroke-dasharray:5 4}.orbit{stroke:#0072b2;stroke-width:2.2;fill:none}.keepout{stroke:#d55e00;stroke-width:2;"
+    ".dash{stroke-dasharray:5"
+    " 4}.orbit{stroke:#0072b2;stroke-width:2.2;fill:none}.keepout{stroke:#d55e00;stroke-width:2;"
     "fill:#d55e00;fill-opacity:.07}.plume{fill:#777;fill-opacity:.28}.ship{fill:#222}.uav{fill:#0072b2}"
 )
 _TIP = (
-    '<marker id="tip" viewBox="0 0 10 10" refX="9" refY="5" markerWidth="7" markerHeight="7" orient="auto">'
+    '<marker id="tip" viewBox="0 0 10 10" refX="9" refY="5" markerWidth="7" markerHeight="7"'
+    ' orient="auto">'
     '<path d="M0 0 10 5 0 10z" fill="#555"/></marker>'
 )
 
@@ -44,7 +46,10 @@ def frames_svg() -> str:
     )
     return "\n".join(
         (
-            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 760 600" role="img" aria-label="{_TITLE}">',
+            (
+                '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 760 600" role="img"'
+                f' aria-label="{_TITLE}">'
+            ),
             f"<style>{_STYLE}</style><defs>{_TIP}</defs>",
             '<rect width="760" height="600" fill="#fff"/>',
             f'<polygon class="plume" points="{plume}"/>',
@@ -63,7 +68,10 @@ def _ship() -> Iterator[str]:
     x, y = _SHIP
     edge = (x + _KEEPOUT * math.cos(0.35), y - _KEEPOUT * math.sin(0.35))
     yield f'<circle class="keepout" cx="{x}" cy="{y}" r="{_KEEPOUT}"/>'
-    yield f'<path class="ship" d="M{x} {y - 44} l11 22 v48 h-22 v-48z"/><circle cx="{x}" cy="{y}" r="4" fill="#fff"/>'
+    yield (
+        f'<path class="ship" d="M{x} {y - 44} l11 22 v48 h-22 v-48z"/><circle cx="{x}" cy="{y}"'
+        ' r="4" fill="#fff"/>'
+    )
     yield _arrow((x, y - 46), (x, 14))
     yield _text((x + 12, 24), "course of the ship")
     yield _text((x - 18, y + 5), "funnel", anchor="end")
@@ -101,7 +109,10 @@ def _axes() -> Iterator[str]:
 
 
 def _line(start: Place, end: Place, kind: str, more: str = "") -> str:
-    return f'<line class="{kind}" x1="{start[0]:.1f}" y1="{start[1]:.1f}" x2="{end[0]:.1f}" y2="{end[1]:.1f}"{more}/>'
+    return (
+        f'<line class="{kind}" x1="{start[0]:.1f}" y1="{start[1]:.1f}" x2="{end[0]:.1f}"'
+        f' y2="{end[1]:.1f}"{more}/>'
+    )
 
 
 def _arrow(start: Place, end: Place) -> str:

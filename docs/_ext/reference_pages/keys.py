@@ -63,7 +63,10 @@ def _section(section: DocumentedSection) -> Iterator[str]:
 
 def _of_parts() -> Iterator[str]:
     yield from ("### Keys of parts", "")
-    yield "What a steering law, a plume or an instrument brings to the section that names it. A part of your own brings its own."
+    yield (
+        "What a steering law, a plume or an instrument brings to the section that names it. A"
+        " part of your own brings its own."
+    )
     yield ""
     yield from table(_HEAD, (_row(key) for key in documented_part_keys()))
 
