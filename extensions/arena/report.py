@@ -149,15 +149,14 @@ def _section(anchor: str, title: str, nav_title: str, blocks: list[Block]) -> Se
 def _tracking(arena: Arena) -> list[Block]:
     if not arena.in_task(tracking=True):
         return []
-    first, *others = track_charts(arena, tracking=True) or [None]
-    _, *efforts = effort_charts(arena)
+    tracks, efforts = track_charts(arena, tracking=True), effort_charts(arena)
     return [
         Text(f"{_TRACKING} {_BOLD if arena.flights > 1 else _ONCE}"),
         tracking_table(arena, tracking=True),
-        *([first] if first else []),
+        *tracks[:1],
         Fold(
             title="Tracking by condition, and the tracks of the other laws",
-            blocks=[by_condition_table(arena, ERROR, tracking=True), *efforts, *others],
+            blocks=[by_condition_table(arena, ERROR, tracking=True), *efforts[1:], *tracks[1:]],
         ),
     ]
 
@@ -199,8 +198,9 @@ def _plume(arena: Arena) -> list[Block]:
 
 def _tuned(arena: Arena) -> list[Block]:
     table = Fold(title="Parameters of each law", blocks=[tuning_table(arena)])
-    refused = [Heading("Laws that cannot do a task"), refused_table(arena)]
-    return [Text(_TUNING), table, *(refused if arena.refused else [])]
+    if not arena.refused:
+        return [Text(_TUNING), table]
+    return [Text(_TUNING), table, Heading("Laws that cannot do a task"), refused_table(arena)]
 
 
 def _verdict(arena: Arena) -> Verdict:

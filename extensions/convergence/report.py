@@ -4,7 +4,7 @@ converge.
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -288,11 +288,7 @@ def _settling_table(data: Convergence) -> Table:
             Cell("Trajectories", lambda of: len(of["rows"]), "{:,.0f}", 1.1),
             Cell("Converged", lambda of: converged_count(of["rows"]), "{:,.0f}"),
             *(
-                Cell(
-                    f"{100.0 * share:.0f} % settled [s]",
-                    lambda of, share=share: settled_time(of["rows"]["settling_time_s"], share),
-                    width=0.9,
-                )
+                Cell(f"{100.0 * share:.0f} % settled [s]", _settled_by(share), width=0.9)
                 for share in QUANTILES
             ),
             Cell("Largest command [rad/s]", lambda of: command_words(of["rows"]), width=1.2),
@@ -301,6 +297,10 @@ def _settling_table(data: Convergence) -> Table:
         " reference.",
         left_columns=2,
     )
+
+
+def _settled_by(share: float) -> Callable[[Mapping[str, Any]], str]:
+    return lambda of: settled_time(of["rows"]["settling_time_s"], share)
 
 
 def converged_count(rows: pd.DataFrame) -> int:

@@ -148,7 +148,7 @@ def _chart(trial: Trial, pairs: pd.DataFrame) -> Chart | None:
     name = f"{trial.name}-comparison"
     return (
         Chart(
-            name=name, caption=caption, panels=panels, panel_height=min(0.25, _HEIGHT / len(panels))
+            name=name, caption=caption, panels=panels, panel_height=min(0.2, _HEIGHT / len(panels))
         )
         if panels
         else None

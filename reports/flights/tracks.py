@@ -141,7 +141,7 @@ class _Tracks:
             + other_ship_words(self._others),
             panels=[in_kilometres(panel) for panel in [*panels, *([ground] if ground else [])]],
             columns=len(panels),
-            panel_height=0.3,
+            panel_height=0.28,
             last_height=height,
         )
 

@@ -3,6 +3,7 @@ number beside ours.
 """
 
 import json
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -39,6 +40,7 @@ from reports.paper.flown import VEHICLES, find_flight, vehicle_name
 from reports.paper.statements import (
     NEAR,
     SHORT,
+    Statement,
     paper_statements,
     paper_verdict,
     rows_by_id,
@@ -206,10 +208,7 @@ def statement_table(run: RunData) -> Table:
         Cell("", lambda of: of.simulation, width=0.6),
         Cell("What section V says", lambda of: of.words, width=2.6),
         Cell("Printed", lambda of: of.printed, width=1.2),
-        *(
-            Cell(SHORT[vehicle].capitalize(), lambda of, vehicle=vehicle: of.values[vehicle])
-            for vehicle in vehicles(run)
-        ),
+        *(Cell(SHORT[vehicle].capitalize(), _shown_by(vehicle)) for vehicle in vehicles(run)),
         Cell("", lambda of: of.card.result, width=1.0),
     ]
     return rows_table(
@@ -218,6 +217,10 @@ def statement_table(run: RunData) -> Table:
         caption="What section V of the paper prints, and what each vehicle showed.",
         left_columns=2,
     )
+
+
+def _shown_by(vehicle: str) -> Callable[[Statement], str]:
+    return lambda statement: statement.values[vehicle]
 
 
 def _near_for_good(run: RunData, flight_id: str) -> str:

@@ -3,7 +3,7 @@ every vehicle of a run showed, and the verdict that follows.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -115,89 +115,170 @@ def vehicles(run: RunData) -> list[str]:
     return list(VEHICLES) if chosen == "both" else [chosen]
 
 
-def paper_statements(run: RunData) -> list[Statement]:
-    """Return every number and statement of section V, in the order of the simulations' weight."""
-    rows, flown = rows_by_id(run), vehicles(run)
-
-    def statement(
-        case: str,
-        words: str,
-        printed: str,
-        brief: str,
-        column: str,
-        show: "Callable[[pd.Series[Any]], str]",
-        holds: "Callable[[pd.Series[Any], str], bool]",
-    ) -> Statement:
-        """Return a statement on a case; it is not known of a vehicle without that column."""
-        found = {fidelity: rows.get(f"{case}_{fidelity}") for fidelity in flown}
-        known = {
-            of: row if row is not None and pd.notna(row[column]) else None
-            for of, row in found.items()
-        }
-        return Statement(
-            simulation=f"Sim. {case[3]}",
-            words=words,
-            printed=printed,
-            brief=brief,
-            values={of: "–" if row is None else show(row) for of, row in known.items()},
-            holds={of: None if row is None else holds(row, of) for of, row in known.items()},
-        )
-
-    def printed(column: str, value: float, pattern: str) -> dict[str, Any]:
-        return {
-            "column": column,
-            "show": lambda row: number(row[column], pattern),
-            "holds": lambda row, of: abs(float(row[column]) / value - 1.0) <= TOLERANCES[of],
-        }
-
-    end = {
-        "column": _END,
-        "show": lambda row: length(float(row[_END])),
-        "holds": lambda row, _: float(row[_END]) < END_DISTANCE_MAX,
-    }
-    demand = {"column": _DEMAND, "show": lambda row: number(row[_DEMAND], "{:.3f} rad/s")}
-    radius = float(run.manifest["config"]["keepout"]["radius_m"])
-    limit = next(
-        (number(row[_LIMIT], "{:g}") for key, row in rows.items() if key.startswith("sim2_")), "–"
-    )
-    duration = number(float(run.summary["duration_s"].max()), "{:.0f}")
-    return [
-        statement("sim3", "smoke plume measurements every", f"{INTERVAL_PRINTED:g} s",
-        "crossing interval",
-                  **printed("crossing_interval_mean_s", INTERVAL_PRINTED, "{:.3f} s")),
-        statement("sim3", "distance from the vessel there", f"{DISTANCE_PRINTED:g} m",
-        "crossing distance",
-                  **printed("crossing_distance_mean_m", DISTANCE_PRINTED, "{:.2f} m")),
-        statement("sim3", "never enters the keep-out area: closest approach", f"> {radius:g} m",
-        "closest approach",
-                  "min_distance_m",
-                  lambda row: f"{approach(float(row['min_distance_m']), radius)} m",
-                  lambda row, _: float(row["keepout_violations"]) == 0.0),
-        statement("sim1", "converges onto the circle: distance at the end", "→ 0",
-        "distance at the end", **end),
-        statement("sim1", "the distance does not rise while |φ| < |φ_r|: largest rise in a sample",
-        "none",
-                  "rise of the distance while |φ| < |φ_r|", _END,
-                  lambda row: _rise_words(_rise_once_inside(run, str(row["flight_id"]))),
-                  lambda row, _: _rise_once_inside(run, str(row["flight_id"])) < RISE_MAX),
-        statement("sim2_delta", "the δ law converges: distance at the end", "→ 0",
-        "δ law, distance at the end", **end),
-        statement("sim2_delta", "the δ law has a feasible heading rate: largest demand",
-        f"≤ ω_max = {limit} rad/s",
-                  "demand of the δ law", **demand, holds=lambda row,
-                  _: float(row[_DEMAND]) <= float(row[_LIMIT])),
-        statement("sim2_los", "the line of sight saturates: largest demand",
-        f"> ω_max = {limit} rad/s",
-                  "demand of the line of sight", **demand, holds=lambda row,
-                  _: float(row[_DEMAND]) > float(row[_LIMIT])),
-        statement("sim2_los", f"the line of sight converges fast: distance after {duration} s",
-        "fast convergence",
-                  f"line of sight, distance after {duration} s", **end),
-    ]  # fmt: skip
-
-
 _DEMAND, _LIMIT = "heading_rate_demand_max_rad_s", "heading_rate_limit_rad_s"
 _END = "tracking_error_end_m"
+
+
+Row = Mapping[Any, Any]
+"""The row of a flight."""
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """A figure of a flight by which statements are tested.
+
+    Attributes
+    ----------
+    column : without which in its row a flight has nothing to show
+    text : of the figure, given the row
+    holds : whether it is what the paper says, given the row and the vehicle's fidelity; None where
+        that is not known
+    """
+
+    column: str
+    text: Callable[[Row], str]
+    holds: Callable[[Row, str], bool | None]
+
+
+_CONVERGED = Figure(
+    _END,
+    lambda row: length(float(row[_END])),
+    lambda row, _: float(row[_END]) < END_DISTANCE_MAX,
+)
+"""The distance to the reference at the end of a flight."""
+
+
+def paper_statements(run: RunData) -> list[Statement]:
+    """Return every number and statement of section V, in the order of the simulations' weight."""
+    rows = rows_by_id(run)
+    second = (row for key, row in rows.items() if key.startswith("sim2_"))
+    limit = next((number(row[_LIMIT], "{:g}") for row in second), "–")
+    radius = float(run.manifest["config"]["keepout"]["radius_m"])
+    duration = number(float(run.summary["duration_s"].max()), "{:.0f}")
+    statements = (
+        (
+            "sim3",
+            "smoke plume measurements every",
+            f"{INTERVAL_PRINTED:g} s",
+            "crossing interval",
+            _printed("crossing_interval_mean_s", INTERVAL_PRINTED, "{:.3f} s"),
+        ),
+        (
+            "sim3",
+            "distance from the vessel there",
+            f"{DISTANCE_PRINTED:g} m",
+            "crossing distance",
+            _printed("crossing_distance_mean_m", DISTANCE_PRINTED, "{:.2f} m"),
+        ),
+        (
+            "sim3",
+            "never enters the keep-out area: closest approach",
+            f"> {radius:g} m",
+            "closest approach",
+            Figure(
+                "min_distance_m",
+                lambda row: f"{approach(float(row['min_distance_m']), radius)} m",
+                lambda row, _: float(row["keepout_violations"]) == 0.0,
+            ),
+        ),
+        (
+            "sim1",
+            "converges onto the circle: distance at the end",
+            "→ 0",
+            "distance at the end",
+            _CONVERGED,
+        ),
+        (
+            "sim1",
+            "the distance does not rise while |φ| < |φ_r|: largest rise in a sample",
+            "none",
+            "rise of the distance while |φ| < |φ_r|",
+            _rise(run),
+        ),
+        (
+            "sim2_delta",
+            "the δ law converges: distance at the end",
+            "→ 0",
+            "δ law, distance at the end",
+            _CONVERGED,
+        ),
+        (
+            "sim2_delta",
+            "the δ law has a feasible heading rate: largest demand",
+            f"≤ ω_max = {limit} rad/s",
+            "demand of the δ law",
+            Figure(_DEMAND, _demand, lambda row, _: float(row[_DEMAND]) <= float(row[_LIMIT])),
+        ),
+        (
+            "sim2_los",
+            "the line of sight saturates: largest demand",
+            f"> ω_max = {limit} rad/s",
+            "demand of the line of sight",
+            Figure(_DEMAND, _demand, lambda row, _: float(row[_DEMAND]) > float(row[_LIMIT])),
+        ),
+        (
+            "sim2_los",
+            f"the line of sight converges fast: distance after {duration} s",
+            "fast convergence",
+            f"line of sight, distance after {duration} s",
+            _CONVERGED,
+        ),
+    )
+    return [
+        _statement(rows, vehicles(run), case, words, printed, brief, figure)
+        for case, words, printed, brief, figure in statements
+    ]
+
+
+def _statement(
+    rows: Mapping[str, Any],
+    flown: Sequence[str],
+    case: str,
+    words: str,
+    printed: str,
+    brief: str,
+    figure: Figure,
+) -> Statement:
+    """Return a statement on a case, with what each vehicle showed."""
+    found = {fidelity: rows.get(f"{case}_{fidelity}") for fidelity in flown}
+    known = {
+        fidelity: row if row is not None and pd.notna(row[figure.column]) else None
+        for fidelity, row in found.items()
+    }
+    return Statement(
+        simulation=f"Sim. {case.removeprefix('sim')[0]}",
+        words=words,
+        printed=printed,
+        brief=brief,
+        values={of: "–" if row is None else figure.text(row) for of, row in known.items()},
+        holds={of: None if row is None else figure.holds(row, of) for of, row in known.items()},
+    )
+
+
+def _printed(column: str, value: float, pattern: str) -> Figure:
+    """Return a figure that the paper prints as a number."""
+    return Figure(
+        column,
+        lambda row: number(row[column], pattern),
+        lambda row, fidelity: abs(float(row[column]) / value - 1.0) <= TOLERANCES[fidelity],
+    )
+
+
+def _demand(row: Row) -> str:
+    return number(row[_DEMAND], "{:.3f} rad/s")
+
+
+def _rise(run: RunData) -> Figure:
+    """Return the largest rise of the distance where it should not rise."""
+
+    def of(row: Row) -> float:
+        return _rise_once_inside(run, str(row["flight_id"]))
+
+    return Figure(
+        _END,
+        lambda row: _rise_words(of(row)),
+        lambda row, _: None if math.isnan(of(row)) else of(row) < RISE_MAX,
+    )
 
 
 def _rise_once_inside(run: RunData, flight_id: str) -> float:

@@ -186,13 +186,13 @@ def _over_key(trial: Trial, key: str, name: str) -> list[Chart]:
             trial, f"{name}-interval",
             "Time between plume crossings against half the reference's period, π/ω₀. Bars are one standard deviation."
             + (_LIMIT_TOLD if interval and any(line.label == LIMIT_LABEL for line in interval.lines) else ""),
-            [interval, over.interval_error()], 0.4,
+            [interval, over.interval_error()], 0.28,
         ),
         _chart(
             trial, f"{name}-distance",
             "Distances from the funnel's mouth: of the crossings after settling, three-dimensional, and the closest approach of the"
             f" whole flight, {trial.measured_from}.",
-            [over.distances()], 0.42,
+            [over.distances()], 0.22,
         ),
         _chart(
             trial, f"{name}-errors",

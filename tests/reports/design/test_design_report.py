@@ -5,6 +5,7 @@ import math
 from types import SimpleNamespace
 
 import numpy as np
+import pypdfium2
 import pytest
 from design_runs import AIRSPEEDS, BANKS_DEG, CASES, LOOPS, REVERSALS, record, write_design
 from report_parts import (
@@ -43,6 +44,9 @@ def test_both_reports_are_built_from_disk_alone(path, monkeypatch):
     # Every figure is laid out below.
     draw_all_but(monkeypatch, "first", "classicalmargins", "nichols", "trims")
     assert "Autopilot of the Cessna 172" in built(path)
+    document = pypdfium2.PdfDocument(path / "report.pdf")
+    assert len(document) <= 6
+    document.close()
 
 
 def test_everything_is_in_its_place(report):
