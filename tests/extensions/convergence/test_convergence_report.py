@@ -27,7 +27,7 @@ def test_a_study_in_which_all_converged_says_so(converged):
     # Two laws that the theory is about.
     assert converged.verdict.headline == f"All {2 * TRAJECTORIES:,} trajectories converged"
     assert converged.verdict.failures == []
-    assert [figure[1:] for figure in converged.verdict.figures[:3]] == [
+    assert [figure[1:4] for figure in converged.verdict.figures[:3]] == [
         ("100 %", "100 %", True),
         ("100 %", "100 %", True),
         ("100 %", "", None),

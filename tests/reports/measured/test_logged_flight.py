@@ -13,7 +13,7 @@ import pytest
 from report_parts import assert_axes_read_quantity_and_unit, blocks_of, built, named_charts
 
 from measurement.log.command import main
-from reports.document.blocks import Table
+from reports.document.blocks import Card, Table
 from reports.document.chart import Chart, Line, Panel
 from reports.errors import ReportError
 from reports.measurement.charts import over_time_chart, regression_chart
@@ -129,7 +129,7 @@ def test_a_result_is_told_with_its_interval_at_95_percent_and_every_spread_says_
     found = record["estimate"]
     interval = f"{found['low_percent']:.3f} to {found['high_percent']:.3f} %"
     assert f"{found['fsc_percent']:.3f} % m/m, 95 % interval {interval}, from" in told.detail
-    assert ("Fuel sulphur content, 95 % interval", f"{interval} m/m", "", None) in told.figures
+    assert Card("Fuel sulphur content, 95 % interval", f"{interval} m/m") in told.figures
     assert "±" not in told.detail
     report = content(read_run(run_directory))
     for table in blocks_of(report, Table, "result"):
@@ -167,12 +167,7 @@ def test_quality_c_gives_no_verdict_in_words_either(record):
     told = measurement_verdict(record)
     assert told.headline == "No verdict on the limit of 0.10 %: quality C gives none"
     assert "No verdict on the limit of 0.50 %: quality C gives none." in told.detail
-    assert (
-        "Probability above the limit of 0.10 %",
-        "no verdict: quality C",
-        "",
-        None,
-    ) in told.figures
+    assert Card("Probability above the limit of 0.10 %", "no verdict: quality C") in told.figures
     assert not told.complete
 
 
@@ -319,7 +314,7 @@ def test_a_perfect_instrument_is_shown_where_it_is_known(run_directory, tmp_path
     )
     labels = [line.label for line in report.picture.panels[0].lines]
     assert "a perfect instrument" in labels
-    assert ("A perfect instrument reads", "0.250 % m/m", "", None) in report.verdict.figures
+    assert Card("A perfect instrument reads", "0.250 % m/m") in report.verdict.figures
 
 
 def test_without_samples_the_report_says_so(run_directory, tmp_path):

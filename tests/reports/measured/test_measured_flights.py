@@ -207,7 +207,7 @@ def test_a_content_below_0_is_told_with_the_interval_that_its_verdict_rests_on()
     }
     run = SimpleNamespace(summary=pd.DataFrame([row]))
     words = "-0.025 % m/m, which is below 0; 95 % interval 0.000 to 0.039 %, given that no fuel has less than 0: below the limit"
-    assert "fuel sulphur -0.025 % (0.000 to 0.039), limit" in flights.sulphur_headline(run)
+    assert "fuel sulphur −0.025 % (0.000 to 0.039), limit" in flights.sulphur_headline(run)
     assert words in flights._told(pd.Series(row))
     assert flights.sulphur_cards(run)[0].note == "95 % interval 0.000 to 0.039 %"
     table = flight_tables.flight_table(
