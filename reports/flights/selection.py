@@ -104,13 +104,15 @@ def flight_section(trials: list[Trial], *, only_failed: bool = False) -> Section
 
 
 def _printed(picked: Sequence[Picked]) -> list[int]:
-    """Return the numbers of the flights that are printed, those with a time history first."""
+    """Return the numbers of the flights that are printed: of those with a time history the most
+    telling ones.
+    """
     told = [
-        (not trial.run.has_history(str(row["flight_id"])), _ORDER.index(why), number)
+        (_ORDER.index(why), number)
         for number, (trial, row, why) in enumerate(picked)
-        if why in _ORDER
+        if why in _ORDER and trial.run.has_history(str(row["flight_id"]))
     ]
-    return [number for *_, number in sorted(told)[:PRINTED_MAX]]
+    return [number for _, number in sorted(told)[:PRINTED_MAX]]
 
 
 def _only(trials: list[Trial]) -> str:

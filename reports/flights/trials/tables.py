@@ -45,7 +45,7 @@ _FAILED = (
     " diverged ones and keep-out violations first. {summary} has all, with what to do about each."
 )
 
-FAILED_MAX = 12
+FAILED_MAX = 8
 """Flights that failed a criterion and are listed."""
 
 _NOTHING = "–"
