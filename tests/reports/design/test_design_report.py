@@ -12,7 +12,6 @@ from report_parts import (
     assert_axes_read_quantity_and_unit,
     blocks_of,
     built,
-    draw_all_but,
     numbers_on_page_1,
 )
 
@@ -40,9 +39,7 @@ def report(path):
     return content(read_run(path))
 
 
-def test_both_reports_are_built_from_disk_alone(path, monkeypatch):
-    # Every figure is laid out below.
-    draw_all_but(monkeypatch, "first", "classicalmargins", "nichols", "trims")
+def test_both_reports_are_built_from_disk_alone_and_print_takes_six_pages(path):
     assert "Autopilot of the Cessna 172" in built(path)
     document = pypdfium2.PdfDocument(path / "report.pdf")
     assert len(document) <= 6
