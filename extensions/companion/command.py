@@ -196,7 +196,9 @@ def companion(
         str | None,
         typer.Option(
             metavar="udpin://HOST:PORT|serial://DEVICE:BAUD",
-            help="Where lines of a sniffer's readings come in: age_s,so2_ppb,co2_ppm,no_ppb,no2_ppb.",
+            help=(
+                "Where lines of a sniffer's readings come in: age_s,so2_ppb,co2_ppm,no_ppb,no2_ppb."
+            ),
         ),
     ] = None,
     out: Annotated[

@@ -19,7 +19,8 @@ _UNKNOWN_16 = 0xFFFF
 
 _ISA_LAPSE = 2.25577e-5
 _ISA_EXPONENT = 4.25588
-"""Density of the ICAO standard atmosphere below 11 km over that at sea level: (1 - a h)^b [1/m, -]."""
+"""Density of the ICAO standard atmosphere below 11 km over that at sea level: (1 - a h)^b [1/m, -].
+"""
 
 _ROLL_ALONE = (
     mavlink.ATTITUDE_TARGET_TYPEMASK_ATTITUDE_IGNORE
@@ -286,8 +287,8 @@ def roll_target(time: float, system: int, component: int, roll: float) -> Any:
 
 
 def roll_of(message: Any) -> float | None:
-    """Return the roll [rad] that a SET_ATTITUDE_TARGET asks for, by ArduPlane's reading of its mask;
-    none where it asks for none.
+    """Return the roll [rad] that a SET_ATTITUDE_TARGET asks for, by ArduPlane's reading of its
+    mask; none where it asks for none.
     """
     ignored = message.type_mask
     attitude = not ignored & mavlink.ATTITUDE_TARGET_TYPEMASK_ATTITUDE_IGNORE

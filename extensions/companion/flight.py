@@ -1,5 +1,5 @@
-"""A flight of a scenario on a vehicle over MAVLink: what is checked before, who has the vehicle, and
-the flight itself, which is recorded as those of a study are.
+"""A flight of a scenario on a vehicle over MAVLink: what is checked before, who has the vehicle,
+and the flight itself, which is recorded as those of a study are.
 """
 
 import math
@@ -51,7 +51,8 @@ _NEEDED = {
     "least airspeed [m/s]": ("AIRSPEED_MIN", "ARSPD_FBW_MIN"),
     "greatest airspeed [m/s]": ("AIRSPEED_MAX", "ARSPD_FBW_MAX"),
 }
-"""Parameters without which no vehicle is flown, by what they say: their name, and the former one."""
+"""Parameters without which no vehicle is flown, by what they say: their name, and the former one.
+"""
 
 SNIFFER = "sniffer"
 """The instrument whose readings may come on a line."""
@@ -640,9 +641,9 @@ class CompanionFlight(SingleFlight):
             )
         if plan.world is not None and plan.world.traffic:
             raise InputError(
-                f"the scenario has {len(plan.world.traffic)} ships besides the measured one, which a"
-                " companion does not know: leave [[traffic]] out, or give a file of AIS reports in"
-                " which the vessel is alone"
+                f"the scenario has {len(plan.world.traffic)} ships besides the measured one,"
+                " which a companion does not know: leave [[traffic]] out, or give a file of AIS"
+                " reports in which the vessel is alone"
             )
         self.companion.check_limits(
             FlightRunner.setup_of(runner, request), plan.heading_rate_max, plan.altitude
@@ -676,8 +677,9 @@ def check_flyable(request: FlightRequest, *, heard: bool) -> None:
     instruments = scenario.payload.instruments
     if instruments and not (heard and _has_sniffer(request)):
         raise InputError(
-            f"payload.instruments has {', '.join(instruments)}, which a study simulates; a companion"
-            " reads a sniffer on a line (--sniffer), and nothing else: set payload.instruments"
+            f"payload.instruments has {', '.join(instruments)}, which a study simulates; a"
+            " companion reads a sniffer on a line (--sniffer), and nothing else: set"
+            " payload.instruments"
         )
     if heard and not instruments:
         raise InputError(

@@ -3,8 +3,8 @@
 Written from ArduPlane's documented behaviour. In GUIDED a roll by SET_ATTITUDE_TARGET is flown for
 ``GUIDED_TIMEOUT``; without one, a course by GUIDED_CHANGE_HEADING, which is sticky; without that,
 the loiter about the last DO_REPOSITION, or about where GUIDED was entered. Differences: the roll is
-flown by the study's autopilot, which turns at the heading rate of a coordinated turn with that roll;
-a forced pitch and a forced throttle are not flown.
+flown by the study's autopilot, which turns at the heading rate of a coordinated turn with that
+roll; a forced pitch and a forced throttle are not flown.
 """
 
 import math

@@ -1,8 +1,9 @@
 """Where MAVLink comes from and goes to: UDP, TCP or a serial line, with a telemetry log of both
 directions.
 
-Addresses are ``udp://HOST:PORT`` and ``tcp://HOST:PORT``, which a vehicle listens at and a companion
-sends to; ``udpin://HOST:PORT``, at which a companion listens; and ``serial://DEVICE:BAUD``.
+Addresses are ``udp://HOST:PORT`` and ``tcp://HOST:PORT``, which a vehicle listens at and a
+companion sends to; ``udpin://HOST:PORT``, at which a companion listens; and
+``serial://DEVICE:BAUD``.
 """
 
 import contextlib

@@ -1,8 +1,8 @@
 """How bad a link is: as it is declared, and simulated.
 
 What is declared is reckoned with. Telemetry is taken up a fixed time after it was measured, so that
-jitter does not become noise, and commands need the latency to arrive: both are dead time of the turn
-that the guard and the preview predict. What remains of the jitter, packets that are lost and
+jitter does not become noise, and commands need the latency to arrive: both are dead time of the
+turn that the guard and the preview predict. What remains of the jitter, packets that are lost and
 silence bring the vehicle nearer than predicted by as far as it flies meanwhile.
 """
 

@@ -1,9 +1,9 @@
-"""A vehicle over MAVLink in the closed loop of the study: it flies what the guidance commands as long
-as its mode is GUIDED.
+"""A vehicle over MAVLink in the closed loop of the study: it flies what the guidance commands as
+long as its mode is GUIDED.
 
-A step of the guidance belongs to a time of the vehicle's clock. It is computed once the telemetry of
-that time is there, or has had the time that the link is declared to need; telemetry that is missing
-is extrapolated from the last. So the loop has one dead time, which guard and preview know.
+A step of the guidance belongs to a time of the vehicle's clock. It is computed once the telemetry
+of that time is there, or has had the time that the link is declared to need; telemetry that is
+missing is extrapolated from the last. So the loop has one dead time, which guard and preview know.
 """
 
 import itertools
@@ -440,8 +440,8 @@ def retreat(
 ) -> tuple[float, float]:
     """Return a place to loiter at while nobody commands, north and east of the vessel [m].
 
-    It is beside the vessel's track, or behind her, so that she does not come to it, and the straight
-    way to it keeps away from her as far as any such way does.
+    It is beside the vessel's track, or behind her, so that she does not come to it, and the
+    straight way to it keeps away from her as far as any such way does.
 
     Parameters
     ----------

@@ -50,7 +50,8 @@ _STREAMS = {
     "VFR_HUD": _FAST,
     "GLOBAL_POSITION_INT": _FAST,
 }
-"""What is sent at an interval of its own, in this order; a place comes last, and completes a state."""
+"""What is sent at an interval of its own, in this order; a place comes last, and completes a state.
+"""
 
 _NUMBERS = {
     message.msgname: number
@@ -109,10 +110,8 @@ class Simulation:
     mode : at the start
     parameters : that differ from those of ``parameters_of``
 
-    Attributes
-    ----------
-    plane : the aircraft
-    closest, closest_at : least distance from the centre of the keep-out area so far, and when [m, s]
+    Attributes ---------- plane : the aircraft closest, closest_at : least distance from the centre
+    of the keep-out area so far, and when [m, s]
     """
 
     def __init__(
@@ -351,8 +350,8 @@ class Server:
         return "time is up"
 
     def answer(self, timeout: float) -> str:
-        """Take what has come in lockstep, after waiting for at most a time [s], and go on to the time
-        that was asked for; return why the aircraft is lost, or nothing.
+        """Take what has come in lockstep, after waiting for at most a time [s], and go on to the
+        time that was asked for; return why the aircraft is lost, or nothing.
         """
         self._serve(timeout)
         fault = self._fly_until(self._asked_for)
@@ -390,7 +389,7 @@ class Server:
         self._told_until = now
 
     def _reached(self) -> Any:
-        """Return SYSTEM_TIME of the time that was asked for, to which half a step may be missing."""
+        """Return SYSTEM_TIME of the time that was asked for, to within half a step."""
         return mavlink.MAVLink_system_time_message(0, round(1e3 * self._asked_for))
 
     def _serve(self, timeout: float) -> None:
@@ -449,7 +448,7 @@ class Server:
             self._port.send(mavlink.MAVLink_timesync_message(now, message.ts1), peer)
 
     def _advance_to(self, until: float, peer: Peer) -> None:
-        """Take the time that a companion's clock asks for; one that is reached is told once more."""
+        """Take the time that a companion's clock asks for; say again that one is reached."""
         self._asked_for = max(self._asked_for, until)
         if until <= self._simulation.time + 0.5 * self._plane.time_step:
             if self._told_until == -math.inf:

@@ -1,8 +1,9 @@
 """Readings of a sniffer on board, in lines of text over UDP or a serial line.
 
-A line is a reading: ``age_s,so2_ppb,co2_ppm,no_ppb,no2_ppb``, numbers with a decimal point, an empty
-cell for what is not known, and nothing after the last known one. The age is that of the reading as it
-is sent; an empty one is 0. Lines that begin otherwise, such as a header, are no readings.
+A line is a reading: ``age_s,so2_ppb,co2_ppm,no_ppb,no2_ppb``, numbers with a decimal point, an
+empty cell for what is not known, and nothing after the last known one. The age is that of the
+reading as it is sent; an empty one is 0. Lines that begin otherwise, such as a header, are no
+readings.
 """
 
 import math

@@ -1,5 +1,5 @@
-"""The link from a companion to its vehicle: messages both ways over a link that may be bad, what the
-vehicle says of itself, and its clock.
+"""The link from a companion to its vehicle: messages both ways over a link that may be bad, what
+the vehicle says of itself, and its clock.
 
 Times are those of the vehicle's clock. In lockstep the companion sets that clock: it sends the time
 that it wants as SYSTEM_TIME, and the vehicle answers with the same once it is there. These messages
@@ -23,8 +23,8 @@ COMPONENT = mavlink.MAV_COMP_ID_ONBOARD_COMPUTER
 
 _HEARTBEAT_INTERVAL = 1.0
 _ASK_AGAIN, _GIVE_UP = 0.5, 60.0
-"""After how long a vehicle in lockstep is asked once more for its time, and counts as gone [s]: it may
-have to compute for long.
+"""After how long a vehicle in lockstep is asked once more for its time, and counts as gone [s]: it
+may have to compute for long.
 """
 
 _JUMP = 1.0
@@ -154,7 +154,7 @@ class VehicleLink:
     # ------------------------------------------------------------ the clock
 
     def advance(self, until: float, enough: Callable[[], bool] = lambda: False) -> None:
-        """Go on to a time of the vehicle's clock [s], or until it is ``enough``; take what comes."""
+        """Go on to a time of the vehicle's clock [s], or until it is ``enough``; take messages."""
         self._heartbeat()
         if self._lockstep:
             while True:
