@@ -199,6 +199,8 @@ class OnboardSensing:
         else:
             while self._received and self._received[-1][0] <= time:
                 self._report(self._received.pop()[1])
+        if self._ships:
+            self._report_traffic(step, time)
         while self._pending and time >= self._pending[-1].begins:
             self._vehicle.fail(self._pending.pop().kind)
         # It begins with a place that is known, too: dead reckoning goes on from one.
