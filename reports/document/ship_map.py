@@ -154,10 +154,10 @@ def ship_words(*about: Surroundings, panels: Sequence[Panel] | None = None) -> s
 def _area_words(about: Sequence[Surroundings]) -> str:
     """Return what the keep-out area is about."""
     shapes = " or ".join(dict.fromkeys(of.shape for of in about if of.outline is None))
-    words = [f"the keep-out {shapes} is about her funnel"] if shapes else []
+    words = [f"the keep-out {shapes} is about the funnel"] if shapes else []
     if any(of.outline is not None for of in about):
         words.append(
-            "the keep-out area is what is within r_min of her hull, the rectangle about it"
+            "the keep-out area is what is within r_min of the hull, the rectangle about the ship"
         )
     return "; or ".join(words)
 

@@ -98,7 +98,7 @@ def probability_in_words(statistics: Record) -> str:
     return words + (
         " What lies apart from all flights of a level, in a corner to which nothing leads that comes closer, is not found by"
         " chains; a search (falsify) is the other way to look for it. The figures are of flights sampled as these were, in this"
-        " simulation."
+        " simulation. Flights of further levels are led towards violations: their share is no probability."
     )
 
 

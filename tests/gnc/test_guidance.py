@@ -72,7 +72,7 @@ class RecordingGuard:
         self.guarded = guarded
         self.demands, self.motions, self.vessels, self.replaced = [], [], [], []
 
-    def filter(self, demand, own, vessels):
+    def filter(self, demand, own, vessels, others=()):
         self.demands.append(demand)
         place = (own.ground_north, own.ground_east, own.course, own.heading_rate, own.speed)
         self.motions.append((*place, own.wind_north, own.wind_east))
@@ -90,11 +90,11 @@ class RecordingFilter:
         self.answer, self.status, self.allowed = answer, status, allowed
         self.consulted, self.fastest, self.slowest = [], [], []
 
-    def allows(self, _command, _time, _own, _vessels, fastest, _slowest):
+    def allows(self, _command, _time, _own, _vessels, fastest, _slowest, _others):
         self.consulted.append(fastest)
         return self.allowed
 
-    def limit(self, _command, _time, _own, _vessels, fastest, slowest):
+    def limit(self, _command, _time, _own, _vessels, fastest, slowest, _others):
         self.fastest.append(fastest)
         self.slowest.append(slowest)
         return self.answer

@@ -174,8 +174,8 @@ def test_an_infeasible_flight_is_in_the_report_with_its_reason(report):
 
 def test_every_key_that_acts_is_among_the_parameters(run_path, report):
     config = manifest_of(run_path)["config"]
-    # Behind the fold of the parameters, and before those of the autopilot.
-    parameters = blocks_of(report, Table, "parameters")[-4]
+    # Behind the fold of the parameters.
+    parameters = max(blocks_of(report, Table, "parameters"), key=lambda table: len(table.rows))
     listed, scenario = {row[0] for row in parameters.rows}, load_study("sweep_nu", OVERRIDES)
     for section, values in config.items():
         if isinstance(values, dict) and section not in ("sweep", "comparison"):

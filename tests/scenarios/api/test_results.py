@@ -118,7 +118,7 @@ def test_a_figure_has_the_track_and_the_histories(flight):
     titles = [ax.get_title() for ax in figure.axes]
     assert len(figure.subfigs) == 2
     assert titles[0] == "The whole flight"
-    assert "Distance [m]" in [ax.get_ylabel() for ax in figure.axes]
+    assert "Distance\n[m]" in [ax.get_ylabel() for ax in figure.axes]
 
 
 def test_a_time_history_is_exported_whole(flight, tmp_path):

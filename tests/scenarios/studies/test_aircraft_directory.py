@@ -139,7 +139,7 @@ def test_the_directory_is_designed_for_and_listed(flown, heavy, tmp_path):
     elsewhere = run_command("innerloop.design", "--list", *place[:2], "--altitude", 777)
     assert elsewhere.out.split(maxsplit=2) == ["?", str(heavy), "not designed before for 777 m\n"]
     assert "0 can be flown at 777 m (--altitude for another altitude)" in elsewhere.errors
-    assert "; 1 was not designed for it before: --list --check does so" in elsewhere.errors
+    assert "; 1 was not designed for it before: --list --check designs them" in elsewhere.errors
     assert_refused(run_command("innerloop.design", "--check", *place), "--check is for --list")
 
 

@@ -101,8 +101,9 @@ def test_a_report_of_one_flight_is_about_that_flight(runs, tmp_path, run, flight
     report = content(read_run(tmp_path / "again"))
     assert report.title.endswith(f"replay of {flight_id.removesuffix('.parquet')}")
     assert "Nothing was flown" not in report.verdict.headline
-    assert report.verdict.detail.startswith("Flights: 1 planned, 1 flown, ")
-    assert "No bound on a probability follows" in report.verdict.detail
+    assert report.verdict.headline.startswith("The flight kept out and ")
+    # One flight sets no bound.
+    assert "confidence" not in report.verdict.headline + report.verdict.detail
     assert not [failure for failure in report.verdict.failures if "not flown yet" in failure]
 
 
