@@ -72,7 +72,7 @@ class RecordingGuard:
         self.guarded = guarded
         self.demands, self.motions, self.vessels, self.replaced = [], [], [], []
 
-    def filter(self, demand, own, vessels, others=()):
+    def filter(self, demand, own, vessels, _others=()):
         self.demands.append(demand)
         place = (own.ground_north, own.ground_east, own.course, own.heading_rate, own.speed)
         self.motions.append((*place, own.wind_north, own.wind_east))

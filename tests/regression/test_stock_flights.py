@@ -108,7 +108,7 @@ def test_the_report_of_its_run_names_it_and_shows_it_to_its_own_scale(report, tm
     # Fitted limits have three digits, and equilibria are shown in the turn that it flies, nearest
     # to 30 degrees.
     assert {card.name: card.limit for card in report.verdict.figures}[
-        "Tracking error, rms after settling, worst"
+        "Tracking error, rms after settling"
     ] == ("≤ 40.1 m, scaled to the aircraft")
     assert not [block for block in blocks if isinstance(block, Table) and not block.rows]
     assert "level, and at 31.6 degrees of bank" in html
