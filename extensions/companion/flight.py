@@ -5,6 +5,7 @@ and the flight itself, which is recorded as those of a study are.
 import math
 import signal
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
@@ -56,6 +57,11 @@ _NEEDED = {
 
 SNIFFER = "sniffer"
 """The instrument whose readings may come on a line."""
+
+_RIVALS_HEARD_IN, _RIVALS_LOOK = 1.2, 0.02
+"""For how long other companions are listened for before a vehicle is taken over, and how often they
+are looked for [s].
+"""
 
 _LOITER_RADIUS, _GUIDED_TIMEOUT, _GUIDED_P = "WP_LOITER_RAD", "GUIDED_TIMEOUT", "GUIDED_P"
 _DEFAULTS = {_LOITER_RADIUS: 60.0, _GUIDED_TIMEOUT: 3.0, _GUIDED_P: 5000.0}
@@ -230,17 +236,30 @@ class Companion:
             before = link.now
             link.advance(link.now if self.lockstep and waited < _LOOK else link.now + _LOOK, there)
             waited += max(link.now - before, 0.5 * _LOOK)
-            if link.rival is not None:
-                system, component = link.rival
-                raise InputError(
-                    f"another companion ({system}/{component}) is on the link; one can fly a"
-                    " vehicle: end the other one"
-                )
+            self._refuse_rival()
             if waited > patience or link.gone:
                 raise InputError(f"{missing} in {patience:g} s; check --connect and the vehicle")
             if waited - asked > _ASK_INTERVAL:
                 asked = waited
                 again()
+
+    def _refuse_rival(self) -> None:
+        if self.link.rival is not None:
+            system, component = self.link.rival
+            raise InputError(
+                f"another companion ({system}/{component}) is on the link; one can fly a"
+                " vehicle: end the other one"
+            )
+
+    def _listen_for_rivals(self) -> None:
+        """Refuse a vehicle that another companion flies, which says so once a second of real time,
+        also where the vehicle's clock waits.
+        """
+        until = time.monotonic() + _RIVALS_HEARD_IN
+        while time.monotonic() < until:
+            self.link.advance(self.link.now)
+            self._refuse_rival()
+            time.sleep(_RIVALS_LOOK)
 
     def _parameter(self, *names: str) -> float:
         told = self.link.parameters
@@ -319,6 +338,7 @@ class Companion:
             self._wait(
                 lambda: bool(self._vessels()), self.patience, "no report of the vessel was heard"
             )
+        self._listen_for_rivals()
         self.say(f"waiting for GUIDED, in mode {link.mode}")
         self._wait(
             lambda: link.mode == PlaneMode.GUIDED or asked_back(),

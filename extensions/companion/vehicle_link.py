@@ -66,6 +66,7 @@ class VehicleLink:
         self._up, self._down = SimulatedLink(Link(), 0), SimulatedLink(Link(), 0)
         self._simulated = simulated
         self.now = 0.0
+        self._begun = time.monotonic()
         self.system = self.kind = self.autopilot = 0
         self.mode = -1
         self.parameters: dict[str, float] = {}
@@ -179,7 +180,7 @@ class VehicleLink:
 
     def _estimate(self) -> float:
         if self._offset is None:
-            return max(self.now, time.monotonic() - _START)
+            return max(self.now, time.monotonic() - self._begun)
         return time.monotonic() + self._offset
 
     def _ask(self, until: float) -> None:
@@ -303,6 +304,3 @@ class VehicleLink:
             airspeed=hud.airspeed,
             throttle=0.01 * hud.throttle,
         )
-
-
-_START = time.monotonic()

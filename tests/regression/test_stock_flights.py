@@ -105,13 +105,11 @@ def test_the_report_of_its_run_names_it_and_shows_it_to_its_own_scale(report, tm
     assert tracks.panels[-1].x_label == "Along the ship's way [km]"
     (way,) = (line for line in tracks.panels[-1].lines if line.label == "ship's track")
     assert way.x.max() == pytest.approx(41.0, abs=5.0)
-    # Fitted limits have three digits, and equilibria are shown in the turn that it flies, nearest
-    # to 30 degrees.
+    # Fitted limits have three digits.
     assert {card.name: card.limit for card in report.verdict.figures}[
         "Tracking error, rms after settling"
     ] == ("≤ 40.1 m, scaled to the aircraft")
     assert not [block for block in blocks if isinstance(block, Table) and not block.rows]
-    assert "level, and at 31.6 degrees of bank" in html
 
 
 def test_the_report_of_its_run_does_not_speak_of_the_x8(report):
