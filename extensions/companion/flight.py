@@ -229,12 +229,13 @@ class Companion:
     ) -> None:
         """Wait for something.
 
-        In lockstep the vehicle's clock is let go on only if that is what it takes.
+        In lockstep the vehicle has told everything up to its time when that is reached: its clock
+        is let go on only if that is what it takes, and a flight begins at the same step every time.
         """
         link, waited, asked = self.link, 0.0, 0.0
         while not there():
             before = link.now
-            link.advance(link.now if self.lockstep and waited < _LOOK else link.now + _LOOK, there)
+            link.advance(link.now if self.lockstep and not waited else link.now + _LOOK, there)
             waited += max(link.now - before, 0.5 * _LOOK)
             self._refuse_rival()
             if waited > patience or link.gone:

@@ -334,6 +334,7 @@ class Server:
             self._intervals["SYSTEM_TIME"] = 0.0
         self._due = dict.fromkeys(_STREAMS, 0.0)
         self._asked_for, self._told_until = 0.0, -math.inf
+        self._request = 0
 
     def run(self, duration: float) -> str:
         """Fly until a time [s] is over or the aircraft is lost; return why it ended, in words."""
@@ -389,8 +390,10 @@ class Server:
         self._told_until = now
 
     def _reached(self) -> Any:
-        """Return SYSTEM_TIME of the time that was asked for, to within half a step."""
-        return mavlink.MAVLink_system_time_message(0, round(1e3 * self._asked_for))
+        """Return SYSTEM_TIME of the time that was asked for, to within half a step, with the number
+        of the request.
+        """
+        return mavlink.MAVLink_system_time_message(self._request, round(1e3 * self._asked_for))
 
     def _serve(self, timeout: float) -> None:
         """Take what comes, after waiting for it for at most a time [s]."""
@@ -410,6 +413,7 @@ class Server:
             return
         if kind == "SYSTEM_TIME":
             if self._lockstep and sender[1] == mavlink.MAV_COMP_ID_ONBOARD_COMPUTER:
+                self._request = message.time_unix_usec
                 self._advance_to(1e-3 * message.time_boot_ms, peer)
         elif kind == "SET_ATTITUDE_TARGET":
             self._plane.set_attitude(message)

@@ -2,8 +2,9 @@
 the vehicle says of itself, and its clock.
 
 Times are those of the vehicle's clock. In lockstep the companion sets that clock: it sends the time
-that it wants as SYSTEM_TIME, and the vehicle answers with the same once it is there. These messages
-are no traffic of the link, and take no time. Otherwise the clock is estimated from the telemetry's
+that it wants as SYSTEM_TIME, and the vehicle answers with the same once it is there and has told
+everything up to then. ``time_unix_usec`` numbers the request, and its answer. These messages are no
+traffic of the link, and take no time. Otherwise the clock is estimated from the telemetry's
 time stamps, by the one that came fastest.
 """
 
@@ -80,6 +81,7 @@ class VehicleLink:
         self.restarted = False
         self._offset: float | None = None
         self._reached = -math.inf
+        self._request = self._answered = 0
         self._next_heartbeat = self._next_heartbeat_now = -math.inf
         self.gone = False
 
@@ -185,23 +187,20 @@ class VehicleLink:
 
     def _ask(self, until: float) -> None:
         """Have the vehicle's clock go on to a time [s]."""
-        began = asked = -math.inf
+        began, asked = time.monotonic(), -math.inf
         milliseconds = round(1e3 * until)
-        while True:
+        self._request += 1
+        while self._answered < self._request or 1e3 * self._reached < milliseconds - 0.5:
             clock = time.monotonic()
-            if began == -math.inf:
-                began = clock
-            if clock - asked >= _ASK_AGAIN:
-                asked = clock
-                self._port.send(mavlink.MAVLink_system_time_message(0, milliseconds))
-            for _, message in self._port.receive(_IDLE):
-                self._receive(message, at=until)
-            if 1e3 * self._reached >= milliseconds - 0.5:
-                self._reached = max(self._reached, until)
-                return
             if clock - began >= _GIVE_UP:
                 self.gone = True
                 return
+            if clock - asked >= _ASK_AGAIN:
+                asked = clock
+                self._port.send(mavlink.MAVLink_system_time_message(self._request, milliseconds))
+            for _, message in self._port.receive(_IDLE):
+                self._receive(message, at=until)
+        self._reached = max(self._reached, until)
 
     # ------------------------------------------------------------ hearing
 
@@ -220,6 +219,7 @@ class VehicleLink:
             if 1e-3 * message.time_boot_ms < self._reached - _JUMP:
                 self.restarted = True
             self._reached = 1e-3 * message.time_boot_ms
+            self._answered = message.time_unix_usec
             return
         if kind == "GLOBAL_POSITION_INT":
             self._check_clock(1e-3 * message.time_boot_ms)
