@@ -211,7 +211,8 @@ def _run(
     )
     if replayed and overrides:
         raise InputError(
-            f"'{name}' is a flight, which is replayed unchanged; leave out --set and --seed, or fly its scenario instead"
+            f"'{name}' is a flight, which is replayed unchanged; leave out --set and --seed, or"
+            " fly its scenario instead"
         )
     viewer = _viewer(addresses, replayed=replayed)
     if aircraft_dir is not None and not replayed:
@@ -265,7 +266,8 @@ def _run(
         if beside := verdict.comparisons_left:
             left += f"; of the comparisons {_are_left(beside)} to fly"
         print(
-            f"interrupted; {kept}, {left}. Continue with: {_again(directory, out=out, resume=resume)}",
+            f"interrupted; {kept}, {left}. Continue with:"
+            f" {_again(directory, out=out, resume=resume)}",
             file=sys.stderr,
         )
         return verdict.exit_status
@@ -319,8 +321,8 @@ def _viewer(addresses: Mapping[str, str | None], *, replayed: bool) -> "Viewer |
         return None
     if len(asked) > 1 or not replayed:
         raise InputError(
-            f"{' and '.join(map(_option, asked))}: one program at a time shows the replay of a flight;"
-            " give RUN_DIR/flights/ID"
+            f"{' and '.join(map(_option, asked))}: one program at a time shows the replay of a"
+            " flight; give RUN_DIR/flights/ID"
         )
     (name, address), *_ = asked.items()
     try:
@@ -353,7 +355,8 @@ def _report(directory: Path, *, changed: bool, wanted: bool) -> int:
     except OSError as error:
         again = f"plume-flight report {directory}"
         return refuse(
-            f"the report cannot be written: {error.strerror}; fix that, then build the report with: {again}"
+            f"the report cannot be written: {error.strerror}; fix that, then build the report"
+            f" with: {again}"
         )
     except KeyboardInterrupt:
         print(

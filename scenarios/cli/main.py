@@ -26,13 +26,16 @@ def export(
         list[str] | None,
         typer.Option(
             metavar="NAME,...",
-            help="Formats, as kmz, geojson, netcdf or tracks_csv, those of extensions, or FILE.py:NAME.",
+            help="Formats, as kmz, geojson, netcdf or tracks_csv, those of extensions, or"
+            " FILE.py:NAME.",
         ),
     ] = None,
     flight: FlightOption = None,
     stream: StreamOption = None,
 ) -> None:
-    """Write the flights of a run in other formats, into RUN_DIR/export, or send one in real time."""
+    """Write the flights of a run in other formats, into RUN_DIR/export, or send one in real
+    time.
+    """
     from reports.build import command
 
     if not (to or stream):

@@ -182,8 +182,9 @@ class Journal:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(columns)
         count = 0
-        for count, row in enumerate(self.rows(table), start=1):  # noqa: B007 - the last one is returned
+        for row in self.rows(table):
             writer.writerow([cell(row.get(name)) for name in columns])
+            count += 1
         return count
 
 

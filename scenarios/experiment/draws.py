@@ -1,4 +1,6 @@
-"""Random variables: the sample of each flight, from the trial's seed and the flight's number alone."""
+"""Random variables: the sample of each flight, from the trial's seed and the flight's number
+alone.
+"""
 
 import math
 import zlib
@@ -94,8 +96,9 @@ def sampled_flight(
             return SampledFlight(scenario=flight, noise=noise, values=kept)
     (low, high), (least, most) = judged.speed_ratio, speed_ratios(judged)
     raise InputError(
-        f"trial '{trial}': {_TRIES} samples had no speed ratio within {low:g} to {high:g}; the last one went from {least:.3f} to"
-        f" {most:.3f}: widen speed_ratio, or sample other winds and vessel speeds"
+        f"trial '{trial}': {_TRIES} samples had no speed ratio within {low:g} to {high:g}; the"
+        f" last one went from {least:.3f} to {most:.3f}: widen speed_ratio, or sample other winds"
+        " and vessel speeds"
     )
 
 
@@ -200,7 +203,8 @@ def check_draws(trial: str, scenario: Scenario, given: Collection[str] = ()) -> 
             draw, draw.within[1]
         ):
             raise InputError(
-                f"draw of '{draw.key}' has within {list(draw.within)}, which holds nothing of its distribution; widen it"
+                f"draw of '{draw.key}' has within {list(draw.within)}, which holds nothing of its"
+                " distribution; widen it"
             )
     for number in range(max((len(draw.choice or ()) for draw in scenario.draws), default=0) or 1):
         for end in (0.0, 1.0):

@@ -65,7 +65,8 @@ def points_of(scenario: Scenario) -> list[Point]:
             ]
         except InputError as error:
             raise InputError(
-                f"comparison '{variant.name}': {error}; or fly no comparisons (comparison.variants=[])"
+                f"comparison '{variant.name}': {error}; or fly no comparisons"
+                " (comparison.variants=[])"
             ) from None
     return points
 
@@ -144,7 +145,8 @@ def _values_of(case: CaseConfig, vehicle: str) -> Values:
         ratios = values.pop("sweep.nu")
         if not isinstance(ratios, list | tuple) or len(ratios) != 1:
             raise InputError(
-                f"case '{case.name}' has sweep.nu = {ratios!r}; give it one speed ratio, as in [0.5]"
+                f"case '{case.name}' has sweep.nu = {ratios!r}; give it one speed ratio, as in"
+                " [0.5]"
             )
         values["vessel.speed_ratio"] = ratios[0]
     return values

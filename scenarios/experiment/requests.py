@@ -235,8 +235,9 @@ class Experiment:
             ]
             if unlimited := [draw.key for draw in draws if draw.largest is None]:
                 raise InputError(
-                    f"'{unlimited[0]}' is sampled from a distribution without an upper limit, for which the aircraft would have to"
-                    " be measured; give the draw one with within = [lowest, highest]"
+                    f"'{unlimited[0]}' is sampled from a distribution without an upper limit, for"
+                    " which the aircraft would have to be measured; give the draw one with"
+                    " within = [lowest, highest]"
                 )
             if draws:
                 yield with_values(point.scenario, {draw.key: draw.largest for draw in draws})

@@ -1,5 +1,5 @@
-"""The space of an experiment's random variables: points that spread evenly over it, the space that a
-search goes through, and whether flights are a random sample of it, from which a bound follows.
+"""The space of an experiment's random variables: points that spread evenly over it, the space that
+a search goes through, and whether flights are a random sample of it, from which a bound follows.
 """
 
 import functools
@@ -36,7 +36,8 @@ has a side.
 
 @dataclass(frozen=True, slots=True)
 class SamplingDesign:
-    """Points that spread evenly over the unit cube of the random variables, by the numbers of flights.
+    """Points that spread evenly over the unit cube of the random variables, by the numbers of
+    flights.
 
     Attributes
     ----------

@@ -192,7 +192,8 @@ def fuel_estimate(
 
 
 def repeated_figures(verdict: "RepeatedVerdict", row: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the figures of a flight that looked at its verdict repeatedly; its end is the last look.
+    """Return the figures of a flight that looked at its verdict repeatedly; its end is the last
+    look.
 
     Parameters
     ----------

@@ -1,5 +1,5 @@
-"""A sniffer on board: the air along the flight, what it reads of the exhaust, in flight or after it,
-and how well the plume was hit.
+"""A sniffer on board: the air along the flight, what it reads of the exhaust, in flight or after
+it, and how well the plume was hit.
 
 The air is sampled at even times between samples of the flight: the same in parts, while the flight
 goes on, as at once.

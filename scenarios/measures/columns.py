@@ -484,7 +484,9 @@ FINDING_COLUMNS = described(
         ),
     }
 )
-"""More of them, of flights that search for the plume, are given its true axis, or end with a verdict."""
+"""More of them, of flights that search for the plume, are given its true axis, or end with a
+verdict.
+"""
 
 CROSSING_COLUMNS = described(
     {

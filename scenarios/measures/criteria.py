@@ -121,7 +121,9 @@ def _completes(row: Row) -> Judged:
 
 
 def _part_failed(row: Row) -> bool:
-    """Return whether a part of the aircraft had failed; otherwise it was given up on a false alarm."""
+    """Return whether a part of the aircraft had failed; otherwise it was given up on a false
+    alarm.
+    """
     return any(
         kind not in NOT_OF_AIRCRAFT and row["duration_s"] >= begins
         for kind, begins in faults_in(row)

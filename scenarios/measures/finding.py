@@ -1,4 +1,6 @@
-"""How soon a plume was found, how well its height was known, and how often it was hit from then on."""
+"""How soon a plume was found, how well its height was known, and how often it was hit from then
+on.
+"""
 
 import math
 
@@ -74,7 +76,9 @@ def finding_figures(
 
 
 def _detected(history: pd.DataFrame, noise: float, step: float) -> npt.NDArray[np.bool_]:
-    """Return at which samples the reading shows the plume, of which there was some shortly before."""
+    """Return at which samples the reading shows the plume, of which there was some shortly
+    before.
+    """
     reading = history["co2_reading_ppm"]
     base = reading.rolling(max(1, round(_BASE_WINDOW / step)), min_periods=1, center=True).quantile(
         _BASE_QUANTILE

@@ -1,5 +1,5 @@
-"""How a path keeps out of a sphere or an upright cylinder about a moving point, or of what is near to
-a hull that moves and turns.
+"""How a path keeps out of a sphere or an upright cylinder about a moving point, or of what is near
+to a hull that moves and turns.
 """
 
 import math
@@ -16,7 +16,8 @@ from scenarios.scenario.sections.world import Shape
 Array = npt.NDArray[np.float64]
 
 _LOOKS = 10
-"""Looks at a path between two of its samples, where its distance from a hull is no polynomial [-]."""
+"""Looks at a path between two of its samples, where its distance from a hull is no polynomial [-].
+"""
 
 _BINOMIAL = [math.comb(3, i) for i in range(4)]
 
@@ -181,7 +182,9 @@ def _least(squared: Array) -> float:
 
 
 def _roots(coefficients: Array) -> list[float]:
-    """Return where a polynomial with these Bernstein coefficients is 0 between 0 and 1, in order."""
+    """Return where a polynomial with these Bernstein coefficients is 0 between 0 and 1, in
+    order.
+    """
     degree = len(coefficients) - 1
     power = np.zeros(degree + 1)
     for k in range(degree + 1):

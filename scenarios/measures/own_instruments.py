@@ -1,5 +1,5 @@
-"""What instruments fill and find: columns, figures and tables of their own, and none of the flight's
-or of each other's.
+"""What instruments fill and find: columns, figures and tables of their own, and none of the
+flight's or of each other's.
 """
 
 from collections.abc import Callable, Iterable

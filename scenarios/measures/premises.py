@@ -5,8 +5,9 @@ Ratios follow from the flight's record: what is true, and what the guidance beli
 with (``scenarios.flight.guard_belief``). Above 1 a premise did not hold. A violation of the
 keep-out area in a flight with no ratio above 1 is an error of the theorem or of its code.
 
-With the error budget B, the place p, the velocity over the mean air u, the wind w, b = ``B.velocity``
-and what is allowed for while few measurements are in the wind, and estimates marked ^, the ratios are
+With the error budget B, the place p, the velocity over the mean air u, the wind w, and estimates
+marked ^, the ratios are as follows; b is ``B.velocity`` and what is allowed for while few
+measurements are in the wind.
 
 position   |p^ - p| / (k sigma_p), by satellite navigation; k is that of the vessel's discs
 wind       the larger of |w^ - w - g| and, by satellite navigation, |u^ - u|, over b, with the
@@ -137,8 +138,8 @@ def premise_figures(plan: FlightPlan, record: FlightRecord) -> Row:
 
 
 def is_unexplained(row: Row) -> bool:
-    """Return whether a guarded flight entered the keep-out area although every premise held, and its
-    aircraft was not lost: one that is lost does not fly its commands.
+    """Return whether a guarded flight entered the keep-out area although every premise held, and
+    its aircraft was not lost: one that is lost does not fly its commands.
     """
     violated = row.get("keepout_violations", 0) > 0 and row["outcome"] not in _LOST
     return bool(violated and row.get(EXCEEDED) == HELD)
@@ -500,7 +501,9 @@ class _PredictedTurns:
         self.heading_rate = np.array(rates)
 
     def _wind(self, at: Indices) -> tuple[Array, Array]:
-        """Return the wind that a turn is predicted with: in turbulence as estimated at the start."""
+        """Return the wind that a turn is predicted with: in turbulence as estimated at the
+        start.
+        """
         if self._estimated is not None:
             return self._estimated
         return self._flight.wind_north[at], self._flight.wind_east[at]

@@ -26,7 +26,9 @@ _SHOWN = 6000.0
 
 
 class _Approach(NamedTuple):
-    """How near a path came to a ship: her row of the table, and the distance beyond her radius [m]."""
+    """How near a path came to a ship: her row of the table, and the distance beyond her radius
+    [m].
+    """
 
     row: Row
     clearance: float

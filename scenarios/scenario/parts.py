@@ -124,12 +124,15 @@ def refuse_missing(key: str, value: Any, absolute: Any) -> None:
             and not is_file(file_of(path))
         ):
             raise InputError(
-                f"{key}: {file_of(path)}: there is no such file; check the path, relative to the current directory"
+                f"{key}: {file_of(path)}: there is no such file; check the path, relative to the"
+                " current directory"
             )
 
 
 def names_folder(key: str, name: str) -> bool:
-    """Return whether the name of the part of a key is that of a folder with an aircraft, DIR/NAME."""
+    """Return whether the name of the part of a key is that of a folder with an aircraft,
+    DIR/NAME.
+    """
     return key == _AIRCRAFT and is_path(name) and not is_file_part(name)
 
 

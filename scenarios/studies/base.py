@@ -1,5 +1,5 @@
-"""Studies of flights: what every study does, single flights, lists of trials, flights that are chosen on
-the way; and how the study that a scenario describes is found and run.
+"""Studies of flights: what every study does, single flights, lists of trials, flights that are
+chosen on the way; and how the study that a scenario describes is found and run.
 """
 
 import math
@@ -226,7 +226,9 @@ class FlightStudy:
     def _take(
         self, trials: Mapping[str, Scenario], envelope: Envelope | None
     ) -> Mapping[str, Scenario]:
-        """Make the flights of trials, and return the trials, scaled to an aircraft if there is one."""
+        """Make the flights of trials, and return the trials, scaled to an aircraft if there is
+        one.
+        """
         if envelope is not None:
             trials = {trial: scaled(of, envelope) for trial, of in trials.items()}
         self.trials = self.expanded(trials)
@@ -640,7 +642,8 @@ def _trials(listed: TrialList) -> dict[str, Scenario]:
             )
         if name in trials:
             raise InputError(
-                f"trials: two are called '{name}'; list each once, and give files names of their own"
+                f"trials: two are called '{name}'; list each once, and give files names of their"
+                " own"
             )
         # Of 100 flights 0.07 are 7, and not the eighth that rounding would add.
         flights = math.ceil(listed.share * trial.flights * (1.0 - _ROUNDING))

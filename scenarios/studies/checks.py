@@ -64,8 +64,9 @@ def check_flights(experiments: Iterable[Experiment], envelope: Envelope | None) 
     points = [point.scenario for experiment in experiments for point in experiment.points]
     if len({(s.aircraft, s.guidance.airspeed_mps, s.altitude) for s in points}) > 1:
         raise InputError(
-            "flights differ in aircraft, guidance.airspeed_mps or the altitude at the start (flight.altitude_m, else"
-            " plume.source_height_m, else the funnel of emission.ship); give each a run of its own"
+            "flights differ in aircraft, guidance.airspeed_mps or the altitude at the start"
+            " (flight.altitude_m, else plume.source_height_m, else the funnel of emission.ship);"
+            " give each a run of its own"
         )
     for scenario in points:
         check_without_design(scenario)
@@ -123,8 +124,9 @@ def _check_names(experiment: Experiment) -> None:
     for name in (experiment.name, *experiment.names()):
         if not is_file_name(name):
             raise InputError(
-                f"a flight would be called {name[:_SHOWN]!r}, with {len(name)} letters; names have up to {NAME_BYTES_MAX} bytes,"
-                " all printable, without / and \\: call the scenario file otherwise, or sweep fewer keys at once"
+                f"a flight would be called {name[:_SHOWN]!r}, with {len(name)} letters; names"
+                f" have up to {NAME_BYTES_MAX} bytes, all printable, without / and \\: call the"
+                " scenario file otherwise, or sweep fewer keys at once"
             )
 
 
@@ -135,8 +137,8 @@ def _check_turbulence(scenario: Scenario) -> None:
             low_altitude_turbulence(scenario.altitude, TURBULENCE[level].wind_at_20ft)
         except AircraftError as error:
             raise InputError(
-                f"turbulence.level is '{level}': {error}; fly lower (flight.altitude_m, else plume.source_height_m, else the funnel"
-                " of emission.ship) or without"
+                f"turbulence.level is '{level}': {error}; fly lower (flight.altitude_m, else"
+                " plume.source_height_m, else the funnel of emission.ship) or without"
             ) from None
 
 
@@ -152,8 +154,9 @@ def _check_margins(scenario: Scenario) -> None:
     for draw in scenario.draws:
         if draw.choice is None and draw.key.startswith(("guidance.", "reference.")):
             raise InputError(
-                f"'{draw.key}' is sampled from a continuous distribution beside turbulence, in which each value takes a margin of"
-                " its own: give it a choice of values, as in choice = [0.5, 1.0], or set turbulence.level to 'none'"
+                f"'{draw.key}' is sampled from a continuous distribution beside turbulence, in"
+                " which each value takes a margin of its own: give it a choice of values, as in"
+                " choice = [0.5, 1.0], or set turbulence.level to 'none'"
             )
 
 
@@ -182,8 +185,9 @@ def _check_sniffer(scenario: Scenario) -> None:
         spec = sniffer_on_board(scenario)
         if spec.channel("so2") is None:
             raise InputError(
-                f"flight.until is 'verdict', but the channels of payload.sensor '{spec.name}' are {', '.join(spec.gases)}, and so2,"
-                " without which there is no verdict, is not among them: add the table payload.sensor.channels.so2"
+                f"flight.until is 'verdict', but the channels of payload.sensor '{spec.name}' are"
+                f" {', '.join(spec.gases)}, and so2, without which there is no verdict, is not"
+                " among them: add the table payload.sensor.channels.so2"
             )
 
 
@@ -305,7 +309,8 @@ def _check_parts(scenario: Scenario) -> None:
     sampled = any(draw.key.startswith("emission.") for draw in scenario.draws)
     if "sniffer" in scenario.payload.instruments and scenario.emission.ship is None and not sampled:
         raise InputError(
-            "payload.instruments has a sniffer, and there is no exhaust: set emission.ship, or leave the sniffer out"
+            "payload.instruments has a sniffer, and there is no exhaust: set emission.ship, or"
+            " leave the sniffer out"
         )
     for key, name in part_names(scenario):
         try:

@@ -1,5 +1,5 @@
-"""A search for the flight that comes closest to the vessel, within the declared ranges, and what it has
-found.
+"""A search for the flight that comes closest to the vessel, within the declared ranges, and what it
+has found.
 """
 
 import time
@@ -137,12 +137,14 @@ class FalsificationStudy(ChosenFlightsStudy):
         """Return the error to raise for a search that has nothing to fly."""
         if self._proposed:
             return InputError(
-                f"none of the {self._proposed} points that the search proposed is within speed_ratio and"
-                " following.vessel_acceleration_mps2, and none was flown: widen these, or change the draws"
+                f"none of the {self._proposed} points that the search proposed is within"
+                " speed_ratio and following.vessel_acceleration_mps2, and none was flown: widen"
+                " these, or change the draws"
             )
         return InputError(
-            f"search.methods {list(self._search.methods)} proposed no flight (continuous draws: {len(self._space.continuous)} of"
-            f" {self._space.dimension}, search.population: {self._search.population}): add 'corners', which searches any draws"
+            f"search.methods {list(self._search.methods)} proposed no flight (continuous draws:"
+            f" {len(self._space.continuous)} of {self._space.dimension}, search.population:"
+            f" {self._search.population}): add 'corners', which searches any draws"
         )
 
     @property
@@ -194,8 +196,8 @@ class FalsificationStudy(ChosenFlightsStudy):
             before, task.point, rtol=0.0, atol=_SAME_POINT
         ):
             raise InputError(
-                f"flight {task.number} of the run to be resumed was not flown at the point that this search proposes:"
-                " start a new run in another --out"
+                f"flight {task.number} of the run to be resumed was not flown at the point that"
+                " this search proposes: start a new run in another --out"
             )
 
     def _keep(
@@ -210,7 +212,10 @@ class FalsificationStudy(ChosenFlightsStudy):
             path.unlink()
         for rank, flight in enumerate(worst, start=1):
             request = experiment.request(flight.number, self._tasks[flight.number].point)
-            title = f"{self._scenario.title}: number {rank}, {flight.clearance:.2f} m from the keep-out area"
+            title = (
+                f"{self._scenario.title}: number {rank}, {flight.clearance:.2f} m from the"
+                " keep-out area"
+            )
             run.write_bytes(
                 f"{WORST}/{rank:02d}_{flight.flight_id}.toml", scenario_file(request, title=title)
             )
@@ -393,15 +398,19 @@ def search_lines(found: dict[str, Any]) -> Iterator[str]:
             if 0 < of["measured"] < of["flights"]
             else ""
         )
-        yield f"  {name or 'no method'}: {flights}, {of['violations']} violated, {_outside(of['worst_clearance_m'])}"
+        yield (
+            f"  {name or 'no method'}: {flights}, {of['violations']} violated,"
+            f" {_outside(of['worst_clearance_m'])}"
+        )
     for rank, flight in enumerate(found["worst"][:1], start=1):
         repeats = (
-            f"; with fresh noise {flight['confirmations_violating']} of {flight['confirmations']} violated,"
-            f" {_outside(flight['confirmations_nearest_m'])}"
+            f"; with fresh noise {flight['confirmations_violating']} of {flight['confirmations']}"
+            f" violated, {_outside(flight['confirmations_nearest_m'])}"
             if flight["confirmations"]
             else ""
         )
         yield (
-            f"number {rank}: {flight['flight_id']} by {flight['method']}, {flight['clearance_m']:.2f} m from the keep-out"
-            f" area{repeats}; the worst are in {WORST}/, as scenario files"
+            f"number {rank}: {flight['flight_id']} by {flight['method']},"
+            f" {flight['clearance_m']:.2f} m from the keep-out area{repeats}; the worst are in"
+            f" {WORST}/, as scenario files"
         )

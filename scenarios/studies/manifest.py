@@ -159,7 +159,8 @@ def refuse_changed(then: Mapping[str, str], now: Mapping[str, str]) -> None:
     for name, digest in now.items():
         if then.get(name) != digest:
             raise InputError(
-                f"'{file_of(name)}' has changed since the run; use it as it was then, or start a new run"
+                f"'{file_of(name)}' has changed since the run; use it as it was then, or start a"
+                " new run"
             )
 
 

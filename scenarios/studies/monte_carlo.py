@@ -55,13 +55,15 @@ class MonteCarloStudy(FlightStudy):
         ((_, self._experiment),) = self.experiments.items()
         if scenario.statistics.stops and self.planned > scenario.flights:
             raise InputError(
-                "statistics stops the study, which has several points (sweep, cases, fidelity); leave out"
-                " statistics.violation_upper and statistics.distance_quantile_width_m, or give each point a run of its own"
+                "statistics stops the study, which has several points (sweep, cases, fidelity);"
+                " leave out statistics.violation_upper and statistics.distance_quantile_width_m,"
+                " or give each point a run of its own"
             )
         if scenario.flights > 1 and not (scenario.several_points or is_random_sample(scenario)):
             raise InputError(
-                f"flights is {scenario.flights}, and nothing random differs between them: seeds, start and choices are given, so"
-                " some are copies, from which no probability follows; leave out flight_seed, or set study to 'flights'"
+                f"flights is {scenario.flights}, and nothing random differs between them: seeds,"
+                " start and choices are given, so some are copies, from which no probability"
+                " follows; leave out flight_seed, or set study to 'flights'"
             )
         self._looks, self._stopped = 0, False
 
@@ -160,7 +162,10 @@ class MonteCarloStudy(FlightStudy):
         if not self._stopped:
             return found
         asked = self._scenario.flights
-        line = f"stopped after {self.planned} of {asked} flights: the intervals are as narrow as demanded"
+        line = (
+            f"stopped after {self.planned} of {asked} flights: the intervals are as narrow as"
+            " demanded"
+        )
         return replace(found, lines=[*found.lines, line])
 
 

@@ -21,8 +21,8 @@ _COLUMNS = ("flight_id", "turbulence", "duration_s", *PREMISE_COLUMNS)
 
 @study("premises")
 class PremisesStudy(FlightStudy):
-    """Flights of cases; for each case and term of the error budget a table says how near errors came
-    to it, and in how many flights they were larger.
+    """Flights of cases; for each case and term of the error budget a table says how near errors
+    came to it, and in how many flights they were larger.
     """
 
     def export(self, run: RunDirectory, journal: Journal) -> None:

@@ -53,16 +53,19 @@ class OriginalFlight:
         manifest = _manifest_of(directory)
         if "replayed" in manifest:
             raise InputError(
-                f"'{directory}' is the run of a replay; give the flight as RUN_DIR/flights/ID of its original run"
+                f"'{directory}' is the run of a replay; give the flight as RUN_DIR/flights/ID of"
+                " its original run"
             )
         task, table, row = _recorded(directory, flight_of(name))
         if "trial" not in row or "trials" not in manifest:
             if "study" not in manifest:
                 raise InputError(
-                    f"'{directory}': {MANIFEST} is not that of a run; give the directory of a complete run"
+                    f"'{directory}': {MANIFEST} is not that of a run; give the directory of a"
+                    " complete run"
                 )
             raise InputError(
-                f"'{directory}' is a study of {manifest['study']}; only single flights can be replayed"
+                f"'{directory}' is a study of {manifest['study']}; only single flights can be"
+                " replayed"
             )
         return cls(directory=directory, manifest=manifest, task=task, table=table, row=row)
 
@@ -71,7 +74,8 @@ class OriginalFlight:
         then = str(self.manifest["trials"][self.row["trial"]]["aircraft"])
         if not names_folder("aircraft", then):
             raise InputError(
-                f"'{self.directory}' flew the aircraft '{then}', which is of no directory; leave out --aircraft-dir"
+                f"'{self.directory}' flew the aircraft '{then}', which is of no directory; leave"
+                " out --aircraft-dir"
             )
         now = folder_of(folder, Path(then).name)
         trials = {
@@ -96,7 +100,8 @@ class OriginalFlight:
             # It becomes part of the names of files.
             if not is_file_name(name) or name not in trials:
                 raise InputError(
-                    f"'{self.directory}' names a trial {name!r}, which cannot be the name of a trial; do not use this run"
+                    f"'{self.directory}' names a trial {name!r}, which cannot be the name of a"
+                    " trial; do not use this run"
                 )
         scenarios = {
             name: checked({**config, "study": "flights"}, Scenario)
@@ -112,7 +117,8 @@ class OriginalFlight:
         number = self.task.number - sum(flights[name] for name in before)
         if not 0 <= number < flights[trial]:
             raise InputError(
-                f"'{self.directory}': flight '{self.row['flight_id']}' has number {self.task.number}; '{trial}' has no such flight"
+                f"'{self.directory}': flight '{self.row['flight_id']}' has number"
+                f" {self.task.number}; '{trial}' has no such flight"
             )
         # The study may have chosen the seed: the row has it.
         return study, Task(
@@ -134,7 +140,8 @@ def _recorded(directory: Path, flight_id: str) -> tuple[Task, str, Row]:
     path = directory / JOURNAL
     if not path.is_file():
         raise InputError(
-            f"'{directory}' has no {path.name} with the results of its flights; give the directory of a complete run"
+            f"'{directory}' has no {path.name} with the results of its flights; give the"
+            " directory of a complete run"
         )
     journal = Journal(path, reading=True)
     try:
@@ -169,7 +176,8 @@ class Replay(SingleFlight):
         flight_id = original.row["flight_id"]
         if viewer and original.row.get("fidelity") != "six_dof":
             raise InputError(
-                f"aircraft in six degrees of freedom can be shown, no others; '{flight_id}' is a kinematic flight"
+                f"aircraft in six degrees of freedom can be shown, no others; '{flight_id}' is a"
+                " kinematic flight"
             )
         try:
             if aircraft_dir:
@@ -179,7 +187,8 @@ class Replay(SingleFlight):
             raise
         except (LookupError, TypeError, AttributeError, ValueError) as error:
             raise InputError(
-                f"'{original.directory}': {MANIFEST} is not that of a run ({type(error).__name__}: {error})"
+                f"'{original.directory}': {MANIFEST} is not that of a run"
+                f" ({type(error).__name__}: {error})"
             ) from None
         self._original, self._viewer = original, viewer
         super().__init__(
@@ -227,7 +236,8 @@ class Replay(SingleFlight):
                 f"{name} {before.get(name)} -> {row.get(name)}" for name in differing[:3]
             )
             lines.append(
-                f"differs from the flight in {where} in {len(differing)} values: {changes}; {self._reason()}"
+                f"differs from the flight in {where} in {len(differing)} values: {changes};"
+                f" {self._reason()}"
             )
         # The exit status is about the repetition, and not about the flight.
         verdict = replace(verdict, required_met=not differing)

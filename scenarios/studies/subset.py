@@ -167,7 +167,9 @@ class SubsetStudy(ChosenFlightsStudy):
         )
 
     def summary(self, journal: Journal) -> StudySummary:
-        """Return what the flights have come to, and the probability if every simulation has ended."""
+        """Return what the flights have come to, and the probability if every simulation has
+        ended.
+        """
         found = super().summary(journal)
         if not self._simulations:
             return found
@@ -189,21 +191,24 @@ class SubsetStudy(ChosenFlightsStudy):
         lines = []
         if outside:
             lines.append(
-                f"{outside} of {flights + outside} points of the first levels were beyond speed_ratio and sampled again"
+                f"{outside} of {flights + outside} points of the first levels were beyond"
+                " speed_ratio and sampled again"
             )
         plain = count_violations(frame(journal.rows(SUMMARY, below=flights), COLUMNS))
         alone = upper_bound(plain.events_at_most, plain.flights, self._statistics.confidence)
         if alone < found.upper:
             lines.append(
-                f"the first levels alone, a plain sample of {flights} flights, bound the probability below by {alone:.2g}"
+                f"the first levels alone, a plain sample of {flights} flights, bound the"
+                f" probability below by {alone:.2g}"
             )
         if unknown := plain.events_at_most - plain.events:
             upper = pessimistic_upper(
                 self._simulations, found, unknown, flights, self._statistics.confidence
             )
             lines.append(
-                f"of {flights} flights of the first levels {unknown} {'is' if unknown == 1 else 'are'} of unknown end; if each"
-                f" were a violation, the probability below would be at most {upper:.2g}"
+                f"of {flights} flights of the first levels {unknown}"
+                f" {'is' if unknown == 1 else 'are'} of unknown end; if each were a violation,"
+                f" the probability below would be at most {upper:.2g}"
             )
         return lines
 
@@ -214,8 +219,9 @@ class SubsetStudy(ChosenFlightsStudy):
         )
         if not found.reached:
             return (
-                f"none of {repeats} subset simulations reached a keep-out violation: its probability in a flight is at most"
-                f" {found.upper:.2g} with {sure}, if chains find the way to it"
+                f"none of {repeats} subset simulations reached a keep-out violation: its"
+                f" probability in a flight is at most {found.upper:.2g} with {sure}, if chains"
+                " find the way to it"
             )
         some = (
             ""
@@ -223,6 +229,7 @@ class SubsetStudy(ChosenFlightsStudy):
             else f"; {repeats - found.reached} of {repeats} simulations reached none"
         )
         return (
-            f"probability of a keep-out violation in a flight: {found.estimate:.2g}, {found.low:.2g} to {found.high:.2g} and at"
-            f" most {found.upper:.2g} with {sure}, by {repeats} subset simulations{some}"
+            f"probability of a keep-out violation in a flight: {found.estimate:.2g},"
+            f" {found.low:.2g} to {found.high:.2g} and at most {found.upper:.2g} with {sure}, by"
+            f" {repeats} subset simulations{some}"
         )

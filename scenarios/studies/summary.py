@@ -166,7 +166,8 @@ def comparison_lines(verdict: RunVerdict, left_out: Sequence[float]) -> list[str
     """
     if left_out:
         return [
-            f"  comparisons: none flown, as no flight is at a speed ratio of comparison.nu, {list(left_out)}"
+            "  comparisons: none flown, as no flight is at a speed ratio of comparison.nu,"
+            f" {list(left_out)}"
         ]
     return [
         f"  comparison {variant}, not counted above: {counts_line(counts)}"
@@ -237,7 +238,8 @@ class FlightNotes:
         And in how many flights the sniffer failed: nothing else on the console says so.
         """
         faults = [
-            f"a fault of the sniffer began in {count} of {self.flown} flight{'s' * (self.flown > 1)}: {kind}"
+            f"a fault of the sniffer began in {count} of {self.flown}"
+            f" flight{'s' * (self.flown > 1)}: {kind}"
             for kind, count in self.sniffer_faults.items()
         ]
         return [*self._content_lines(), *faults]
@@ -274,17 +276,18 @@ class FlightNotes:
         lines = []
         if count := self.unflown_manoeuvres:
             lines.append(
-                f"warning: in {count} flight{'s' * (count > 1)} a manoeuvre of the vessel begins after the end of the flight, and"
-                " was never flown; let it begin earlier (vessel.manoeuvres), or fly longer (flight.duration_max_s,"
-                " flight.crossings)"
+                f"warning: in {count} flight{'s' * (count > 1)} a manoeuvre of the vessel begins"
+                " after the end of the flight, and was never flown; let it begin earlier"
+                " (vessel.manoeuvres), or fly longer (flight.duration_max_s, flight.crossings)"
             )
         if heights := self.beside_smoke:
             farthest = max(heights, key=abs)
             lines.append(
-                f"warning: in {len(heights)} flight{'s' * (len(heights) > 1)} the UAV never passed through the smoke, and crossed"
-                f" its axis up to {abs(farthest):.0f} m {'above' if farthest > 0.0 else 'below'} it: flight.altitude_min_m and"
-                " altitude_max_m may not let it reach the smoke, or the ship is not as the guidance takes her to be"
-                " (following.source_height_m, following.load)"
+                f"warning: in {len(heights)} flight{'s' * (len(heights) > 1)} the UAV never"
+                f" passed through the smoke, and crossed its axis up to {abs(farthest):.0f} m"
+                f" {'above' if farthest > 0.0 else 'below'} it: flight.altitude_min_m and"
+                " altitude_max_m may not let it reach the smoke, or the ship is not as the"
+                " guidance takes her to be (following.source_height_m, following.load)"
             )
         return lines
 

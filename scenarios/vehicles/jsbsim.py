@@ -1,5 +1,5 @@
-"""The aircraft in six degrees of freedom: JSBSim at 120 Hz with the autopilot at its own rate, 40 to
-120 Hz, both in C++.
+"""The aircraft in six degrees of freedom: JSBSim at 120 Hz with the autopilot at its own rate, 40
+to 120 Hz, both in C++.
 """
 
 import itertools

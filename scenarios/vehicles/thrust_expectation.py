@@ -161,7 +161,7 @@ class ThrustExpectation:
 
         Parameters
         ----------
-        airspeed, slow_airspeed : V_r, and the airspeed above which thrust that level flight takes is
+        airspeed, slow_airspeed : V_r, and the airspeed above which the thrust of level flight is
             enough [m/s]
         gusts : standard deviation of gusts along the path [m/s]
         airspeed_sigma, airspeed_bias : noise, and largest bias, of the airspeed that is read [m/s]

@@ -1,4 +1,6 @@
-"""Sections that name parts, and take the keys that these parts bring: the fields of their settings."""
+"""Sections that name parts, and take the keys that these parts bring: the fields of their
+settings.
+"""
 
 import functools
 from collections.abc import Mapping
@@ -56,8 +58,8 @@ class PartSection(Section):
             if name.startswith("_") or name in type(self).model_fields or not self._takes(name):
                 raise
             raise AttributeError(
-                f"'{name}' is a key of SETTINGS, which this scenario leaves at its default; take it, given or not, from the"
-                f" section's settings(type(self)).{name}"
+                f"'{name}' is a key of SETTINGS, which this scenario leaves at its default; take"
+                f" it, given or not, from the section's settings(type(self)).{name}"
             ) from None
 
     def _takes(self, name: str) -> bool:
@@ -81,7 +83,8 @@ class PartSection(Section):
                 of_parts = f"; keys of {', '.join(map(repr, parts))} are {', '.join(keys)}"
                 known = of_parts if keys else f"; set {self.NAMED_IN} to a part that takes it"
                 raise ValueError(
-                    f"key '{name}' is not known{did_you_mean(name, [*type(self).model_fields, *keys]) or known}"
+                    f"key '{name}' is not"
+                    f" known{did_you_mean(name, [*type(self).model_fields, *keys]) or known}"
                 )
         for part in parts.values():
             if hasattr(part, "SETTINGS"):

@@ -176,7 +176,9 @@ class VesselConfig(Section):
 
     @property
     def hull(self) -> ShipHull | None:
-        """The hull, where it is known: funnel and antenna are at one place if only one of them is."""
+        """The hull, where it is known: funnel and antenna are at one place if only one of them
+        is.
+        """
         if self.length_m is None or self.beam_m is None:
             return None
         middle, usual = 0.5 * self.beam_m, STACK_FROM_BOW * self.length_m
