@@ -2,7 +2,7 @@
 is.
 
 The outline is the rectangle of length and beam that reports give (ITU-R M.1371-5, figure 41). It
-contains the hull, whatever the shape of bow and stern, so a distance from it is at most that from
+contains the hull, for any shape of bow and stern, so a distance from it is at most that from
 the ship. Places are ahead of the funnel and to starboard of it.
 """
 

@@ -34,7 +34,9 @@ Array = npt.NDArray[np.float64]
 
 
 class TableError(ValueError):
-    """A table cannot be read, or not without being told how. The message is one line."""
+    """A table cannot be read, or only with a format that the caller gives. The message is one
+    line.
+    """
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,7 +48,7 @@ class TableFormat:
     separator : of columns: one mark, or "whitespace"
     decimal : mark of decimals, "." or ","
     encoding : a name that Python knows
-    time_format : of dates and times, as of ``datetime.strptime``
+    time_format : of dates and times, as in ``datetime.strptime``
     time_unit : of times in numbers: "s", "ms" or "us"
     """
 
@@ -96,7 +98,7 @@ def table_format(given: Mapping[str, Any]) -> TableFormat:
         _check_dated(chosen.time_format)
     if chosen.encoding is not None:
         try:
-            # Refuses codecs that are none of text, too, as "hex".
+            # Refuses codecs that do not decode text, too, such as "hex".
             io.TextIOWrapper(io.BytesIO(), encoding=chosen.encoding)
         except (LookupError, UnicodeError):
             raise TableError(f"table.encoding is {chosen.encoding!r}; Python knows none") from None
@@ -234,7 +236,7 @@ class Table:
         return values
 
     def _as_numbers(self, cells: Sequence[str]) -> Array:
-        """Return cells as numbers, not a number where they are none, shape (n,)."""
+        """Return cells as numbers, NaN where a cell is no number, shape (n,)."""
         decimal = self.format.decimal
         other = "." if decimal == "," else ","
         # A column that has the other mark anywhere but at thousands has it for decimals.
@@ -249,7 +251,7 @@ class Table:
         Numbers are seconds, or what ``time_unit`` or the column's own unit says; from 1979 on they
         are since 1970, as far as the unit is known or they are milliseconds or microseconds by
         their size. A time of day is of the ``day``, and goes on over midnight.
-        ``usual`` is the format of tables of this kind, where none is given.
+        ``usual`` is the format of tables of this kind, used where the user gives none.
 
         Raises
         ------
@@ -264,7 +266,7 @@ class Table:
         return moments
 
     def dated_times(self, name: str, *, usual: str = "") -> Array:
-        """Return a column as times since 1970 in UTC [s]; parameters as of ``times``.
+        """Return a column as times since 1970 in UTC [s]; parameters as in ``times``.
 
         Raises
         ------
@@ -318,7 +320,7 @@ def read_table(
     given : how it is written, as far as that is known
     keep : which lines below the head are read; all if not given. Of files of a day with millions of
         lines those of others are passed over as they are
-    head : names of columns of which the head has some, to tell it from lines above it
+    head : names of columns; the head has some of them, and lines above it have not
 
     Raises
     ------
@@ -505,7 +507,9 @@ def _refuse_endless(line: str, number: int = 0) -> None:
 
 
 def _uncommented(line: str) -> str:
-    """Return a head without the mark of a comment, as of the Danish Maritime Authority."""
+    """Return a head without the mark of a comment, which the Danish Maritime Authority puts
+    there.
+    """
     return re.sub(r"^\s*(#|%|//)\s*", "", line)
 
 
@@ -606,7 +610,7 @@ def _decimal(rows: Sequence[Sequence[str]], separator: str) -> str:
 
 
 def _number(cell: str, decimal: str | None, *, given: bool = False) -> float:
-    """Return a number; not a number where it is none.
+    """Return the number in a cell; NaN where it holds none.
 
     ``given`` is whether the mark of decimals was given, and not found: only then a lone group of
     three digits behind the other mark is sure to be of thousands.
@@ -680,7 +684,7 @@ _WITHOUT_DATE_FORMATS = tuple(
         ("%H:%M:%S", "%H:%M:%S.%f", "%H:%M", "%I:%M:%S %p", "%I:%M %p"),
     )
 )
-"""Formats that are named where a date is in one of them: none is taken unless it is given."""
+"""Formats that an error names where a date fits one of them; only a given format is used."""
 
 
 def _times(table: Table, name: str, day: date | None, pattern: str) -> Moments:
@@ -910,7 +914,7 @@ def unit_factor(
 
 
 def _spelt(unit: str) -> str:
-    """Return a unit as pint reads it, with a mark before powers, as of "m s-1" and "ug/m3"."""
+    """Return a unit as pint reads it, with a mark before powers, as in "m s-1" and "ug/m3"."""
     text = (
         _SPELLINGS.get(unit.strip().lower(), unit.strip()).replace("³", "**3").replace("⁻¹", "**-1")
     )
@@ -935,7 +939,7 @@ def _registry() -> Any:
 def _unit_row(
     names: Sequence[str], below: Sequence[tuple[int, str]], separator: str
 ) -> dict[str, str] | None:
-    """Return the units of a row of units, or None where the first row below the head is none.
+    """Return the units of a row of units, or None where the first row below the head has no units.
 
     Such a row has no number, and the one after it does.
     """

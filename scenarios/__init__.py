@@ -1,8 +1,8 @@
 """From a scenario to results: the world, the closed loop, the studies; and the programming
 interface, ``docs/reference/api.md``.
 
-``from scenarios import fly, run, load, read_ais, Scenario``. Names are loaded when they are asked
-for: importing it is light.
+``from scenarios import fly, run, load, read_ais, Scenario``. A name is loaded at its first use:
+importing the package is light.
 """
 
 import importlib

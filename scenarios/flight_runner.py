@@ -160,7 +160,7 @@ class Findings:
             history[list(instrument.COLUMNS)] = found.columns[held]
             self.row |= found.figures
             for file, rows in found.tables.items():
-                # No row is of another flight, whatever the instrument says.
+                # An instrument cannot give the row of another flight.
                 self.tables[file] = [self.named | row | self.named for row in rows]
             self.document = found.document or self.document
 
@@ -214,7 +214,7 @@ class FlightRunner:
     viewer: Viewer | None = None
 
     def run(self, task: Task) -> Result:
-        """Return the result of one flight, whatever becomes of it."""
+        """Return the result of one flight, also of one that fails."""
         began = time.perf_counter()
         findings = Findings(self._identity(task))
         try:

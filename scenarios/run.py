@@ -313,18 +313,18 @@ def _again(directory: Path, *, out: Path | None, resume: bool) -> str:
 
 
 def _viewer(addresses: Mapping[str, str | None], *, replayed: bool) -> "Viewer | None":
-    """Return what shows the flight, if that is asked for."""
+    """Return the program that shows the flight, if one was chosen."""
     from scenarios.errors import InputError
 
-    asked = {name: address for name, address in addresses.items() if address is not None}
-    if not asked:
+    chosen = {name: address for name, address in addresses.items() if address is not None}
+    if not chosen:
         return None
-    if len(asked) > 1 or not replayed:
+    if len(chosen) > 1 or not replayed:
         raise InputError(
-            f"{' and '.join(map(_option, asked))}: one program at a time shows the replay of a"
+            f"{' and '.join(map(_option, chosen))}: one program at a time shows the replay of a"
             " flight; give RUN_DIR/flights/ID"
         )
-    (name, address), *_ = asked.items()
+    (name, address), *_ = chosen.items()
     try:
         made: Viewer = load_announced(VIEWER, name)(address)
     except PluginError as error:

@@ -23,7 +23,7 @@ _LAWS = (
     *(key for keys in ADDED for key in keys.LAW_KEYS),
 )
 _COPIED = ("vessel.track", "reference.shape")
-"""Keys whose part may be an existing object, of which each flight takes a copy."""
+"""Keys whose part may be an existing object; each flight takes a copy."""
 
 
 _TABLES_OF_KEYS = ("set", "set_kinematic", "tuning_set")
@@ -32,7 +32,7 @@ _TABLES_OF_KEYS = ("set", "set_kinematic", "tuning_set")
 
 @dataclass(frozen=True, slots=True)
 class Copies:
-    """A part of which each flight takes a copy, so that flights do not share its state."""
+    """A part that each flight copies, so that flights do not share its state."""
 
     part: object
 

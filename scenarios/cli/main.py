@@ -181,6 +181,6 @@ def commands() -> dict[str, Callable[..., None]]:
 
 def main() -> None:
     """Entry point."""
-    # As of scenarios.run: small matrices in several processes need no threads of their own.
+    # As in scenarios.run: small matrices in several processes need no threads of their own.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     run_command(commands(), PROGRAM, importlib.metadata.version("plume-flight-study"))

@@ -118,14 +118,14 @@ def _section(
 ) -> Iterator[str]:
     values: Any = document.get(section.name, {}) if section.name else document
     if section.name and (entries := sections_of(config, section.name))[1:]:
-        # A list of tables, of which each is as one alone.
+        # A list of tables: each is written as one alone.
         for number, (name, _) in enumerate(entries):
             yield from _head(f"[[{section.name}]]", section)
             for key in section.keys:
                 own = replace(key, key=f"{name}.{key.key.rpartition('.')[2]}")
                 yield from _key(own, values[number], config)
         return
-    # A list in place of the section, as of instruments, stands for its first key.
+    # A list in place of the section, as for instruments, stands for its first key.
     values = (
         values if isinstance(values, Mapping) else {section.keys[0].key.rpartition(".")[2]: values}
     )

@@ -32,7 +32,7 @@ from scenarios.scenario.sections.experiment import STUDY, SweepConfig, swept_key
 from scenarios.world.noise import Noise
 
 _PLANNED_FOR = ("guidance.", "turbulence.level", "reference.shape", "following.margin_law")
-"""Beginnings of keys for each choice of which the tracking in turbulence is worked out before any
+"""Beginnings of keys: the tracking in turbulence is computed for each choice of them, before any
 flight.
 """
 
@@ -40,7 +40,7 @@ _VARIATION = ("sweep", "cases", "draws", "comparison")
 """Sections that make several flights of a scenario, and are of none of them."""
 
 _MEASURED_FOR = ("guidance.bank_deg", "guidance.heading_rate_max_rad_s", "following.climb_gradient")
-"""Keys for the largest values of which the aircraft is measured before any flight."""
+"""Keys for whose largest values the aircraft is measured before any flight."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -113,7 +113,7 @@ class Experiment:
         """Return the keys that a flight has otherwise than the scenario, and their values as the
         manifest would have them: a list as a whole, and so a table that lacks a key.
 
-        Whatever set them is in them: its case, the sweep, a comparison, samples, the study.
+        They hold all that was set: by its case, the sweep, a comparison, samples, the study.
         """
         return differing_keys(self._configuration, _without_variation(flown))
 

@@ -212,7 +212,7 @@ def repeated_figures(verdict: "RepeatedVerdict", row: Mapping[str, Any]) -> dict
             last=True,
         )
     return {
-        # What the whole record refuses has no verdict, whatever was found on the way.
+        # A verdict found on the way does not stand if the whole record is refused.
         "sulphur_verdict": verdict.verdict if admitted else OPEN,
         "verdict_looks": verdict.looks,
         "verdict_guard": verdict.guard if admitted else math.nan,

@@ -228,7 +228,7 @@ together.
 
 
 _NOT_FLOWN = "unspecified"
-"""Preset of a log's instrument of which nothing is known: there is no noise to sample."""
+"""Preset for the instrument of a log when nothing is known of it: it has no noise to sample."""
 
 
 _NO_RULE = "none"

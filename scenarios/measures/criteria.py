@@ -36,10 +36,10 @@ class Judged(NamedTuple):
 
     Attributes
     ----------
-    key, column : as of ``common.verdict.Criterion``
+    key, column : as in ``common.verdict.Criterion``
     value : of the figure, not a number where the flight has none; or a word
     limit : of the flight; None where its scenario sets none
-    worse : the larger, the worse the value is, whatever the limit; not a number without a value
+    worse : how bad the value is, larger is worse, comparable between limits; NaN without a value
     of_limit : the larger, the worse the value is for its limit
     message : what to say of a flight that fails the criterion; empty where it is met
     judges : whether the criterion has a say in the flight
@@ -167,7 +167,7 @@ def _commands(row: Row, criteria: CriteriaConfig) -> Iterator[Judged]:
     demanded, commanded = (rate / largest if largest else math.nan for rate in (demand, command))
     beyond, within = criteria.law_beyond_heading_rate_max, criteria.law_within_heading_rate_max
     if beyond:
-        message = f"the law asked for {demand:.4f} rad/s, within omega_max = {largest:.4f}"
+        message = f"the law demanded {demand:.4f} rad/s, within omega_max = {largest:.4f}"
         yield Judged(
             "law_beyond_heading_rate_max",
             "",
@@ -182,7 +182,7 @@ def _commands(row: Row, criteria: CriteriaConfig) -> Iterator[Judged]:
         message *= not command <= largest * _ROUNDING
         yield Judged("heading_rate", "", commanded, 1.0, commanded, commanded, message)
     if within:
-        message = f"the law asked for {demand:.4f} rad/s, above omega_max = {largest:.4f}"
+        message = f"the law demanded {demand:.4f} rad/s, above omega_max = {largest:.4f}"
         message *= not demand <= largest * _ROUNDING
         key = "law_within_heading_rate_max"
         yield Judged(key, "", demanded, 1.0, demanded, demanded, message)

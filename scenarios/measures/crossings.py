@@ -87,8 +87,8 @@ def find_crossings(
 def _roots(time: Array, across: Array, rate: Array) -> Array:
     """Return when the cubic through values and their rates is 0 [s], in order; all shapes (n,).
 
-    Between samples a cubic stays within its Bernstein coefficients, and is asked for roots only
-    where these have both signs.
+    Between samples a cubic stays within its Bernstein coefficients; roots are computed only where
+    these have both signs.
     """
     side, coefficients = CubicHermiteSpline(time, across, rate), bezier_points(time, across, rate)
     rounding = _ROUNDING * np.abs(coefficients).max(axis=0)

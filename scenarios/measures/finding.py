@@ -76,7 +76,7 @@ def finding_figures(
 
 
 def _detected(history: pd.DataFrame, noise: float, step: float) -> npt.NDArray[np.bool_]:
-    """Return at which samples the reading shows the plume, of which there was some shortly
+    """Return the samples at which the reading shows the plume, and there was plume shortly
     before.
     """
     reading = history["co2_reading_ppm"]

@@ -104,7 +104,7 @@ def hull_keepout_figures(
 
     Parameters
     ----------
-    time, position, velocity, radius, shape : as of ``keepout_figures``, from the funnel
+    time, position, velocity, radius, shape : as in ``keepout_figures``, from the funnel
     hull : seen from the funnel
     heading : returns the ship's heading at some times [rad]
     """

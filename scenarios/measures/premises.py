@@ -111,7 +111,7 @@ class Ratios(NamedTuple):
     values: Array
 
     def largest(self) -> tuple[float, float]:
-        """Return the largest ratio and its time [-, s]; not a number where there is none."""
+        """Return the largest ratio and its time [-, s]; NaN without a ratio."""
         if not np.isfinite(self.values).any():
             return math.nan, math.nan
         i = int(np.nanargmax(self.values))

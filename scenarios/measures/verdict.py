@@ -35,7 +35,7 @@ _NAMED: Mapping[str, Callable[[Row], bool]] = {
     "failed": lambda row: row["outcome"] == Outcome.FAILED.value,
     "not_passed": lambda row: not did_what_is_required(row),
 }
-"""Flights whose names the verdict has, and how they are told by their rows."""
+"""Flights that the verdict names, and how their rows are recognised."""
 
 
 class Tally:

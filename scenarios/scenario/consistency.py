@@ -306,8 +306,8 @@ def _check_experiment(scenario: "Scenario") -> None:
 
 
 def _check_tables(scenario: "Scenario") -> None:
-    """Refuse cases and comparisons whose flights could not be told apart, and tables that set what
-    no flight depends on.
+    """Refuse cases and comparisons whose flights could not be distinguished, and tables that
+    set what no flight depends on.
     """
     cases = [case.name for case in scenario.cases]
     apart = [of.name for of in scenario.comparison.variants]

@@ -375,10 +375,10 @@ def described_fields(made: type[Any]) -> dict[str, tuple[str, str]]:
     """Return meaning and unit of each field of a dataclass, by its docstring; the unit of a number
     without one is empty.
     """
-    told = {name: split_unit(described) for name, described in _described(made).items()}
+    documented = {name: split_unit(described) for name, described in _described(made).items()}
     return {
         name: (_sentence(meaning), "" if unit == DIMENSIONLESS else unit)
-        for name, (meaning, unit) in told.items()
+        for name, (meaning, unit) in documented.items()
     }
 
 

@@ -30,8 +30,7 @@ _DISPLACED_BY = {
 """Keys that other keys put aside, where flights have these."""
 
 _OF_LAW = {"guidance.law", "guidance.tuning"}
-"""Keys of which it is looked at what they are set to; others count as making what depends on them
-act.
+"""Keys whose value is looked at; others count as making what depends on them act.
 """
 
 
@@ -189,9 +188,7 @@ def _needs_by_study(key: str) -> Iterator[Need]:
 
 
 def named_by(key: str, names: Iterable[str]) -> bool:
-    """Return whether a dotted key is among the names, of which those that end in a dot are
-    beginnings of keys.
-    """
+    """Return whether a dotted key is among the names; those that end in a dot begin keys."""
     return any(key == name or (name.endswith(".") and key.startswith(name)) for name in names)
 
 

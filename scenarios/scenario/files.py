@@ -135,7 +135,7 @@ def _overridden(alone: AnyStudy, document: Document, overrides: Sequence[str]) -
 
 
 def _revised(scenario: Study, sections: Mapping[str, Any]) -> Study:
-    """Return a scenario of which some sections are read anew: of the others is checked only whether
+    """Return a scenario with some sections read anew; for the others it is only checked whether
     all go together.
     """
     kept = {name: getattr(scenario, name) for name in scenario.model_fields_set}

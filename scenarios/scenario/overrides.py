@@ -78,7 +78,7 @@ def apply_override(document: Document, key: str, value: object, kind: type[BaseM
 
     Raises
     ------
-    InputError : as of ``set_value``
+    InputError : as in ``set_value``
     """
     given = document.get("cases")
     cases = [case for case in given if isinstance(case, dict)] if isinstance(given, list) else []

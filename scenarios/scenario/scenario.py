@@ -198,7 +198,7 @@ class Scenario(_AddedKeys):
 
     @property
     def unsteady_keys(self) -> tuple[str, ...]:
-        """Return the keys by which air or vessel are not steady and known, whatever is swept or
+        """Return the keys by which air or vessel are not steady and known, for all that is swept or
         sampled beside.
         """
         air, sensors = self.turbulence, self.sensors.model_dump()
@@ -240,7 +240,7 @@ class Scenario(_AddedKeys):
 
     @property
     def guarded_radius(self) -> float:
-        """Return the distance that has to be kept from the funnel, whatever the ship's heading is:
+        """Return the distance that has to be kept from the funnel, for every heading of the ship:
         r_min, and, where that is measured from the hull, that of its farthest point [m].
         """
         hull = self.vessel.hull

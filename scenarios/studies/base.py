@@ -324,7 +324,7 @@ class FlightStudy:
 
         Raises
         ------
-        InputError : the aircraft cannot fly as asked, or the margin cannot be predicted
+        InputError : the aircraft cannot fly so, or the margin cannot be predicted
         """
         write_logo(self._report, run)
         # Of a trial that has been scaled to the aircraft: its airspeed is where flights start.
@@ -529,7 +529,7 @@ class FlightStudy:
         return StudySummary(verdict=verdict, lines=lines, manifest=self._sizes() | guidance_lag)
 
     def _ratios_without_flights(self) -> list[float]:
-        """Return the speed ratios of comparisons at none of which the study has a flight."""
+        """Return the speed ratios of comparisons at which the study has no flight."""
         return [
             nu for of in self.trials.values() if of.comparison.variants for nu in of.comparison.nu
         ]

@@ -230,7 +230,7 @@ def _where_named(scenario: Scenario, kind: str) -> str:
 
 
 def _check_apart(scenario: Scenario, one: int, other: int) -> None:
-    """Refuse two faults of the same item, by their numbers, of which one may begin before the other
+    """Refuse two faults of the same item, by their numbers, if one may begin before the other
     has ended.
     """
     first, second = (_may_fail(scenario, number) for number in (one, other))

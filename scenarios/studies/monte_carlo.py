@@ -82,7 +82,7 @@ class MonteCarloStudy(FlightStudy):
         )
 
     def run(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
-        """Fly up to one look after the other, until one shows what was asked for; then the
+        """Fly up to one look after the other, until one shows what was demanded; then the
         comparisons.
 
         A run that is resumed does not stop before what it has flown already: a lost flight, on
@@ -161,9 +161,9 @@ class MonteCarloStudy(FlightStudy):
         found = super().summary(journal)
         if not self._stopped:
             return found
-        asked = self._scenario.flights
+        demanded = self._scenario.flights
         line = (
-            f"stopped after {self.planned} of {asked} flights: the intervals are as narrow as"
+            f"stopped after {self.planned} of {demanded} flights: the intervals are as narrow as"
             " demanded"
         )
         return replace(found, lines=[*found.lines, line])

@@ -162,7 +162,7 @@ def comparison_lines(verdict: RunVerdict, left_out: Sequence[float]) -> list[str
     Parameters
     ----------
     verdict : with their counts
-    left_out : speed ratios of comparisons at none of which the study has a flight, or none
+    left_out : speed ratios of comparisons at which the study has no flight; may be empty
     """
     if left_out:
         return [
@@ -177,7 +177,7 @@ def comparison_lines(verdict: RunVerdict, left_out: Sequence[float]) -> list[str
 
 @dataclass(slots=True, kw_only=True)
 class FlightNotes:
-    """What is to be told of flights beside their verdict.
+    """What is said of flights beside their verdict.
 
     Attributes
     ----------

@@ -124,7 +124,7 @@ class JsbsimVehicle:
 
     Parameters
     ----------
-    aircraft : with its autopilot; whatever it flew before is over. What is to fail on the way takes
+    aircraft : with its autopilot; its earlier flight is over. What is to fail on the way takes
         one made ``failable``
     start : straight and level equilibrium
     envelope : where the autopilot may fly it

@@ -67,7 +67,7 @@ FALSE_ALARM_HOURS = 1e6
 THRUST_LOST_TIME = 1.0
 """Time for which all thrust of level flight has to be missing, at least, until it counts as lost
 [s]. An acceleration is measured once in each interval of the health monitor; several of them have
-to agree, whatever the errors.
+to agree, for all errors.
 """
 
 

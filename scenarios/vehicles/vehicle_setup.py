@@ -181,7 +181,7 @@ def aircraft_setup(
     found : its autopilot
     scenario : whose airspeed and height the flights start at
     run : the run directory
-    settings : of all the flights, in some of which a part of the aircraft may be declared to fail
+    settings : of all the flights; in some a part of the aircraft may be declared to fail
     bank : steepest that the guidance asks for [rad]
     """
     schedule = found.design.schedule

@@ -14,7 +14,7 @@ Words = Annotated[str, Field(max_length=200, coerce_numbers_to_str=True)]
 
 
 class ReportConfig(Section):
-    """Title and sender of the reports. A run keeps its seed, and can be resumed, whatever stands
+    """Title and sender of the reports. A run keeps its seed, and can be resumed, with any text
     here.
     """
 

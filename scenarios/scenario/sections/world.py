@@ -77,7 +77,7 @@ _NO_RATIO = Need(
 
 
 def _first_known(places: Sequence[float | None]) -> float:
-    """Return the first place that is known, of which there is one."""
+    """Return the first place that is known; at least one is."""
     return next(place for place in places if place is not None)
 
 
@@ -429,7 +429,7 @@ class WindConfig(Section):
     stability_per_s: Annotated[float, Field(ge=0.0, le=0.1), EXHAUST] = 0.0
     """Brunt-Vaisala frequency of the air in which exhaust rises; 0 for neutral air [1/s]."""
     table: str | None = None
-    """A file with the wind over time, height or both: a table (.csv), or netCDF as of ERA5 (.nc).
+    """A file with the wind over time, height or both: a table (.csv), or netCDF as from ERA5 (.nc).
     """
     roughness_m: Annotated[float | None, Field(ge=1e-8, le=1.0), BLOWS] = None
     """Roughness length of a logarithmic profile over height, about 0.0002 over the sea; no profile
@@ -485,7 +485,7 @@ class TableConfig(Section):
     encoding: str | None = None
     """Encoding of the text, by a name that Python knows, as utf-8 or latin-1."""
     time_format: str | None = None
-    """Format of dates and times, as of Python's strptime: '%d.%m.%Y %H:%M:%S'."""
+    """Format of dates and times, as in Python's strptime: '%d.%m.%Y %H:%M:%S'."""
     time_unit: str | None = None
     """Unit of times in numbers: s, ms or us."""
 
