@@ -48,10 +48,10 @@ class Core:
                 ".*", "extensions", "__pycache__", "build", "runs", "_build", "generated", "*.so"
             ),
         )
-        metadata = self.folder / "plume_flight_study-0.1.0.dist-info"
+        metadata = self.folder / "plume_flight_study-1.0.0.dist-info"
         metadata.mkdir()
         (metadata / "METADATA").write_text(
-            "Metadata-Version: 2.1\nName: plume-flight-study\nVersion: 0.1.0\n", encoding="utf-8"
+            "Metadata-Version: 2.1\nName: plume-flight-study\nVersion: 1.0.0\n", encoding="utf-8"
         )
         hook = self.folder / "hook"
         hook.mkdir()
