@@ -44,6 +44,7 @@ from scenarios.scenario.sections.equipment import SensorsConfig
 from scenarios.studies.base import SingleFlight
 from scenarios.vehicles.sensors import SensorErrors
 from scenarios.vehicles.vehicle_setup import VehicleSetup
+from scenarios.world.ais.size import ShipSize
 from scenarios.world.faults import NO_FAULT
 from scenarios.world.vessel import Place
 
@@ -81,6 +82,10 @@ _FRESH = 1.5
 
 _VELOCITY_MAX = 0.3
 """Difference from the scenario's velocity up to which a steady vessel counts as that one [m/s]."""
+
+_ROUNDED = 2.0
+"""By how much a reported size may be larger than the scenario's [m]: both of its parts are rounded.
+"""
 
 _STREAMS = (
     mavlink.MAVLINK_MSG_ID_ATTITUDE,
@@ -375,6 +380,7 @@ class Companion:
             heard = HeardVessel()
             heard.report(vehicle.local(*link.vessels[mmsi]))
             self._check_vessel(plan, heard)
+            self._check_size(plan, mmsi)
             vehicle.listen(mmsi, heard.report)
         plan = self._from_here(plan, vehicle, frame, heard)
         link.degrade()
@@ -433,6 +439,28 @@ class Companion:
             raise InputError(
                 f"the vessel reports {math.hypot(*told):.1f} m/s, {off:.1f} m/s off the velocity"
                 " that this scenario knows; fly one that learns it: set reports.interval_s"
+            )
+
+    def _check_size(self, plan: FlightPlan, mmsi: int) -> None:
+        """Refuse a ship that says that it is larger than the scenario takes it to be."""
+        said = self.link.vessels[mmsi][1].size
+        if said is None or plan.world is None:
+            return
+        self.say(f"vessel {mmsi}: {said.described()}")
+        hull = plan.world.hull
+        if hull is None:
+            # Its outline is then taken to be where it reports itself.
+            if _reach(said) >= plan.keepout_radius:
+                raise InputError(
+                    f"the vessel says that it is {said.described()}; its hull reaches"
+                    f" {_reach(said):.0f} m from there, as far as the"
+                    f" {plan.keepout_radius:g} m that are kept: set vessel.length_m,"
+                    " vessel.beam_m and keepout.from=hull"
+                )
+        elif max((said.length or 0.0) - hull.length, (said.beam or 0.0) - hull.beam) > _ROUNDED:
+            raise InputError(
+                f"the vessel says that it is {said.described()}, larger than the scenario's"
+                f" {hull.length:g} m by {hull.beam:g} m: set vessel.length_m and vessel.beam_m"
             )
 
     def _from_here(
@@ -504,6 +532,15 @@ class Companion:
         centre = getattr(plan.guidance.mission, "centre", None)
         heading: float | None = getattr(centre, "plume_heading", None)
         return heading
+
+
+def _reach(size: ShipSize) -> float:
+    """Return how far a hull reaches from its antenna, at most, by what is said of it [m]."""
+    ways = []
+    for said, before in ((size.length, size.to_bow), (size.beam, size.to_port)):
+        whole = said or 0.0
+        ways.append(whole if before is None else max(before, whole - before))
+    return math.hypot(*ways)
 
 
 @contextmanager
