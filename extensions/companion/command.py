@@ -156,6 +156,8 @@ def _serve(
                         f" {plan.keepout_radius:g} m",
                         flush=True,
                     )
+                for ship, distance in simulation.others.items():
+                    print(f"closest to {ship}: {distance:.1f} m", flush=True)
         print(f"ended: {ended}")
     return MET if ended == "time is up" else 1
 

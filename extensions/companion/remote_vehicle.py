@@ -8,7 +8,7 @@ missing is extrapolated from the last. So the loop has one dead time, which guar
 
 import itertools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,6 +25,7 @@ from extensions.companion.fields import (
     roll_target,
 )
 from extensions.companion.plane import PlaneMode
+from extensions.companion.reported_ships import OtherShips, Seen
 from extensions.companion.vehicle_link import VehicleLink
 from gnc.estimation.navigation import MeasuredMotion
 from gnc.estimation.vessel import VesselReport
@@ -53,11 +54,16 @@ _LEAVING_STEPS = 5
 SILENT_AFTER = 1.0
 """Shortest time without telemetry after which the vehicle is given back [s]."""
 
+_STALE = 600.0
+"""Age from which on a report of another ship says nothing of where it is [s]: those at anchor
+report every three minutes (ITU-R M.1371-5, table 1)."""
+
 _BEARINGS = 36
 """Directions from the vessel in which a place to retreat to is looked for [-]."""
 
 _DISTANCES = (1.0, 1.5, 2.0, 3.0)
-"""Distances there, over the one that is kept [-]: from ahead of her a near one leads past her."""
+"""Distances there, over the one that is kept [-]: from ahead of the vessel a near one leads past
+it."""
 
 _SPARE_RADII = 2.0
 """Turn radii between the keep-out area and the circle of a retreat [-]."""
@@ -137,6 +143,8 @@ class RemoteVehicle:
         self._airspeed, self._airspeed_at = math.nan, -math.inf
         self._course_at, self._retreat_at = -math.inf, -math.inf
         self._rates: list[float] = []
+        self._mmsi = 0
+        self._others: OtherShips | None = None
         self._vessel: tuple[float, VesselState] | None = None
         self._held: list[tuple[float, VesselState]] = []
         self._report: Callable[[VesselReport], None] = lambda _: None
@@ -232,23 +240,30 @@ class RemoteVehicle:
 
     # ------------------------------------------------------------ the vessel
 
-    def listen(self, mmsi: int, report: Callable[[VesselReport], None]) -> None:
-        """Pass the reports of a vessel on from now on, each once the guidance has come to the time
-        at which it was true.
+    def listen(
+        self, mmsi: int, report: Callable[[VesselReport], None], others: OtherShips | None
+    ) -> None:
+        """Pass reports on from now on, each once the guidance has come to the time at which it was
+        true.
+
+        Parameters
+        ----------
+        mmsi, report : of the measured vessel, and who takes its reports
+        others : who take the reports of other ships, if anybody does
         """
-        self._report = report
+        self._mmsi, self._report, self._others = mmsi, report, others
 
         def take(at: float, vessel: VesselState) -> None:
-            if vessel.mmsi == mmsi:
-                self._held.append((at, vessel))
+            self._held.append((at, vessel))
 
         self._link.on_vessel = take
-        if mmsi in self._link.vessels:
-            take(*self._link.vessels[mmsi])
+        for last in self._link.vessels.values():
+            if last[1].mmsi == mmsi or self._link.now - last[0] < _STALE:
+                take(*last)
         self._pass_reports_on()
 
     def pass_reports_to(self, report: Callable[[VesselReport], None]) -> None:
-        """Pass the reports on to this from now on."""
+        """Pass the reports of the measured vessel on to this from now on."""
         self._report = report
 
     def local(self, at: float, vessel: VesselState) -> VesselReport:
@@ -271,8 +286,13 @@ class RemoteVehicle:
         due = [entry for entry in self._held if entry[0] <= self._target + 1e-3]
         self._held = [entry for entry in self._held if entry[0] > self._target + 1e-3]
         for entry in due:
-            self._vessel = entry
-            self._report(self.local(*entry))
+            report = self.local(*entry)
+            if entry[1].mmsi == self._mmsi:
+                self._vessel = entry
+                self._report(report)
+            elif self._others is not None:
+                motion = self.motion()
+                self._others.report(entry[1].mmsi, report, (motion.north, motion.east))
 
     # ------------------------------------------------------------ what the guidance commands
 
@@ -421,6 +441,8 @@ class RemoteVehicle:
             (report.velocity_north, report.velocity_east),
             keep=self._limits.keepout_radius + _SPARE_RADII * self._limits.loiter_radius,
             speed=math.hypot(motion.velocity_north, motion.velocity_east),
+            others=self._others.seen(self._target - self._began, vessel) if self._others else (),
+            spare=_SPARE_RADII * self._limits.loiter_radius,
         )
         latitude, longitude = self._frame.to_geodetic(north + vessel[0], east + vessel[1])
         self._link.command(
@@ -436,41 +458,70 @@ class RemoteVehicle:
 
 
 def retreat(
-    own: tuple[float, float], vessel: tuple[float, float], *, keep: float, speed: float
+    own: tuple[float, float],
+    vessel: tuple[float, float],
+    *,
+    keep: float,
+    speed: float,
+    others: Sequence[Seen] = (),
+    spare: float = 0.0,
 ) -> tuple[float, float]:
     """Return a place to loiter at while nobody commands, north and east of the vessel [m].
 
-    It is beside the vessel's track, or behind her, so that she does not come to it, and the
-    straight way to it keeps away from her as far as any such way does.
+    It is beside the tracks of all ships, or behind them, so that they do not come to it, and the
+    straight way to it keeps away from them as far as any such way does. Where other ships leave no
+    such place, it is one that the vessel does not come to.
 
     Parameters
     ----------
     own : place of the vehicle from the vessel, north and east [m]
-    vessel : her velocity [m/s]
-    keep : distance of the place from the vessel and her track [m]
+    vessel : velocity of the vessel [m/s]
+    keep : distance of the place from the vessel and its track [m]
     speed : of the vehicle over the ground [m/s]
+    others, spare : other ships as seen from the vessel, and what is kept beside their radius [m]
     """
-    best, found = -math.inf, own
-    her_speed = math.hypot(*vessel)
+    ships = [Seen(0.0, 0.0, *vessel, keep)]
+    ships += [other._replace(radius=other.radius + spare) for other in others]
+    best, found = (False, -math.inf), own
     for k, factor in itertools.product(range(_BEARINGS), _DISTANCES):
         bearing, distance = math.tau * k / _BEARINGS, factor * keep
         place = distance * math.cos(bearing), distance * math.sin(bearing)
-        if her_speed > 0.0:
-            ahead = (place[0] * vessel[0] + place[1] * vessel[1]) / her_speed
-            across = abs(place[0] * vessel[1] - place[1] * vessel[0]) / her_speed
-            if ahead > 0.0 and across < (1.0 - 1e-6) * keep:
-                # She would come nearer than that.
-                continue
+        if _comes_to(ships[0], place):
+            continue
+        free = not any(_comes_to(other, place) for other in ships[1:])
         way = math.hypot(place[0] - own[0], place[1] - own[1])
-        time = way / max(speed, 1.0)
-        # In her frame the vehicle arrives where the place has fallen back to.
-        end = place[0] - vessel[0] * time, place[1] - vessel[1] * time
-        nearest = _nearest(own, end)
+        nearer = max(_nearer(ship, own, place, way / max(speed, 1.0)) for ship in ships)
         # The shorter of ways that are equally far off.
-        worth = min(nearest, keep) - 1e-3 * way
+        worth = free, -nearer - 1e-3 * way
         if worth > best:
             best, found = worth, place
     return found
+
+
+def _comes_to(ship: Seen, place: tuple[float, float]) -> bool:
+    """Return whether a ship on its course comes nearer to a place than its radius."""
+    north, east = place[0] - ship.north, place[1] - ship.east
+    speed = math.hypot(ship.velocity_north, ship.velocity_east)
+    radius = (1.0 - 1e-6) * ship.radius
+    if speed > 0.0:
+        ahead = (north * ship.velocity_north + east * ship.velocity_east) / speed
+        if ahead > 0.0:
+            across = abs(north * ship.velocity_east - east * ship.velocity_north) / speed
+            return across < radius
+    return math.hypot(north, east) < radius
+
+
+def _nearer(ship: Seen, own: tuple[float, float], place: tuple[float, float], time: float) -> float:
+    """Return by how much nearer than its radius a ship is on the straight way to a place, which
+    takes a time [s]; 0 where it is not [m].
+    """
+    # Seen from the ship, the place has fallen back by the end.
+    start = own[0] - ship.north, own[1] - ship.east
+    end = (
+        place[0] - ship.north - ship.velocity_north * time,
+        place[1] - ship.east - ship.velocity_east * time,
+    )
+    return ship.radius - min(_nearest(start, end), ship.radius)
 
 
 def _nearest(start: tuple[float, float], end: tuple[float, float]) -> float:
