@@ -303,7 +303,10 @@ class RemoteVehicle:
     def advance(self, heading_rate: float, airspeed: float) -> None:
         """Have a step flown with these commands [rad/s, m/s]; wait for the next one."""
         if not self.given_back:
-            self._renew_retreat()
+            if self._by == ATTITUDE:
+                # A heading is sticky: the vehicle would not fall back to the retreat, and a
+                # DO_REPOSITION that comes after the heading's command would end that.
+                self._renew_retreat()
             self._command_turn(heading_rate)
             self._command_airspeed(airspeed)
             self._command_altitude()
@@ -432,8 +435,7 @@ class RemoteVehicle:
         due = always or self._target - self._retreat_at >= _RETREAT_INTERVAL
         if self._vessel is None or not due:
             return
-        # It ends a commanded heading.
-        self._retreat_at, self._course_at = self._target, -math.inf
+        self._retreat_at = self._target
         report, motion = self.local(*self._vessel), self.motion()
         vessel = self._vessel_at(self._target)
         north, east = retreat(

@@ -92,6 +92,14 @@ def test_a_course_link_flies_it_as_well(tmp_path):
     assert row(tmp_path / "run")["outcome"] == "completed"
     # The paper's 9.5 s; the orbit touches r_min, from which the lag of a course takes metres.
     assert row(tmp_path / "run")["crossing_interval_mean_s"] == pytest.approx(9.5, abs=0.1)
+    # A heading is sticky, and a place to retreat to would end it: there is one at the end alone.
+    over = max(at for at, m in vehicle.heard if is_command(m, 43002))
+    assert all(at >= over for at, m in vehicle.heard if is_command(m, 192))
+    assert vehicle.count("COMMAND_INT", after=over) > 0
+
+
+def is_command(message, number):
+    return message.get_type() == "COMMAND_INT" and message.command == number
 
 
 def test_a_pilot_who_takes_the_mode_has_the_vehicle(tmp_path):
