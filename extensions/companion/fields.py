@@ -186,7 +186,7 @@ class VesselState:
     mmsi, name : of the vessel
     latitude, longitude : [rad]
     velocity_north, velocity_east : over the ground, by true north [m/s]
-    bow : where her bow points, from true north [rad]
+    bow : where the bow points, from true north [rad]
     age : of the report [s]
     size : that it says it has, or None
     """

@@ -48,9 +48,8 @@ from scenarios.flight_runner import (
     Flown,
     history_columns,
     payload_of,
-    reader_of,
 )
-from scenarios.instruments.instrument import EvaluatedInstrument, Instrument
+from scenarios.instruments.instrument import EvaluatedInstrument, GasReader, Instrument
 from scenarios.measures.columns import TRAFFIC_COLUMNS, TRAFFIC_FIGURES
 from scenarios.planning.flight_plan import FlightPlan, Start
 from scenarios.planning.missions import check_start
@@ -621,35 +620,25 @@ class CompanionRunner(FlightRunner):
             taken = self.companion.take_over(
                 plan, asked_back, other_radius=radius_kept(request.scenario)
             )
-            vehicle, plan, heard = taken.vehicle, taken.plan, taken.heard
+            vehicle, plan = taken.vehicle, taken.plan
             sniffer = self._sniffer(request)
             instruments: list[Instrument | EvaluatedInstrument] = (
                 [sniffer] if sniffer else payload_of(request, plan)
             )
-            loop = ClosedLoop(
-                plan,
-                vehicle,
-                [each for each in instruments if isinstance(each, Instrument)],
-                reader=reader_of(plan, instruments),
-                every_step=every_step,
-            )
-            self._connect(loop, vehicle, heard, plan)
-            if taken.others is not None and loop.guidance.traffic is not None:
-                taken.others.pass_on_to(loop.guidance.traffic)
-            record = _flown(loop, vehicle, sniffer)
+
+            def fly(payload: list[Instrument], reader: GasReader | None) -> FlightRecord:
+                loop = ClosedLoop(plan, vehicle, payload, reader=reader, every_step=every_step)
+                self._connect(loop, taken)
+                return _record(loop, vehicle, sniffer)
+
+            flown = Flown.by(fly, request, plan, instruments, every_step=every_step)
             vehicle.finish()
         self.companion.say(f"given back: {vehicle.given_back}")
         if vehicle.extrapolated:
             self.companion.say(f"steps without telemetry of their own: {vehicle.extrapolated}")
         if sniffer and sniffer.unreadable:
             self.companion.say(f"lines of the sniffer that were no readings: {sniffer.unreadable}")
-        return Flown(
-            request=request,
-            plan=plan,
-            instruments=instruments,
-            record=record,
-            every_step=every_step,
-        )
+        return flown
 
     @cached_property
     def columns(self) -> Table:
@@ -662,11 +651,12 @@ class CompanionRunner(FlightRunner):
         return HeardSniffer(line, request.scenario) if line and _has_sniffer(request) else None
 
     @staticmethod
-    def _connect(
-        loop: ClosedLoop, vehicle: RemoteVehicle, heard: HeardVessel | None, plan: FlightPlan
-    ) -> None:
-        """Have reports of the vessel come to the guidance and to the record."""
+    def _connect(loop: ClosedLoop, taken: TakenOver) -> None:
+        """Have reports of ships come to the guidance and to the record."""
         target, own = loop.guidance.target, loop.guidance.own
+        plan, heard = taken.plan, taken.heard
+        if taken.others is not None and loop.guidance.traffic is not None:
+            taken.others.pass_on_to(loop.guidance.traffic)
         plume = plan.world.plume if plan.world else None
         if isinstance(plume, HeardPlume):
             plume.wind = lambda: (own.wind_north, own.wind_east)
@@ -678,10 +668,10 @@ class CompanionRunner(FlightRunner):
             heard.report(of)
             target.report(of)
 
-        vehicle.pass_reports_to(report)
+        taken.vehicle.pass_reports_to(report)
 
 
-def _flown(loop: ClosedLoop, vehicle: RemoteVehicle, sniffer: HeardSniffer | None) -> FlightRecord:
+def _record(loop: ClosedLoop, vehicle: RemoteVehicle, sniffer: HeardSniffer | None) -> FlightRecord:
     """Fly; the flight ends where the vehicle is given back."""
     steps = loop.steps()
     follow = steps.send
