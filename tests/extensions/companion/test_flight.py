@@ -3,6 +3,10 @@ becomes of one whose link, pilot or vehicle is not.
 """
 
 import math
+import re
+import signal
+import subprocess
+import sys
 
 import pandas as pd
 import pytest
@@ -132,6 +136,94 @@ def test_telemetry_that_stops_ends_in_a_retreat_outside(tmp_path):
     last = max(at for at, message in vehicle.heard if message.get_type() == "SET_ATTITUDE_TARGET")
     # A second of silence, and the vehicle's time-out of 3 s, in which it is turned away.
     assert last == pytest.approx(44.0, abs=0.3)
+
+
+REPORTED = ("reports.interval_s=[10,10]", "flight.crossings=4", "fidelity=kinematic", "flights=1",
+            "vessel.speed_mps=5", "wind.speed_mps=5", "wind.from_deg=20", "draws=[]",
+            "guidance.rate_hz=10")  # fmt: skip
+"""A vessel that is known by its reports, with a margin for their errors."""
+
+
+class ClosestApproach:
+    """Notes when a vehicle has passed its first closest approach within 400 m, and acts then.
+
+    Attributes
+    ----------
+    at : when that was, infinite before [s]
+    """
+
+    def __init__(self, act=lambda _: None):
+        self.at, self._act = math.inf, act
+
+    def __call__(self, simulation):
+        # The distance has grown again since the last step.
+        grown = simulation.closest_at < simulation.time - 1e-6
+        if self.at == math.inf and simulation.closest < 400.0 and grown:
+            self.at = simulation.time
+            self._act(simulation)
+
+
+def afterwards(simulation, seconds=180.0):
+    """Fly on without commands; return the least distance of the whole flight [m]."""
+    for _ in range(round(seconds / simulation.plane.time_step)):
+        simulation.step()
+    return simulation.closest
+
+
+@pytest.mark.parametrize("silent", [5.0, 30.0])
+def test_telemetry_that_is_silent_at_the_closest_approach_ends_outside(tmp_path, silent):
+    approach, now = ClosestApproach(), [0.0]
+
+    def at_step(simulation):
+        now[0] = simulation.time
+        approach(simulation)
+
+    def change(message):
+        return None if approach.at <= now[0] < approach.at + silent else message
+
+    with served("sea_wind", *REPORTED, at_step=at_step, change=change) as vehicle:
+        ended = companion(vehicle, "sea_wind", tmp_path / "run", "--lockstep", "--no-report",
+                          settings=REPORTED)  # fmt: skip
+        simulation = vehicle.simulation
+        assert simulation.closest_at == pytest.approx(approach.at, abs=0.1)
+        assert afterwards(simulation) > 200.0
+        assert simulation.plane.mode is PlaneMode.GUIDED
+    # A second, and up to two steps of 0.1 s.
+    assert re.search(r"given back: telemetry was silent for 1\.[0-2] s", ended.out)
+
+
+def test_a_companion_that_is_killed_at_the_closest_approach_leaves_the_vehicle_outside(tmp_path):
+    """The last roll is flown for GUIDED_TIMEOUT, which is in the margin where it is declared."""
+    processes = []
+    approach = ClosestApproach(lambda _: processes[0].kill())
+    with served("sea_wind", *REPORTED, at_step=approach) as vehicle:
+        keys = [word for key in REPORTED for word in ("--set", key)]
+        program = "import sys; from scenarios.cli.main import main; sys.exit(main())"
+        processes.append(
+            subprocess.Popen(
+                [sys.executable, "-c", program, "companion", "sea_wind", "--connect", vehicle.url,
+                 "--out", str(tmp_path / "run"), "--lockstep", "--link", "silence=3", *keys],
+                stdout=subprocess.DEVNULL,
+            )
+        )  # fmt: skip
+        assert processes[0].wait() == -signal.SIGKILL
+        simulation = vehicle.simulation
+        assert afterwards(simulation) > 200.0
+        assert simulation.plane.mode is PlaneMode.GUIDED
+    last = max(at for at, message in vehicle.heard if message.get_type() == "SET_ATTITUDE_TARGET")
+    assert last <= approach.at
+
+
+def test_a_pilot_who_takes_the_mode_at_the_closest_approach_is_outside(tmp_path):
+    approach = ClosestApproach(lambda simulation: simulation.plane.set_mode(PlaneMode.LOITER))
+    with served("sea_wind", *REPORTED, at_step=approach) as vehicle:
+        ended = companion(vehicle, "sea_wind", tmp_path / "run", "--lockstep", "--no-report",
+                          settings=REPORTED)  # fmt: skip
+        simulation = vehicle.simulation
+        assert simulation.plane.mode is PlaneMode.LOITER
+        # The vehicle loiters where the pilot took it; where the vessel goes then is the pilot's.
+        assert afterwards(simulation, 10.0) > 200.0
+    assert "given back: the pilot took over (mode LOITER)" in ended.out
 
 
 def test_a_vehicle_that_restarts_gets_no_command(tmp_path):
