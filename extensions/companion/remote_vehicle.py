@@ -33,7 +33,7 @@ from gnc.estimation.vessel import VesselReport
 ATTITUDE, COURSE = "attitude", "course"
 """How heading rates are commanded: by roll, or by a heading."""
 
-COURSE_INTERVAL = 0.2
+COURSE_INTERVAL = 0.1
 """Time between commanded headings [s]."""
 
 _SPEED_CHANGE = 0.005
@@ -81,6 +81,7 @@ class Limits:
     roll_max : of the vehicle [rad]
     gain : of the roll by the vehicle's heading error, in ``COURSE`` [-]
     dead_time : from a measurement until its command arrives [s]
+    lag : of the heading rate behind a command that has arrived [s]
     wait : after which a measurement is taken up [s]
     silent_after : time without telemetry after which the vehicle is given back [s]
     guided_timeout : for which the vehicle flies the last roll [s]
@@ -92,6 +93,7 @@ class Limits:
     roll_max: float
     gain: float
     dead_time: float
+    lag: float
     wait: float
     silent_after: float
     guided_timeout: float
@@ -320,14 +322,14 @@ class RemoteVehicle:
                 roll_target(self._target, self._link.system, mavlink.MAV_COMP_ID_AUTOPILOT1, bank)
             )
             return
+        coming = self._coming()
         under_way = round(self._limits.dead_time / self._time_step)
-        self._rates = [*self._rates, heading_rate][-max(1, under_way) :]
+        self._rates = [*self._rates, heading_rate][-under_way:] if under_way else []
         if self._target - self._course_at < COURSE_INTERVAL - 1e-6:
             return
         self._course_at = self._target
         # The heading that the vehicle has once the command arrives, what it turns until the next
         # one, and by how much it has to be ahead for this bank.
-        coming = sum(self._rates[:-1]) * self._time_step if under_way else 0.0
         ahead = bank / self._limits.gain + 0.5 * COURSE_INTERVAL * heading_rate
         turned = float(self._frame.true_north(self._state.latitude, self._state.longitude))
         heading = math.degrees(self._heading() - turned + coming + ahead) % 360.0
@@ -337,6 +339,18 @@ class RemoteVehicle:
             heading if heading < 359.9999 else 0.0,
             STANDARD_GRAVITY * math.tan(self._limits.roll_max),
         )
+
+    def _coming(self) -> float:
+        """Return by how much the vehicle turns until a command of now arrives, by those that are
+        under way [rad].
+        """
+        rate, turned = self._heading_rate(), 0.0
+        follows = 1.0 - math.exp(-self._time_step / self._limits.lag) if self._limits.lag else 1.0
+        for command in self._rates:
+            change = follows * (command - rate)
+            turned += self._time_step * (rate + 0.5 * change)
+            rate += change
+        return turned
 
     def _command_airspeed(self, airspeed: float) -> None:
         equivalent = airspeed * equivalent_over_true(self._state.altitude)
