@@ -27,6 +27,9 @@ _AT_REST = 0.05
 
 _UNKNOWN_16 = 0xFFFF
 
+_CIRCLE = 36_000
+"""[0.01 deg]"""
+
 _ISA_LAPSE = 2.25577e-5
 _ISA_EXPONENT = 4.25588
 """Density of the ICAO standard atmosphere below 11 km over that at sea level: (1 - a h)^b [1/m, -].
@@ -277,7 +280,8 @@ class VesselState:
             longitude=longitude,
             velocity_north=speed * math.cos(course),
             velocity_east=speed * math.sin(course),
-            bow=math.radians(0.01 * message.heading),
+            # 511 degrees are AIS's "not available".
+            bow=math.radians(0.01 * message.heading) if message.heading < _CIRCLE else course,
             age=float(message.tslc),
             size=_size_of(message),
         )

@@ -30,7 +30,7 @@ from extensions.companion.remote_vehicle import (
     Limits,
     RemoteVehicle,
 )
-from extensions.companion.reported_ships import HeardPlume, HeardVessel, OtherShips
+from extensions.companion.reported_ships import Antenna, HeardPlume, HeardVessel, OtherShips
 from extensions.companion.sniffer_line import HeardSniffer
 from extensions.companion.vehicle_link import VehicleLink
 from gnc.estimation.navigation import AirMotion
@@ -59,6 +59,7 @@ from scenarios.studies.base import SingleFlight
 from scenarios.vehicles.sensors import SensorErrors
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 from scenarios.world.ais.size import ShipSize
+from scenarios.world.ais.track import AT_THE_FUNNEL
 from scenarios.world.faults import NO_FAULT
 from scenarios.world.traffic import radius_kept
 from scenarios.world.vessel import Place
@@ -336,6 +337,7 @@ class Companion:
         assert link.state is not None
         began = link.now if self.lockstep else link.state.time
         frame, mmsi = self._frame(plan, began)
+        hull = plan.world.hull if plan.world is not None else None
         vehicle = RemoteVehicle(
             link,
             frame,
@@ -345,12 +347,13 @@ class Companion:
             altitude=plan.altitude,
             by=self.by,
             lockstep=self.lockstep,
+            antenna=Antenna(AT_THE_FUNNEL if hull is None else hull.antenna_offset),
             asked_back=asked_back,
         )
         heard, others = None, _others_of(plan, other_radius)
         if mmsi is not None:
             heard = HeardVessel()
-            heard.report(vehicle.local(*link.vessels[mmsi]))
+            heard.report(vehicle.measured(*link.vessels[mmsi]))
             self._check_vessel(plan, heard)
             self._check_size(plan, mmsi)
             self._check_alone(mmsi, others)
@@ -447,6 +450,15 @@ class Companion:
                 f"the vessel says that it is {said.described()}, larger than the scenario's"
                 f" {hull.length:g} m by {hull.beam:g} m: set vessel.length_m and vessel.beam_m"
             )
+        elif said.to_bow is not None and said.to_port is not None:
+            from_bow, from_port = hull.antenna
+            if math.hypot(said.to_bow - from_bow, said.to_port - from_port) > _ROUNDED:
+                raise InputError(
+                    f"the vessel says that its antenna is {said.to_bow:g} m from the bow and"
+                    f" {said.to_port:g} m from the port side; the scenario has it at"
+                    f" {from_bow:g} m and {from_port:g} m: set vessel.antenna_from_bow_m and"
+                    " vessel.antenna_from_port_m"
+                )
 
     def _from_here(
         self,
@@ -469,7 +481,8 @@ class Companion:
             tubes = list(known.tubes(0.0))
         else:
             tubes = [Tube(0.0, 0.0, 0.0, *vessel)]
-        distance = math.hypot(motion.north, motion.east)
+        vessel_north, vessel_east, *_ = heard.motion(0.0)
+        distance = math.hypot(motion.north - vessel_north, motion.east - vessel_east)
         if distance < plan.keepout_radius:
             raise InputError(
                 f"the vehicle is {distance:.0f} m from the vessel, inside the keep-out area of"

@@ -25,7 +25,7 @@ from extensions.companion.fields import (
     roll_target,
 )
 from extensions.companion.plane import PlaneMode
-from extensions.companion.reported_ships import OtherShips, Seen
+from extensions.companion.reported_ships import Antenna, OtherShips, Seen
 from extensions.companion.vehicle_link import VehicleLink
 from gnc.estimation.navigation import MeasuredMotion
 from gnc.estimation.vessel import VesselReport
@@ -112,6 +112,7 @@ class RemoteVehicle:
     altitude : to hold [m]
     by : ``ATTITUDE`` or ``COURSE``
     lockstep : whether the vehicle's clock waits
+    antenna : of the measured vessel
     asked_back : says whether somebody has asked for the vehicle
 
     Attributes
@@ -132,6 +133,7 @@ class RemoteVehicle:
         altitude: float,
         by: str,
         lockstep: bool,
+        antenna: Antenna,
         asked_back: Callable[[], bool] = lambda: False,
     ) -> None:
         if link.state is None:
@@ -139,6 +141,7 @@ class RemoteVehicle:
         self._link, self._frame, self._limits = link, frame, limits
         self._began, self._time_step = began, time_step
         self._by, self._lockstep, self._asked_back = by, lockstep, asked_back
+        self._antenna = antenna
         self._state: AircraftState = link.state
         self._step = 0
         self._altitude, self._altitude_at = altitude, -math.inf
@@ -147,7 +150,7 @@ class RemoteVehicle:
         self._rates: list[float] = []
         self._mmsi = 0
         self._others: OtherShips | None = None
-        self._vessel: tuple[float, VesselState] | None = None
+        self._vessel: VesselReport | None = None
         self._held: list[tuple[float, VesselState]] = []
         self._report: Callable[[VesselReport], None] = lambda _: None
         self.given_back = ""
@@ -268,7 +271,12 @@ class RemoteVehicle:
         """Pass the reports of the measured vessel on to this from now on."""
         self._report = report
 
-    def local(self, at: float, vessel: VesselState) -> VesselReport:
+    def measured(self, at: float, vessel: VesselState) -> VesselReport:
+        """Return a report of the measured vessel, as one of its funnel; otherwise as ``_local``."""
+        turned = float(self._frame.true_north(vessel.latitude, vessel.longitude))
+        return self._antenna.funnel(self._local(at, vessel), vessel.bow + turned)
+
+    def _local(self, at: float, vessel: VesselState) -> VesselReport:
         """Return a report in the local frame; its time is that since the first step."""
         north, east = (
             float(each) for each in self._frame.to_local(vessel.latitude, vessel.longitude)
@@ -288,13 +296,13 @@ class RemoteVehicle:
         due = [entry for entry in self._held if entry[0] <= self._target + 1e-3]
         self._held = [entry for entry in self._held if entry[0] > self._target + 1e-3]
         for entry in due:
-            report = self.local(*entry)
-            if entry[1].mmsi == self._mmsi:
-                self._vessel = entry
-                self._report(report)
+            mmsi = entry[1].mmsi
+            if mmsi == self._mmsi:
+                self._vessel = self.measured(*entry)
+                self._report(self._vessel)
             elif self._others is not None:
                 motion = self.motion()
-                self._others.report(entry[1].mmsi, report, (motion.north, motion.east))
+                self._others.report(mmsi, self._local(*entry), (motion.north, motion.east))
 
     # ------------------------------------------------------------ what the guidance commands
 
@@ -437,11 +445,10 @@ class RemoteVehicle:
     def _vessel_at(self, time: float) -> tuple[float, float]:
         """Return where the vessel is by its last report, at a time of the vehicle's clock [m]."""
         assert self._vessel is not None
-        report = self.local(*self._vessel)
-        since = time - self._began - report.time
+        since = time - self._began - self._vessel.time
         return (
-            report.north + since * report.velocity_north,
-            report.east + since * report.velocity_east,
+            self._vessel.north + since * self._vessel.velocity_north,
+            self._vessel.east + since * self._vessel.velocity_east,
         )
 
     def _renew_retreat(self, *, always: bool = False) -> None:
@@ -450,7 +457,7 @@ class RemoteVehicle:
         if self._vessel is None or not due:
             return
         self._retreat_at = self._target
-        report, motion = self.local(*self._vessel), self.motion()
+        report, motion = self._vessel, self.motion()
         vessel = self._vessel_at(self._target)
         north, east = retreat(
             (motion.north - vessel[0], motion.east - vessel[1]),

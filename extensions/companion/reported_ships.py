@@ -5,12 +5,18 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple
 
+from gnc.estimation.antenna import AntennaReport, at_funnel
 from gnc.estimation.traffic import OtherVessel, Traffic
 from gnc.estimation.vessel import VesselLimits, VesselReport
+from scenarios.world.ais.track import AT_THE_FUNNEL
 from scenarios.world.traffic import OtherShip
 
 KNOWN_WITHIN = 10_000.0
 """Distance from the vehicle up to which a ship besides the measured one is taken note of [m]."""
+
+
+_TURN_TIME = 20.0
+"""Time over which a rate of turn is the mean at least [s]: headings come in whole degrees."""
 
 
 class Seen(NamedTuple):
@@ -28,6 +34,37 @@ class Seen(NamedTuple):
     velocity_north: float
     velocity_east: float
     radius: float
+
+
+class Antenna:
+    """A ship's antenna, whose place it reports, seen from its funnel, from which the plume trails.
+
+    Parameters
+    ----------
+    offset : of the antenna, ahead of the funnel and to starboard of it [m]
+    """
+
+    def __init__(self, offset: tuple[float, float]) -> None:
+        self._offset = offset
+        self._bows: list[tuple[float, float]] = []
+
+    def funnel(self, report: VesselReport, bow: float) -> VesselReport:
+        """Return a report of the antenna as one of the funnel.
+
+        The ship turns at the mean rate since its report of ``_TURN_TIME`` ago.
+
+        Parameters
+        ----------
+        report, bow : where the antenna is, and the bow points [rad]; not before earlier ones
+        """
+        if self._offset == AT_THE_FUNNEL:
+            return report
+        self._bows.append((report.time, bow))
+        early = [of for of in self._bows if of[0] <= report.time - _TURN_TIME]
+        before, bow_before = early[-1] if early else self._bows[0]
+        since = report.time - before
+        rate = math.remainder(bow - bow_before, math.tau) / since if since > 0.0 else 0.0
+        return at_funnel(AntennaReport(report, bow, rate), self._offset)
 
 
 class HeardVessel:

@@ -23,6 +23,7 @@ from extensions.companion.fields import (
 from extensions.companion.plane import ACCEPTED, DENIED, UNSUPPORTED, Plane, PlaneMode
 from extensions.companion.ports import Line, Peer, Port
 from extensions.companion.sniffer_line import reading_line
+from gnc.estimation.antenna import at_antenna
 from gnc.estimation.vessel import VesselReport
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from scenarios.errors import InputError
@@ -32,7 +33,8 @@ from scenarios.flight_runner import payload_of
 from scenarios.instruments.instrument import GasReader
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.vehicles.vehicle_setup import VehicleSetup
-from scenarios.world.vessel import VesselTruth
+from scenarios.world.ais.track import AT_THE_FUNNEL
+from scenarios.world.vessel import TRACK_STEP, VesselTruth
 
 SYSTEM, COMPONENT = 1, mavlink.MAV_COMP_ID_AUTOPILOT1
 
@@ -281,7 +283,9 @@ class Simulation:
         if sensing is not None:
             every = plan.time_step * plan.guidance.mission.plan_interval
         received = sensing.received if sensing is not None else None
-        yield _Reporting(MMSI, VESSEL_NAME, plan.world.vessel, received, every)
+        hull = plan.world.hull
+        antenna = AT_THE_FUNNEL if hull is None else hull.antenna_offset
+        yield _Reporting(MMSI, VESSEL_NAME, plan.world.vessel, received, every, antenna)
         of_others = sensing.traffic if sensing is not None else ()
         for number, (ship, of) in enumerate(zip(plan.world.traffic, of_others, strict=True)):
             yield _Reporting(MMSI - 1 - number, ship.name, ship.track, of, _EXACT_REPORTS)
@@ -316,6 +320,7 @@ class _Reporting:
     received : its reports as they are received, with the time of each [s]; None of one that is
         known exactly
     every : time between reports of that one [s]
+    antenna : whose place it tells, ahead of where the reports are of and to starboard of it [m]
     """
 
     def __init__(
@@ -325,8 +330,10 @@ class _Reporting:
         track: VesselTruth,
         received: Sequence[tuple[float, VesselReport]] | None,
         every: float,
+        antenna: tuple[float, float] = AT_THE_FUNNEL,
     ) -> None:
         self.mmsi, self.name, self.track = mmsi, name, track
+        self._antenna = antenna
         self._reports = iter(received) if received is not None else self._exact(every)
         self._next = next(self._reports, None)
 
@@ -340,7 +347,14 @@ class _Reporting:
         while self._next is not None and self._next[0] <= time + 1e-6:
             _, report = self._next
             self._next = next(self._reports, None)
-            yield report
+            yield self._of_antenna(report)
+
+    def _of_antenna(self, report: VesselReport) -> VesselReport:
+        if self._antenna == AT_THE_FUNNEL:
+            return report
+        course = self.track.course
+        rate = (course(report.time + TRACK_STEP) - course(report.time)) / TRACK_STEP
+        return at_antenna(report, self._antenna, course(report.time), rate)
 
 
 def _turned(north: float, east: float, angle: float) -> tuple[float, float]:

@@ -12,7 +12,7 @@ import pandas as pd
 import pytest
 
 from extensions.companion.plane import PlaneMode
-from tests.extensions.companion.served import companion, served
+from tests.extensions.companion.served import HOME, companion, served
 from tests.in_process import assert_refused, run_command
 
 STEADY = ("comparison.nu=[]", "sweep.nu=[0.5]", "flight.crossings=8")
@@ -260,6 +260,53 @@ def test_a_bad_link_is_reckoned_with(tmp_path):
     # A dead time of 0.475 s at 19.42 m/s alone is 9 m, on the way in and out of a turn less.
     assert margins[1] > margins[0] + 3.0
     assert min(closest) > 200.0
+
+
+HULL = ("vessel.length_m=300", "vessel.beam_m=40", "vessel.stack_from_bow_m=250",
+        "vessel.antenna_from_bow_m=30")  # fmt: skip
+
+
+def test_the_flight_is_about_the_funnel_of_a_ship_whose_antenna_is_far_ahead(tmp_path):
+    settings = (*REPORTED, *HULL)
+    told = []
+
+    def change(message):
+        told.append(message)
+        return message
+
+    with served("sea_wind", *settings, change=change) as vehicle:
+        ended = companion(vehicle, "sea_wind", tmp_path / "run", "--lockstep", "--no-report",
+                          settings=settings)  # fmt: skip
+    assert ended.status == 0, ended
+    # The simulation measures from the funnel, which is 220 m behind the place that is reported.
+    assert vehicle.simulation.closest > 200.0
+    # Reports of 5 m and 0.15 m/s, one sigma of a coordinate, up to 10 s old.
+    recorded = row(tmp_path / "run")["min_distance_m"]
+    assert recorded == pytest.approx(vehicle.simulation.closest, abs=30.0)
+    first = next(message for message in told if message.get_type() == "AIS_VESSEL")
+    metres_per_degree = 111_195.0
+    # The vessel goes north, and its funnel begins at the scenario's origin.
+    ahead = metres_per_degree * (1e-7 * first.lat - math.degrees(HOME[0]))
+    assert ahead == pytest.approx(220.0, abs=25.0)
+
+
+def test_a_ship_whose_antenna_is_elsewhere_than_the_scenario_says_is_refused(tmp_path):
+    from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+    def change(message):
+        if message.get_type() == "AIS_VESSEL":
+            message.flags |= mavlink.AIS_FLAGS_VALID_DIMENSIONS
+            message.dimension_bow, message.dimension_stern = 200, 100
+            message.dimension_port, message.dimension_starboard = 20, 20
+        return message
+
+    settings = (*REPORTED, *HULL)
+    with served("sea_wind", *settings, change=change) as vehicle:
+        ended = companion(vehicle, "sea_wind", tmp_path / "run", "--lockstep", "--no-report",
+                          settings=settings)  # fmt: skip
+    assert ended.status == 1, ended
+    assert "antenna is 200 m from the bow" in row(tmp_path / "run")["message"]
+    assert vehicle.count("SET_ATTITUDE_TARGET") == 0
 
 
 def refused(tmp_path, *words, settings=KINEMATIC, options=(), **vehicle):
