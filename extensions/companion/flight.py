@@ -33,6 +33,7 @@ from extensions.companion.remote_vehicle import (
 from extensions.companion.reported_ships import Antenna, HeardPlume, HeardVessel, OtherShips
 from extensions.companion.sniffer_line import HeardSniffer
 from extensions.companion.vehicle_link import VehicleLink
+from gnc.estimation.health import Fault
 from gnc.estimation.navigation import AirMotion
 from gnc.estimation.vessel import ReachableSet, ReportedTarget, Tube, VesselReport
 from gnc.guidance import ReportedVessel
@@ -646,7 +647,7 @@ class CompanionRunner(FlightRunner):
                 return _record(loop, vehicle, sniffer)
 
             flown = Flown.by(fly, request, plan, instruments, every_step=every_step)
-            vehicle.finish()
+            vehicle.give_back("the flight is over")
         self.companion.say(f"given back: {vehicle.given_back}")
         if vehicle.extrapolated:
             self.companion.say(f"steps without telemetry of their own: {vehicle.extrapolated}")
@@ -686,12 +687,19 @@ class CompanionRunner(FlightRunner):
 
 
 def _record(loop: ClosedLoop, vehicle: RemoteVehicle, sniffer: HeardSniffer | None) -> FlightRecord:
-    """Fly; the flight ends where the vehicle is given back."""
+    """Fly; the flight ends where the vehicle is given back.
+
+    It is where the guidance takes a fault for certain, before what it commands then is flown: a
+    study's aircraft would glide to the sea. A pilot and the vehicle's own failsafes know better.
+    """
+    monitor = loop.guidance.monitor
     steps = loop.steps()
     follow = steps.send
     try:
         commands = next(steps)
         while True:
+            if monitor is not None and monitor.fault is not Fault.NONE:
+                vehicle.give_back(f"{monitor.fault.value}, by the heading rate")
             loop.ending.given_back = vehicle.given_back
             if sniffer is not None:
                 sniffer.hear(vehicle.time)

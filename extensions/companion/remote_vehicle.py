@@ -145,6 +145,7 @@ class RemoteVehicle:
         self._state: AircraftState = link.state
         self._step = 0
         self._altitude, self._altitude_at = altitude, -math.inf
+        self._wanted_altitude = altitude
         self._airspeed, self._airspeed_at = math.nan, -math.inf
         self._course_at, self._retreat_at = -math.inf, -math.inf
         self._rates: list[float] = []
@@ -307,8 +308,8 @@ class RemoteVehicle:
     # ------------------------------------------------------------ what the guidance commands
 
     def command_altitude(self, altitude: float, /) -> None:
-        """Let it climb or sink to an altitude [m] from now on."""
-        self._altitude, self._altitude_at = altitude, -math.inf
+        """Let it climb or sink to an altitude [m] from the next step on, if that is flown."""
+        self._wanted_altitude = altitude
 
     def advance(self, heading_rate: float, airspeed: float) -> None:
         """Have a step flown with these commands [rad/s, m/s]; wait for the next one."""
@@ -370,6 +371,8 @@ class RemoteVehicle:
             )
 
     def _command_altitude(self) -> None:
+        if self._wanted_altitude != self._altitude:
+            self._altitude, self._altitude_at = self._wanted_altitude, -math.inf
         if self._target - self._altitude_at >= _REPEAT:
             self._altitude_at = self._target
             self._link.command(mavlink.MAV_CMD_GUIDED_CHANGE_ALTITUDE, z=self._altitude)
@@ -414,10 +417,10 @@ class RemoteVehicle:
         elif self._asked_back():
             self._leave("given back on request")
 
-    def finish(self) -> None:
-        """Give the vehicle back at the end of the flight."""
+    def give_back(self, reason: str) -> None:
+        """Give the vehicle back for a reason, unless it has been given back before."""
         if not self.given_back:
-            self._leave("the flight is over")
+            self._leave(reason)
 
     def _leave(self, reason: str) -> None:
         """Send the vehicle to its retreat, and turn it away until that is what it flies."""

@@ -262,6 +262,21 @@ def test_a_bad_link_is_reckoned_with(tmp_path):
     assert min(closest) > 200.0
 
 
+def test_a_vehicle_that_does_not_follow_is_given_back_and_not_flown_into_the_sea(tmp_path):
+    def deaf(simulation):
+        simulation.plane.set_attitude = lambda _: None
+
+    with served("sea_wind", *REPORTED, at_step=ClosestApproach(deaf)) as vehicle:
+        ended = companion(vehicle, "sea_wind", tmp_path / "run", "--lockstep", "--no-report",
+                          settings=REPORTED)  # fmt: skip
+        assert afterwards(vehicle.simulation, 30.0) > 200.0
+    assert "given back: control lost" in ended.out
+    assert "control lost" in row(tmp_path / "run")["message"]
+    heights = [m.z for _, m in vehicle.heard if is_command(m, 43001) or is_command(m, 192)]
+    assert heights
+    assert min(heights) > 50.0
+
+
 HULL = ("vessel.length_m=300", "vessel.beam_m=40", "vessel.stack_from_bow_m=250",
         "vessel.antenna_from_bow_m=30")  # fmt: skip
 
