@@ -271,7 +271,8 @@ def test_a_vehicle_that_does_not_follow_is_given_back_and_not_flown_into_the_sea
                           settings=REPORTED)  # fmt: skip
         assert afterwards(vehicle.simulation, 30.0) > 200.0
     assert "given back: control lost" in ended.out
-    assert "control lost" in row(tmp_path / "run")["message"]
+    assert row(tmp_path / "run")["message"].startswith("control lost, by the heading rate at ")
+    assert row(tmp_path / "run")["outcome"] == "not_settled"
     heights = [m.z for _, m in vehicle.heard if is_command(m, 43001) or is_command(m, 192)]
     assert heights
     assert min(heights) > 50.0
