@@ -241,7 +241,8 @@ class FlightRunner:
         findings = Findings(self._identity(task))
         try:
             self._fly_and_judge(task, findings)
-        except Exception as error:  # noqa: BLE001 - a flight that fails is a row with its reason, and the study goes on
+        # A flight that fails is a row with its reason, and the study goes on.
+        except Exception as error:  # noqa: BLE001
             findings.add_failure(error)
         findings.row["wall_time_s"] = time.perf_counter() - began
         return self._result(task, findings)
@@ -297,7 +298,7 @@ class FlightRunner:
         return Flown.by(flown, request, plan, instruments, every_step=every_step)
 
     def measure(self, flown: Flown, findings: Findings) -> None:
-        """Add what a flight shows: its own figures, those of its instruments, those of its study."""
+        """Add what a flight shows: figures of its own, of its instruments and of its study."""
         findings.add_record(flown)
         findings.add_evaluations(flown)
         findings.add_search(flown)
@@ -459,9 +460,7 @@ def reader_of(
 
 
 def _cell(value: object) -> object:
-    """Return an input as it goes into a table: a number or a word, a time in ISO 8601, anything else
-    as JSON.
-    """
+    """Return an input as it goes into a table: a number or a word, a time in ISO 8601, or JSON."""
     if isinstance(value, datetime):
         return value.isoformat()
     return value if isinstance(value, str | float | int) else json.dumps(value)
