@@ -7,7 +7,7 @@ import bisect
 import itertools
 import json
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from datetime import datetime
 from functools import cached_property
@@ -78,6 +78,28 @@ class Flown:
     instruments: list[Instrument | EvaluatedInstrument]
     record: FlightRecord
     every_step: bool
+
+    @classmethod
+    def by(
+        cls,
+        fly: Callable[[list[Instrument], GasReader | None], FlightRecord],
+        request: FlightRequest,
+        plan: FlightPlan,
+        instruments: list[Instrument | EvaluatedInstrument],
+        *,
+        every_step: bool,
+    ) -> "Flown":
+        """Return a flight by what flies it, given the instruments of each step and the one that is
+        read in flight.
+        """
+        each_step = [each for each in instruments if isinstance(each, Instrument)]
+        return cls(
+            request=request,
+            plan=plan,
+            instruments=instruments,
+            record=fly(each_step, reader_of(plan, instruments)),
+            every_step=every_step,
+        )
 
 
 @dataclass(slots=True)
@@ -219,7 +241,8 @@ class FlightRunner:
         findings = Findings(self._identity(task))
         try:
             self._fly_and_judge(task, findings)
-        except Exception as error:  # noqa: BLE001 - a flight that fails is a row with its reason, and the study goes on
+        # A flight that fails is a row with its reason, and the study goes on.
+        except Exception as error:  # noqa: BLE001
             findings.add_failure(error)
         findings.row["wall_time_s"] = time.perf_counter() - began
         return self._result(task, findings)
@@ -268,23 +291,14 @@ class FlightRunner:
         """Return a planned flight, flown; with ``every_step`` every step of it is recorded."""
         instruments = payload_of(request, plan)
         vehicle = release(plan, self.setup_of(request), self.viewer)
-        record = fly(
-            plan,
-            vehicle,
-            [each for each in instruments if isinstance(each, Instrument)],
-            reader=reader_of(plan, instruments),
-            every_step=every_step,
-        )
-        return Flown(
-            request=request,
-            plan=plan,
-            instruments=instruments,
-            record=record,
-            every_step=every_step,
-        )
+
+        def flown(payload: list[Instrument], reader: GasReader | None) -> FlightRecord:
+            return fly(plan, vehicle, payload, reader=reader, every_step=every_step)
+
+        return Flown.by(flown, request, plan, instruments, every_step=every_step)
 
     def measure(self, flown: Flown, findings: Findings) -> None:
-        """Add what a flight shows: its own figures, those of its instruments, those of its study."""
+        """Add what a flight shows: figures of its own, of its instruments and of its study."""
         findings.add_record(flown)
         findings.add_evaluations(flown)
         findings.add_search(flown)
@@ -446,9 +460,7 @@ def reader_of(
 
 
 def _cell(value: object) -> object:
-    """Return an input as it goes into a table: a number or a word, a time in ISO 8601, anything else
-    as JSON.
-    """
+    """Return an input as it goes into a table: a number or a word, a time in ISO 8601, or JSON."""
     if isinstance(value, datetime):
         return value.isoformat()
     return value if isinstance(value, str | float | int) else json.dumps(value)

@@ -5,7 +5,7 @@ import re
 import sys
 import tempfile
 from collections.abc import Sequence
-from contextlib import closing, nullcontext
+from contextlib import ExitStack, closing
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal, TypeVar
@@ -156,6 +156,8 @@ def _serve(
                         f" {plan.keepout_radius:g} m",
                         flush=True,
                     )
+                for ship, distance in simulation.others.items():
+                    print(f"closest to {ship}: {distance:.1f} m", flush=True)
         print(f"ended: {ended}")
     return MET if ended == "time is up" else 1
 
@@ -192,10 +194,18 @@ def companion(
     wait: Annotated[
         float, typer.Option(help="For how long vehicle, vessel and GUIDED are waited for, in s.")
     ] = 3600.0,
+    ais: Annotated[
+        str | None,
+        typer.Option(
+            metavar="udp://HOST:PORT|tcp://HOST:PORT|serial://DEVICE:BAUD",
+            help="An AIS receiver's NMEA, in place of the vehicle's AIS_VESSEL; a UDP address is"
+            " listened at.",
+        ),
+    ] = None,
     sniffer: Annotated[
         str | None,
         typer.Option(
-            metavar="udpin://HOST:PORT|serial://DEVICE:BAUD",
+            metavar="udp://HOST:PORT|serial://DEVICE:BAUD",
             help=(
                 "Where lines of a sniffer's readings come in: age_s,so2_ppb,co2_ppm,no_ppb,no2_ppb."
             ),
@@ -219,8 +229,8 @@ def companion(
     try:
         _need_pymavlink()
         status = _fly(
-            scenario, connect, by, link, simulate_link, lockstep, mmsi, wait, sniffer, out, flight,
-            overrides or [], log, no_report,
+            scenario, connect, by, link, simulate_link, lockstep, mmsi, wait, ais, sniffer, out,
+            flight, overrides or [], log, no_report,
         )  # fmt: skip
     except RefusedError as error:
         status = refuse(error)
@@ -239,6 +249,7 @@ def _fly(
     lockstep: bool,
     mmsi: int | None,
     wait: float,
+    ais: str | None,
     sniffer: str | None,
     out: Path | None,
     flight: str | None,
@@ -247,8 +258,9 @@ def _fly(
     no_report: bool,
 ) -> int:
     from common.provenance import command_line
+    from extensions.companion.ais_line import AisReceiver
     from extensions.companion.flight import Companion, CompanionFlight
-    from extensions.companion.ports import Port, opened
+    from extensions.companion.ports import Port, heard, opened
     from extensions.companion.quality import Link
     from extensions.companion.vehicle_link import COMPONENT, VehicleLink
     from scenarios.engine.processes import InProcessExecutor
@@ -259,14 +271,16 @@ def _fly(
     directory = out or Path("runs") / f"{Path(name).stem}-{datetime.now():%Y%m%d-%H%M%S}"
     RunDirectory(directory).refuse_taken()
     single = _flight(CompanionFlight, name, overrides, flight)
-    line = opened("--connect", connect, listening=False)
-    readings = opened("--sniffer", sniffer, listening=False) if sniffer else None
-    with (
-        closing(readings) if readings else nullcontext(),
-        Port(line, system=_SYSTEM, component=COMPONENT, log=log) as port,
-    ):
+    with ExitStack() as held:
+        line = opened("--connect", connect, listening=False)
+        port = held.enter_context(Port(line, system=_SYSTEM, component=COMPONENT, log=log))
+        readings = held.enter_context(closing(heard("--sniffer", sniffer))) if sniffer else None
+        reports = held.enter_context(closing(heard("--ais", ais))) if ais else None
+        receiver = AisReceiver(reports) if reports else None
         single.companion = Companion(
-            link=VehicleLink(port, quality, lockstep=lockstep, simulated=simulated),
+            link=VehicleLink(
+                port, quality, lockstep=lockstep, simulated=simulated, receiver=receiver
+            ),
             quality=quality,
             by=by,
             lockstep=lockstep,
@@ -286,6 +300,9 @@ def _fly(
         )
         if port.malformed:
             print(f"packets that were no MAVLink, or damaged: {port.malformed}")
+        if receiver is not None:
+            for words in receiver.lines():
+                print(words)
     for text in result.lines:
         print(text)
     print(f"results: {result.directory}")
@@ -358,9 +375,11 @@ def _parameters(given: Sequence[str]) -> dict[str, float]:
 
 
 def _without_address(arguments: Sequence[str]) -> list[str]:
-    """Return arguments without the address of the vehicle, which is that of a machine."""
+    """Return arguments without the addresses of vehicle and instruments, which are a machine's."""
     shown, hide = [], False
     for argument in arguments:
-        shown.append("ADDRESS" if hide else re.sub(r"^(--connect)=.*", r"\1=ADDRESS", argument))
-        hide = argument == "--connect"
+        name, given, _ = argument.partition("=")
+        addressed = name in ("--connect", "--ais", "--sniffer")
+        shown.append("ADDRESS" if hide else f"{name}=ADDRESS" if addressed and given else argument)
+        hide = addressed and not given
     return shown

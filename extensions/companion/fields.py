@@ -11,11 +11,24 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from scenarios.world.ais.size import ShipSize, ship_size
+
 _AIS_FLAGS = mavlink.AIS_FLAGS_POSITION_ACCURACY | mavlink.AIS_FLAGS_VALID_VELOCITY
+_MORE_THAN_SAID = (
+    mavlink.AIS_FLAGS_LARGE_BOW_DIMENSION
+    | mavlink.AIS_FLAGS_LARGE_STERN_DIMENSION
+    | mavlink.AIS_FLAGS_LARGE_PORT_DIMENSION
+    | mavlink.AIS_FLAGS_LARGE_STARBOARD_DIMENSION
+)
+"""Flags of dimensions that are larger than their field can say."""
+
 _AT_REST = 0.05
 """Speed below which a vessel has no course over the ground [m/s]."""
 
 _UNKNOWN_16 = 0xFFFF
+
+_CIRCLE = 36_000
+"""[0.01 deg]"""
 
 _ISA_LAPSE = 2.25577e-5
 _ISA_EXPONENT = 4.25588
@@ -176,8 +189,9 @@ class VesselState:
     mmsi, name : of the vessel
     latitude, longitude : [rad]
     velocity_north, velocity_east : over the ground, by true north [m/s]
-    bow : where her bow points, from true north [rad]
+    bow : where the bow points, from true north [rad]
     age : of the report [s]
+    size : that it says it has, or None
     """
 
     mmsi: int
@@ -188,6 +202,7 @@ class VesselState:
     velocity_east: float
     bow: float
     age: float
+    size: ShipSize | None = None
 
     def ais(self) -> Any:
         """Return AIS_VESSEL."""
@@ -265,9 +280,25 @@ class VesselState:
             longitude=longitude,
             velocity_north=speed * math.cos(course),
             velocity_east=speed * math.sin(course),
-            bow=math.radians(0.01 * message.heading),
+            # 511 degrees are AIS's "not available".
+            bow=math.radians(0.01 * message.heading) if message.heading < _CIRCLE else course,
             age=float(message.tslc),
+            size=_size_of(message),
         )
+
+
+def _size_of(message: Any) -> ShipSize | None:
+    """Return the size that an AIS_VESSEL says, if it says one."""
+    known = message.flags & mavlink.AIS_FLAGS_VALID_DIMENSIONS
+    if not known or message.flags & _MORE_THAN_SAID:
+        return None
+    size, _ = ship_size(
+        bow=float(message.dimension_bow),
+        stern=float(message.dimension_stern),
+        port=float(message.dimension_port),
+        starboard=float(message.dimension_starboard),
+    )
+    return size if size.known else None
 
 
 def roll_target(time: float, system: int, component: int, roll: float) -> Any:

@@ -9,13 +9,16 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from common.columns import Table
 from common.geodesy import LocalFrame
 from common.physics import bank_for_heading_rate
+from common.run_layout import SUMMARY, TRAFFIC
 from extensions.companion.fields import equivalent_over_true
 from extensions.companion.plane import PlaneMode
 from extensions.companion.ports import Line
@@ -27,24 +30,39 @@ from extensions.companion.remote_vehicle import (
     Limits,
     RemoteVehicle,
 )
+from extensions.companion.reported_ships import Antenna, HeardPlume, HeardVessel, OtherShips
 from extensions.companion.sniffer_line import HeardSniffer
 from extensions.companion.vehicle_link import VehicleLink
+from gnc.estimation.health import Fault
+from gnc.estimation.navigation import AirMotion
 from gnc.estimation.vessel import ReachableSet, ReportedTarget, Tube, VesselReport
 from gnc.guidance import ReportedVessel
+from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
 from scenarios.experiment.requests import FlightRequest
 from scenarios.flight.closed_loop import ClosedLoop, record_of
 from scenarios.flight.record import FlightRecord
-from scenarios.flight_runner import FlightRunner, Flown, payload_of, reader_of
-from scenarios.instruments.instrument import EvaluatedInstrument, Instrument
+from scenarios.flight.traffic_belief import TrafficBelief
+from scenarios.flight_runner import (
+    FlightRunner,
+    Flown,
+    history_columns,
+    payload_of,
+)
+from scenarios.instruments.instrument import EvaluatedInstrument, GasReader, Instrument
+from scenarios.measures.columns import TRAFFIC_COLUMNS, TRAFFIC_FIGURES
 from scenarios.planning.flight_plan import FlightPlan, Start
 from scenarios.planning.missions import check_start
+from scenarios.planning.traffic import check_start_beside
 from scenarios.scenario.sections.equipment import SensorsConfig
 from scenarios.studies.base import SingleFlight
 from scenarios.vehicles.sensors import SensorErrors
 from scenarios.vehicles.vehicle_setup import VehicleSetup
+from scenarios.world.ais.size import ShipSize
+from scenarios.world.ais.track import AT_THE_FUNNEL
 from scenarios.world.faults import NO_FAULT
+from scenarios.world.traffic import radius_kept
 from scenarios.world.vessel import Place
 
 _NEEDED = {
@@ -82,6 +100,10 @@ _FRESH = 1.5
 _VELOCITY_MAX = 0.3
 """Difference from the scenario's velocity up to which a steady vessel counts as that one [m/s]."""
 
+_ROUNDED = 2.0
+"""By how much a reported size may be larger than the scenario's [m]: both of its parts are rounded.
+"""
+
 _STREAMS = (
     mavlink.MAVLINK_MSG_ID_ATTITUDE,
     mavlink.MAVLINK_MSG_ID_VFR_HUD,
@@ -91,70 +113,21 @@ _STREAMS = (
 Say = Callable[[str], None]
 
 
-class HeardVessel:
-    """A vessel's track as its reports tell it, by dead reckoning from the last one."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TakenOver:
+    """A vehicle that has been taken over.
 
-    manoeuvres_end = math.nan
-
-    def __init__(self) -> None:
-        self._reports: list[VesselReport] = []
-        self._courses: list[float] = []
-
-    def report(self, report: VesselReport) -> None:
-        """Take in a report."""
-        course = math.atan2(report.velocity_east, report.velocity_north)
-        if self._courses:
-            last = self._courses[-1]
-            course = last + math.remainder(course - last, math.tau)
-        self._reports.append(report)
-        self._courses.append(course)
-
-    def _last(self, time: float) -> int:
-        before = [i for i, report in enumerate(self._reports) if report.time <= time]
-        return before[-1] if before else 0
-
-    def motion(self, time: float) -> tuple[float, float, float, float]:
-        """Return north, east [m] and their rates [m/s] at a time [s]."""
-        if not self._reports:
-            return 0.0, 0.0, 0.0, 0.0
-        of = self._reports[self._last(time)]
-        since = time - of.time
-        return (
-            of.north + since * of.velocity_north,
-            of.east + since * of.velocity_east,
-            of.velocity_north,
-            of.velocity_east,
-        )
-
-    def course(self, time: float) -> float:
-        """Return the course [rad]."""
-        return self._courses[self._last(time)] if self._courses else 0.0
-
-
-class HeardPlume:
-    """The axis of the plume behind a vessel that is known from reports, in the estimated wind.
-
-    Parameters
+    Attributes
     ----------
-    vessel : as it is heard
-    heading : of the plume from the bow, where it does not trail with the wind [rad]; None where it
-        does
+    vehicle, plan : the vehicle, and the flight from where it is
+    heard : the measured vessel, or None where a flight has none
+    others : the other ships, or None where the guidance takes no note of them
     """
 
-    def __init__(self, vessel: HeardVessel, heading: float | None) -> None:
-        self._vessel, self._heading = vessel, heading
-        self.wind: Callable[[], tuple[float, float]] = lambda: (0.0, 0.0)
-        self._axis = 0.0
-
-    def axis(self, time: float) -> float:
-        """Return the course along which the plume trails [rad]."""
-        if self._heading is not None:
-            return self._vessel.course(time) + self._heading
-        _, _, v_north, v_east = self._vessel.motion(time)
-        wind_north, wind_east = self.wind()
-        axis = math.atan2(wind_east - v_east, wind_north - v_north)
-        self._axis += math.remainder(axis - self._axis, math.tau)
-        return self._axis
+    vehicle: RemoteVehicle
+    plan: FlightPlan
+    heard: HeardVessel | None
+    others: OtherShips | None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -309,6 +282,7 @@ class Companion:
             response_error=setup.response_error + closing * late,
             # Accelerations are not read.
             thrust=None,
+            meets_ships=True,
         )
 
     @property
@@ -319,10 +293,15 @@ class Companion:
     # ------------------------------------------------------------ taking over
 
     def take_over(
-        self, plan: FlightPlan, asked_back: Callable[[], bool]
-    ) -> tuple[RemoteVehicle, FlightPlan, HeardVessel | None]:
+        self, plan: FlightPlan, asked_back: Callable[[], bool], *, other_radius: float
+    ) -> TakenOver:
         """Wait until the vehicle is in GUIDED; return it with the plan of the flight from where it
-        is, and the vessel that will be heard.
+        is, and the ships that will report themselves.
+
+        Parameters
+        ----------
+        plan, asked_back : the flight, and what says whether somebody has asked for the vehicle
+        other_radius : kept from ships besides the measured one [m]
 
         Raises
         ------
@@ -359,6 +338,7 @@ class Companion:
         assert link.state is not None
         began = link.now if self.lockstep else link.state.time
         frame, mmsi = self._frame(plan, began)
+        hull = plan.world.hull if plan.world is not None else None
         vehicle = RemoteVehicle(
             link,
             frame,
@@ -368,18 +348,23 @@ class Companion:
             altitude=plan.altitude,
             by=self.by,
             lockstep=self.lockstep,
+            antenna=Antenna(AT_THE_FUNNEL if hull is None else hull.antenna_offset),
             asked_back=asked_back,
         )
-        heard = None
+        heard, others = None, _others_of(plan, other_radius)
         if mmsi is not None:
             heard = HeardVessel()
-            heard.report(vehicle.local(*link.vessels[mmsi]))
+            heard.report(vehicle.measured(*link.vessels[mmsi]))
             self._check_vessel(plan, heard)
-            vehicle.listen(mmsi, heard.report)
+            self._check_size(plan, mmsi)
+            self._check_alone(mmsi, others)
+            vehicle.listen(mmsi, heard.report, others)
         plan = self._from_here(plan, vehicle, frame, heard)
+        if others is not None:
+            plan = self._beside(plan, others)
         link.degrade()
         self.say("GUIDED: flying")
-        return vehicle, plan, heard
+        return TakenOver(vehicle=vehicle, plan=plan, heard=heard, others=others)
 
     def _vessels(self) -> list[int]:
         heard = list(self.link.vessels)
@@ -417,7 +402,8 @@ class Companion:
             ),
             roll_max=math.radians(self._parameter("ROLL_LIMIT_DEG", "LIM_ROLL_CD")),
             gain=math.radians(0.01 * self._parameter(_GUIDED_P)),
-            dead_time=self.dead_time,
+            dead_time=self.quality.dead_time,
+            lag=max(0.0, plan.guidance.tracking.lag - self.dead_time),
             wait=self.quality.wait,
             silent_after=max(SILENT_AFTER, self.quality.silence),
             guided_timeout=self._parameter(_GUIDED_TIMEOUT),
@@ -434,6 +420,46 @@ class Companion:
                 f"the vessel reports {math.hypot(*told):.1f} m/s, {off:.1f} m/s off the velocity"
                 " that this scenario knows; fly one that learns it: set reports.interval_s"
             )
+
+    def _check_alone(self, mmsi: int, others: OtherShips | None) -> None:
+        """Refuse other ships in a scenario whose guidance takes no note of them."""
+        besides = len(self.link.vessels) - 1
+        if others is None and besides:
+            raise InputError(
+                f"{besides} ships report themselves besides the vessel {mmsi}, and this scenario"
+                " keeps off none of them: fly one that learns its vessel: set reports.interval_s"
+            )
+
+    def _check_size(self, plan: FlightPlan, mmsi: int) -> None:
+        """Refuse a ship that says that it is larger than the scenario takes it to be."""
+        said = self.link.vessels[mmsi][1].size
+        if said is None or plan.world is None:
+            return
+        self.say(f"vessel {mmsi}: {said.described()}")
+        hull = plan.world.hull
+        if hull is None:
+            # Its outline is then taken to be where it reports itself.
+            if _reach(said) >= plan.keepout_radius:
+                raise InputError(
+                    f"the vessel says that it is {said.described()}; its hull reaches"
+                    f" {_reach(said):.0f} m from there, as far as the"
+                    f" {plan.keepout_radius:g} m that are kept: set vessel.length_m,"
+                    " vessel.beam_m and keepout.from=hull"
+                )
+        elif max((said.length or 0.0) - hull.length, (said.beam or 0.0) - hull.beam) > _ROUNDED:
+            raise InputError(
+                f"the vessel says that it is {said.described()}, larger than the scenario's"
+                f" {hull.length:g} m by {hull.beam:g} m: set vessel.length_m and vessel.beam_m"
+            )
+        elif said.to_bow is not None and said.to_port is not None:
+            from_bow, from_port = hull.antenna
+            if math.hypot(said.to_bow - from_bow, said.to_port - from_port) > _ROUNDED:
+                raise InputError(
+                    f"the vessel says that its antenna is {said.to_bow:g} m from the bow and"
+                    f" {said.to_port:g} m from the port side; the scenario has it at"
+                    f" {from_bow:g} m and {from_port:g} m: set vessel.antenna_from_bow_m and"
+                    " vessel.antenna_from_port_m"
+                )
 
     def _from_here(
         self,
@@ -456,7 +482,8 @@ class Companion:
             tubes = list(known.tubes(0.0))
         else:
             tubes = [Tube(0.0, 0.0, 0.0, *vessel)]
-        distance = math.hypot(motion.north, motion.east)
+        vessel_north, vessel_east, *_ = heard.motion(0.0)
+        distance = math.hypot(motion.north - vessel_north, motion.east - vessel_east)
         if distance < plan.keepout_radius:
             raise InputError(
                 f"the vehicle is {distance:.0f} m from the vessel, inside the keep-out area of"
@@ -499,11 +526,68 @@ class Companion:
             sensing=replace(plan.sensing, errors=exact, received=[]),
         )
 
+    def _beside(self, plan: FlightPlan, others: OtherShips) -> FlightPlan:
+        """Return the plan with the ships that report themselves in place of the scenario's.
+
+        Raises
+        ------
+        InfeasibleError : no turn away from the start keeps off one of them
+        """
+        guidance, world, start = plan.guidance, plan.world, plan.start
+        if world is None or guidance.traffic is None or plan.sensing is None:
+            return plan
+        known = replace(guidance.traffic, vessels=others.vessels)
+        wind_north, wind_east = world.weather.wind.now(0.0, plan.altitude)
+        check_start_beside(
+            start,
+            guidance.guard,
+            known,
+            others.ships,
+            [[(of.time, of) for of in reports] for reports in others.reports],
+            AirMotion(
+                ground_north=start.north,
+                ground_east=start.east,
+                course=start.course,
+                wind_north=wind_north,
+                wind_east=wind_east,
+            ),
+            airspeed=guidance.speed,
+        )
+        return replace(
+            plan,
+            # They are passed on to the guidance as they report themselves.
+            guidance=replace(guidance, traffic=replace(known, vessels=())),
+            world=replace(world, traffic=others.ships),
+            sensing=replace(plan.sensing, traffic=()),
+        )
+
     @staticmethod
     def _plume_heading(plan: FlightPlan) -> float | None:
         centre = getattr(plan.guidance.mission, "centre", None)
         heading: float | None = getattr(centre, "plume_heading", None)
         return heading
+
+
+def _others_of(plan: FlightPlan, radius: float) -> OtherShips | None:
+    """Return the other ships of a flight, of which none is known yet; None where the guidance takes
+    no note of any.
+
+    The scenario does not say which MMSI its own ones have: the largest of their radii is kept.
+    """
+    traffic, vessel = plan.guidance.traffic, plan.guidance.vessel
+    if traffic is None or not isinstance(vessel, ReportedVessel):
+        return None
+    radii = [of.radius for of in traffic.vessels]
+    return OtherShips(max([radius, *radii]), vessel.limits)
+
+
+def _reach(size: ShipSize) -> float:
+    """Return how far a hull reaches from its antenna, at most, by what is said of it [m]."""
+    ways = []
+    for said, before in ((size.length, size.to_bow), (size.beam, size.to_port)):
+        whole = said or 0.0
+        ways.append(whole if before is None else max(before, whole - before))
+    return math.hypot(*ways)
 
 
 @contextmanager
@@ -548,33 +632,33 @@ class CompanionRunner(FlightRunner):
     def fly(self, request: FlightRequest, plan: FlightPlan, *, every_step: bool) -> Flown:
         """Return a planned flight, flown on the vehicle."""
         with _asked_back() as asked_back:
-            vehicle, plan, heard = self.companion.take_over(plan, asked_back)
+            taken = self.companion.take_over(
+                plan, asked_back, other_radius=radius_kept(request.scenario)
+            )
+            vehicle, plan = taken.vehicle, taken.plan
             sniffer = self._sniffer(request)
             instruments: list[Instrument | EvaluatedInstrument] = (
                 [sniffer] if sniffer else payload_of(request, plan)
             )
-            loop = ClosedLoop(
-                plan,
-                vehicle,
-                [each for each in instruments if isinstance(each, Instrument)],
-                reader=reader_of(plan, instruments),
-                every_step=every_step,
-            )
-            self._connect(loop, vehicle, heard, plan)
-            record = _flown(loop, vehicle, sniffer)
-            vehicle.finish()
+
+            def fly(payload: list[Instrument], reader: GasReader | None) -> FlightRecord:
+                loop = ClosedLoop(plan, vehicle, payload, reader=reader, every_step=every_step)
+                self._connect(loop, taken)
+                return _record(loop, vehicle, sniffer)
+
+            flown = Flown.by(fly, request, plan, instruments, every_step=every_step)
+            vehicle.give_back("the flight is over")
         self.companion.say(f"given back: {vehicle.given_back}")
         if vehicle.extrapolated:
             self.companion.say(f"steps without telemetry of their own: {vehicle.extrapolated}")
         if sniffer and sniffer.unreadable:
             self.companion.say(f"lines of the sniffer that were no readings: {sniffer.unreadable}")
-        return Flown(
-            request=request,
-            plan=plan,
-            instruments=instruments,
-            record=record,
-            every_step=every_step,
-        )
+        return flown
+
+    @cached_property
+    def columns(self) -> Table:
+        """What the columns of time histories are: any flight may meet other ships."""
+        return {**history_columns(self.experiments), **TrafficBelief.COLUMNS}
 
     def _sniffer(self, request: FlightRequest) -> HeardSniffer | None:
         """Return the sniffer whose readings come on a line, in a flight that has one."""
@@ -582,11 +666,12 @@ class CompanionRunner(FlightRunner):
         return HeardSniffer(line, request.scenario) if line and _has_sniffer(request) else None
 
     @staticmethod
-    def _connect(
-        loop: ClosedLoop, vehicle: RemoteVehicle, heard: HeardVessel | None, plan: FlightPlan
-    ) -> None:
-        """Have reports of the vessel come to the guidance and to the record."""
+    def _connect(loop: ClosedLoop, taken: TakenOver) -> None:
+        """Have reports of ships come to the guidance and to the record."""
         target, own = loop.guidance.target, loop.guidance.own
+        plan, heard = taken.plan, taken.heard
+        if taken.others is not None and loop.guidance.traffic is not None:
+            taken.others.pass_on_to(loop.guidance.traffic)
         plume = plan.world.plume if plan.world else None
         if isinstance(plume, HeardPlume):
             plume.wind = lambda: (own.wind_north, own.wind_east)
@@ -598,16 +683,23 @@ class CompanionRunner(FlightRunner):
             heard.report(of)
             target.report(of)
 
-        vehicle.pass_reports_to(report)
+        taken.vehicle.pass_reports_to(report)
 
 
-def _flown(loop: ClosedLoop, vehicle: RemoteVehicle, sniffer: HeardSniffer | None) -> FlightRecord:
-    """Fly; the flight ends where the vehicle is given back."""
+def _record(loop: ClosedLoop, vehicle: RemoteVehicle, sniffer: HeardSniffer | None) -> FlightRecord:
+    """Fly; the flight ends where the vehicle is given back.
+
+    It is where the guidance takes a fault for certain, before what it commands then is flown: a
+    study's aircraft would glide to the sea. A pilot and the vehicle's own failsafes know better.
+    """
+    monitor = loop.guidance.monitor
     steps = loop.steps()
     follow = steps.send
     try:
         commands = next(steps)
         while True:
+            if monitor is not None and monitor.fault is not Fault.NONE:
+                vehicle.give_back(f"{monitor.fault.value}, by the heading rate")
             loop.ending.given_back = vehicle.given_back
             if sniffer is not None:
                 sniffer.hear(vehicle.time)
@@ -640,6 +732,14 @@ class CompanionFlight(SingleFlight):
             }
         }
 
+    def export(self, run: RunDirectory, journal: Journal) -> None:
+        """Write the tables, with the other ships if the flight met any."""
+        tables = self._study.tables
+        if next(journal.rows(TRAFFIC), None) is not None:
+            tables[SUMMARY] = tables[SUMMARY] | TRAFFIC_FIGURES
+            tables[TRAFFIC] = dict(TRAFFIC_COLUMNS)
+        super().export(run, journal)
+
     def work(self, run: RunDirectory) -> CompanionRunner:
         """Return the work on the flight.
 
@@ -659,12 +759,6 @@ class CompanionFlight(SingleFlight):
             raise InputError(
                 "this scenario knows the vessel exactly at all times; over a link it is known by"
                 " its reports: set reports.interval_s, as in --set reports.interval_s=[10,10]"
-            )
-        if plan.world is not None and plan.world.traffic:
-            raise InputError(
-                f"the scenario has {len(plan.world.traffic)} ships besides the measured one,"
-                " which a companion does not know: leave [[traffic]] out, or give a file of AIS"
-                " reports in which the vessel is alone"
             )
         self.companion.check_limits(
             FlightRunner.setup_of(runner, request), plan.heading_rate_max, plan.altitude

@@ -30,6 +30,9 @@ _PEERS_MAX = 8
 _FORGET_AFTER = 30.0
 """Time after which a peer over UDP that says nothing is forgotten [s]."""
 
+_LONGEST_LINE = 400
+"""Letters of a line of text that are kept until its end comes [-]."""
+
 _SERIAL = re.compile(r"serial://(/[^:]+):(\d+)")
 
 Peer = tuple[str, int]
@@ -242,6 +245,44 @@ def opened(option: str, address: str, *, listening: bool) -> Line:
     known = "udp://HOST:PORT or tcp://HOST:PORT"
     more = "" if listening else ", udpin://HOST:PORT or serial://DEVICE:BAUD"
     raise InputError(f"{option} is '{address}'; give {known}{more}, as in tcp://127.0.0.1:5760")
+
+
+def heard(option: str, address: str) -> Line:
+    """Return the line at an address on which others say something and are not answered: a UDP
+    address is listened at.
+
+    Parameters
+    ----------
+    option, address : as of ``opened``
+
+    Raises
+    ------
+    InputError : the address is none, or cannot be opened
+    """
+    return opened(option, re.sub("^udp://", "udpin://", address), listening=False)
+
+
+class TextLines:
+    """Lines of text that come over a line, put together from the pieces in which they come.
+
+    Parameters
+    ----------
+    line : that they come over
+    """
+
+    def __init__(self, line: Line) -> None:
+        self._line = line
+        self._rest: dict[Peer, bytes] = {}
+
+    def receive(self) -> list[str]:
+        """Return the lines that have come, without waiting."""
+        found: list[str] = []
+        for peer, data in self._line.receive(0.0):
+            *lines, rest = (self._rest.pop(peer, b"") + data).split(b"\n")
+            if len(self._rest) < _PEERS_MAX:
+                self._rest[peer] = rest[-_LONGEST_LINE:]
+            found += [line.decode("ascii", "replace") for line in lines]
+        return found
 
 
 class Port:

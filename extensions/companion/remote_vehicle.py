@@ -8,7 +8,7 @@ missing is extrapolated from the last. So the loop has one dead time, which guar
 
 import itertools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,6 +25,7 @@ from extensions.companion.fields import (
     roll_target,
 )
 from extensions.companion.plane import PlaneMode
+from extensions.companion.reported_ships import Antenna, OtherShips, Seen
 from extensions.companion.vehicle_link import VehicleLink
 from gnc.estimation.navigation import MeasuredMotion
 from gnc.estimation.vessel import VesselReport
@@ -32,7 +33,7 @@ from gnc.estimation.vessel import VesselReport
 ATTITUDE, COURSE = "attitude", "course"
 """How heading rates are commanded: by roll, or by a heading."""
 
-COURSE_INTERVAL = 0.2
+COURSE_INTERVAL = 0.1
 """Time between commanded headings [s]."""
 
 _SPEED_CHANGE = 0.005
@@ -53,11 +54,16 @@ _LEAVING_STEPS = 5
 SILENT_AFTER = 1.0
 """Shortest time without telemetry after which the vehicle is given back [s]."""
 
+_STALE = 600.0
+"""Age from which on a report of another ship says nothing of where it is [s]: those at anchor
+report every three minutes (ITU-R M.1371-5, table 1)."""
+
 _BEARINGS = 36
 """Directions from the vessel in which a place to retreat to is looked for [-]."""
 
 _DISTANCES = (1.0, 1.5, 2.0, 3.0)
-"""Distances there, over the one that is kept [-]: from ahead of her a near one leads past her."""
+"""Distances there, over the one that is kept [-]: from ahead of the vessel a near one leads past
+it."""
 
 _SPARE_RADII = 2.0
 """Turn radii between the keep-out area and the circle of a retreat [-]."""
@@ -75,6 +81,7 @@ class Limits:
     roll_max : of the vehicle [rad]
     gain : of the roll by the vehicle's heading error, in ``COURSE`` [-]
     dead_time : from a measurement until its command arrives [s]
+    lag : of the heading rate behind a command that has arrived [s]
     wait : after which a measurement is taken up [s]
     silent_after : time without telemetry after which the vehicle is given back [s]
     guided_timeout : for which the vehicle flies the last roll [s]
@@ -86,6 +93,7 @@ class Limits:
     roll_max: float
     gain: float
     dead_time: float
+    lag: float
     wait: float
     silent_after: float
     guided_timeout: float
@@ -104,6 +112,7 @@ class RemoteVehicle:
     altitude : to hold [m]
     by : ``ATTITUDE`` or ``COURSE``
     lockstep : whether the vehicle's clock waits
+    antenna : of the measured vessel
     asked_back : says whether somebody has asked for the vehicle
 
     Attributes
@@ -124,6 +133,7 @@ class RemoteVehicle:
         altitude: float,
         by: str,
         lockstep: bool,
+        antenna: Antenna,
         asked_back: Callable[[], bool] = lambda: False,
     ) -> None:
         if link.state is None:
@@ -131,13 +141,17 @@ class RemoteVehicle:
         self._link, self._frame, self._limits = link, frame, limits
         self._began, self._time_step = began, time_step
         self._by, self._lockstep, self._asked_back = by, lockstep, asked_back
+        self._antenna = antenna
         self._state: AircraftState = link.state
         self._step = 0
         self._altitude, self._altitude_at = altitude, -math.inf
+        self._wanted_altitude = altitude
         self._airspeed, self._airspeed_at = math.nan, -math.inf
         self._course_at, self._retreat_at = -math.inf, -math.inf
         self._rates: list[float] = []
-        self._vessel: tuple[float, VesselState] | None = None
+        self._mmsi = 0
+        self._others: OtherShips | None = None
+        self._vessel: VesselReport | None = None
         self._held: list[tuple[float, VesselState]] = []
         self._report: Callable[[VesselReport], None] = lambda _: None
         self.given_back = ""
@@ -232,26 +246,38 @@ class RemoteVehicle:
 
     # ------------------------------------------------------------ the vessel
 
-    def listen(self, mmsi: int, report: Callable[[VesselReport], None]) -> None:
-        """Pass the reports of a vessel on from now on, each once the guidance has come to the time
-        at which it was true.
+    def listen(
+        self, mmsi: int, report: Callable[[VesselReport], None], others: OtherShips | None
+    ) -> None:
+        """Pass reports on from now on, each once the guidance has come to the time at which it was
+        true.
+
+        Parameters
+        ----------
+        mmsi, report : of the measured vessel, and who takes its reports
+        others : who take the reports of other ships, if anybody does
         """
-        self._report = report
+        self._mmsi, self._report, self._others = mmsi, report, others
 
         def take(at: float, vessel: VesselState) -> None:
-            if vessel.mmsi == mmsi:
-                self._held.append((at, vessel))
+            self._held.append((at, vessel))
 
         self._link.on_vessel = take
-        if mmsi in self._link.vessels:
-            take(*self._link.vessels[mmsi])
+        for last in self._link.vessels.values():
+            if last[1].mmsi == mmsi or self._link.now - last[0] < _STALE:
+                take(*last)
         self._pass_reports_on()
 
     def pass_reports_to(self, report: Callable[[VesselReport], None]) -> None:
-        """Pass the reports on to this from now on."""
+        """Pass the reports of the measured vessel on to this from now on."""
         self._report = report
 
-    def local(self, at: float, vessel: VesselState) -> VesselReport:
+    def measured(self, at: float, vessel: VesselState) -> VesselReport:
+        """Return a report of the measured vessel, as one of its funnel; otherwise as ``_local``."""
+        turned = float(self._frame.true_north(vessel.latitude, vessel.longitude))
+        return self._antenna.funnel(self._local(at, vessel), vessel.bow + turned)
+
+    def _local(self, at: float, vessel: VesselState) -> VesselReport:
         """Return a report in the local frame; its time is that since the first step."""
         north, east = (
             float(each) for each in self._frame.to_local(vessel.latitude, vessel.longitude)
@@ -271,19 +297,27 @@ class RemoteVehicle:
         due = [entry for entry in self._held if entry[0] <= self._target + 1e-3]
         self._held = [entry for entry in self._held if entry[0] > self._target + 1e-3]
         for entry in due:
-            self._vessel = entry
-            self._report(self.local(*entry))
+            mmsi = entry[1].mmsi
+            if mmsi == self._mmsi:
+                self._vessel = self.measured(*entry)
+                self._report(self._vessel)
+            elif self._others is not None:
+                motion = self.motion()
+                self._others.report(mmsi, self._local(*entry), (motion.north, motion.east))
 
     # ------------------------------------------------------------ what the guidance commands
 
     def command_altitude(self, altitude: float, /) -> None:
-        """Let it climb or sink to an altitude [m] from now on."""
-        self._altitude, self._altitude_at = altitude, -math.inf
+        """Let it climb or sink to an altitude [m] from the next step on, if that is flown."""
+        self._wanted_altitude = altitude
 
     def advance(self, heading_rate: float, airspeed: float) -> None:
         """Have a step flown with these commands [rad/s, m/s]; wait for the next one."""
         if not self.given_back:
-            self._renew_retreat()
+            if self._by == ATTITUDE:
+                # A heading is sticky: the vehicle would not fall back to the retreat, and a
+                # DO_REPOSITION that comes after the heading's command would end that.
+                self._renew_retreat()
             self._command_turn(heading_rate)
             self._command_airspeed(airspeed)
             self._command_altitude()
@@ -297,14 +331,14 @@ class RemoteVehicle:
                 roll_target(self._target, self._link.system, mavlink.MAV_COMP_ID_AUTOPILOT1, bank)
             )
             return
+        coming = self._coming()
         under_way = round(self._limits.dead_time / self._time_step)
-        self._rates = [*self._rates, heading_rate][-max(1, under_way) :]
+        self._rates = [*self._rates, heading_rate][-under_way:] if under_way else []
         if self._target - self._course_at < COURSE_INTERVAL - 1e-6:
             return
         self._course_at = self._target
         # The heading that the vehicle has once the command arrives, what it turns until the next
         # one, and by how much it has to be ahead for this bank.
-        coming = sum(self._rates[:-1]) * self._time_step if under_way else 0.0
         ahead = bank / self._limits.gain + 0.5 * COURSE_INTERVAL * heading_rate
         turned = float(self._frame.true_north(self._state.latitude, self._state.longitude))
         heading = math.degrees(self._heading() - turned + coming + ahead) % 360.0
@@ -314,6 +348,18 @@ class RemoteVehicle:
             heading if heading < 359.9999 else 0.0,
             STANDARD_GRAVITY * math.tan(self._limits.roll_max),
         )
+
+    def _coming(self) -> float:
+        """Return by how much the vehicle turns until a command of now arrives, by those that are
+        under way [rad].
+        """
+        rate, turned = self._heading_rate(), 0.0
+        follows = 1.0 - math.exp(-self._time_step / self._limits.lag) if self._limits.lag else 1.0
+        for command in self._rates:
+            change = follows * (command - rate)
+            turned += self._time_step * (rate + 0.5 * change)
+            rate += change
+        return turned
 
     def _command_airspeed(self, airspeed: float) -> None:
         equivalent = airspeed * equivalent_over_true(self._state.altitude)
@@ -325,6 +371,8 @@ class RemoteVehicle:
             )
 
     def _command_altitude(self) -> None:
+        if self._wanted_altitude != self._altitude:
+            self._altitude, self._altitude_at = self._wanted_altitude, -math.inf
         if self._target - self._altitude_at >= _REPEAT:
             self._altitude_at = self._target
             self._link.command(mavlink.MAV_CMD_GUIDED_CHANGE_ALTITUDE, z=self._altitude)
@@ -369,10 +417,10 @@ class RemoteVehicle:
         elif self._asked_back():
             self._leave("given back on request")
 
-    def finish(self) -> None:
-        """Give the vehicle back at the end of the flight."""
+    def give_back(self, reason: str) -> None:
+        """Give the vehicle back for a reason, unless it has been given back before."""
         if not self.given_back:
-            self._leave("the flight is over")
+            self._leave(reason)
 
     def _leave(self, reason: str) -> None:
         """Send the vehicle to its retreat, and turn it away until that is what it flies."""
@@ -400,11 +448,10 @@ class RemoteVehicle:
     def _vessel_at(self, time: float) -> tuple[float, float]:
         """Return where the vessel is by its last report, at a time of the vehicle's clock [m]."""
         assert self._vessel is not None
-        report = self.local(*self._vessel)
-        since = time - self._began - report.time
+        since = time - self._began - self._vessel.time
         return (
-            report.north + since * report.velocity_north,
-            report.east + since * report.velocity_east,
+            self._vessel.north + since * self._vessel.velocity_north,
+            self._vessel.east + since * self._vessel.velocity_east,
         )
 
     def _renew_retreat(self, *, always: bool = False) -> None:
@@ -412,15 +459,16 @@ class RemoteVehicle:
         due = always or self._target - self._retreat_at >= _RETREAT_INTERVAL
         if self._vessel is None or not due:
             return
-        # It ends a commanded heading.
-        self._retreat_at, self._course_at = self._target, -math.inf
-        report, motion = self.local(*self._vessel), self.motion()
+        self._retreat_at = self._target
+        report, motion = self._vessel, self.motion()
         vessel = self._vessel_at(self._target)
         north, east = retreat(
             (motion.north - vessel[0], motion.east - vessel[1]),
             (report.velocity_north, report.velocity_east),
             keep=self._limits.keepout_radius + _SPARE_RADII * self._limits.loiter_radius,
             speed=math.hypot(motion.velocity_north, motion.velocity_east),
+            others=self._others.seen(self._target - self._began, vessel) if self._others else (),
+            spare=_SPARE_RADII * self._limits.loiter_radius,
         )
         latitude, longitude = self._frame.to_geodetic(north + vessel[0], east + vessel[1])
         self._link.command(
@@ -436,41 +484,70 @@ class RemoteVehicle:
 
 
 def retreat(
-    own: tuple[float, float], vessel: tuple[float, float], *, keep: float, speed: float
+    own: tuple[float, float],
+    vessel: tuple[float, float],
+    *,
+    keep: float,
+    speed: float,
+    others: Sequence[Seen] = (),
+    spare: float = 0.0,
 ) -> tuple[float, float]:
     """Return a place to loiter at while nobody commands, north and east of the vessel [m].
 
-    It is beside the vessel's track, or behind her, so that she does not come to it, and the
-    straight way to it keeps away from her as far as any such way does.
+    It is beside the tracks of all ships, or behind them, so that they do not come to it, and the
+    straight way to it keeps away from them as far as any such way does. Where other ships leave no
+    such place, it is one that the vessel does not come to.
 
     Parameters
     ----------
     own : place of the vehicle from the vessel, north and east [m]
-    vessel : her velocity [m/s]
-    keep : distance of the place from the vessel and her track [m]
+    vessel : velocity of the vessel [m/s]
+    keep : distance of the place from the vessel and its track [m]
     speed : of the vehicle over the ground [m/s]
+    others, spare : other ships as seen from the vessel, and what is kept beside their radius [m]
     """
-    best, found = -math.inf, own
-    her_speed = math.hypot(*vessel)
+    ships = [Seen(0.0, 0.0, *vessel, keep)]
+    ships += [other._replace(radius=other.radius + spare) for other in others]
+    best, found = (False, -math.inf), own
     for k, factor in itertools.product(range(_BEARINGS), _DISTANCES):
         bearing, distance = math.tau * k / _BEARINGS, factor * keep
         place = distance * math.cos(bearing), distance * math.sin(bearing)
-        if her_speed > 0.0:
-            ahead = (place[0] * vessel[0] + place[1] * vessel[1]) / her_speed
-            across = abs(place[0] * vessel[1] - place[1] * vessel[0]) / her_speed
-            if ahead > 0.0 and across < (1.0 - 1e-6) * keep:
-                # She would come nearer than that.
-                continue
+        if _comes_to(ships[0], place):
+            continue
+        free = not any(_comes_to(other, place) for other in ships[1:])
         way = math.hypot(place[0] - own[0], place[1] - own[1])
-        time = way / max(speed, 1.0)
-        # In her frame the vehicle arrives where the place has fallen back to.
-        end = place[0] - vessel[0] * time, place[1] - vessel[1] * time
-        nearest = _nearest(own, end)
+        nearer = max(_nearer(ship, own, place, way / max(speed, 1.0)) for ship in ships)
         # The shorter of ways that are equally far off.
-        worth = min(nearest, keep) - 1e-3 * way
+        worth = free, -nearer - 1e-3 * way
         if worth > best:
             best, found = worth, place
     return found
+
+
+def _comes_to(ship: Seen, place: tuple[float, float]) -> bool:
+    """Return whether a ship on its course comes nearer to a place than its radius."""
+    north, east = place[0] - ship.north, place[1] - ship.east
+    speed = math.hypot(ship.velocity_north, ship.velocity_east)
+    radius = (1.0 - 1e-6) * ship.radius
+    if speed > 0.0:
+        ahead = (north * ship.velocity_north + east * ship.velocity_east) / speed
+        if ahead > 0.0:
+            across = abs(north * ship.velocity_east - east * ship.velocity_north) / speed
+            return across < radius
+    return math.hypot(north, east) < radius
+
+
+def _nearer(ship: Seen, own: tuple[float, float], place: tuple[float, float], time: float) -> float:
+    """Return by how much nearer than its radius a ship is on the straight way to a place, which
+    takes a time [s]; 0 where it is not [m].
+    """
+    # Seen from the ship, the place has fallen back by the end.
+    start = own[0] - ship.north, own[1] - ship.east
+    end = (
+        place[0] - ship.north - ship.velocity_north * time,
+        place[1] - ship.east - ship.velocity_east * time,
+    )
+    return ship.radius - min(_nearest(start, end), ship.radius)
 
 
 def _nearest(start: tuple[float, float], end: tuple[float, float]) -> float:

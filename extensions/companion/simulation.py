@@ -1,5 +1,6 @@
 """A scenario's aircraft as a MAVLink vehicle: what it tells, what it takes, and its clock."""
 
+import itertools
 import math
 import threading
 import time
@@ -22,6 +23,7 @@ from extensions.companion.fields import (
 from extensions.companion.plane import ACCEPTED, DENIED, UNSUPPORTED, Plane, PlaneMode
 from extensions.companion.ports import Line, Peer, Port
 from extensions.companion.sniffer_line import reading_line
+from gnc.estimation.antenna import at_antenna
 from gnc.estimation.vessel import VesselReport
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from scenarios.errors import InputError
@@ -31,11 +33,13 @@ from scenarios.flight_runner import payload_of
 from scenarios.instruments.instrument import GasReader
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.vehicles.vehicle_setup import VehicleSetup
+from scenarios.world.ais.track import AT_THE_FUNNEL
+from scenarios.world.vessel import TRACK_STEP, VesselTruth
 
 SYSTEM, COMPONENT = 1, mavlink.MAV_COMP_ID_AUTOPILOT1
 
 MMSI, VESSEL_NAME = 999_999_999, "VESSEL"
-"""Of a scenario's vessel."""
+"""Of a scenario's vessel; its other ships have the numbers before it."""
 
 _SLOW, _FAST = 1.0, 0.25
 """Time between messages of a kind, unless another is asked for [s]."""
@@ -110,8 +114,12 @@ class Simulation:
     mode : at the start
     parameters : that differ from those of ``parameters_of``
 
-    Attributes ---------- plane : the aircraft closest, closest_at : least distance from the centre
-    of the keep-out area so far, and when [m, s]
+    Attributes
+    ----------
+    plane : the aircraft
+    closest, closest_at : least distance from the centre of the keep-out area so far, and when
+        [m, s]
+    others : least distance from each of the other ships so far, by its name [m]
     """
 
     def __init__(
@@ -149,9 +157,9 @@ class Simulation:
             mode=mode,
             say=self.texts.append,
         )
-        self._reports = self._vessel_reports()
-        self._next_report = next(self._reports, None)
+        self._reporting = list(self._ships())
         self.closest, self.closest_at = math.inf, math.nan
+        self.others: dict[str, float] = {}
         self._measure()
 
     @property
@@ -179,6 +187,11 @@ class Simulation:
             distance = math.hypot(distance, altitude - world.source_height)
         if distance < self.closest:
             self.closest, self.closest_at = distance, self.time
+        for ship in world.traffic:
+            if ship.begins <= self.time <= ship.ends:
+                north, east, *_ = ship.track.motion(self.time)
+                apart = math.hypot(motion.north - north, motion.east - east)
+                self.others[ship.name] = min(apart, self.others.get(ship.name, math.inf))
 
     def state(self) -> AircraftState:
         """Return the aircraft's motion now, by true north."""
@@ -261,48 +274,87 @@ class Simulation:
         altitude = self.plane.vehicle.sample()[0]
         return self._plan.world.weather.wind.now(self.time, altitude)
 
-    def _vessel_reports(self) -> Iterator[tuple[float, VesselReport]]:
-        """Yield reports of the vessel, each with the time at which it is received [s]."""
+    def _ships(self) -> Iterator["_Reporting"]:
+        """Yield the ships that report themselves, the measured one first."""
         plan = self._plan
         if plan.world is None:
             return
-        if plan.sensing is not None and plan.sensing.received is not None:
-            yield from plan.sensing.received
-            return
-        interval = _EXACT_REPORTS
-        if plan.sensing is not None:
-            interval = plan.time_step * plan.guidance.mission.plan_interval
-        number = 0
-        while True:
-            at = number * interval
-            yield at, VesselReport(at, *plan.world.vessel.motion(at))
-            number += 1
+        sensing, every = plan.sensing, _EXACT_REPORTS
+        if sensing is not None:
+            every = plan.time_step * plan.guidance.mission.plan_interval
+        received = sensing.received if sensing is not None else None
+        hull = plan.world.hull
+        antenna = AT_THE_FUNNEL if hull is None else hull.antenna_offset
+        yield _Reporting(MMSI, VESSEL_NAME, plan.world.vessel, received, every, antenna)
+        of_others = sensing.traffic if sensing is not None else ()
+        for number, (ship, of) in enumerate(zip(plan.world.traffic, of_others, strict=True)):
+            yield _Reporting(MMSI - 1 - number, ship.name, ship.track, of, _EXACT_REPORTS)
 
     def vessels(self) -> Iterator[Any]:
         """Yield the messages of the reports that have been received since the last call."""
-        world = self._plan.world
-        while (
-            world is not None
-            and self._next_report is not None
-            and self._next_report[0] <= self.time + 1e-6
-        ):
-            _, report = self._next_report
-            self._next_report = next(self._reports, None)
-            latitude, longitude = self.plane.frame.to_geodetic(report.north, report.east)
-            turned = float(self.plane.frame.true_north(latitude, longitude))
-            north, east = _turned(report.velocity_north, report.velocity_east, -turned)
-            vessel = VesselState(
-                mmsi=MMSI,
-                name=VESSEL_NAME,
-                latitude=float(latitude),
-                longitude=float(longitude),
-                velocity_north=north,
-                velocity_east=east,
-                bow=world.vessel.course(report.time) - turned,
-                age=max(0.0, self.time - report.time),
-            )
-            yield vessel.ais()
-            yield vessel.adsb()
+        for ship in self._reporting:
+            for report in ship.until(self.time):
+                latitude, longitude = self.plane.frame.to_geodetic(report.north, report.east)
+                turned = float(self.plane.frame.true_north(latitude, longitude))
+                north, east = _turned(report.velocity_north, report.velocity_east, -turned)
+                vessel = VesselState(
+                    mmsi=ship.mmsi,
+                    name=ship.name,
+                    latitude=float(latitude),
+                    longitude=float(longitude),
+                    velocity_north=north,
+                    velocity_east=east,
+                    bow=ship.track.course(report.time) - turned,
+                    age=max(0.0, self.time - report.time),
+                )
+                yield vessel.ais()
+                yield vessel.adsb()
+
+
+class _Reporting:
+    """A ship that reports itself.
+
+    Parameters
+    ----------
+    mmsi, name, track : of the ship
+    received : its reports as they are received, with the time of each [s]; None of one that is
+        known exactly
+    every : time between reports of that one [s]
+    antenna : whose place it tells, ahead of where the reports are of and to starboard of it [m]
+    """
+
+    def __init__(
+        self,
+        mmsi: int,
+        name: str,
+        track: VesselTruth,
+        received: Sequence[tuple[float, VesselReport]] | None,
+        every: float,
+        antenna: tuple[float, float] = AT_THE_FUNNEL,
+    ) -> None:
+        self.mmsi, self.name, self.track = mmsi, name, track
+        self._antenna = antenna
+        self._reports = iter(received) if received is not None else self._exact(every)
+        self._next = next(self._reports, None)
+
+    def _exact(self, every: float) -> Iterator[tuple[float, VesselReport]]:
+        for number in itertools.count():
+            at = number * every
+            yield at, VesselReport(at, *self.track.motion(at))
+
+    def until(self, time: float) -> Iterator[VesselReport]:
+        """Yield the reports that have been received until a time [s] since the last call."""
+        while self._next is not None and self._next[0] <= time + 1e-6:
+            _, report = self._next
+            self._next = next(self._reports, None)
+            yield self._of_antenna(report)
+
+    def _of_antenna(self, report: VesselReport) -> VesselReport:
+        if self._antenna == AT_THE_FUNNEL:
+            return report
+        course = self.track.course
+        rate = (course(report.time + TRACK_STEP) - course(report.time)) / TRACK_STEP
+        return at_antenna(report, self._antenna, course(report.time), rate)
 
 
 def _turned(north: float, east: float, angle: float) -> tuple[float, float]:

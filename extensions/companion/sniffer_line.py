@@ -15,7 +15,7 @@ import numpy as np
 
 from common.columns import described
 from common.run_layout import SULPHUR_TABLE
-from extensions.companion.ports import Line
+from extensions.companion.ports import Line, TextLines
 from gnc.estimation.navigation import MeasuredMotion
 from measurement.gases import GASES, UNITS
 from measurement.rules import RULES
@@ -25,9 +25,6 @@ from scenarios.instruments.fuel_estimate import FIGURES, TABLES, fuel_estimate
 from scenarios.instruments.instrument import Array, Evaluation
 from scenarios.instruments.sniffer import CO2, SnifferOnBoard
 from scenarios.scenario.scenario import Scenario
-
-_LONGEST_LINE = 200
-"""Characters of a line, at most [-]."""
 
 
 def reading_line(age: float, values: Sequence[float]) -> bytes:
@@ -74,10 +71,9 @@ class HeardSniffer:
     TABLES = TABLES
 
     def __init__(self, line: Line, scenario: Scenario) -> None:
-        self._line = line
+        self._lines = TextLines(line)
         self._settings: Any = scenario.payload.settings(SnifferOnBoard)
         self.spec: SnifferSpec = self._settings.spec
-        self._rest = b""
         self._times: list[float] = []
         self._values: list[list[float]] = []
         self._not_followed: deque[tuple[float, float]] = deque()
@@ -94,11 +90,8 @@ class HeardSniffer:
 
         Lines of one that began to send before the flight have times before it.
         """
-        for _, data in self._line.receive(0.0):
-            *lines, self._rest = (self._rest + data).split(b"\n")
-            self._rest = self._rest[-_LONGEST_LINE:]
-            for line in lines:
-                self._take(time, line.decode("ascii", "replace"))
+        for line in self._lines.receive():
+            self._take(time, line)
 
     def _take(self, time: float, line: str) -> None:
         found = reading_of(line)

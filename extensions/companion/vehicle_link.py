@@ -16,6 +16,7 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from aircraft.state import euler_rates
+from extensions.companion.ais_line import AisReceiver
 from extensions.companion.fields import AircraftState, VesselState, from_degrees_e7
 from extensions.companion.ports import Port
 from extensions.companion.quality import Link, SimulatedLink
@@ -47,6 +48,7 @@ class VehicleLink:
     link : how bad the link is declared to be
     lockstep : whether the vehicle's clock waits for this one
     simulated : seed of a bad link that is simulated, or None for the one that there is
+    receiver : AIS receiver on board, in place of the AIS_VESSEL of the vehicle, or None
 
     Attributes
     ----------
@@ -61,9 +63,16 @@ class VehicleLink:
     """
 
     def __init__(
-        self, port: Port, link: Link, *, lockstep: bool, simulated: int | str | None
+        self,
+        port: Port,
+        link: Link,
+        *,
+        lockstep: bool,
+        simulated: int | str | None,
+        receiver: AisReceiver | None = None,
     ) -> None:
         self._port, self._link, self._lockstep = port, link, lockstep
+        self._receiver = receiver
         self._up, self._down = SimulatedLink(Link(), 0), SimulatedLink(Link(), 0)
         self._simulated = simulated
         self.now = 0.0
@@ -248,6 +257,16 @@ class VehicleLink:
     def _deliver(self) -> None:
         for message in self._down.due(self.now):
             self._take(message)
+        for vessel in self._receiver.hear() if self._receiver else ():
+            self._hear_of(self.now - vessel.age, vessel)
+
+    def _hear_of(self, true_at: float, vessel: VesselState) -> None:
+        """Take a vessel's report, which was true at a time [s], unless a newer one has come."""
+        known = self._lockstep or self._offset is not None
+        last = self.vessels.get(vessel.mmsi)
+        if known and (last is None or true_at > last[0]):
+            self.vessels[vessel.mmsi] = true_at, vessel
+            self.on_vessel(true_at, vessel)
 
     def _take(self, message: Any) -> None:
         match message.get_type():
@@ -270,10 +289,8 @@ class VehicleLink:
                 self._place(message)
             case "AIS_VESSEL":
                 vessel = VesselState.of(message)
-                if vessel is not None and (self._lockstep or self._offset is not None):
-                    true_at = self.now - self._link.latency - vessel.age
-                    self.vessels[vessel.mmsi] = true_at, vessel
-                    self.on_vessel(true_at, vessel)
+                if vessel is not None and self._receiver is None:
+                    self._hear_of(self.now - self._link.latency - vessel.age, vessel)
 
     def _place(self, message: Any) -> None:
         """Take a place, which completes the state; that of 0/0 is none."""

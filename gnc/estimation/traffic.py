@@ -87,6 +87,11 @@ class Traffic:
         self._horizon = horizon
         self._due = -math.inf
 
+    def add(self, vessel: OtherVessel) -> int:
+        """Take in a vessel that comes to be known in flight; return its number."""
+        self.vessels.append(KnownVessel(vessel))
+        return len(self.vessels) - 1
+
     def is_due(self, number: int, time: float) -> bool:
         """Return whether a report of a vessel is of use now: she is near, or is looked at [s]."""
         vessel = self.vessels[number]

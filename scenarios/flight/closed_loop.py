@@ -71,7 +71,7 @@ class ClosedLoop:
             vessel = plan.world.vessel
             self._guard_belief = GuardBelief(guidance, guidance.guard, vessel, plan.time_step)
             beliefs.append(self._guard_belief)
-            if plan.world.traffic:
+            if guidance.traffic is not None:
                 beliefs.append(TrafficBelief(guidance, plan.world.traffic))
         self._recorder = Recorder(
             guidance, vehicle, plan.world, (*payload, *beliefs), self.settling

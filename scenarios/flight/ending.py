@@ -320,7 +320,8 @@ class Ending:
         mode, plan = self._guidance.mode, self._plan
         if self._fault:
             return Outcome.DIVERGED
-        if self._ditched or mode in LOST:
+        # One that was given back flies on, and not as the guidance orders.
+        if self._ditched or (mode in LOST and not self.given_back):
             return Outcome.AIRCRAFT_LOST
         if plan.world is None or self.stop_reason.startswith("verdict"):
             return Outcome.COMPLETED

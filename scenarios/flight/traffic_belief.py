@@ -1,6 +1,7 @@
 """How well the guard knows the ships besides the one that is measured, for the record."""
 
 import math
+from collections.abc import Sequence
 
 from common.columns import described
 from gnc.estimation.navigation import MeasuredMotion
@@ -17,7 +18,7 @@ class TrafficBelief:
     Parameters
     ----------
     guidance : under way
-    ships : in the order in which the guidance knows them
+    ships : that the guidance knows; those that come to be known in flight are added to them
     """
 
     COLUMNS = described(
@@ -28,9 +29,8 @@ class TrafficBelief:
         }
     )
 
-    def __init__(self, guidance: Guidance, ships: tuple[OtherShip, ...]) -> None:
-        self._guidance = guidance
-        self._tracks = {ship.name: ship for ship in ships}
+    def __init__(self, guidance: Guidance, ships: Sequence[OtherShip]) -> None:
+        self._guidance, self._ships = guidance, ships
 
     def read(
         self,
@@ -47,7 +47,7 @@ class TrafficBelief:
         if own.lost == 0.0:
             off_north, off_east = own.ground_north - motion.north, own.ground_east - motion.east
         for vessel in traffic.near if traffic is not None else ():
-            ship = self._tracks[vessel.name]
+            ship = next(each for each in self._ships if each.name == vessel.name)
             if not ship.begins <= time <= ship.ends:
                 continue
             ship_north, ship_east, *_ = (float(value) for value in ship.track.motion(time))

@@ -368,6 +368,7 @@ def _following_flight(
         speed_max=setup.airspeed_max,
         footprint=planned.footprint,
         measured_radius=scenario.guarded_radius + planned.margin.total,
+        meets_ships=setup.meets_ships,
     )
     guard = guarded if g.keepout_guard else None
     # What the guard knows at the start: a report of a file may be minutes old by then, and any may
@@ -385,7 +386,9 @@ def _following_flight(
         keepout_radius=scenario.guarded_radius,
     )
     own = _at_start(start, mean.now(0.0, scenario.altitude), first_known(scenario, setup))
-    check_start_beside(scenario, start, guard, traffic, world.traffic, of_traffic, own)
+    check_start_beside(
+        start, guard, traffic, world.traffic, of_traffic, own, airspeed=g.airspeed_mps
+    )
     return FlightPlan.of(
         scenario,
         flight_id,

@@ -67,8 +67,10 @@ def traffic_parameters(
     speed_max: float,
     footprint: Footprint,
     measured_radius: float,
+    meets_ships: bool = False,
 ) -> TrafficParameters | None:
-    """Return what the guidance knows of other ships before the flight; None without any.
+    """Return what the guidance knows of other ships before the flight; None where there are none,
+    and none can come to be known.
 
     Parameters
     ----------
@@ -77,8 +79,9 @@ def traffic_parameters(
     speed_max : largest airspeed of the vehicle [m/s]
     footprint : of the orbit
     measured_radius : kept from the measured vessel on a way that yields [m]
+    meets_ships : whether others may come to be known in flight
     """
-    if not ships:
+    if not ships and not meets_ships:
         return None
     return TrafficParameters(
         vessels=tuple(
@@ -153,22 +156,22 @@ def check_traffic_declared(scenario: Scenario, ships: Sequence[OtherShip]) -> No
 
 
 def check_start_beside(
-    scenario: Scenario,
     start: Start,
     guard: GuardParameters | None,
     parameters: TrafficParameters | None,
     ships: Sequence[OtherShip],
     received: Sequence[Received | None],
     own: AirMotion,
+    airspeed: float,
 ) -> None:
     """Refuse a start from which no command keeps the aircraft off another ship.
 
     Parameters
     ----------
-    scenario, start, guard : the flight; any start is accepted without a guard
+    start, guard : of the flight; any start is accepted without a guard
     parameters : of the ships
     ships, received : the ships and their reports
-    own : the vehicle's motion at the start
+    own, airspeed : the vehicle's motion at the start, and its airspeed [m/s]
 
     Raises
     ------
@@ -176,7 +179,6 @@ def check_start_beside(
     """
     if guard is None or parameters is None:
         return
-    airspeed = scenario.guidance.airspeed_mps
     for vessel, ship, reports in zip(parameters.vessels, ships, received, strict=True):
         known = ReachableSet(vessel.limits)
         first = (

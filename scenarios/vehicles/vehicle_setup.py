@@ -89,6 +89,7 @@ class VehicleSetup:
         each [rad]
     weaves : in still air, as sensors see them; none if not measured
     aircraft : in six degrees of freedom, or none for the kinematic vehicle
+    meets_ships : whether ships besides the measured one may come to be known in flight
     """
 
     lag: float
@@ -109,6 +110,7 @@ class VehicleSetup:
     crab_offsets: tuple[float, ...] = (0.0, 0.0)
     weaves: tuple[Weave, ...] = ()
     aircraft: Aircraft | None = None
+    meets_ships: bool = False
 
     def turning_airspeed(self, heading_rate: float) -> float:
         """Return the airspeed up to which a heading rate [rad/s] can be flown at the autopilot's

@@ -132,7 +132,10 @@ def _duration(scenario: Scenario) -> float:
     return scenario.flight.duration_max_s
 
 
-def _radius(scenario: Scenario, config: TrafficConfig | None) -> float:
+def radius_kept(scenario: Scenario, config: TrafficConfig | None = None) -> float:
+    """Return what is kept from a ship besides the measured one, by its entry of ``traffic``, if it
+    has one [m].
+    """
     if config is not None and config.radius_m is not None:
         return config.radius_m
     return scenario.keepout.other_radius_m or scenario.keepout.radius_m
@@ -180,7 +183,7 @@ def _given(
     north, east = _place(config, key, vessel, place)
     yield OtherShip(
         name=config.name or f"traffic_{number + 1}",
-        radius=_radius(scenario, config),
+        radius=radius_kept(scenario, config),
         track=DisplacedVessel(track, north, east),
         begins=-math.inf,
         ends=math.inf,
@@ -229,7 +232,7 @@ def _of_file(
                 name = config.name if config.mmsi is not None else f"{config.name}_{ship.mmsi}"
             yield OtherShip(
                 name=name,
-                radius=_radius(scenario, config),
+                radius=radius_kept(scenario, config),
                 track=_displaced(ship),
                 begins=ship.begins,
                 ends=ship.ends,

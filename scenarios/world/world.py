@@ -74,7 +74,7 @@ class World:
     hull: ShipHull | None = None
     exhaust: Exhaust | None = None
     background: Background = UNIFORM
-    traffic: tuple[OtherShip, ...] = ()
+    traffic: Sequence[OtherShip] = ()
 
     def headings(self, times: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """Return the ship's heading at some times, shape (n,) [rad]."""

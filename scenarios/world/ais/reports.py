@@ -30,9 +30,16 @@ from common.tables import (
     read_table,
     table_format,
 )
-from common.text import install_words, other_units
+from common.text import other_units
 from scenarios.errors import InputError
 from scenarios.scenario.sections.world import GAP_MAX
+from scenarios.world.ais.sentences import (
+    MILLISECONDS_FROM,
+    POSITION_REPORTS,
+    SENTENCE,
+    TAG_TIME,
+    SentenceDecoder,
+)
 from scenarios.world.ais.size import SIZE_COLUMNS, ShipSize, ship_size, size_of_all
 
 
@@ -337,7 +344,7 @@ def _sorted_out(rows: list[AisRow]) -> _SortedOut:
     dropped: Counter[str] = Counter()
     first: dict[str, int] = {}
     kept = placed = rows
-    for sorted_out in (_by_what_they_say, _by_their_clock, _by_their_times, _by_their_places):
+    for sorted_out in (why_unused, _by_their_clock, _by_their_times, _by_their_places):
         reasons = sorted_out(kept)
         placed = kept
         for row, reason in zip(kept, reasons, strict=True):
@@ -381,7 +388,7 @@ def _reports(
     )
 
 
-def _by_what_they_say(rows: Sequence[AisRow]) -> list[str]:
+def why_unused(rows: Sequence[AisRow]) -> list[str]:
     """Return why a row is not used by its own values, empty where it is: ITU-R M.1371-5 has 91,
     181, 102.3 and 360 for none.
     """
@@ -500,9 +507,6 @@ _SHOWN = 60
 _LOOKED_AT = 200
 """Lines of a file in which a sentence of AIS is looked for."""
 
-_SENTENCE = re.compile(r"![A-Z]{2}VD[MO],\d,\d,[^*]*\*[0-9A-Fa-f]{2}")
-"""A sentence of AIS of any talker: AI of a ship, BS of a base station, AB, AN, SA and others."""
-
 _SIGNED_SPEED, _SIGNED_COURSE = 102.4, 409.6
 """What negative speeds and courses lack in Marine Cadastre's files of 2015 to 2017: their ten and
 twelve bits were read as signed numbers [kt, deg]."""
@@ -599,7 +603,7 @@ def _contents(
     if not begin.strip():
         raise InputError(f"{path}: the file is empty; give a file of AIS reports")
     # Whatever the file is called, and whatever other receivers write above the first report.
-    if _SENTENCE.search(begin.decode("latin-1")) or path.suffix.lower() == ".nmea":
+    if SENTENCE.search(begin.decode("latin-1")) or path.suffix.lower() == ".nmea":
         if given := written.given():
             raise InputError(
                 f"{path}: table.{given[0]} is given, and the file has NMEA sentences and no table;"
@@ -755,22 +759,12 @@ def _most(counts: Counter[int]) -> str:
     return f"{named}, ..." if len(counts) > _NAMED else named
 
 
-_TAG_TIME = re.compile(r"[\\,]c:(\d+)")
-"""Time of reception in a tag block of NMEA 4.10: seconds since 1970, or milliseconds."""
-
 _AROUND_TIMES = " \t\r\n,;"
 """What may stand between a time and its sentence."""
 
-_POSITION_REPORTS = (1, 2, 3, 18, 19)
-"""Message types with position, speed and course (ITU-R M.1371-5): class A, and class B."""
-
-_SIDES = ("bow", "stern", "port", "starboard")
-"""Sides of the ship that messages have the antenna's distances from."""
-
-_MILLISECONDS_FROM, _DATE_FROM = 100_000_000_000, 10_000_000_000_000
-"""Times since 1970 from which on they are milliseconds, of seconds from the year 5138 on; and from
-which on they are no time, but a date without its marks, as 20260601100000, of milliseconds from the
-year 2286 on."""
+_DATE_FROM = 10_000_000_000_000
+"""Times since 1970 from which on they are no time, but a date without its marks, as 20260601100000,
+of milliseconds from the year 2286 on."""
 
 
 def _from_sentences(path: Path) -> Iterator[_Said]:
@@ -780,46 +774,22 @@ def _from_sentences(path: Path) -> Iterator[_Said]:
     ------
     InputError : pyais is not installed, a report has no time, or there is no position report
     """
-    try:
-        import pyais
-    except ImportError:
-        raise InputError(
-            f"{path}: NMEA sentences need pyais; install the extra: {install_words('ais')}"
-        ) from None
+    decoder = SentenceDecoder(str(path))
     others: set[int] = set()
     read = False
-    parts: dict[tuple[str, str], list[str]] = {}
     for number, line in _numbered_lines(path):
-        found = _SENTENCE.search(line)
-        if found is None:
+        message = decoder.decode(line)
+        if message is None:
             continue
-        whole = [found[0]]
-        _, count, part, group, channel, *_ = found[0].split(",")
-        if count != "1":
-            # The last sentence of a message completes it, if none before it was lost.
-            whole = parts.pop((group, channel), []) if part != "1" else []
-            whole.append(found[0])
-            if len(whole) < int(part):
-                continue
-            if len(whole) < int(count):
-                parts[group, channel] = whole
-                continue
-        try:
-            said: dict[str, Any] = pyais.decode(*whole).asdict()
-        except Exception:  # noqa: BLE001 - whatever radio and decoder make of a line, it is one that says nothing
-            continue
-        identity = int(said["mmsi"])
-        if said["msg_type"] in _POSITION_REPORTS:
+        if message.places:
             read = True
-            time = _time_of(line[: found.start()], line[found.end() :], path, number)
-            values = (_value(said, name) for name in ("lat", "lon", "speed", "course"))
-            yield _Said(identity, AisRow(number, time, *values))
+            time = _time_of(message.before, message.after, path, number)
+            values = (message.value(name) for name in ("lat", "lon", "speed", "course"))
+            yield _Said(message.mmsi, AisRow(number, time, *values))
         else:
-            others.add(int(said["msg_type"]))
-        if "to_bow" in said:
-            # Of a boat of a ship pyais has that ship's identity instead of dimensions.
-            sides = {end: _value(said, f"to_{end}") for end in _SIDES}
-            yield _Said(identity, size=ship_size(**sides))
+            others.add(int(message.said["msg_type"]))
+        if (size := message.size) is not None:
+            yield _Said(message.mmsi, size=size)
     if not read:
         types = (
             f"messages of type {', '.join(map(str, sorted(others)))} alone"
@@ -828,7 +798,7 @@ def _from_sentences(path: Path) -> Iterator[_Said]:
         )
         raise InputError(
             f"{path}: it has {types}; position reports of types"
-            f" {', '.join(map(str, _POSITION_REPORTS))} are read, others have no"
+            f" {', '.join(map(str, POSITION_REPORTS))} are read, others have no"
             " speed and course, or none that is exact enough: give a file with these"
         )
 
@@ -838,16 +808,11 @@ def _numbered_lines(path: Path) -> Iterator[tuple[int, str]]:
         yield from enumerate(lines, start=1)
 
 
-def _value(said: dict[str, Any], name: str) -> float:
-    value = said.get(name)
-    return math.nan if value is None else float(value)
-
-
 def _time_of(before: str, after: str, path: Path, number: int) -> float:
     """Return the time of reception: of the tag block, or a time in ISO 8601 or seconds since 1970
     before the sentence or after its checksum.
     """
-    found = _TAG_TIME.search(before)
+    found = TAG_TIME.search(before)
     text = found[1] if found else before.strip(_AROUND_TIMES) or after.strip(_AROUND_TIMES)
     try:
         time = float(text) if text.replace(".", "", 1).isdigit() else _seconds_of(text)
@@ -862,7 +827,7 @@ def _time_of(before: str, after: str, path: Path, number: int) -> float:
             " without its marks is read; give"
             " seconds since 1970, as 1780315200, or 2026-06-01T12:00:00Z"
         )
-    return time / 1000.0 if time >= _MILLISECONDS_FROM else time
+    return time / 1000.0 if time >= MILLISECONDS_FROM else time
 
 
 def _seconds_of(text: str) -> float:

@@ -50,7 +50,7 @@ def free_port(kind=socket.SOCK_STREAM):
 def served(scenario, *settings, lockstep=True, mode="GUIDED", scheme="tcp", flight=None,
            parameters=None, muted=(), home=HOME, change=lambda message: message,
            at_step=lambda _: None,
-    sniffer=None, duration=1e6):  # fmt: skip
+    sniffer=None, duration=1e6, log=None):  # fmt: skip
     """Serve the vehicle of a flight.
 
     Parameters
@@ -60,6 +60,7 @@ def served(scenario, *settings, lockstep=True, mode="GUIDED", scheme="tcp", flig
     change : of each message that it tells; None for none
     at_step : called before each step
     sniffer : where the readings of the scenario's sniffer are sent, or none
+    log : telemetry log of both directions, or none
     """
     single = command._flight(SingleFlight, scenario, list(settings), flight)
     with tempfile.TemporaryDirectory() as folder:
@@ -72,7 +73,7 @@ def served(scenario, *settings, lockstep=True, mode="GUIDED", scheme="tcp", flig
             send_readings(simulation, request, work.plan(request), readings)
     kind = socket.SOCK_DGRAM if scheme == "udp" else socket.SOCK_STREAM
     url = f"{scheme}://127.0.0.1:{free_port(kind)}"
-    port = Port(opened("--listen", url, listening=True), system=1, component=COMPONENT)
+    port = Port(opened("--listen", url, listening=True), system=1, component=COMPONENT, log=log)
     found = Served(url, simulation)
     send, receive, step = port.send, port.receive, simulation.step
 

@@ -18,6 +18,7 @@ from extensions.companion.fields import (
     roll_target,
     wind,
 )
+from scenarios.world.ais.size import ShipSize
 
 # Climbing, banked to the right, to the south-west: every sign differs from its opposite.
 STATE = AircraftState(
@@ -142,6 +143,23 @@ def test_a_vessel_without_a_place_or_a_velocity_is_none():
     assert changed(lon=1810000000) is None
     assert changed(flags=mavlink.AIS_FLAGS_VALID_COG) is None
     assert changed(flags=mavlink.AIS_FLAGS_VALID_VELOCITY) is None
+
+
+def test_a_vessel_may_say_its_size_and_where_its_bow_points():
+    told = sent(VESSEL.ais())
+    assert VesselState.of(told).size is None
+    told.flags |= mavlink.AIS_FLAGS_VALID_DIMENSIONS
+    told.dimension_bow, told.dimension_stern = 225, 70
+    told.dimension_port, told.dimension_starboard = 1, 31
+    assert VesselState.of(told).size == ShipSize(295.0, 32.0, 225.0, 1.0)
+    # More than the field can say.
+    told.flags |= mavlink.AIS_FLAGS_LARGE_BOW_DIMENSION
+    assert VesselState.of(told).size is None
+    assert VesselState.of(told).bow == pytest.approx(VESSEL.bow)
+    # 511 degrees are "not available": the bow is taken to point along the course.
+    told.heading = 51100
+    course = math.atan2(VESSEL.velocity_east, VESSEL.velocity_north)
+    assert VesselState.of(told).bow == pytest.approx(course, abs=1e-3)
 
 
 def test_a_vessel_at_rest_has_no_course():

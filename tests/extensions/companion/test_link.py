@@ -172,7 +172,7 @@ def test_a_retreat_is_never_in_the_way_of_the_vessel(own, vessel):
         ) ** 0.5
         assert distance >= keep - 1e-6
     # The straight way there, at the vehicle's speed, in the vessel's frame: no nearer than it was,
-    # but for a vehicle ahead of her, which has to let her pass.
+    # but for a vehicle ahead of the vessel, which has to let it pass.
     way = ((place[0] - own[0]) ** 2 + (place[1] - own[1]) ** 2) ** 0.5
     steps = [k / 100.0 for k in range(101)]
     nearest = min(
