@@ -326,7 +326,6 @@ class _Surroundings:
     room : distance beyond her radius in which a turn away from her is done, whatever the course
         before it [m]
     free_for : for how long the vehicle stays farther off than that, whatever it does [s]
-    out_of_reach : for how long she stays out of reach of a common turn [s]
     """
 
     def __init__(
@@ -335,13 +334,11 @@ class _Surroundings:
         motion: RelativeMotion,
         room: float,
         free_for: float,
-        out_of_reach: float,
     ) -> None:
         self.ship = ship
         self.motion = motion
         self.room = room
         self.free_for = free_for
-        self.out_of_reach = out_of_reach
 
 
 class Several:
@@ -616,9 +613,13 @@ class HeadingRateFilter:
         no area of another one comes so near to hers that both might have to be kept off at once
         (docs/keepout_guard.md, "Several vessels").
         """
-        left_out = [self._far_until.get(other.name, -math.inf) for other in others]
-        far_for = min((until - time for until in left_out if until > time), default=math.inf)
-        due = [until <= time for until in left_out]
+        far_for = math.inf
+        due: list[bool] = []
+        for other in others:
+            until = self._far_until.get(other.name, -math.inf)
+            due.append(until <= time)
+            if until > time and until - time < far_for:
+                far_for = until - time
         if True not in due:
             return [measured], far_for
         around = [self._surroundings(measured, time, own, fastest, slowest)]
@@ -632,7 +633,7 @@ class HeadingRateFilter:
             free = min(found.free_for, _LEFT_OUT_MOST)
             if free > 0.0 and any(self._meet(found, other) for other in around):
                 # In each other's way, though not yet within reach of a turn.
-                free = min(found.out_of_reach, _LEFT_OUT_MOST)
+                free = min(self._out_of_reach(found), _LEFT_OUT_MOST)
             if free > 0.0:
                 self._far_until[found.ship.name] = time + free
                 far_for = min(far_for, free)
@@ -642,7 +643,7 @@ class HeadingRateFilter:
             return [measured], far_for
         first = around[0]
         in_the_way = any(self._meet(first, found) for found in of_due if found.ship in ships)
-        if first.free_for <= 0.0 or (in_the_way and first.out_of_reach <= 0.0):
+        if first.free_for <= 0.0 or (in_the_way and self._out_of_reach(first) <= 0.0):
             ships.append(measured)
         else:
             far_for = min(far_for, max(first.free_for, 0.0))
@@ -672,8 +673,11 @@ class HeadingRateFilter:
             motion,
             room,
             (gap - room) / (fastest + closing),
-            self.time_until_near(motion, _COMMON_REACH),
         )
+
+    def _out_of_reach(self, found: "_Surroundings") -> float:
+        """Return for how long a vessel stays out of reach of a common turn [s]."""
+        return self.time_until_near(found.motion, _COMMON_REACH)
 
     def _meet(self, one: "_Surroundings", other: "_Surroundings") -> bool:
         """Return whether the areas of two vessels soon leave less between them than the vehicle
