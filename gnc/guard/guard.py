@@ -458,8 +458,9 @@ class HeadingRateFilter:
             turn_time=self._turn_time,
         )
         self._common: CommonTurn | None = None
-        # Until when other vessels are left out of looks [s].
+        # Until when other vessels are left out of looks, and the first of them [s].
         self._far_until: dict[str, float] = {}
+        self._left_out_until = -math.inf
         self.status = GuardStatus.FREE
 
     def limit(
@@ -484,7 +485,11 @@ class HeadingRateFilter:
             all speeds between them. The slowest counts where it is below the fastest [m/s]
         others : vessels besides her
         """
-        if not self.budget.may_skip(command, fastest, slowest):
+        skips = self.budget.may_skip(command, fastest, slowest)
+        if skips and others and time >= self._left_out_until:
+            # Commands cannot spoil the turn that was found; the others alone are due.
+            skips = self._leaves_others_out(time, own, vessels, fastest, slowest, others)
+        if not skips:
             found = self._look(command, time, own, vessels, fastest, slowest, others)
             if found is None:
                 self.status = GuardStatus.FREE
@@ -585,17 +590,29 @@ class HeadingRateFilter:
         measured = Ship("", self._p.radius, vessels)
         if not others:
             self._common = None
+            self._left_out_until = -math.inf
             return self._look_at(measured, command, time, own, fastest, slowest)
         ships, far_for = self._to_keep_off(measured, others, time, own, fastest, slowest)
+        self._left_out_until = time + far_for
         if len(ships) == 1:
             self._common = None
-            found = self._look_at(ships[0], command, time, own, fastest, slowest)
-        else:
-            found = self._look_at_several(ships, command, time, own, fastest, slowest)
-        # No longer than until the next of the others has to be looked at.
-        if far_for < self.budget.steps * self._time_step:
-            self.budget.steps = int(far_for / self._time_step)
-        return found
+            return self._look_at(ships[0], command, time, own, fastest, slowest)
+        return self._look_at_several(ships, command, time, own, fastest, slowest)
+
+    def _leaves_others_out(
+        self,
+        time: float,
+        own: AirMotion,
+        vessels: Sequence[Tube],
+        fastest: float,
+        slowest: float,
+        others: Sequence[KnownVessel],
+    ) -> bool:
+        """Return whether all vessels but the measured one stay left out of looks."""
+        measured = Ship("", self._p.radius, vessels)
+        ships, far_for = self._to_keep_off(measured, others, time, own, fastest, slowest)
+        self._left_out_until = time + far_for
+        return len(ships) == 1 and ships[0] is measured
 
     def _to_keep_off(
         self,
