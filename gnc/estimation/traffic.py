@@ -1,7 +1,7 @@
 """The other vessels that are known, besides the one that is measured: which of them are near, and
 where each of them may be.
 
-Each has a radius of its own, and discs of its own that she cannot have left, made of her own
+Each has a radius of its own, and discs of its own that it cannot have left, made of its own
 reports (``gnc.estimation.vessel``). Most are far away. So discs are made only of those that vehicle
 and vessel can bring near within the **horizon**: a vessel at a distance d, whose radius to keep is
 r and whose disc reaches R after the horizon T, is out of reach for at least
@@ -19,7 +19,7 @@ from gnc.estimation.navigation import AirMotion
 from gnc.estimation.vessel import ReachableSet, Tube, VesselLimits, VesselReport, discs_of
 
 _LOOKED_AT_AFTER = 10.0
-"""Time after which a vessel is looked at again, however far off she is [s]: her disc grows, and the
+"""Time after which a vessel is looked at again, however far off it is [s]: its disc grows, and the
 estimated wind changes."""
 
 
@@ -30,8 +30,8 @@ class OtherVessel:
     Attributes
     ----------
     name : in messages and tables
-    radius : that the vehicle's path must keep from her [m]
-    limits : that she and her reports keep
+    radius : that the vehicle's path must keep from it [m]
+    limits : that it and its reports keep
     """
 
     name: str
@@ -141,8 +141,8 @@ class Traffic:
         self.near = near
 
     def _out_of_reach(self, radius: float, disc: Tube, own: AirMotion) -> float:
-        """Return for how long a vessel stays out of reach [s], by her radius to keep [m] and her
-        disc; below 0 where she does not.
+        """Return for how long a vessel stays out of reach [s], by its radius to keep [m] and its
+        disc; below 0 where it does not.
         """
         horizon = self._horizon
         closing = (

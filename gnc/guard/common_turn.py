@@ -3,7 +3,7 @@
 A turn away heads straight away from one vessel, and may lead to another. Where several are near,
 the backup manoeuvre is a **common turn**: omega_max to one side up to some course, then straight
 on. All vessels are kept off on the same way. For each of them slack is what it is in a turn away
-(``turn.py``): the least distance from the centre of her disc, less what is allowed for there. That
+(``turn.py``): the least distance from the centre of its disc, less what is allowed for there. That
 of a common turn is the least of all; so the nearest vessel decides. Courses are tried at equal
 angles to both sides, and first of all that of the common turn that was safe before.
 
@@ -145,7 +145,7 @@ class CommonTurns:
     def away(self, motions: Sequence[RelativeMotion]) -> float:
         """Return the course away from all vessels together [rad].
 
-        The nearer one is, the more she counts: by the inverse square of her distance beyond her
+        The nearer one is, the more it counts: by the inverse square of its distance beyond its
         radius.
         """
         north = east = 0.0

@@ -247,7 +247,7 @@ class KeepoutGuard:
         demand : of the guidance
         own : the vehicle's motion
         vessels : discs, at least one, in each of which the vessel is
-        others : vessels besides her, of which those out of reach cost next to nothing
+        others : other vessels; those out of reach cost next to nothing
         """
         time, command, pace = demand.time, demand.heading_rate, demand.pace
         leaving = demand.leaving
@@ -302,13 +302,13 @@ class Encounter:
 
 
 class Ship:
-    """A vessel as the guard looks at her.
+    """A vessel as the guard looks at it.
 
     Attributes
     ----------
     name : of another vessel; empty for the one that is measured
-    radius : to keep from her [m]
-    discs : at least one, in each of which she is
+    radius : to keep from it [m]
+    discs : at least one, in each of which it is
     """
 
     def __init__(self, name: str, radius: float, discs: Sequence[Tube]) -> None:
@@ -322,8 +322,8 @@ class _Surroundings:
 
     Attributes
     ----------
-    ship, motion : the vessel, and the motion relative to her disc
-    room : distance beyond her radius in which a turn away from her is done, whatever the course
+    ship, motion : the vessel, and the motion relative to its disc
+    room : distance beyond its radius in which a turn away from it is done, whatever the course
         before it [m]
     free_for : for how long the vehicle stays farther off than that, whatever it does [s]
     """
@@ -363,7 +363,7 @@ class _Look:
 
     Attributes
     ----------
-    ship, encounters : the only vessel that is near, and her discs
+    ship, encounters : the only vessel that is near, and its discs
     several : vessels that are near, by discs that may be kept off; empty where there is one alone
     """
 
@@ -483,7 +483,7 @@ class HeadingRateFilter:
         vessels : discs, at least one, in each of which the vessel is
         fastest, slowest : airspeeds that the vehicle may come to; a turn away has to keep off at
             all speeds between them. The slowest counts where it is below the fastest [m/s]
-        others : vessels besides her
+        others : other vessels
         """
         skips = self.budget.may_skip(command, fastest, slowest)
         if skips and others and time >= self._left_out_until:
@@ -626,8 +626,8 @@ class HeadingRateFilter:
         """Return the vessels that turns away have to keep off, and for how long the rest need not
         be looked at [s].
 
-        A vessel is left out while a turn away from her is left to the vehicle whatever it does, and
-        no area of another one comes so near to hers that both might have to be kept off at once
+        A vessel is left out while a turn away from it is left to the vehicle whatever it does, and
+        no area of another one comes so near to its area that both might have to be kept off at once
         (docs/keepout_guard.md, "Several vessels").
         """
         far_for = math.inf
@@ -674,8 +674,8 @@ class HeadingRateFilter:
         motion = self.relative_motion(disc, time, own, fastest, slowest, 0.0, ship.radius)
         slower = max(1.0, fastest / self._turn_speed)
         half_turn = (math.pi / self._rate) * slower + self._p.lag + self._p.delay + self._time_step
-        # Flown at her, a turn away comes nearer by its radius and by what comes before it. She
-        # comes nearer for as long as half a turn takes.
+        # Flown at the vessel, a turn away comes nearer by the turn radius and by what comes
+        # before it. The vessel comes nearer for as long as half a turn takes.
         disc_speed = math.hypot(motion.disc_north, motion.disc_east)
         closing = disc_speed + motion.growth + 0.5 * motion.acceleration * half_turn
         room = (
@@ -705,7 +705,7 @@ class HeadingRateFilter:
         duration = _COMMON_REACH * self._turn_time
         a, b = one.motion, other.motion
         x, y = a.x - b.x, a.y - b.y
-        # The vehicle's place relative to a vessel moves against her.
+        # The vehicle's place relative to a vessel moves against it.
         north, east = b.disc_north - a.disc_north, b.disc_east - a.disc_east
         square = north * north + east * east
         nearest_at = 0.0

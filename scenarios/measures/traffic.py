@@ -19,14 +19,14 @@ from scenarios.world.traffic import OtherShip
 Array = npt.NDArray[np.float64]
 
 _TRACK_INTERVAL = 2.0
-"""Time between the recorded places of another ship [s]: maps draw her track by them."""
+"""Time between the recorded places of another ship [s]: maps draw its track by them."""
 
 _SHOWN = 6000.0
 """Distance from the measured ship up to which another one is recorded [m]."""
 
 
 class _Approach(NamedTuple):
-    """How near a path came to a ship: her row of the table, and the distance beyond her radius [m]."""
+    """How near a path came to a ship: its row of the table, and the distance beyond its radius [m]."""
 
     row: Row
     clearance: float

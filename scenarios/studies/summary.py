@@ -283,7 +283,7 @@ class FlightNotes:
             lines.append(
                 f"warning: in {len(heights)} flight{'s' * (len(heights) > 1)} the UAV never passed through the smoke, and crossed"
                 f" its axis up to {abs(farthest):.0f} m {'above' if farthest > 0.0 else 'below'} it: flight.altitude_min_m and"
-                " altitude_max_m may not let it reach the smoke, or the ship is not as the guidance takes her to be"
+                " altitude_max_m may not let it reach the smoke, or the ship is not as the guidance takes it to be"
                 " (following.source_height_m, following.load)"
             )
         return lines

@@ -69,11 +69,11 @@ class OtherShip:
     Attributes
     ----------
     name : in messages, tables and maps
-    radius : that is kept from her [m]
+    radius : that is kept from it [m]
     track : in the frame of the flight
-    begins, ends : between which her track is known [s]
+    begins, ends : between which its track is known [s]
     reports : of a file, in the flight's time and frame; None of a ship that the scenario gives
-    key : of the scenario that has her
+    key : of the scenario that has it
     """
 
     name: str
@@ -121,7 +121,7 @@ def traffic_of(
     if len(ships) > TRAFFIC_MAX:
         raise InputError(
             f"there are {len(ships)} ships besides the measured one within {_FAR / 1000.0:g} km of"
-            f" her; the most is {TRAFFIC_MAX}: leave some out of the file"
+            f" it; the most is {TRAFFIC_MAX}: leave some out of the file"
         )
     _check_names(ships)
     _check_places(ships, vessel)
@@ -265,7 +265,7 @@ def _check_places(ships: Sequence[OtherShip], vessel: VesselTruth) -> None:
                 which = f"{key} ({name})" if key else name
                 raise InputError(
                     f"{ship.key} ({ship.name}) is {apart:.1f} m from {which} at the start; two"
-                    f" ships are {_SAME_PLACE:g} m apart at least: give her another place"
-                    " (place_m), or leave her out"
+                    f" ships are {_SAME_PLACE:g} m apart at least: give it another place"
+                    " (place_m), or leave it out"
                 )
         placed.append((ship.name, ship.key, ship.track.motion(0.0)))

@@ -321,7 +321,7 @@ def _known_ship(given: Any) -> Any:
     """Refuse a name of no ship, and a table that is of no use."""
     if not isinstance(given, str | dict | None):
         raise ValueError(
-            f"value is {given!r}; give the name of a ship, or a table with her engine and funnel"
+            f"value is {given!r}; give the name of a ship, or a table with its engine and funnel"
         )
     if given is not None:
         ship_of(given)
