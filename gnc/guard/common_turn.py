@@ -50,6 +50,7 @@ class CommonTurn:
 
     def __init__(
         self,
+        *,
         side: float,
         course: float,
         slack: float,
@@ -224,7 +225,17 @@ class CommonTurns:
             slack = min(turn.slack, slack)
             if slack < floor:
                 # It need not be known any better.
-                return CommonTurn(side, course, slack, False, slack, 0.0, 0.0, angle, counted)
+                return CommonTurn(
+                    side=side,
+                    course=course,
+                    slack=slack,
+                    ends=False,
+                    rate=slack,
+                    free_time=0.0,
+                    free_course=0.0,
+                    to_turn=angle,
+                    change=counted,
+                )
             leg = turn.straight_on(_LEG * self._turn_time, self._turn_time)
             slack = min(leg.slack, slack)
             ends = ends and leg.ends
@@ -236,16 +247,16 @@ class CommonTurns:
                 break
         fastest = max(turn.fastest for turn in turns)
         return CommonTurn(
-            side,
-            course,
-            slack,
-            ends,
-            rate,
+            side=side,
+            course=course,
+            slack=slack,
+            ends=ends,
+            rate=rate,
             # Commands to the side of the turn lead beyond its end.
-            min(free_time, max(angle / self._rate, self._lag)),
-            max(rate, 0.0) / fastest,
-            angle,
-            counted,
+            free_time=min(free_time, max(angle / self._rate, self._lag)),
+            free_course=max(rate, 0.0) / fastest,
+            to_turn=angle,
+            change=counted,
         )
 
 
