@@ -65,7 +65,7 @@ class AirSamples:
     ----------
     time : shape (n,) [s]
     air : gases, shape (n, 4), in the order and the units of ``measurement.gases``
-    background_co2 : CO2 without the exhaust, shape (n,) [ppm]
+    background_co2 : CO2 without the exhaust of the measured ship, shape (n,) [ppm]
     pressure : in the sensors less that at the sea [hPa], shape (n,)
     above : height over the plume's mean axis [m], shape (n,)
     plume : there
@@ -102,6 +102,7 @@ class AirSampler:
     Parameters
     ----------
     exhaust, background : in the air
+    others : exhausts of other ships
     dynamic_pressure_fraction : of the dynamic pressure that the inlet passes on to the sensors [-]
     """
 
@@ -109,10 +110,11 @@ class AirSampler:
         self,
         exhaust: Exhaust,
         background: Background,
+        others: Sequence[Exhaust] = (),
         *,
         dynamic_pressure_fraction: float,
     ) -> None:
-        self._exhaust, self._background = exhaust, background
+        self._exhaust, self._background, self._others = exhaust, background, others
         self._fraction, self._taken = dynamic_pressure_fraction, 0
         self._clean = np.array([CLEAN_AIR[gas] for gas in GASES])
 
@@ -135,6 +137,8 @@ class AirSampler:
         flown = np.interp(at, time, airspeed)
         clean = np.tile(self._clean, (len(at), 1))
         clean[:, CO2] += self._background.at(at)
+        for other in self._others:
+            clean += other.excess(other.sample(at, north, east, up).dilution)
         return AirSamples(
             time=at,
             air=clean + self._exhaust.excess(plume.dilution),
@@ -329,7 +333,7 @@ class SnifferOnBoard:
         {f"{gas}_{UNITS[gas]}": "true concentration along the path" for gas in GASES}
         | {f"{gas}_reading_{UNITS[gas]}": "reading, held until the next one" for gas in GASES}
         | {
-            "co2_background_ppm": "true CO2 of the air without the exhaust",
+            "co2_background_ppm": "true CO2 of the air without the exhaust of the measured ship",
             "plume_across_m": "place across the plume's mean axis",
             "plume_above_m": "height above the plume's mean axis",
             "plume_fraction": "concentration over that in the centre of the plume",
@@ -352,6 +356,7 @@ class SnifferOnBoard:
         self._sampler = AirSampler(
             self._exhaust,
             world.background,
+            [ship.exhaust for ship in world.traffic if ship.exhaust is not None],
             dynamic_pressure_fraction=self._settings.dynamic_pressure_fraction,
         )
         self._air: list[AirSamples] = []

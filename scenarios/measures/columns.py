@@ -436,6 +436,12 @@ TRAFFIC_COLUMNS = described(
         "time_s": Column("time of the sample nearest to that approach", title="At", digits=1),
         "violations": Column("entries into its area", title="Entries", digits=0, adds_up=True),
         "time_inside_s": Column("time in it", title="Time inside", digits=1, adds_up=True),
+        "plume_s": Column(
+            "time in its plume, within two spreads of the axis; empty of a ship that emits nothing",
+            title="Time in its plume",
+            digits=1,
+            adds_up=True,
+        ),
     }
 )
 """Of ``traffic.csv``: a row per flight and ship besides the one that is measured, of those whose

@@ -1,17 +1,46 @@
 """What a scenario file may say of ships besides the one that is measured."""
 
 from pathlib import Path
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from common.files import is_data_file
-from scenarios.scenario.sections.needs import OPERATIONAL, Need
+from measurement.emission import fuel_preset
+from measurement.gases import FUEL_SULPHUR_MOST
+from scenarios.scenario.sections.needs import OPERATIONAL, SNIFFER, Need
 from scenarios.scenario.sections.section import Angle, Positive, Section
-from scenarios.scenario.sections.world import ManoeuvreConfig
+from scenarios.scenario.sections.world import ManoeuvreConfig, known_ship
 
 TRAFFIC_MAX = 200
 """Most ships of a scenario besides the one that is measured [-]."""
+
+
+class TrafficEmissionConfig(Section):
+    """What comes out of its funnel. The sniffer on board reads it as well where the UAV meets it;
+    who estimates the sulphur of the measured ship does not know of it.
+    """
+
+    NEEDS: ClassVar[tuple[Need, ...]] = (SNIFFER,)
+
+    ship: Annotated[str | dict[str, Any], BeforeValidator(known_ship)]
+    """The ship that emits it, one of measurement/ships.toml, or a table of one's own with the keys
+    of these; its funnel is as high as says this.
+    """
+    fuel: str = "mgo"
+    """Fuel of the ship, one of measurement/fuels.toml."""
+    sulphur_percent: Annotated[float | None, Field(ge=0.0, le=FUEL_SULPHUR_MOST)] = None
+    """Sulphur content of the fuel by mass; the usual one of that fuel if not given [% m/m]."""
+    load: Annotated[float | None, Field(gt=0.0, le=1.0)] = None
+    """Load of the engine, a fraction as 0.85; if not given, that at the ship's speed at the start
+    [-].
+    """
+
+    @field_validator("fuel")
+    @classmethod
+    def _known_fuel(cls, fuel: str) -> str:
+        fuel_preset(fuel)
+        return fuel
 
 
 class TrafficConfig(Section):
@@ -45,6 +74,8 @@ class TrafficConfig(Section):
     """Its manoeuvres, in the order of their times."""
     radius_m: Annotated[Positive | None, Field(le=10_000.0)] = None
     """Radius that is kept from it; keepout.other_radius_m if not given [m]."""
+    emission: TrafficEmissionConfig | None = None
+    """What comes out of its funnel; nothing if not given."""
 
     @field_validator("name")
     @classmethod

@@ -317,7 +317,7 @@ class PlumeConfig(PartSection):
         return {self.model: PLUME_MODELS.get(self.model)}
 
 
-def _known_ship(given: Any) -> Any:
+def known_ship(given: Any) -> Any:
     """Refuse a name of no ship, and a table that is of no use."""
     if not isinstance(given, str | dict | None):
         raise ValueError(
@@ -333,7 +333,7 @@ class EmissionConfig(Section):
 
     NEEDS: ClassVar[tuple[Need, ...]] = (OPERATIONAL,)
 
-    ship: Annotated[str | dict[str, Any] | None, BeforeValidator(_known_ship)] = None
+    ship: Annotated[str | dict[str, Any] | None, BeforeValidator(known_ship)] = None
     """The ship that emits the exhaust, one of measurement/ships.toml, or a table of one's
     own with the keys of these; no exhaust if not given."""
     fuel: Annotated[str, EXHAUST] = "mgo"
