@@ -18,7 +18,7 @@ TRAFFIC_MAX = 200
 
 class TrafficEmissionConfig(Section):
     """What comes out of its funnel. The sniffer on board reads it as well where the UAV meets it;
-    who estimates the sulphur of the measured ship does not know of it.
+    the estimate of the measured ship's sulphur leaves out readings that it may be in.
     """
 
     NEEDS: ClassVar[tuple[Need, ...]] = (SNIFFER,)

@@ -98,10 +98,29 @@ def test_a_plume_of_another_ship_changes_readings_and_nothing_of_the_path():
     (ship,) = traffic
     assert ship["plume_s"] > 30.0
     assert row["smoke_passes"] == beside["smoke_passes"] > 5
-    # It lies over every pass: the estimate cannot tell the fuels apart, and says no more than it
-    # knows.
-    assert beside["fsc_percent"] > row["fsc_percent"] + 0.02
+    # It lies over every pass: there is nothing to tell the fuel by, and the reason is said.
+    assert beside["others_left_out"] == 1.0
     assert beside["sulphur_verdict"] == "open"
+    assert beside["sulphur_quality"] == "C"
+    assert "the plume of upwind" in beside["sulphur_reason"]
+    assert "others_left_out" not in row
+
+
+def test_what_another_plume_may_be_in_is_left_out_of_the_estimate():
+    # It falls behind by 2 m/s, and its plume leaves the orbit in the measured time.
+    slower = {"name": "slower", "place_m": [800.0, 366.0], "speed_mps": 10.0, "emission": EMISSION}
+    row, history, _ = flown(
+        slower,
+        payload={"sensor": "fast"},
+        flight={"after_settling_s": 260.0, "duration_max_s": 450.0},
+    )
+    measured = history["time_s"] >= row["settling_time_s"]
+    assert history["co2_background_ppm"][measured].max() > 421.0
+    assert 0.1 < row["others_left_out"] < 0.8
+    assert row["sulphur_quality"] != "C"
+    # Twice the standard uncertainty, as for a ship that is alone.
+    error = abs(row["fsc_percent"] - row["fsc_expected_percent"])
+    assert error < 2.0 * row["fsc_uncertainty_percent"]
 
 
 def test_a_plume_that_needs_more_than_there_is_is_refused_by_its_key():
