@@ -1,10 +1,12 @@
-"""Computing time of a step of the guidance, in both compositions, and with the search for a plume.
+"""Computing time of a step of the guidance, in both compositions, with the search for a plume, and
+beside other ships.
 
 Flights are flown and recorded at the rate of the guidance: one beside a steady vessel in still air,
 which has the paper's composition, one that follows a plume in wind, by sensors and reports, and
 that one again as it searches for its plume, beside a slow and a fast ship. What the guidance was
 given in each is then sent to another one, step by step, all in turn for several rounds: it commands
-what was flown. A search is compared with a flight that is given its plume.
+what was flown. A search is compared with a flight that is given its plume, and a flight beside
+other ships with one that is alone with its own.
 """
 
 import io
@@ -34,6 +36,7 @@ from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.equipment import PayloadConfig, VesselReportsConfig
 from scenarios.scenario.sections.flight import FlightConfig, StartConfig
 from scenarios.scenario.sections.guidance import FollowingConfig
+from scenarios.scenario.sections.traffic import TrafficConfig
 from scenarios.scenario.sections.world import EmissionConfig, PlumeConfig, VesselConfig, WindConfig
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 
@@ -57,6 +60,23 @@ FOLLOWING = Scenario(
     start=_START,
     flight=_FLIGHT,
 )
+
+_FAR = tuple(
+    TrafficConfig(place_m=(1500.0 * (i - 5), side * 5000.0), speed_mps=7.0)
+    for side in (-1.0, 1.0)
+    for i in range(10)
+)
+"""Twenty ships, beyond where any of them counts as near."""
+
+BUSY = {
+    "all of them far": FOLLOWING.model_copy(update={"traffic": _FAR}),
+    "one of them 900 m abeam": FOLLOWING.model_copy(
+        update={"traffic": (*_FAR[1:], TrafficConfig(place_m=(0.0, 900.0), speed_mps=7.0))}
+    ),
+    "one of them 650 m abeam, kept off together with the measured one": FOLLOWING.model_copy(
+        update={"traffic": (*_FAR[1:], TrafficConfig(place_m=(-200.0, 650.0), speed_mps=7.0))}
+    ),
+}
 
 _EVERY = 2
 """Steps between those at which the search gets a position: of a flight that is recorded 10 times a
@@ -112,6 +132,15 @@ def report_guidance(rounds: int, setup: VehicleSetup) -> None:
         print(
             f"  beside a {name} ship: {without:.1f} us without a search, {with_it:.1f} us with"
             f" one, {ratio:.2f} times as long"
+        )
+    for name, scenario in BUSY.items():
+        busy = _flown(scenario, setup)[:2]
+        pairs = [(_step_time(*following), _step_time(*busy)) for _ in range(rounds)]
+        alone, beside = (statistics.median(times) for times in zip(*pairs, strict=True))
+        ratio = statistics.median(b / a for a, b in pairs)
+        print(
+            f"  beside twenty ships, {name}: {beside:.1f} us, {alone:.1f} us without them,"
+            f" {ratio:.2f} times as long"
         )
 
 
@@ -185,8 +214,15 @@ def _plume_readings(history: pd.DataFrame) -> PlumeReadings:
     return result
 
 
-def _reports(plan: FlightPlan) -> list[Any]:
-    return list(reversed((plan.sensing.received if plan.sensing else None) or []))
+Reports = list[Any]
+"""Reports and the times at which they are received [s], the last one first."""
+
+
+def _reports(plan: FlightPlan) -> tuple[Reports, list[Reports]]:
+    """Return the reports of the measured ship, and those of each of the others."""
+    received = [plan.sensing.received, *plan.sensing.traffic] if plan.sensing else [None]
+    measured, *others = (list(reversed(of or [])) for of in received)
+    return measured, others
 
 
 def _step_time(plan: FlightPlan, measured: Measured, passed_on: PlumeReadings = ()) -> float:
@@ -200,12 +236,20 @@ def _step_time(plan: FlightPlan, measured: Measured, passed_on: PlumeReadings = 
 
 
 def _step_through(
-    guidance: Guidance, measured: Measured, reports: list[Any], passed_on: PlumeReadings
+    guidance: Guidance,
+    measured: Measured,
+    reports: tuple[Reports, list[Reports]],
+    passed_on: PlumeReadings,
 ) -> None:
-    target, axis = guidance.target, axis_of(guidance)
+    target, axis, traffic = guidance.target, axis_of(guidance), guidance.traffic
+    own, others = reports
     for i, (at, measurement) in enumerate(measured):
-        while reports and reports[-1][0] <= at and isinstance(target, ReportedTarget):
-            target.report(reports.pop()[1])
+        while own and own[-1][0] <= at and isinstance(target, ReportedTarget):
+            target.report(own.pop()[1])
+        if traffic is not None and i % guidance.plan_interval == 0:
+            for number, received in enumerate(others):
+                while received and received[-1][0] <= at:
+                    traffic.report(number, received.pop()[1])
         guidance.step(at, measurement)
         passed = passed_on[i] if passed_on else None
         if passed is not None and isinstance(axis, SearchedAxis):

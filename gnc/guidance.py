@@ -236,19 +236,21 @@ class Guidance:
         if monitor is not None and monitor.check(measurement, self.heading_rate_command):
             self.mission.react(monitor.fault)
         order = self.mission.plan(time, self.own, target, renew=renew, guarding=self.guarding)
-        if self.traffic is not None and self.yielding is not None:
+        traffic, yielding = self.traffic, self.yielding
+        if traffic is not None and yielding is not None:
             if renew:
-                self.traffic.update(time, self.own)
-            order = self.yielding.order(
-                order,
-                time,
-                self.own,
-                target,
-                self.mission.orbit,
-                self.traffic.near,
-                self.mission.tracker.heading_rate_command,
-                renew=renew,
-            )
+                traffic.update(time, self.own)
+            if yielding.to or (renew and traffic.near):
+                order = yielding.order(
+                    order,
+                    time,
+                    self.own,
+                    target,
+                    self.mission.orbit,
+                    traffic.near,
+                    self.mission.tracker.heading_rate_command,
+                    renew=renew,
+                )
         self.mode = order.mode
         self.altitude_command = order.altitude
         return order

@@ -1,7 +1,7 @@
 """The other vessels that are known, besides the one that is measured: which of them are near, and
 where each of them may be.
 
-Each has a radius of its own, and discs of its own that she cannot have left, made of her own
+Each has a radius of its own, and discs of its own that it cannot have left, made of its own
 reports (``gnc.estimation.vessel``). Most are far away. So discs are made only of those that vehicle
 and vessel can bring near within the **horizon**: a vessel at a distance d, whose radius to keep is
 r and whose disc reaches R after the horizon T, is out of reach for at least
@@ -16,10 +16,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from gnc.estimation.navigation import AirMotion
-from gnc.estimation.vessel import ReachableSet, Tube, VesselLimits, VesselReport
+from gnc.estimation.vessel import ReachableSet, Tube, VesselLimits, VesselReport, discs_of
 
 _LOOKED_AT_AFTER = 10.0
-"""Time after which a vessel is looked at again, however far off she is [s]: her disc grows, and the
+"""Time after which a vessel is looked at again, however far off it is [s]: its disc grows, and the
 estimated wind changes."""
 
 
@@ -30,8 +30,8 @@ class OtherVessel:
     Attributes
     ----------
     name : in messages and tables
-    radius : that the vehicle's path must keep from her [m]
-    limits : that she and her reports keep
+    radius : that the vehicle's path must keep from it [m]
+    limits : that it and its reports keep
     """
 
     name: str
@@ -45,24 +45,43 @@ class KnownVessel:
     Attributes
     ----------
     name, radius : of ``OtherVessel`` [m]
-    tubes : discs that contain her from the last plan on, while she is near; the newest first
-    near : whether she may come near within the horizon
-    due : when she is looked at next, while she is not near [s]
+    newest : disc by acceleration of its newest report, when it was looked at last
+    near : whether it may come near within the horizon
+    due : when it is looked at next, while it is not near [s]
     """
 
     def __init__(self, parameters: OtherVessel) -> None:
         self.name = parameters.name
         self.radius = parameters.radius
-        self.tubes: Sequence[Tube] = ()
+        self.newest = Tube(-math.inf, 0.0, 0.0, 0.0, 0.0)
         self.near = False
         self.due = -math.inf
-        self.reach = ReachableSet(parameters.limits)
         self.last_report = -math.inf
+        self._limits = parameters.limits
+        self._reach = ReachableSet(parameters.limits)
+        # Of the last plan: the guard looks at a vessel less often than there are plans.
+        self._reports: Sequence[VesselReport] = ()
+        self._tubes: Sequence[Tube] | None = None
+
+    @property
+    def tubes(self) -> Sequence[Tube]:
+        """Discs that contain it from the last plan on; the newest first."""
+        tubes = self._tubes
+        if tubes is None:
+            tubes = self._tubes = discs_of(self._reports, self._limits, self.newest.time)
+        return tubes
 
     def report(self, report: VesselReport) -> None:
         """Take in a report, which may be older than others."""
-        self.reach.report(report)
+        self._reach.report(report)
         self.last_report = max(self.last_report, report.time)
+
+    def look(self, time: float) -> Tube:
+        """Return its newest disc at ``time`` [s]; ``tubes`` are of the same reports."""
+        self.newest = self._reach.newest(time)
+        self._reports = self._reach.reports
+        self._tubes = None
+        return self.newest
 
 
 class Traffic:
@@ -85,6 +104,7 @@ class Traffic:
         self.near: list[KnownVessel] = []
         self._speed_max = speed_max
         self._horizon = horizon
+        # When those that are not near are looked at next [s].
         self._due = -math.inf
 
     def add(self, vessel: OtherVessel) -> int:
@@ -93,42 +113,41 @@ class Traffic:
         return len(self.vessels) - 1
 
     def is_due(self, number: int, time: float) -> bool:
-        """Return whether a report of a vessel is of use now: she is near, or is looked at [s]."""
+        """Return whether a report of a vessel is of use now: it is near, or is looked at [s]."""
         vessel = self.vessels[number]
         return vessel.near or vessel.due <= time
 
     def report(self, number: int, report: VesselReport) -> None:
-        """Take in a report of a vessel, by her number."""
+        """Take in a report of a vessel, by its number."""
         vessel = self.vessels[number]
         if vessel.last_report == -math.inf:
-            # She was not known before.
+            # It was not known before.
             vessel.due = self._due = -math.inf
         vessel.report(report)
 
     def update(self, time: float, own: AirMotion) -> None:
         """Find the vessels that are near, and make their discs at ``time`` [s]."""
-        if not self.near and time < self._due:
-            return
+        vessels = self.near
+        if time >= self._due:
+            vessels = self.vessels
+            self._due = math.inf
         near = []
-        self._due = math.inf
-        for vessel in self.vessels:
-            if vessel.last_report > -math.inf and (vessel.near or vessel.due <= time):
-                disc = vessel.reach.newest(time)
-                out_of_reach = self._out_of_reach(vessel.radius, disc, own)
+        for vessel in vessels:
+            if vessel.last_report == -math.inf:
+                continue
+            if vessel.near or vessel.due <= time:
+                out_of_reach = self._out_of_reach(vessel.radius, vessel.look(time), own)
                 vessel.near = out_of_reach <= 0.0
                 if vessel.near:
-                    vessel.tubes = vessel.reach.tubes(time)
                     near.append(vessel)
                     continue
-                vessel.tubes = ()
                 vessel.due = time + min(out_of_reach, _LOOKED_AT_AFTER)
-            if vessel.last_report > -math.inf:
-                self._due = min(self._due, vessel.due)
+            self._due = min(self._due, vessel.due)
         self.near = near
 
     def _out_of_reach(self, radius: float, disc: Tube, own: AirMotion) -> float:
-        """Return for how long a vessel stays out of reach [s], by her radius to keep [m] and her
-        disc; below 0 where she does not.
+        """Return for how long a vessel stays out of reach [s], by its radius to keep [m] and its
+        disc; below 0 where it does not.
         """
         horizon = self._horizon
         closing = (

@@ -430,40 +430,58 @@ class ReachableSet:
     Parameters
     ----------
     limits : of the vessel and its reports
+
+    Attributes
+    ----------
+    reports : that are kept, the newest first; a list is replaced, and never changed
     """
 
     def __init__(self, limits: VesselLimits) -> None:
         self._limits = limits
-        self._reports: list[VesselReport] = []
+        self.reports: Sequence[VesselReport] = ()
 
     def report(self, report: VesselReport) -> None:
         """Take in a report, which may be older than others."""
-        self._reports = sorted([*self._reports, report], key=lambda of: -of.time)[:KEPT]
+        reports = self.reports
+        if not reports or report.time > reports[0].time:
+            self.reports = [report, *reports[: KEPT - 1]]
+        else:
+            self.reports = sorted([*reports, report], key=lambda of: -of.time)[:KEPT]
 
     def newest(self, time: float) -> Tube:
         """Return the disc by acceleration of the newest report at ``time`` [s]."""
-        return tube(self._reports[0], self._limits, time)
+        return tube(self.reports[0], self._limits, time)
 
     def tubes(self, time: float) -> Sequence[Tube]:
-        """Return the discs of the newest reports at ``time`` [s], that of the newest first.
+        """Return the discs of the newest reports at ``time`` [s]; see ``discs_of``."""
+        return discs_of(self.reports, self._limits, time)
 
-        Discs by speed follow those by acceleration.
-        """
-        limits, reports = self._limits, self._reports
-        discs = [tube(report, limits, time) for report in reports]
-        if limits.acceleration > 0.0 and limits.speed_max < math.inf:
-            discs += [
-                tube_by_speed(report, limits, time)
-                for disc, report in zip(discs, reports, strict=True)
-                if self._may_outrun_vessel(disc)
-            ]
-        return discs
 
-    def _may_outrun_vessel(self, disc: Tube) -> bool:
-        """Return whether a disc's edge may be faster than the vessel before a turn away is over."""
-        edge = disc.growth + disc.acceleration * self._limits.horizon
-        speed = math.hypot(disc.velocity_north, disc.velocity_east)
-        return speed + edge > self._limits.speed_max
+def discs_of(reports: Sequence[VesselReport], limits: VesselLimits, time: float) -> Sequence[Tube]:
+    """Return the discs of reports at a time, in the order of the reports.
+
+    Discs by speed follow those by acceleration.
+
+    Parameters
+    ----------
+    reports, limits : of the vessel
+    time : not before that of any report [s]
+    """
+    discs = [tube(report, limits, time) for report in reports]
+    if limits.acceleration > 0.0 and limits.speed_max < math.inf:
+        discs += [
+            tube_by_speed(report, limits, time)
+            for disc, report in zip(discs, reports, strict=True)
+            if _may_outrun_vessel(disc, limits)
+        ]
+    return discs
+
+
+def _may_outrun_vessel(disc: Tube, limits: VesselLimits) -> bool:
+    """Return whether a disc's edge may be faster than the vessel before a turn away is over."""
+    edge = disc.growth + disc.acceleration * limits.horizon
+    speed = math.hypot(disc.velocity_north, disc.velocity_east)
+    return speed + edge > limits.speed_max
 
 
 class TargetMotion:

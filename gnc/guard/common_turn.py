@@ -3,7 +3,7 @@
 A turn away heads straight away from one vessel, and may lead to another. Where several are near,
 the backup manoeuvre is a **common turn**: omega_max to one side up to some course, then straight
 on. All vessels are kept off on the same way. For each of them slack is what it is in a turn away
-(``turn.py``): the least distance from the centre of her disc, less what is allowed for there. That
+(``turn.py``): the least distance from the centre of its disc, less what is allowed for there. That
 of a common turn is the least of all; so the nearest vessel decides. Courses are tried at equal
 angles to both sides, and first of all that of the common turn that was safe before.
 
@@ -50,6 +50,7 @@ class CommonTurn:
 
     def __init__(
         self,
+        *,
         side: float,
         course: float,
         slack: float,
@@ -145,7 +146,7 @@ class CommonTurns:
     def away(self, motions: Sequence[RelativeMotion]) -> float:
         """Return the course away from all vessels together [rad].
 
-        The nearer one is, the more she counts: by the inverse square of her distance beyond her
+        The nearer one is, the more it counts: by the inverse square of its distance beyond its
         radius.
         """
         north = east = 0.0
@@ -224,7 +225,17 @@ class CommonTurns:
             slack = min(turn.slack, slack)
             if slack < floor:
                 # It need not be known any better.
-                return CommonTurn(side, course, slack, False, slack, 0.0, 0.0, angle, counted)
+                return CommonTurn(
+                    side=side,
+                    course=course,
+                    slack=slack,
+                    ends=False,
+                    rate=slack,
+                    free_time=0.0,
+                    free_course=0.0,
+                    to_turn=angle,
+                    change=counted,
+                )
             leg = turn.straight_on(_LEG * self._turn_time, self._turn_time)
             slack = min(leg.slack, slack)
             ends = ends and leg.ends
@@ -236,16 +247,16 @@ class CommonTurns:
                 break
         fastest = max(turn.fastest for turn in turns)
         return CommonTurn(
-            side,
-            course,
-            slack,
-            ends,
-            rate,
+            side=side,
+            course=course,
+            slack=slack,
+            ends=ends,
+            rate=rate,
             # Commands to the side of the turn lead beyond its end.
-            min(free_time, max(angle / self._rate, self._lag)),
-            max(rate, 0.0) / fastest,
-            angle,
-            counted,
+            free_time=min(free_time, max(angle / self._rate, self._lag)),
+            free_course=max(rate, 0.0) / fastest,
+            to_turn=angle,
+            change=counted,
         )
 
 

@@ -247,7 +247,7 @@ class KeepoutGuard:
         demand : of the guidance
         own : the vehicle's motion
         vessels : discs, at least one, in each of which the vessel is
-        others : vessels besides her, of which those out of reach cost next to nothing
+        others : other vessels; those out of reach cost next to nothing
         """
         time, command, pace = demand.time, demand.heading_rate, demand.pace
         leaving = demand.leaving
@@ -302,13 +302,13 @@ class Encounter:
 
 
 class Ship:
-    """A vessel as the guard looks at her.
+    """A vessel as the guard looks at it.
 
     Attributes
     ----------
     name : of another vessel; empty for the one that is measured
-    radius : to keep from her [m]
-    discs : at least one, in each of which she is
+    radius : to keep from it [m]
+    discs : at least one, in each of which it is
     """
 
     def __init__(self, name: str, radius: float, discs: Sequence[Tube]) -> None:
@@ -322,11 +322,10 @@ class _Surroundings:
 
     Attributes
     ----------
-    ship, motion : the vessel, and the motion relative to her disc
-    room : distance beyond her radius in which a turn away from her is done, whatever the course
+    ship, motion : the vessel, and the motion relative to its disc
+    room : distance beyond its radius in which a turn away from it is done, whatever the course
         before it [m]
     free_for : for how long the vehicle stays farther off than that, whatever it does [s]
-    out_of_reach : for how long she stays out of reach of a common turn [s]
     """
 
     def __init__(
@@ -335,13 +334,11 @@ class _Surroundings:
         motion: RelativeMotion,
         room: float,
         free_for: float,
-        out_of_reach: float,
     ) -> None:
         self.ship = ship
         self.motion = motion
         self.room = room
         self.free_for = free_for
-        self.out_of_reach = out_of_reach
 
 
 class Several:
@@ -366,7 +363,7 @@ class _Look:
 
     Attributes
     ----------
-    ship, encounters : the only vessel that is near, and her discs
+    ship, encounters : the only vessel that is near, and its discs
     several : vessels that are near, by discs that may be kept off; empty where there is one alone
     """
 
@@ -461,8 +458,9 @@ class HeadingRateFilter:
             turn_time=self._turn_time,
         )
         self._common: CommonTurn | None = None
-        # Until when other vessels are left out of looks [s].
+        # Until when other vessels are left out of looks, and the first of them [s].
         self._far_until: dict[str, float] = {}
+        self._left_out_until = -math.inf
         self.status = GuardStatus.FREE
 
     def limit(
@@ -485,9 +483,13 @@ class HeadingRateFilter:
         vessels : discs, at least one, in each of which the vessel is
         fastest, slowest : airspeeds that the vehicle may come to; a turn away has to keep off at
             all speeds between them. The slowest counts where it is below the fastest [m/s]
-        others : vessels besides her
+        others : other vessels
         """
-        if not self.budget.may_skip(command, fastest, slowest):
+        skips = self.budget.may_skip(command, fastest, slowest)
+        if skips and others and time >= self._left_out_until:
+            # Commands cannot spoil the turn that was found; the others alone are due.
+            skips = self._leaves_others_out(time, own, vessels, fastest, slowest, others)
+        if not skips:
             found = self._look(command, time, own, vessels, fastest, slowest, others)
             if found is None:
                 self.status = GuardStatus.FREE
@@ -588,17 +590,29 @@ class HeadingRateFilter:
         measured = Ship("", self._p.radius, vessels)
         if not others:
             self._common = None
+            self._left_out_until = -math.inf
             return self._look_at(measured, command, time, own, fastest, slowest)
         ships, far_for = self._to_keep_off(measured, others, time, own, fastest, slowest)
+        self._left_out_until = time + far_for
         if len(ships) == 1:
             self._common = None
-            found = self._look_at(ships[0], command, time, own, fastest, slowest)
-        else:
-            found = self._look_at_several(ships, command, time, own, fastest, slowest)
-        # No longer than until the next of the others has to be looked at.
-        if far_for < self.budget.steps * self._time_step:
-            self.budget.steps = int(far_for / self._time_step)
-        return found
+            return self._look_at(ships[0], command, time, own, fastest, slowest)
+        return self._look_at_several(ships, command, time, own, fastest, slowest)
+
+    def _leaves_others_out(
+        self,
+        time: float,
+        own: AirMotion,
+        vessels: Sequence[Tube],
+        fastest: float,
+        slowest: float,
+        others: Sequence[KnownVessel],
+    ) -> bool:
+        """Return whether all vessels but the measured one stay left out of looks."""
+        measured = Ship("", self._p.radius, vessels)
+        ships, far_for = self._to_keep_off(measured, others, time, own, fastest, slowest)
+        self._left_out_until = time + far_for
+        return len(ships) == 1 and ships[0] is measured
 
     def _to_keep_off(
         self,
@@ -612,13 +626,17 @@ class HeadingRateFilter:
         """Return the vessels that turns away have to keep off, and for how long the rest need not
         be looked at [s].
 
-        A vessel is left out while a turn away from her is left to the vehicle whatever it does, and
-        no area of another one comes so near to hers that both might have to be kept off at once
+        A vessel is left out while a turn away from it is left to the vehicle whatever it does, and
+        no area of another one comes so near to its area that both might have to be kept off at once
         (docs/keepout_guard.md, "Several vessels").
         """
-        left_out = [self._far_until.get(other.name, -math.inf) for other in others]
-        far_for = min((until - time for until in left_out if until > time), default=math.inf)
-        due = [until <= time for until in left_out]
+        far_for = math.inf
+        due: list[bool] = []
+        for other in others:
+            until = self._far_until.get(other.name, -math.inf)
+            due.append(until <= time)
+            if until > time and until - time < far_for:
+                far_for = until - time
         if True not in due:
             return [measured], far_for
         around = [self._surroundings(measured, time, own, fastest, slowest)]
@@ -632,7 +650,7 @@ class HeadingRateFilter:
             free = min(found.free_for, _LEFT_OUT_MOST)
             if free > 0.0 and any(self._meet(found, other) for other in around):
                 # In each other's way, though not yet within reach of a turn.
-                free = min(found.out_of_reach, _LEFT_OUT_MOST)
+                free = min(self._out_of_reach(found), _LEFT_OUT_MOST)
             if free > 0.0:
                 self._far_until[found.ship.name] = time + free
                 far_for = min(far_for, free)
@@ -642,7 +660,7 @@ class HeadingRateFilter:
             return [measured], far_for
         first = around[0]
         in_the_way = any(self._meet(first, found) for found in of_due if found.ship in ships)
-        if first.free_for <= 0.0 or (in_the_way and first.out_of_reach <= 0.0):
+        if first.free_for <= 0.0 or (in_the_way and self._out_of_reach(first) <= 0.0):
             ships.append(measured)
         else:
             far_for = min(far_for, max(first.free_for, 0.0))
@@ -656,8 +674,8 @@ class HeadingRateFilter:
         motion = self.relative_motion(disc, time, own, fastest, slowest, 0.0, ship.radius)
         slower = max(1.0, fastest / self._turn_speed)
         half_turn = (math.pi / self._rate) * slower + self._p.lag + self._p.delay + self._time_step
-        # Flown at her, a turn away comes nearer by its radius and by what comes before it. She
-        # comes nearer for as long as half a turn takes.
+        # Flown at the vessel, a turn away comes nearer by the turn radius and by what comes
+        # before it. The vessel comes nearer for as long as half a turn takes.
         disc_speed = math.hypot(motion.disc_north, motion.disc_east)
         closing = disc_speed + motion.growth + 0.5 * motion.acceleration * half_turn
         room = (
@@ -672,8 +690,11 @@ class HeadingRateFilter:
             motion,
             room,
             (gap - room) / (fastest + closing),
-            self.time_until_near(motion, _COMMON_REACH),
         )
+
+    def _out_of_reach(self, found: "_Surroundings") -> float:
+        """Return for how long a vessel stays out of reach of a common turn [s]."""
+        return self.time_until_near(found.motion, _COMMON_REACH)
 
     def _meet(self, one: "_Surroundings", other: "_Surroundings") -> bool:
         """Return whether the areas of two vessels soon leave less between them than the vehicle
@@ -684,7 +705,7 @@ class HeadingRateFilter:
         duration = _COMMON_REACH * self._turn_time
         a, b = one.motion, other.motion
         x, y = a.x - b.x, a.y - b.y
-        # The vehicle's place relative to a vessel moves against her.
+        # The vehicle's place relative to a vessel moves against it.
         north, east = b.disc_north - a.disc_north, b.disc_east - a.disc_east
         square = north * north + east * east
         nearest_at = 0.0

@@ -60,9 +60,6 @@ SPEED_SWITCH_ERROR = 0.05
 """Share of the difference between the turn radii when fast and slow by which a vehicle that slows
 down at any moment may come nearer than predicted [-]."""
 
-_LEVER_MIN = 1e-3
-"""Lever of commands that have no time to act [s]."""
-
 _SPACING = 0.5
 """Spacing of the times at which displacements on straight ways are evaluated [s]."""
 
@@ -447,61 +444,45 @@ class TurnPrediction:
         floor : slack below which the search may end early [m]
         against : how far commands before the turn may be against it, over a full reversal [-]
         """
-        lag = self._lag
-        duration, decay = self._spacing.duration, self._spacing.decay
-        begun = self._begun(side, start, motion, change=change, time=time, against=against)
-        path, leg, deviation = begun.path, begun.leg, begun.deviation
-        loss_rate, rolling = begun.loss_rate, begun.rolling
-        acting = time - self._delay
-        fade = self._step.decay if time > self._delay else 1.0
-        # At the start itself the vehicle has not deviated yet.
-        least = path.slack + deviation
+        turn = self.followed(side, start, motion, change=change, time=time, against=against)
+        path = turn.path
         outward = self._outward(side, start)
-        least_rate = math.inf
-        slack_per_lever, rise = -1.0, 0.0
-        over = False
-        for point in range(math.ceil(self._points_max * leg.stretch)):
+        slack_per_lever, over = -1.0, False
+        least = turn.slack
+        for _ in range(math.ceil(self._points_max * turn.stretch)):
             if least < floor:
                 break
-            last_slack, last_rise, last_outward = path.slack, rise, outward
-            path.advance()
-            outward = path.outward
-            rise = path.slack - last_slack
-            acting += duration
-            fade *= decay
-            lever = acting - lag * (1.0 - fade) + rolling
-            least_rate = min(least_rate, path.slack / lever)
+            last_outward = outward
+            turn.advance()
+            outward, rise = path.outward, turn.rise
             if rise < 0.0:
                 if slack_per_lever >= 0.0:
                     break
-                least = min(least, path.slack)
+                least = turn.slack
                 past_straight_away = last_outward >= 0.0 > outward and path.away
                 if past_straight_away and side * path.heading_rate > 0.0:
                     # The disc gains on it all the same: flying straight on does best.
                     path.fly_straight_on()
                     outward = 0.0
                 continue
-            if last_rise < 0.0 or point == 0:
-                nearest = path.closest_about_last_point(first=point == 0)
-                least = min(least, nearest)
-                least_rate = min(least_rate, nearest / lever)
+            least = turn.slack
             # Passing straight away between two points counts as well: it would have stopped there.
             if side * path.heading_rate >= 0.0 and (outward >= 0.0 or last_outward >= 0.0):
                 # The turn is over. One point more may allow more time until the next look.
                 over = True
                 last_best = slack_per_lever
-                slack_per_lever = max(slack_per_lever, min(least_rate, rise / duration))
+                slack_per_lever = max(slack_per_lever, min(turn.rate, rise / turn.duration))
                 if slack_per_lever == last_best or outward < 0.0:
                     break
         free_rate = max(slack_per_lever, 0.0)
-        free_time = min(free_rate / loss_rate, self.time_until_once_round(side, start, motion))
+        free_time = min(free_rate / turn.loss_rate, self.time_until_once_round(side, start, motion))
         return TurnAway(
             least,
             free_time,
             free_rate / motion.fastest,
-            begun.counted,
+            turn.counted,
             # A disc may gain on the vehicle for as long as a turn takes, and longer.
-            ends=over or rise + path.displaced_by >= 0.0,
+            ends=over or turn.rise + path.displaced_by >= 0.0,
         )
 
     def followed(
@@ -514,33 +495,7 @@ class TurnPrediction:
         time: float,
         against: float = 1.0,
     ) -> "FollowedTurn":
-        """Return a full turn that is followed course by course; parameters of ``turn_away``."""
-        begun = self._begun(side, start, motion, change=change, time=time, against=against)
-        return FollowedTurn(
-            begun,
-            side,
-            start,
-            motion,
-            lag=self._lag,
-            rollout=motion.fastest * self._rate * self._lag * (self._lag + self._step.duration),
-            duration=self._spacing.duration,
-            decay=self._spacing.decay,
-            acting=time - self._delay,
-            fade=self._step.decay if time > self._delay else 1.0,
-            on_leg=2.0 / self._rate,
-        )
-
-    def _begun(
-        self,
-        side: float,
-        start: TurnStart,
-        motion: RelativeMotion,
-        *,
-        change: float,
-        time: float,
-        against: float,
-    ) -> "_BegunTurn":
-        """Return a full turn at its start; parameters of ``turn_away``."""
+        """Return a full turn that is followed point by point; parameters of ``turn_away``."""
         rate, lag, time_step = self._rate, self._lag, self._step.duration
         heading_rate = entry_rate(side, start.heading_rate, motion.pending_rate)
         counted = max(change, rolled_change(side, heading_rate, rate))
@@ -555,7 +510,24 @@ class TurnPrediction:
         rolling = self._rolling_deviation(change, against, counted) / (
             loss_rate * max(lag, time_step)
         )
-        return _BegunTurn(path, leg, counted, deviation, loss_rate, rolling)
+        return FollowedTurn(
+            path,
+            side,
+            start.course,
+            motion,
+            lag=lag,
+            rollout=motion.fastest * rate * lag * (lag + time_step),
+            duration=self._spacing.duration,
+            decay=self._spacing.decay,
+            stretch=leg.stretch,
+            acting=time - self._delay,
+            fade=self._step.decay if time > self._delay else 1.0,
+            on_leg=2.0 / rate,
+            counted=counted,
+            deviation=deviation,
+            loss_rate=loss_rate,
+            rolling=rolling,
+        )
 
     def _let_slow_down(
         self, path: "_TurnPath", side: float, motion: RelativeMotion, leg: _Leg
@@ -612,112 +584,103 @@ class TurnPrediction:
         return to_turn / (self._rate + across / nearest) if nearest > 0.0 else 0.0
 
 
-class _BegunTurn:
-    """A full turn at its start.
+class FollowedTurn:
+    """A full turn that is followed point by point.
 
-    Attributes
+    Parameters
     ----------
-    path, leg : of it, and what is flown between two points
+    path : of the turn, at its start
+    side, motion : of ``TurnPrediction.turn_away``
+    course : at the start [rad]
+    lag : of the heading rate behind its command [s]
+    rollout : distance that the end of a turn may deviate by from one that ends at once [m]
+    duration, decay : of a step from point to point [s, -]
+    stretch : time that the turn takes, over that at omega_max [-]
+    acting, fade : time since a command begins to act, and what its lag has left of it [s, -]
+    on_leg : lever of commands before the turn on the straight way after it, besides that at its
+        end [s]: they make it begin later by the course that they take, over omega_max
     counted : share of a full reversal that its deviation counts [-]
     deviation : that is kept from the start on [m]
     loss_rate : at which commands against it take from its slack, per lever [m/s^2]
     rolling : lever that stands for what rolling uses up [s]
-    """
-
-    def __init__(
-        self,
-        path: "_TurnPath",
-        leg: _Leg,
-        counted: float,
-        deviation: float,
-        loss_rate: float,
-        rolling: float,
-    ) -> None:
-        self.path = path
-        self.leg = leg
-        self.counted = counted
-        self.deviation = deviation
-        self.loss_rate = loss_rate
-        self.rolling = rolling
-
-
-class FollowedTurn:
-    """A full turn that is followed course by course, to see on which of them it may end.
-
-    Parameters
-    ----------
-    begun : the turn at its start
-    side, start, motion : of ``TurnPrediction.turn_away``
-    lag : of the heading rate behind its command [s]
-    rollout : distance that the end of a turn may deviate by from one that ends at once [m]
-    duration, decay : of a step from point to point [s, -]
-    acting, fade : time since a command begins to act, and what its lag has left of it [s, -]
-    on_leg : lever of commands before the turn on the straight way after it, besides that at its
-        end [s]: they make it begin later by the course that they take, over omega_max
 
     Attributes
     ----------
+    path, duration, stretch, counted, loss_rate : as given
+    rise : of the slack between the last two points [m]
     turned : course turned so far [rad]
     slack : least so far [m]
     rate : least slack per lever so far [m/s]
-    counted : share of a full reversal that its deviation counts [-]
-    loss_rate : at which commands against it take from that [m/s^2]
     fastest : airspeed [m/s]
     """
 
     def __init__(
         self,
-        begun: _BegunTurn,
+        path: "_TurnPath",
         side: float,
-        start: TurnStart,
+        course: float,
         motion: RelativeMotion,
         *,
         lag: float,
         rollout: float,
         duration: float,
         decay: float,
+        stretch: float,
         acting: float,
         fade: float,
         on_leg: float,
+        counted: float,
+        deviation: float,
+        loss_rate: float,
+        rolling: float,
     ) -> None:
-        self._path = begun.path
+        self.path = path
         self._side = side
-        self._course = start.course
+        self._course = course
         self._motion = motion
         self._lag = lag
         self._rollout = rollout
-        self._duration = duration
+        self.duration = duration
         self._decay = decay
+        self.stretch = stretch
         self._acting = acting
         self._fade = fade
         self._on_leg = on_leg
-        self._rolling = begun.rolling
-        self._rise = 0.0
+        self._rolling = rolling
         self._first = True
+        self.rise = 0.0
         self.turned = 0.0
         # At the start itself the vehicle has not deviated yet.
-        self.slack = begun.path.slack + begun.deviation
+        self.slack = path.slack + deviation
         self.rate = math.inf
-        self.counted = begun.counted
-        self.loss_rate = begun.loss_rate
+        self.counted = counted
+        self.loss_rate = loss_rate
         self.fastest = motion.fastest
+
+    def advance(self) -> None:
+        """Go on to the next point."""
+        path, last_rise = self.path, self.rise
+        last_slack = path.slack
+        path.advance()
+        slack = path.slack
+        rise = self.rise = slack - last_slack
+        self._acting += self.duration
+        self._fade *= self._decay
+        lever = self._lever()
+        self.rate = min(self.rate, slack / lever)
+        if rise < 0.0:
+            self.slack = min(self.slack, slack)
+        elif last_rise < 0.0 or self._first:
+            nearest = path.closest_about_last_point(first=self._first)
+            self.slack = min(self.slack, nearest)
+            self.rate = min(self.rate, nearest / lever)
+        self._first = False
 
     def turn_to(self, angle: float, floor: float) -> None:
         """Go on until so much course is turned [rad], or slack falls below ``floor`` [m]."""
-        path = self._path
         while self.turned < angle and self.slack >= floor:
-            last_slack, last_rise = path.slack, self._rise
-            path.advance()
-            self._rise = path.slack - last_slack
-            self._acting += self._duration
-            self._fade *= self._decay
-            least = path.slack
-            if self._rise >= 0.0 and (last_rise < 0.0 or self._first):
-                least = path.closest_about_last_point(first=self._first)
-            self._first = False
-            self.slack = min(self.slack, least)
-            self.rate = min(self.rate, least / self._lever())
-            self.turned = self._side * (path.place.course - self._course)
+            self.advance()
+            self.turned = self._side * (self.path.place.course - self._course)
 
     def straight_on(self, duration: float, turn_time: float) -> "StraightOn":
         """Return how near the disc comes if the turn ends here.
@@ -728,7 +691,7 @@ class FollowedTurn:
         turn_time : of a turn away, for which room has to be left then where the disc still closes
             in [s]
         """
-        motion, path = self._motion, self._path
+        motion, path = self._motion, self.path
         place = path.place
         cos, sin = math.cos(place.course), math.sin(place.course)
         slack, ends = math.inf, True
@@ -760,7 +723,7 @@ class FollowedTurn:
         With the distance m there and the relative speed w, slack sqrt(m^2 + w^2 t^2) - g t is least
         at t = g m / (w sqrt(w^2 - g^2)).
         """
-        motion, place = self._motion, self._path.place
+        motion, place = self._motion, self.path.place
         growth = motion.growth + motion.acceleration * nearest_at
         room = square - growth * growth
         if room <= 0.0:
@@ -770,7 +733,7 @@ class FollowedTurn:
 
     def _lever(self) -> float:
         """Return the lever of commands before the turn, on where it leads until now [s]."""
-        return _LEVER_MIN + self._acting - self._lag * (1.0 - self._fade) + self._rolling
+        return self._acting - self._lag * (1.0 - self._fade) + self._rolling
 
 
 class StraightOn(NamedTuple):

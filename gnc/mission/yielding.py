@@ -170,11 +170,14 @@ class Yielding:
             return
         soon = _SOON + (_CLEAR if self.to else 0.0)
         areas = [self._area(vessel, time, own.ground_north, own.ground_east) for vessel in near]
-        wanted = self._wanted(order, own, target, orbit)
         blocking: int | None = None
         if order.mode not in LEAVING and _is_near(own, target, orbit):
             blocking = self._entering(target, orbit, own, areas, soon)
-        if blocking is None and order.heading_rate is not TRACK:
+        if blocking is None and order.heading_rate is TRACK:
+            self.to, self._side = "", 0.0
+            return
+        wanted = self._wanted(order, own, target, orbit)
+        if blocking is None:
             blocking = _in_the_way(wanted, own, areas, soon)
         if blocking is None:
             self.to, self._side = "", 0.0
@@ -194,7 +197,7 @@ class Yielding:
 
     def _area(self, vessel: KnownVessel, time: float, north: float, east: float) -> Area:
         """Return the area about a vessel, relative to a place [s, m]."""
-        disc = vessel.tubes[0]
+        disc = vessel.newest
         since = time - disc.time
         return Area(
             disc.north + disc.velocity_north * since - north,

@@ -86,7 +86,7 @@ def estimate(
         bool, typer.Option("--no-report", help="Do not write report.html and report.pdf.")
     ] = False,
 ) -> None:
-    """Estimate the sulphur content of a ship's fuel from the log of a flight through her plume, and
+    """Estimate the sulphur content of a ship's fuel from the log of a flight through its plume, and
     judge it.
     """
     from measurement.log.command import main as estimate_logged

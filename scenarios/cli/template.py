@@ -93,7 +93,8 @@ def template(name: str, file: str) -> str:
             "",
         ]
     for section in sections.values():
-        if not section.listed:
+        # A list, and what is in its entries, stands with the section that has it.
+        if not section.listed and ".0." not in section.name:
             lines += _section(section, document, config, sections)
     return "\n".join(lines)
 

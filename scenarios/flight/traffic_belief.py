@@ -13,7 +13,7 @@ _RESOLUTION = 0.05
 
 
 class TrafficBelief:
-    """The premise that each of the other ships is in her discs, as a column of the time history.
+    """The premise that each of the other ships is in its discs, as a column of the time history.
 
     Parameters
     ----------
@@ -24,7 +24,7 @@ class TrafficBelief:
     COLUMNS = described(
         {
             "traffic_disc_ratio": "largest ratio, of all other ships that are near, of the distance"
-            " from the centre of a disc to its radius: above 1 she is not where the guard takes her"
+            " from the centre of a disc to its radius: above 1 it is not where the guard takes it"
             " to be",
         }
     )

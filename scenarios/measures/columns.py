@@ -395,14 +395,14 @@ TRAFFIC_FIGURES = described(
             kind="text",
         ),
         "others_distance_min_m": Column(
-            "closest approach to her, measured horizontally",
+            "closest approach to it, measured horizontally",
             title="Closest approach to another ship",
             digits=1,
             worse="lower",
         ),
         "others_clearance_min_m": Column(
-            "closest approach to her beyond her radius, negative inside",
-            title="Closest approach to another ship, beyond her radius",
+            "closest approach to it beyond its radius, negative inside",
+            title="Closest approach to another ship, beyond its radius",
             digits=1,
             worse="lower",
         ),
@@ -429,13 +429,19 @@ TRAFFIC_COLUMNS = described(
     {
         **FLIGHT_COLUMNS,
         "ship": Column("name of the other ship", title="Ship", kind="text"),
-        "radius_m": Column("radius that is kept from her", title="Radius", digits=0),
+        "radius_m": Column("radius that is kept from it", title="Radius", digits=0),
         "distance_min_m": Column(
-            "closest approach to her, measured horizontally", title="Closest approach", digits=1
+            "closest approach to it, measured horizontally", title="Closest approach", digits=1
         ),
         "time_s": Column("time of the sample nearest to that approach", title="At", digits=1),
-        "violations": Column("entries into her area", title="Entries", digits=0, adds_up=True),
+        "violations": Column("entries into its area", title="Entries", digits=0, adds_up=True),
         "time_inside_s": Column("time in it", title="Time inside", digits=1, adds_up=True),
+        "plume_s": Column(
+            "time in its plume, within two spreads of the axis; empty of a ship that emits nothing",
+            title="Time in its plume",
+            digits=1,
+            adds_up=True,
+        ),
     }
 )
 """Of ``traffic.csv``: a row per flight and ship besides the one that is measured, of those whose

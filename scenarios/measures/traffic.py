@@ -12,6 +12,7 @@ from gnc.mission.mission import Mode
 from scenarios.engine.task import Row
 from scenarios.flight.record import FlightRecord
 from scenarios.flight.traffic_belief import TrafficBelief
+from scenarios.instruments.sniffer import INSIDE, PLACE_COLUMNS, fraction_of_axis
 from scenarios.measures.keepout import keepout_figures
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.world.traffic import OtherShip
@@ -19,14 +20,14 @@ from scenarios.world.traffic import OtherShip
 Array = npt.NDArray[np.float64]
 
 _TRACK_INTERVAL = 2.0
-"""Time between the recorded places of another ship [s]: maps draw her track by them."""
+"""Time between the recorded places of another ship [s]: maps draw its track by them."""
 
 _SHOWN = 6000.0
 """Distance from the measured ship up to which another one is recorded [m]."""
 
 
 class _Approach(NamedTuple):
-    """How near a path came to a ship: her row of the table, and the distance beyond her radius
+    """How near a path came to a ship: its row of the table, and the distance beyond its radius
     [m].
     """
 
@@ -144,9 +145,19 @@ def _approaches(plan: FlightPlan, record: FlightRecord) -> list[_Approach]:
             "time_s": float(time[known][nearest]),
             "violations": found.violations,
             "time_inside_s": found.time_inside,
+            "plume_s": _time_in_plume(plan, record, ship),
         }
         approaches.append(_Approach(row, found.distance_min - ship.radius))
     return approaches
+
+
+def _time_in_plume(plan: FlightPlan, record: FlightRecord, ship: OtherShip) -> float:
+    """Return the time in the plume of a ship [s]; NaN of one that emits nothing."""
+    if ship.exhaust is None:
+        return math.nan
+    path = (record.column(name) for name in ("time_s", *PLACE_COLUMNS))
+    inside = fraction_of_axis(ship.exhaust.sample(*path)) > INSIDE
+    return plan.log_interval * plan.time_step * float(np.count_nonzero(inside))
 
 
 def _motion(ship: OtherShip, times: Array) -> Array:

@@ -96,6 +96,7 @@ from scenarios.world.noise import (
     BACKGROUND,
     EXHAUST,
     HEADING,
+    OTHER_EXHAUST,
     TRAFFIC,
     Noise,
     own_generator,
@@ -103,7 +104,7 @@ from scenarios.world.noise import (
     streams,
 )
 from scenarios.world.plume import exhaust_of, sampled_background
-from scenarios.world.traffic import traffic_of
+from scenarios.world.traffic import traffic_of, with_exhausts
 from scenarios.world.vessel import VesselTruth, check_manoeuvres
 from scenarios.world.wind import STILL_AIR, sampled_weather
 from scenarios.world.world import (
@@ -604,7 +605,14 @@ def _start_and_world(
         background=sampled_background(scenario.air, covered, own_generator(noise, BACKGROUND)),
         hull=scenario.vessel.hull,
         place=place,
-        traffic=traffic_of(scenario, vessel, place, margin=TRACK_MARGIN),
+        traffic=with_exhausts(
+            scenario,
+            traffic_of(scenario, vessel, place, margin=TRACK_MARGIN),
+            plume,
+            weather.wind,
+            duration=covered,
+            generator=own_generator(noise, OTHER_EXHAUST),
+        ),
     )
     return start, world
 

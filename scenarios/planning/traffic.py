@@ -40,7 +40,7 @@ class Footprint:
     Attributes
     ----------
     radius : of a circle about the centre of oscillation in which it lies [m]
-    distance : of that centre from the vessel, along the plume's axis; 0 for a circle about her [m]
+    distance : of that centre from the vessel, along the plume's axis; 0 for a circle about it [m]
     room : kept beside another ship's radius, in which the guard does not act [m]
     period : of the orbit [s]
     """
@@ -52,7 +52,7 @@ class Footprint:
 
 
 def limits_of(scenario: Scenario, ship: OtherShip, horizon: float) -> VesselLimits:
-    """Return what another ship and her reports keep within, for turns away of a duration [s]."""
+    """Return what another ship and its reports keep within, for turns away of a duration [s]."""
     if ship.reports is not None and scenario.reports.exact:
         reports = scenario.reports.model_copy(update={"interval_s": _FILE_INTERVAL})
         scenario = scenario.model_copy(update={"reports": reports})
@@ -144,7 +144,7 @@ def check_traffic_declared(scenario: Scenario, ships: Sequence[OtherShip]) -> No
             raise InfeasibleError(
                 f"{ship.name} ({ship.key}) accelerates by {acceleration:.3g} m/s2; declared are at"
                 f" most following.vessel_acceleration_mps2 = {f.vessel_acceleration_mps2:g}, on"
-                " which the keep-out guard relies: declare more, or let her turn more slowly"
+                " which the keep-out guard relies: declare more, or let it turn more slowly"
             )
         speed = largest_speed(ship.track, duration)
         if f.vessel_speed_max_mps is not None and speed > f.vessel_speed_max_mps:
@@ -199,8 +199,8 @@ def check_start_beside(
             raise InfeasibleError(
                 f"the start lies {distance:.1f} m from {ship.name} ({ship.key}) on course"
                 f" {math.degrees(start.course):.0f} deg, where the best turn away comes within"
-                f" {max(0.0, radius + clearance):.1f} m of where she may be;"
-                f" {vessel.radius:g} m are kept from her (keepout.other_radius_m): start elsewhere"
+                f" {max(0.0, radius + clearance):.1f} m of where it may be;"
+                f" {vessel.radius:g} m are kept from it (keepout.other_radius_m): start elsewhere"
                 " (start.place_m, start.course_deg)"
             )
 
@@ -233,7 +233,7 @@ def check_room(scenario: Scenario, world: World, footprint: Footprint) -> None:
             f"there is no room for the orbit: {name} ({ship.key}) is within {apart:.0f} m of its"
             f" centre for {count * _LOOK:.0f} s;"
             f" {ship.radius + footprint.room + footprint.radius:.0f} m are needed, r ="
-            f" {ship.radius:g} m of hers (keepout.other_radius_m), a margin of"
+            f" {ship.radius:g} m of the ship (keepout.other_radius_m), a margin of"
             f" {footprint.room:.0f} m and {footprint.radius:.0f} m of the orbit, for one of its"
             f" periods, {footprint.period:.0f} s; it is free for {free:.0f} s at most: fly at"
             " another time or with smaller radii"

@@ -259,8 +259,15 @@ def _check_duration(scenario: "Scenario") -> None:
 
 def _check_exhaust(scenario: "Scenario") -> None:
     """Refuse a funnel that is lower than any, or higher than the exhaust of the project's own plume
-    may leave one, and a start outside of the altitudes at which exhaust is crossed.
+    may leave one, a start outside of the altitudes at which exhaust is crossed, and exhaust of
+    another ship that nothing reads.
     """
+    for number, ship in enumerate(scenario.traffic):
+        if ship.emission is not None and "sniffer" not in scenario.payload.instruments:
+            raise ValueError(
+                f"traffic.{number}.emission is given, and nothing reads it: add a sniffer, by"
+                " 'sniffer' in payload.instruments, or leave it out"
+            )
     if scenario.emission.ship is None:
         return
     height, flight = scenario.source_height, scenario.flight

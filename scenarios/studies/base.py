@@ -64,6 +64,7 @@ from scenarios.experiment.sampling import (
 from scenarios.flight.time_history import UNFINISHED
 from scenarios.flight_runner import FlightRunner, history_columns
 from scenarios.instruments.instrument import declarations
+from scenarios.instruments.sniffer import OTHERS_FIGURES
 from scenarios.measures.columns import (
     ANY_KEY,
     CROSSING_COLUMNS,
@@ -259,6 +260,8 @@ class FlightStudy:
         with_traffic = any(setting.has_traffic for setting in settings)
         if with_traffic:
             figures |= TRAFFIC_FIGURES
+        if any(ship.emission for setting in settings for ship in setting.traffic):
+            figures |= OTHERS_FIGURES
         keys = dict.fromkeys(key for each in self.experiments.values() for key in each.keys)
         added = {file: described(columns, part=part) for file, columns in self.TABLES.items()}
         tables = {

@@ -287,7 +287,7 @@ class FlightNotes:
                 f" passed through the smoke, and crossed its axis up to {abs(farthest):.0f} m"
                 f" {'above' if farthest > 0.0 else 'below'} it: flight.altitude_min_m and"
                 " altitude_max_m may not let it reach the smoke, or the ship is not as the"
-                " guidance takes her to be (following.source_height_m, following.load)"
+                " guidance takes it to be (following.source_height_m, following.load)"
             )
         return lines
 

@@ -20,7 +20,7 @@ Array = npt.NDArray[np.float64]
 
 _STREAMS = 3
 
-PAYLOAD, EXHAUST, BACKGROUND, TRAFFIC, HEADING = 1, 2, 3, 4, 5
+PAYLOAD, EXHAUST, BACKGROUND, TRAFFIC, HEADING, OTHER_EXHAUST = 1, 2, 3, 4, 5, 6
 """Numbers of streams beside those of ``Streams``: what uses them changes nothing of a flight that
 is without it.
 """

@@ -14,12 +14,20 @@ import numpy.typing as npt
 
 from aircraft.wind import WindField
 from gnc.errors import InfeasibleError
-from measurement.emission import Emission, Fuel, emission_of, fuel_preset, ship_of
+from measurement.emission import (
+    Emission,
+    Fuel,
+    emission_of,
+    fuel_preset,
+    ship_of,
+    stack_height_of,
+)
 from measurement.gases import GASES, PARTS
 from measurement.plume.fluctuating_plume import FluctuatingPlume, PlumeSample
 from measurement.plume.spread import MarineAir, PlumeSettings
 from scenarios.scenario.extension_points import PLUME_MODELS
 from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.traffic import TrafficEmissionConfig
 from scenarios.scenario.sections.world import AirConfig, PlumeConfig
 from scenarios.world.vessel import TRACK_STEP, SteadyVessel, VesselTruth, sampled, track_times
 
@@ -225,26 +233,32 @@ class Exhaust:
         return np.outer(dilution, self.emission.rates * _PARTS)
 
 
-def fuel_of(scenario: Scenario) -> Fuel:
-    """Return what the vessel of a scenario burns."""
-    return fuel_preset(scenario.emission.fuel, scenario.emission.sulphur_percent)
+def fuel_of(scenario: Scenario, of: TrafficEmissionConfig | None = None) -> Fuel:
+    """Return what the vessel of a scenario burns, or ``of`` another ship."""
+    given = of or scenario.emission
+    return fuel_preset(given.fuel, given.sulphur_percent)
 
 
-def emission(scenario: Scenario, *, speed: float, load: float | None = None) -> Emission:
+def emission(
+    scenario: Scenario,
+    *,
+    speed: float,
+    load: float | None = None,
+    of: TrafficEmissionConfig | None = None,
+) -> Emission:
     """Return what the vessel of a scenario emits at a speed [m/s], or at a load of its engine [-]
-    where that is given.
+    where that is given; or ``of`` another ship.
 
     Raises
     ------
     MeasurementError : the ship has no such speed
     """
-    ship = ship_of(scenario.emission.ship or "")
+    given = of or scenario.emission
+    ship, fuel = ship_of(given.ship or ""), fuel_of(scenario, of)
     air_temperature = scenario.wind.temperature_c + _ZERO_CELSIUS
     if load is None:
-        return emission_of(ship, fuel_of(scenario), speed=speed, air_temperature=air_temperature)
-    return emission_of(
-        ship, fuel_of(scenario), power=load * ship.power_max, air_temperature=air_temperature
-    )
+        return emission_of(ship, fuel, speed=speed, air_temperature=air_temperature)
+    return emission_of(ship, fuel, power=load * ship.power_max, air_temperature=air_temperature)
 
 
 def without_smoke(scenario: Scenario) -> str:
@@ -265,22 +279,34 @@ def exhaust_of(
     *,
     duration: float,
     generator: np.random.Generator,
+    of: TrafficEmissionConfig | None = None,
 ) -> Exhaust | None:
     """Return the exhaust of a vessel that has any, in some wind, over a duration [s]. It is
     that of its speed at the start.
+
+    Parameters
+    ----------
+    scenario : the flight
+    vessel : its motion
+    plume : model of the smoke
+    wind, duration : to be covered [s]
+    generator : of this exhaust alone
+    of : another ship than the measured one
 
     Raises
     ------
     InfeasibleError : the plume model has no smoke
     MeasurementError : the ship has no such speed, or the apparent wind is too weak for a plume
     """
-    if scenario.emission.ship is None:
+    given = of or scenario.emission
+    if given.ship is None:
         return None
     if not isinstance(plume, Smoke):
         raise InfeasibleError(without_smoke(scenario))
-    air, height = scenario.wind, scenario.source_height
+    air = scenario.wind
+    height = scenario.source_height if of is None else stack_height_of(None, of.ship)
     _, _, v_north, v_east = vessel.motion(0.0)
-    emitted = emission(scenario, speed=math.hypot(v_north, v_east), load=scenario.emission.load)
+    emitted = emission(scenario, speed=math.hypot(v_north, v_east), load=given.load, of=of)
     dispersion = plume.dispersion(
         emitted,
         MarineAir(
@@ -296,7 +322,7 @@ def exhaust_of(
         seed=int(generator.integers(2**31)),
     )
     return Exhaust(
-        fuel=fuel_of(scenario),
+        fuel=fuel_of(scenario, of),
         emission=emitted,
         dispersion=dispersion,
         displacement=lambda time: wind.displacement(time, height),

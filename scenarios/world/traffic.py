@@ -4,17 +4,20 @@ reports.
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from aircraft.wind import WindField
 from gnc.errors import InfeasibleError
 from gnc.estimation.vessel import VesselReport
+from measurement.errors import MeasurementError
 from scenarios.errors import InputError
 from scenarios.scenario.scenario import Scenario
-from scenarios.scenario.sections.traffic import TRAFFIC_MAX, TrafficConfig
+from scenarios.scenario.sections.traffic import TRAFFIC_MAX, TrafficConfig, TrafficEmissionConfig
 from scenarios.scenario.sections.world import VesselConfig
 from scenarios.world.ais.track import AisVessel, FileShip, ships_of_file
+from scenarios.world.plume import Exhaust, Plume, exhaust_of
 from scenarios.world.vessel import (
     ManoeuvringVessel,
     Place,
@@ -69,11 +72,13 @@ class OtherShip:
     Attributes
     ----------
     name : in messages, tables and maps
-    radius : that is kept from her [m]
+    radius : that is kept from it [m]
     track : in the frame of the flight
-    begins, ends : between which her track is known [s]
+    begins, ends : between which its track is known [s]
     reports : of a file, in the flight's time and frame; None of a ship that the scenario gives
-    key : of the scenario that has her
+    key : of the scenario that has it
+    emission : what comes out of its funnel, as the scenario has it, or None
+    exhaust : its smoke in the flight's air, or None
     """
 
     name: str
@@ -83,6 +88,8 @@ class OtherShip:
     ends: float
     key: str
     reports: Sequence[VesselReport] | None = None
+    emission: TrafficEmissionConfig | None = None
+    exhaust: Exhaust | None = None
 
 
 def traffic_of(
@@ -121,11 +128,47 @@ def traffic_of(
     if len(ships) > TRAFFIC_MAX:
         raise InputError(
             f"there are {len(ships)} ships besides the measured one within {_FAR / 1000.0:g} km of"
-            f" her; the most is {TRAFFIC_MAX}: leave some out of the file"
+            f" it; the most is {TRAFFIC_MAX}: leave some out of the file"
         )
     _check_names(ships)
     _check_places(ships, vessel)
     return tuple(ships)
+
+
+def with_exhausts(
+    scenario: Scenario,
+    ships: Sequence[OtherShip],
+    plume: Plume,
+    wind: WindField,
+    *,
+    duration: float,
+    generator: np.random.Generator,
+) -> tuple[OtherShip, ...]:
+    """Return ships with the smoke of those that emit any; parameters are those of ``exhaust_of``.
+
+    Raises
+    ------
+    InfeasibleError : the plume model has no smoke, a ship has no such speed, or the apparent wind
+        past it is too weak for a plume
+    """
+    made = []
+    for ship in ships:
+        exhaust = None
+        if ship.emission is not None:
+            try:
+                exhaust = exhaust_of(
+                    scenario,
+                    ship.track,
+                    plume,
+                    wind,
+                    duration=duration,
+                    generator=generator,
+                    of=ship.emission,
+                )
+            except MeasurementError as error:
+                raise InfeasibleError(f"{ship.name} ({ship.key}.emission): {error}") from None
+        made.append(replace(ship, exhaust=exhaust))
+    return tuple(made)
 
 
 def _duration(scenario: Scenario) -> float:
@@ -188,6 +231,7 @@ def _given(
         begins=-math.inf,
         ends=math.inf,
         key=key,
+        emission=config.emission,
     )
 
 
@@ -238,6 +282,7 @@ def _of_file(
                 ends=ship.ends,
                 key=key,
                 reports=ship.reports,
+                emission=config.emission if config is not None else None,
             )
 
 
@@ -268,7 +313,7 @@ def _check_places(ships: Sequence[OtherShip], vessel: VesselTruth) -> None:
                 which = f"{key} ({name})" if key else name
                 raise InputError(
                     f"{ship.key} ({ship.name}) is {apart:.1f} m from {which} at the start; two"
-                    f" ships are {_SAME_PLACE:g} m apart at least: give her another place"
-                    " (place_m), or leave her out"
+                    f" ships are {_SAME_PLACE:g} m apart at least: give it another place"
+                    " (place_m), or leave it out"
                 )
         placed.append((ship.name, ship.key, ship.track.motion(0.0)))

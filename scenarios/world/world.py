@@ -44,7 +44,7 @@ a swing of 20 degrees does.
 """
 
 _AT_REST = 0.1
-"""Speed below which a vessel's course is that of her bow [m/s]."""
+"""Speed below which a vessel's course is that of its bow [m/s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -228,7 +228,7 @@ class ApparentWind:
 
 
 def apparent_wind(scenario: Scenario, vessel: VesselTruth) -> ApparentWind:
-    """Return how fast a vessel moves through the air at the height of her funnel, over the longest
+    """Return how fast a vessel moves through the air at the height of its funnel, over the longest
     flight.
     """
     duration = scenario.flight.duration_max_s + TRACK_MARGIN

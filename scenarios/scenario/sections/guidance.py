@@ -117,8 +117,8 @@ class GuidanceConfig(Section):
 
     mission: Literal["track", "follow", "standoff"] | None = None
     """Mission: track the paper's reference, known in advance; follow the vessel with a steered
-    reference, an oscillation in her plume; standoff, circle her at reference.standoff_radius_m, and
-    cross her plume once a turn, without following.standoff_m.
+    reference, an oscillation in its plume; standoff, circle it at reference.standoff_radius_m, and
+    cross its plume once a turn, without following.standoff_m.
 
     If not given: track in still air where the vessel is steady and known exactly, else follow.
     """
@@ -386,7 +386,7 @@ class FollowingConfig(Section):
     """Apparent wind below which the direction of a plume is not known [m/s]."""
     standoff_m: Annotated[Positive, FOLLOWS, OSCILLATES] = 100.0
     """Distance by which the oscillation in the plume waits farther out than r_CO until the UAV
-    tracks it; then it closes in. No radius about the vessel: to circle her, set guidance.mission to
+    tracks it; then it closes in. No radius about the vessel: to circle it, set guidance.mission to
     standoff, which does not use this key [m].
     """
     join_distance_m: Annotated[Positive, _WAY, OSCILLATES] = 150.0

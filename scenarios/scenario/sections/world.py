@@ -319,11 +319,11 @@ class PlumeConfig(PartSection):
         return {self.model: PLUME_MODELS.get(self.model)}
 
 
-def _known_ship(given: Any) -> Any:
+def known_ship(given: Any) -> Any:
     """Refuse a name of no ship, and a table that is of no use."""
     if not isinstance(given, str | dict | None):
         raise ValueError(
-            f"value is {given!r}; give the name of a ship, or a table with her engine and funnel"
+            f"value is {given!r}; give the name of a ship, or a table with its engine and funnel"
         )
     if given is not None:
         ship_of(given)
@@ -335,7 +335,7 @@ class EmissionConfig(Section):
 
     NEEDS: ClassVar[tuple[Need, ...]] = (OPERATIONAL,)
 
-    ship: Annotated[str | dict[str, Any] | None, BeforeValidator(_known_ship)] = None
+    ship: Annotated[str | dict[str, Any] | None, BeforeValidator(known_ship)] = None
     """The ship that emits the exhaust, one of measurement/ships.toml, or a table of one's
     own with the keys of these; no exhaust if not given."""
     fuel: Annotated[str, EXHAUST] = "mgo"

@@ -365,7 +365,7 @@ def _reports(
     sizes: Sequence[tuple[ShipSize, str]],
     read: str,
 ) -> AisReports:
-    """Return the reports of a vessel of a file from her rows, and from those of use."""
+    """Return the reports of a vessel of a file from its rows, and from those of use."""
     size, size_remark = size_of_all(sizes)
     columns = np.array(found.kept).T
     directed = np.isfinite(columns[5]) & (columns[5] < 360.0)

@@ -298,10 +298,10 @@ class FileShip:
 
     Attributes
     ----------
-    mmsi : of her
-    track : smooth, from the origin at time 0; straight on where she has no reports
-    origin : her place at time 0, north and east [m]
-    begins, ends : times of her first and last report within the flight or about it [s]
+    mmsi : of the ship
+    track : smooth, from the origin at time 0; straight on where it has no reports
+    origin : its place at time 0, north and east [m]
+    begins, ends : times of its first and last report within the flight or about it [s]
     reports : in the flight's time and frame
     """
 
@@ -330,7 +330,7 @@ def _read_others(
 
 @lru_cache(maxsize=_KEPT * _OTHERS_KEPT)
 def _file_ship(reports: AisReports, place: Place, duration: float, margin: float) -> FileShip:
-    """Return a ship on the smooth track through her reports, in the frame of a flight."""
+    """Return a ship on the smooth track through its reports, in the frame of a flight."""
     since = reports.time - place.utc
     at, velocity = _in_frame(
         place.frame, reports.latitude, reports.longitude, reports.speed, reports.course

@@ -94,6 +94,18 @@ following.vessel_acceleration_mps2 = 0.15
 flight.crossings = 0
 start.distance_m = [400.0, 500.0]
 """,
+    "emitting": """
+flight.duration_max_s = 120.0
+vessel.speed_mps = 8.0
+wind = { speed_mps = 5.0, from_deg = 80.0 }
+plume = { model = "fluctuating", source_height_m = 35.0 }
+emission = { ship = "container", fuel = "vlsfo", sulphur_percent = 0.3 }
+payload = { instruments = ["sniffer"], sensor = "fast" }
+traffic = [{ place_m = [700.0, 300.0], speed_mps = 8.0, emission = { ship = "container", fuel = "hfo", load = 0.4 } }]
+flight.crossings = 0
+flight.after_settling_s = 20.0
+start = { place_m = [-100.0, -280.0], course_deg = -20.0 }
+""",
     "circle": 'flight.duration_max_s = 120.0\nreference.path = "circle"\nstart.place_m = [80.0, -60.0]\n',
 }
 """Flights of the kinematic vehicle with each mission, and without a vessel."""
@@ -128,6 +140,8 @@ VALUES = {
     "traffic.0.manoeuvres": [{"at_s": 3.0, "turn_deg": 30.0}],
     "traffic.0.manoeuvres.0.at_s": 3.0, "traffic.0.manoeuvres.0.turn_deg": 30.0, "traffic.0.manoeuvres.0.turn_rate_deg_s": 0.4,
     "traffic.0.manoeuvres.0.speed_mps": 6.0, "traffic.0.manoeuvres.0.acceleration_mps2": 0.1, "keepout.other_radius_m": 150.0,
+    "traffic.0.emission.ship": "cruise", "traffic.0.emission.fuel": "mgo", "traffic.0.emission.sulphur_percent": 1.0,
+    "traffic.0.emission.load": 0.7,
     "plume.direction": "apparent_wind", "plume.heading_deg": 170.0, "plume.elevation_deg": 10.0, "plume.source_height_m": 80.0,
     "emission.ship": "cruise", "emission.fuel": "mgo", "emission.sulphur_percent": 0.2, "emission.load": 0.5,
     "wind.temperature_c": 30.0, "wind.stability_per_s": 0.03, "flight.after_settling_s": 60.0, "flight.measured_s": 15.0,
@@ -206,8 +220,12 @@ OF_HULL = (
 )  # fmt: skip
 """Keys that act beside a ship with a hull."""
 
+OF_ANOTHER = tuple(key for key in VALUES if key.startswith("traffic.0.emission."))
+"""Keys that act where the plume of another ship reaches the sniffer."""
+
 LOOKED_AT = {
     "hull": OF_HULL,
+    "emitting": OF_ANOTHER,
     "measuring": (*MEASURING, "plume.meander", "payload.exact"),
     "searching": SEARCHING,
 }
