@@ -10,6 +10,8 @@ import numpy as np
 
 from common.command_line import PROGRAM, refuse
 from measurement.errors import MeasurementError, naming
+from measurement.estimate.gas import SCREENING, error_words, value_words
+from measurement.estimate.gas import verdict_words as verdict_words_of
 from measurement.estimate.result import FscEstimate
 from measurement.estimate.verdict import (
     OPEN,
@@ -21,8 +23,10 @@ from measurement.estimate.verdict import (
     verdict_words,
 )
 from measurement.gases import ASSUMED_LEAST, FUEL_SULPHUR_MOST, GASES
-from measurement.log.analysis import Analysis, analyse, find_gaps
+from measurement.log.analysis import Analysis, analyse, estimate_gases, find_gaps
+from measurement.log.calibration import read_calibration
 from measurement.log.config import FlightDetails, LogConfig, read_config
+from measurement.log.prepare import prepare
 from measurement.log.read import LoggedFlight, read_flight
 from measurement.log.run_files import (
     build_report,
@@ -61,7 +65,21 @@ def main(arguments: list[str] | None = None, *, read_ship: ReadShip | None = Non
         ships = list(_ships(config.flight, given, read_ship))
         flight = read_flight(given.flight, config, ships)
         check_directory(directory, given.flight, named_after_log=given.out is None)
+        calibrations = [read_calibration(path) for path in given.calibration]
         with naming(given.flight):
+            prepared = prepare(flight, config, calibrations, ships)
+            config = prepared.config
+            if prepared.changed:
+                flight = read_flight(given.flight, config, ships)
+            gases, remarks = estimate_gases(
+                flight.gases,
+                config.declared,
+                method=config.method,
+                air=config.air,
+                engine=config.engine,
+                problems=prepared.problems,
+                carbon=dict.fromkeys(config.species, config.carbon) if config.carbon_stated else {},
+            )
             analysis = analyse(
                 flight.readings,
                 config.instrument,
@@ -69,12 +87,17 @@ def main(arguments: list[str] | None = None, *, read_ship: ReadShip | None = Non
                 carbon=config.carbon,
                 limits_percent=config.limits_percent,
                 rule=config.rule,
+                problems=prepared.problems.get("so2", ()),
+                gases=gases,
+                gas_remarks=remarks,
             )
         write_run(directory, flight, analysis, given.flight, given.config, _command(arguments))
     except MeasurementError as error:
         return refuse(error)
     for line in (
         *_summary(analysis, given.flight.name),
+        *_gases(analysis),
+        *prepared.remarks,
         *_missing(flight, analysis),
         *_unused_gases(flight.readings, config.instrument),
         f"files: {directory}" if given.no_report else build_report(directory),
@@ -138,6 +161,14 @@ def _parser(*, with_ship: bool) -> argparse.ArgumentParser:
     if with_ship:
         parser.add_argument("--ais", type=Path)
         parser.add_argument("--mmsi", type=int)
+    parser.add_argument(
+        "--calibration",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="of plume-flight calibrate; one, or one before and one after the flight",
+    )
     parser.add_argument("--no-report", action="store_true", help="write no report")
     return parser
 
@@ -178,6 +209,37 @@ def _summary(analysis: Analysis, name: str) -> Iterator[str]:
     )
     if step:
         yield step
+
+
+def _gases(analysis: Analysis) -> Iterator[str]:
+    """Yield lines on the other gases: the figure, its uncertainty, quality and verdict."""
+    for found in analysis.gases:
+        yield f"{found.title}: {value_words(found)} ({'; '.join(found.remarks)})"
+        if math.isfinite(found.total):
+            parts = {"noise": found.noise, **found.common}
+            largest = sorted(parts.items(), key=lambda item: -item[1])[:_PARTS]
+            words = ", ".join(
+                f"{error_words(name, found.title)} {size:.{found.digits}f}"
+                for name, size in largest
+            )
+            yield f"  standard uncertainty {found.total:.{found.digits}f} {found.unit}: {words}"
+        if found.per_fuel_unit != found.unit and math.isfinite(found.per_fuel):
+            load = f"{found.load:.2f} ± {found.load_sd:.2f}" if math.isfinite(found.load) else "?"
+            yield (
+                f"  {found.per_fuel:.{found.digits}f} {found.per_fuel_unit} of fuel, burnt at"
+                f" {1000.0 * found.consumption_kg_kwh:.0f} g/kWh with a load of {load}, which has"
+                f" {100.0 * found.load_share:.0f} % of the variance"
+            )
+        reasons = "; ".join(found.quality_reasons)
+        yield f"  quality {found.quality}{f': {reasons}' if reasons else ''}"
+        yield f"  {verdict_words_of(found)}"
+    yield from analysis.gas_remarks
+    if any(found.verdict is not None for found in analysis.gases):
+        yield f"NOx: {SCREENING}"
+
+
+_PARTS = 3
+"""Parts of the uncertainty of a gas that are printed, the largest first."""
 
 
 def _largest_part(found: FscEstimate) -> str:

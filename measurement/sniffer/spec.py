@@ -232,12 +232,35 @@ def sensor_of(given: str | Mapping[str, Any], name: str = "") -> SnifferSpec:
     )
 
 
+def channel_of(gas: str, table: Any = ()) -> Channel:
+    """Return the channel of a gas that is compared with CO2, in the place of that of SO2.
+
+    What its table leaves out is not known, as of SO2; it responds to no other gas.
+
+    Raises
+    ------
+    MeasurementError : a key is not known, or a value is not of its kind or range
+    """
+    where = f"channel '{gas}'"
+    if not isinstance(table or {}, dict):
+        raise MeasurementError(f"{where} is {table!r}; give a table [channels.{gas}]")
+    values = dict(table)
+    if values.get("cross"):
+        raise MeasurementError(f"{where} has a cross; only SO2, NO and NO2 may have one")
+    return _channel_of("so2", {**values, "cross": {}}, where)
+
+
 def _channel(gas: str, table: Any, name: str) -> Channel:
     where = f"channel '{gas}' of instrument '{name}'"
     if gas not in GASES or not isinstance(table, dict):
         raise MeasurementError(
             f"{where} is not known; channels are tables called {', '.join(GASES)}"
         )
+    return _channel_of(gas, table, where)
+
+
+def _channel_of(gas: str, table: Mapping[str, Any], where: str) -> Channel:
+    """Return the channel in a table; ``where`` names it in errors."""
     check_keys(table, sorted({field.name for field in fields(Channel)} - {"gas"}), where)
     given: dict[str, Any] = dict(_UNKNOWN[gas])
     if "t90_s" in table:
