@@ -80,8 +80,6 @@ class Analysis:
             },
             "carbon": self.carbon,
             "decision": None if self.decision is None else plain(asdict(self.decision)),
-            "gases": [found.record() for found in self.gases],
-            "gas_remarks": list(self.gas_remarks),
             "true_percent": true_percent,
         }
 

@@ -26,7 +26,8 @@ from measurement.gases import ASSUMED_LEAST, FUEL_SULPHUR_MOST, GASES
 from measurement.log.analysis import Analysis, analyse, estimate_gases, find_gaps
 from measurement.log.calibration import read_calibration
 from measurement.log.config import FlightDetails, LogConfig, read_config
-from measurement.log.prepare import prepare
+from measurement.log.handover import NOT_APPROVED, record_of, write_record
+from measurement.log.prepare import Prepared, prepare
 from measurement.log.read import LoggedFlight, read_flight
 from measurement.log.run_files import (
     build_report,
@@ -92,18 +93,51 @@ def main(arguments: list[str] | None = None, *, read_ship: ReadShip | None = Non
                 gas_remarks=remarks,
             )
         write_run(directory, flight, analysis, given.flight, given.config, _command(arguments))
+        handed = list(_handed_over(given, flight, analysis, prepared))
     except MeasurementError as error:
         return refuse(error)
     for line in (
         *_summary(analysis, given.flight.name),
         *_gases(analysis),
         *prepared.remarks,
+        *handed,
         *_missing(flight, analysis),
         *_unused_gases(flight.readings, config.instrument),
         f"files: {directory}" if given.no_report else build_report(directory),
     ):
         print(line)
     return 0
+
+
+def _handed_over(
+    given: argparse.Namespace, flight: LoggedFlight, analysis: Analysis, prepared: Prepared
+) -> Iterator[str]:
+    """Write the record, if one is wanted, and yield a line on it.
+
+    Raises
+    ------
+    MeasurementError : it cannot be written, or a picture cannot be read
+    """
+    if given.record is None:
+        if given.picture:
+            raise MeasurementError("--picture names a picture of --record FILE; give that, too")
+        return
+    inputs = {given.flight: "log"}
+    if given.config:
+        inputs[given.config] = "configuration"
+    inputs |= dict.fromkeys(given.calibration, "calibration")
+    if getattr(given, "ais", None):
+        inputs[given.ais] = "AIS"
+    record = record_of(
+        flight,
+        analysis,
+        prepared.config,
+        inputs=inputs,
+        calibrations=prepared.calibrations,
+        pictures=given.picture,
+    )
+    table = write_record(given.record, record)
+    yield f"record: {given.record}, {record['sha256'][:12]}; {table.name}, {NOT_APPROVED}"
 
 
 def _ships(
@@ -168,6 +202,15 @@ def _parser(*, with_ship: bool) -> argparse.ArgumentParser:
         default=[],
         metavar="FILE",
         help="of plume-flight calibrate; one, or one before and one after the flight",
+    )
+    parser.add_argument("--record", type=Path, metavar="FILE.json", help="record to hand over")
+    parser.add_argument(
+        "--picture",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="picture that the record names, with its hash",
     )
     parser.add_argument("--no-report", action="store_true", help="write no report")
     return parser

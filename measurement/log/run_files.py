@@ -69,7 +69,7 @@ def check_directory(directory: Path, source: Path, *, named_after_log: bool) -> 
         raise MeasurementError(
             f"output directory '{directory}' holds another run; choose another --out"
         )
-    if named_after_log and manifest.get(_SOURCE_HASH) != _sha256(source.read_bytes()):
+    if named_after_log and manifest.get(_SOURCE_HASH) != sha256(source.read_bytes()):
         raise MeasurementError(
             f"'{directory}' holds the estimate of another log than '{source}'; give another --out"
         )
@@ -96,7 +96,12 @@ def write_run(
     """
     signals = analysis.estimate.signals
     gaps = find_gaps(flight.readings, signals, flight.about.readings)
-    record = analysis.record() | {"flight": flight.about.record(), "gaps": vars(gaps)}
+    record = analysis.record() | {
+        "flight": flight.about.record(),
+        "gaps": vars(gaps),
+        "gases": [found.record() for found in analysis.gases],
+        "gas_remarks": list(analysis.gas_remarks),
+    }
     table = samples(signals, flight)
     # A log's time may be seconds since 1970 or 1980, of which six digits are weeks: all digits of a
     # floating-point number.
@@ -171,23 +176,24 @@ def _manifest(
             "description": f"Logged flight {source.name}, measured with:"
             f" {analysis.instrument.title}."
         },
-        "config_hash": _sha256(log + settings)[:16],
+        "config_hash": sha256(log + settings)[:16],
         "source": source.name,
-        _SOURCE_HASH: _sha256(log),
+        _SOURCE_HASH: sha256(log),
         "settings": config.name if config else None,
-        "settings_hash": _sha256(settings) if config else None,
-        "version": _version(),
+        "settings_hash": sha256(settings) if config else None,
+        "version": version(),
         **{key: software[key] for key in ("git_revision", "python", "platform", "cores")},
         "packages": {name: software["packages"][name] for name in _PACKAGES},
         "files": [ESTIMATE, SAMPLES],
     }
 
 
-def _sha256(content: bytes) -> str:
+def sha256(content: bytes) -> str:
+    """Return the hash of a file's content."""
     return hashlib.sha256(content).hexdigest()
 
 
-def _version() -> str:
+def version() -> str:
     """Return the version of the program, if it is installed."""
     try:
         return importlib.metadata.version("plume-flight-study")
