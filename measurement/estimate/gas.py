@@ -42,6 +42,9 @@ NO2_SHARE_SD = 0.03
 AIR_SD = 0.01
 """Relative standard deviation of the volume of air that particles are counted in [-]: 3 K."""
 
+_SHOWN = 300
+"""Samples of a gas that its record has, about."""
+
 ERRORS = {
     "noise": "noise, background and differences between passes",
     "calibration": "calibration of {gas} and CO2",
@@ -108,6 +111,7 @@ class GasEstimate:
     quality, quality_reasons : A, B or C, and why it is not A
     verdict, no_verdict : on its limit, or why there is none
     stage : limit of NOx of the engine, or None
+    rated_rpm : of the engine, NaN where it is not known [1/min]
     load, load_sd, consumption_kg_kwh : of the engine, as its speed lets expect
     agreement, misfit : same as of ``FscEstimate``
     t90_s, delay_s : response, and delay after CO2, as stated or as they fit best [s]
@@ -137,6 +141,7 @@ class GasEstimate:
     verdict: GasVerdict | None
     no_verdict: str
     stage: Limit | None
+    rated_rpm: float
     load: float
     load_sd: float
     consumption_kg_kwh: float
@@ -150,12 +155,22 @@ class GasEstimate:
     signals: pd.DataFrame = field(compare=False, repr=False)
 
     def record(self) -> dict[str, Any]:
-        """Return everything but the signals, for JSON, with None for NaN."""
+        """Return everything but the signals, for JSON, with None for NaN.
+
+        Of the signals it has some samples, for a picture: ``co2_ppm`` and ``excess`` over it.
+        """
         nested = ("figures", "verdict", "stage")
         values = {name: value for name, value in vars(self).items() if name != "signals"}
         for name in nested:
             values[name] = None if values[name] is None else asdict(values[name])
         values["common"] = dict(self.common)
+        table = self.signals.dropna(subset=["co2_excess_ppm", "so2_excess_ppb"])
+        some = table.iloc[:: max(1, len(table) // _SHOWN)]
+        step = SPECIES[self.gas].step if self.gas in SPECIES else 1.0
+        values["samples"] = {
+            "co2_ppm": [float(f"{x:.5g}") for x in some["co2_excess_ppm"]],
+            "excess": [float(f"{step * y:.5g}") for y in some["so2_excess_ppb"]],
+        }
         return {name: plain(value) for name, value in values.items()}
 
     @property
@@ -341,6 +356,7 @@ def estimate_gas(
         verdict=None if limit is None else _verdict(limit, value, total, quality),
         no_verdict=no_verdict,
         stage=limit,
+        rated_rpm=math.nan if engine is None or engine.rated_rpm is None else engine.rated_rpm,
         load=load[0],
         load_sd=load[1],
         consumption_kg_kwh=consumption,

@@ -259,6 +259,7 @@ def _gases(analysis: Analysis) -> Iterator[str]:
     for found in analysis.gases:
         yield f"{found.title}: {value_words(found)} ({'; '.join(found.remarks)})"
         if math.isfinite(found.total):
+            yield f"  ratio to CO2 {found.slope:.4g} {found.slope_unit}"
             parts = {"noise": found.noise, **found.common}
             largest = sorted(parts.items(), key=lambda item: -item[1])[:_PARTS]
             words = ", ".join(

@@ -13,6 +13,7 @@ from reports.measurement.charts import (
 )
 from reports.measurement.data import read_estimate, read_samples
 from reports.measurement.facts import logged_facts
+from reports.measurement.gases import gas_sections
 from reports.measurement.instrument_tables import assumption_table, instrument_table
 from reports.measurement.tables import over_time_table, record_table, result_table
 from reports.measurement.verdict import measurement_verdict
@@ -34,6 +35,7 @@ def measurement_content(run: RunData) -> Findings:
     )
     sections = [
         Section(anchor="result", title="Result", blocks=result),
+        *gas_sections(record),
         Section(anchor="signals", title="Signals", blocks=shown),
         Section(anchor="record", title="Record", blocks=[record_table(record)]),
         Section(

@@ -1,12 +1,15 @@
 """Other gases in a log: found by name and unit or declared, and what cannot be is refused."""
 
 import json
+import re
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 from logged_flights import run
 
+from measurement.log.command import main
 from measurement.log.config import read_config
 from measurement.log.read import read_flight
 
@@ -176,3 +179,37 @@ def test_two_columns_of_one_gas_are_asked_about(gases, capsys):
     table.to_csv(gases, index=False)
     assert run(gases) == 2
     assert "are both of CH4; name one of them" in capsys.readouterr().err
+
+
+PAGE = Path(__file__).parents[3] / "docs" / "howto" / "gases.md"
+
+
+@BRIEFLY
+def test_the_page_shows_what_the_command_prints_and_a_calculator_agrees(tmp_path, capsys):
+    examples = PAGE.parents[1] / "examples"
+    config = examples / "example_gases.toml"
+    log = examples / "example_flight.csv"
+    words = [str(log), "--config", str(config), "--out", str(tmp_path / "out"), "--no-report"]
+    assert main(words) == 0
+    printed = [line for line in capsys.readouterr().out.splitlines() if line]
+    shown = PAGE.read_text(encoding="utf-8").split("```")[3].strip().splitlines()
+    first = next(i for i, line in enumerate(printed) if line.startswith("NOx: nitrogen"))
+    for line, page in zip(printed[first:], shown, strict=False):
+        # Figures may change with the fit by some per cent.
+        words, of_page = (" ".join(re.split(_NUMBER, text)[::2]).split() for text in (line, page))
+        assert words == of_page
+        for number, shown_number in zip(
+            *(re.findall(_NUMBER, x) for x in (line, page)), strict=True
+        ):
+            assert float(number) == pytest.approx(float(shown_number), rel=0.1, abs=1.0)
+    [nox] = json.loads((tmp_path / "out" / "estimate.json").read_text(encoding="utf-8"))["gases"]
+    # The steps of the page, with its rounding.
+    per_fuel = round(241.0 / 12.0, 1) / 1000.0 * 46.0 * 72.4
+    assert per_fuel == pytest.approx(nox["per_fuel"], rel=0.05)
+    assert pytest.approx(nox["load"], rel=0.01) == (12.0 / 13.0) ** 3
+    assert per_fuel * 0.187 == pytest.approx(nox["value"], rel=0.05)
+    assert np.linalg.norm((0.75, 0.62, 0.44, 0.42)) == pytest.approx(1.15, abs=0.01)
+    assert nox["total"] == pytest.approx(1.19, rel=0.1)
+
+
+_NUMBER = r"(\d+(?:\.\d+)?)"
