@@ -26,7 +26,7 @@ from measurement.gases import (
     UNITS,
 )
 
-PER_FUEL_PERCENT, PER_FUEL_G, PER_FUEL_1E15 = "% of the fuel", "g/kg", "1e15/kg"
+PER_FUEL_PERCENT, PER_FUEL_G, PER_FUEL_1E15 = "% of the fuel", "g/kg", "10^15/kg"
 """Units of an emission per fuel."""
 
 PER_ENERGY = "g/kWh"

@@ -15,6 +15,7 @@ from measurement.estimate.record import BRIDGED, SHORTEST, split_at_gaps
 from measurement.estimate.result import FscEstimate, Method, plain
 from measurement.estimate.verdict import LIMITS_PERCENT, Decision, decide
 from measurement.gases import CARBON_FRACTION, GASES, UNITS
+from measurement.log.read import LoggedFlight
 from measurement.rules import DecisionRule
 from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings
@@ -52,6 +53,10 @@ class Analysis:
     gases: tuple[GasEstimate, ...] = ()
     gas_remarks: tuple[str, ...] = ()
 
+    def sampled(self, flight: LoggedFlight) -> tuple[pd.DataFrame, Readings]:
+        """Return the signals of the estimate, and the readings that they are made of."""
+        return self.estimate.signals, flight.readings
+
     def record(self, true_percent: float | None = None) -> dict[str, Any]:
         """Return the content of a report, for JSON.
 
@@ -70,18 +75,51 @@ class Analysis:
             "time_to_verdict_s": {
                 f"{limit:g}": plain(time_to_verdict(self.table, limit)) for limit in limits
             },
-            "instrument": {
-                "name": self.instrument.name,
-                "title": self.instrument.title,
-                "source": self.instrument.source,
-                "rate_hz": self.instrument.rate_hz,
-                "stated": _channels(self.instrument),
-                "used": _channels(self.estimate.instrument),
-            },
+            "instrument": _instrument(self.instrument, self.estimate.instrument),
             "carbon": self.carbon,
             "decision": None if self.decision is None else plain(asdict(self.decision)),
             "true_percent": true_percent,
         }
+
+
+@dataclass(frozen=True, kw_only=True)
+class GasAnalysis:
+    """Analysis of a flight that did not measure SO2.
+
+    Attributes
+    ----------
+    gases, gas_remarks, instrument : same as of ``Analysis``
+    """
+
+    gases: tuple[GasEstimate, ...]
+    gas_remarks: tuple[str, ...]
+    instrument: SnifferSpec
+
+    def sampled(self, flight: LoggedFlight) -> tuple[pd.DataFrame, Readings]:
+        """Return the signals of the first gas, and the readings that they are made of."""
+        first = self.gases[0]
+        readings = next(of.readings for of in flight.gases if of.species.name == first.gas)
+        return first.signals, readings
+
+    def record(self) -> dict[str, Any]:
+        """Return the content of a report, for JSON."""
+        return {
+            "estimate": None,
+            "instrument": _instrument(self.instrument, self.instrument),
+            "true_percent": None,
+        }
+
+
+def _instrument(stated: SnifferSpec, used: SnifferSpec) -> dict[str, Any]:
+    """Return an instrument as it is stated, and as it was used, for JSON."""
+    return {
+        "name": stated.name,
+        "title": stated.title,
+        "source": stated.source,
+        "rate_hz": stated.rate_hz,
+        "stated": _channels(stated),
+        "used": _channels(used),
+    }
 
 
 def _channels(instrument: SnifferSpec) -> dict[str, Any]:

@@ -3,16 +3,16 @@
 import argparse
 import math
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from common.command_line import PROGRAM, refuse
 from measurement.errors import MeasurementError, naming
-from measurement.estimate.gas import SCREENING, error_words, value_words
+from measurement.estimate.gas import SCREENING, GasEstimate, error_words, value_words
 from measurement.estimate.gas import verdict_words as verdict_words_of
-from measurement.estimate.result import FscEstimate
+from measurement.estimate.result import Figures, FscEstimate
 from measurement.estimate.verdict import (
     OPEN,
     content_words,
@@ -23,7 +23,13 @@ from measurement.estimate.verdict import (
     verdict_words,
 )
 from measurement.gases import ASSUMED_LEAST, FUEL_SULPHUR_MOST, GASES
-from measurement.log.analysis import Analysis, analyse, estimate_gases, find_gaps
+from measurement.log.analysis import (
+    Analysis,
+    GasAnalysis,
+    analyse,
+    estimate_gases,
+    find_gaps,
+)
 from measurement.log.calibration import read_calibration
 from measurement.log.config import FlightDetails, LogConfig, read_config
 from measurement.log.handover import NOT_APPROVED, record_of, write_record
@@ -81,17 +87,7 @@ def main(arguments: list[str] | None = None, *, read_ship: ReadShip | None = Non
                 problems=prepared.problems,
                 carbon=dict.fromkeys(config.species, config.carbon) if config.carbon_stated else {},
             )
-            analysis = analyse(
-                flight.readings,
-                config.instrument,
-                method=config.method,
-                carbon=config.carbon,
-                limits_percent=config.limits_percent,
-                rule=config.rule,
-                problems=prepared.problems.get("so2", ()),
-                gases=gases,
-                gas_remarks=remarks,
-            )
+            analysis = _analysed(flight, prepared, gases, remarks)
         write_run(directory, flight, analysis, given.flight, given.config, _command(arguments))
         handed = list(_handed_over(given, flight, analysis, prepared))
     except MeasurementError as error:
@@ -102,15 +98,53 @@ def main(arguments: list[str] | None = None, *, read_ship: ReadShip | None = Non
         *prepared.remarks,
         *handed,
         *_missing(flight, analysis),
-        *_unused_gases(flight.readings, config.instrument),
+        *(_unused_gases(flight.readings, config.instrument) if config.with_sulphur else ()),
         f"files: {directory}" if given.no_report else build_report(directory),
     ):
         print(line)
     return 0
 
 
+def _analysed(
+    flight: LoggedFlight,
+    prepared: Prepared,
+    gases: Sequence[GasEstimate],
+    remarks: Sequence[str],
+) -> Analysis | GasAnalysis:
+    """Return the analysis of a flight, with SO2 or without.
+
+    Raises
+    ------
+    MeasurementError : the readings cannot be those of a flight through a plume, or there are none
+    """
+    config = prepared.config
+    if not config.with_sulphur:
+        if not gases:
+            why = f": {'; '.join(remarks)}" if remarks else ""
+            raise MeasurementError(
+                f"columns.so2 is empty, and there is no other gas to compare with CO2{why}"
+            )
+        return GasAnalysis(
+            gases=tuple(gases), gas_remarks=tuple(remarks), instrument=config.instrument
+        )
+    return analyse(
+        flight.readings,
+        config.instrument,
+        method=config.method,
+        carbon=config.carbon,
+        limits_percent=config.limits_percent,
+        rule=config.rule,
+        problems=prepared.problems.get("so2", ()),
+        gases=gases,
+        gas_remarks=remarks,
+    )
+
+
 def _handed_over(
-    given: argparse.Namespace, flight: LoggedFlight, analysis: Analysis, prepared: Prepared
+    given: argparse.Namespace,
+    flight: LoggedFlight,
+    analysis: Analysis | GasAnalysis,
+    prepared: Prepared,
 ) -> Iterator[str]:
     """Write the record, if one is wanted, and yield a line on it.
 
@@ -222,13 +256,15 @@ def _command(arguments: list[str] | None) -> list[str]:
     return sys.argv if arguments is None or console else ["", *arguments]
 
 
-def _summary(analysis: Analysis, name: str) -> Iterator[str]:
+def _summary(analysis: Analysis | GasAnalysis, name: str) -> Iterator[str]:
     """Yield the lines of a summary of a flight called ``name``."""
+    if isinstance(analysis, GasAnalysis):
+        yield f"{name}, with: {analysis.instrument.title}, without SO2"
+        yield _passes(analysis.gases[0].figures)
+        return
     found, figures = analysis.estimate, analysis.estimate.figures
-    passes = "1 pass" if figures.passes == 1 else f"{figures.passes} passes"
-    every = f" every {figures.interval_s:.1f} s" if figures.passes > 1 else ""
     yield f"{name}, with: {analysis.instrument.title}"
-    yield f"{figures.duration_s:.0f} s, {passes}{every}, CO2 signal to noise {figures.co2_snr:.0f}"
+    yield _passes(figures)
     yield from _result(found)
     reasons = "; ".join(found.quality_reasons)
     yield f"quality {found.quality}: {reasons}" if reasons else f"quality {found.quality}"
@@ -254,7 +290,14 @@ def _summary(analysis: Analysis, name: str) -> Iterator[str]:
         yield step
 
 
-def _gases(analysis: Analysis) -> Iterator[str]:
+def _passes(figures: Figures) -> str:
+    """Return how long a record is, and its passes."""
+    passes = "1 pass" if figures.passes == 1 else f"{figures.passes} passes"
+    every = f" every {figures.interval_s:.1f} s" if figures.passes > 1 else ""
+    return f"{figures.duration_s:.0f} s, {passes}{every}, CO2 signal to noise {figures.co2_snr:.0f}"
+
+
+def _gases(analysis: Analysis | GasAnalysis) -> Iterator[str]:
     """Yield lines on the other gases: the figure, its uncertainty, quality and verdict."""
     for found in analysis.gases:
         yield f"{found.title}: {value_words(found)} ({'; '.join(found.remarks)})"
@@ -321,12 +364,13 @@ def _result(found: FscEstimate) -> Iterator[str]:
             yield f"  {_ERRORS.get(key, key)} {size:.4f}"
 
 
-def _missing(flight: LoggedFlight, analysis: Analysis) -> Iterator[str]:
+def _missing(flight: LoggedFlight, analysis: Analysis | GasAnalysis) -> Iterator[str]:
     """Yield lines on how the log was read, on repeated rows, missing readings, gaps, and places
     that count as missing.
     """
     yield f"table: {flight.about.table}"
-    gaps = find_gaps(flight.readings, analysis.estimate.signals, flight.about.readings)
+    signals, readings = analysis.sampled(flight)
+    gaps = find_gaps(readings, signals, flight.about.readings)
     yield from (f"{title.lower()}: {words}" for title, words in gaps.remarks.items())
     if flight.about.place_remark:
         yield f"places: {flight.about.place_remark}"

@@ -126,7 +126,7 @@ class LogConfig:
     rule : by which the ship is reported, or None
     method : "regression" or "areas"
     missing : numbers that stand for missing readings in the file, as -9999
-    columns : name in the file of each of ``COLUMNS``
+    columns : name in the file of each of ``COLUMNS``; that of SO2 may be empty: it was not measured
     scale : factors of gases' columns to ppb, or ppm of CO2; they come before any unit
     units : of gases' columns; those that are not given are in the columns' names or in a row of
         units
@@ -163,6 +163,11 @@ class LogConfig:
     humidity: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     serial: str = ""
     calibration_hours: float = HOURS_MOST
+
+    @property
+    def with_sulphur(self) -> bool:
+        """Whether SO2 was measured."""
+        return bool(self.columns["so2"])
 
     @property
     def declared(self) -> tuple[str, ...]:
@@ -437,6 +442,8 @@ def _columns(table: Mapping[str, Any], species: Mapping[str, Species]) -> dict[s
     for key, column in columns.items():
         if not isinstance(column, str):
             raise MeasurementError(f"columns.{key} is {column!r}; give a name")
+        if key == "so2" and not column:
+            continue
         if column in used:
             raise MeasurementError(
                 f"[columns] has the column '{column}' for {used[column]} and for {key}; name"

@@ -26,7 +26,7 @@ from measurement.errors import MeasurementError
 from measurement.estimate.gas import SCREENING, GasEstimate
 from measurement.estimate.result import FscEstimate, plain
 from measurement.gases import MASS_PERCENT, limit_words
-from measurement.log.analysis import Analysis
+from measurement.log.analysis import Analysis, GasAnalysis
 from measurement.log.calibration import Calibration, content_hash
 from measurement.log.config import LogConfig
 from measurement.log.read import LoggedFlight
@@ -62,7 +62,7 @@ def schema() -> dict[str, Any]:
 
 def record_of(
     flight: LoggedFlight,
-    analysis: Analysis,
+    analysis: Analysis | GasAnalysis,
     config: LogConfig,
     *,
     inputs: Mapping[Path, str],
@@ -84,6 +84,11 @@ def record_of(
     about = flight.about.record()
     details = about["details"]
     program = provenance()
+    figures = [_figure(of) for of in analysis.gases]
+    decision = None
+    if isinstance(analysis, Analysis):
+        figures.insert(0, _sulphur(analysis.estimate))
+        decision = None if analysis.decision is None else asdict(analysis.decision)
     content = {
         "format": FORMAT,
         "version": VERSION,
@@ -101,8 +106,8 @@ def record_of(
             "ship": list(about["ships"]),
         },
         "operator": details["operator"],
-        "figures": [_sulphur(analysis.estimate), *(_figure(of) for of in analysis.gases)],
-        "decision": None if analysis.decision is None else plain(asdict(analysis.decision)),
+        "figures": figures,
+        "decision": decision,
         "instrument": {
             "name": config.instrument.name,
             "title": config.instrument.title,
@@ -295,7 +300,12 @@ def _items(record: Mapping[str, Any]) -> Iterator[list[str]]:
     position = place["first_deg"]
     words = None if position is None else f"{position[0]:.5f}, {position[1]:.5f}"
     yield row("latitude, longitude [deg]", words, "log")
-    found = record["figures"][0]
+    yield row("actions taken", None, unknown)
+    yield row("record, SHA-256", record["sha256"], measured)
+    found = next((of for of in record["figures"] if of["gas"] == "so2"), None)
+    if found is None:
+        yield row("fuel sulphur content [% m/m]", None, unknown)
+        return
     for item, key in (
         (f"fuel sulphur content [{found['unit']}]", "value"),
         (f"standard uncertainty [{found['unit']}]", "standard_uncertainty"),
@@ -304,5 +314,3 @@ def _items(record: Mapping[str, Any]) -> Iterator[list[str]]:
         yield row(item, found[key], measured)
     for verdict in found["verdicts"]:
         yield row(f"findings: {verdict['rule']}", verdict["verdict"], measured)
-    yield row("actions taken", None, unknown)
-    yield row("record, SHA-256", record["sha256"], measured)

@@ -353,13 +353,16 @@ _NUMBER = re.compile(r"[-+]?[\d.]+(e[-+]?\d+)?", re.IGNORECASE)
 def _read_table(path: Path, config: LogConfig) -> Table:
     """Return the table of a file after checking its columns."""
     try:
-        table = read_table(path, config.table, head=tuple(config.columns.values()))
+        names = tuple(name for name in config.columns.values() if name)
+        table = read_table(path, config.table, head=names)
     except OSError as error:
         raise MeasurementError(f"cannot be read: {error.strerror or error}; give a table") from None
-    for name in (*config.columns.values(), *TRUE_COLUMNS):
+    for name in (*names, *TRUE_COLUMNS):
         if name in table:
             table.column(name)
     for key, name in config.columns.items():
+        if key == "so2" and not config.with_sulphur:
+            continue
         if name not in table and (key in _REQUIRED or name != COLUMNS.get(key)):
             raise MeasurementError(_missing_column(key, name, table.names))
     if not len(table):

@@ -7,7 +7,7 @@ import numpy as np
 from measurement.engine import CONTROL_AREAS, TIERS, limit_of
 from measurement.estimate.gas import SCREENING, error_words
 from measurement.estimate.verdict import REJECTED
-from reports.document.blocks import Block, Section, Table
+from reports.document.blocks import Block, Card, Section, Table, Verdict
 from reports.document.chart import Chart, Line, Panel, Style
 from reports.document.tables import number
 from reports.measurement.data import Record, value
@@ -16,12 +16,45 @@ _RPM = np.geomspace(60.0, 2400.0, 120)
 """Rated speeds at which the limits are drawn [1/min]."""
 
 
-def gas_sections(record: Record) -> list[Section]:
+def gas_verdict(record: Record) -> Verdict:
+    """Judge a flight without SO2: it fails where a gas is above its limit."""
+    found: list[Record] = record["gases"]
+    judged = [of for of in found if of["verdict"] is not None]
+    sides = [_verdict(of) for of in judged]
+    words = [
+        f"{of['title']} {_printed(of, 'value')} {of['unit']}"
+        f" ({_printed(of, 'low')} to {_printed(of, 'high')})"
+        + (f", limit {_limit(of)}: {_verdict(of)}" if of in judged else "")
+        for of in found
+    ]
+    return Verdict(
+        holds="above" not in sides,
+        complete=bool(sides) and all(side == "below" for side in sides),
+        headline=f"{words[0]}",
+        detail=". ".join([*words[1:], *([SCREENING.capitalize()] if judged else [])]),
+        failures=[
+            f"{of['title']}, quality {of['quality']}: {reason}"
+            for of in found
+            for reason in of["quality_reasons"]
+        ],
+        figures=[
+            Card(
+                f"{of['figure'][0].upper()}{of['figure'][1:]}",
+                f"{_printed(of, 'value')} {of['unit']}",
+                note=f"95 % interval {_printed(of, 'low')} to {_printed(of, 'high')}",
+            )
+            for of in found
+        ],
+    )
+
+
+def gas_sections(record: Record, *, with_samples: bool = True) -> list[Section]:
     """Return the section on other gases; none where the log has none."""
     found: list[Record] = record.get("gases") or []
     if not found:
         return []
-    charts: list[Block | None] = [samples_chart(found), stage_chart(found)]
+    charts: list[Block | None] = [samples_chart(found) if with_samples else None]
+    charts.append(stage_chart(found))
     blocks = [gas_table(found), *(chart for chart in charts if chart is not None)]
     return [Section(anchor="gases", title="Other gases", nav_title="Gases", blocks=blocks)]
 
@@ -67,9 +100,8 @@ def _printed(of: Record, name: str) -> str:
 
 
 def _largest(of: Record) -> str:
-    parts = {"noise": value(of, "noise")} | {
-        name: float(size) for name, size in of["common"].items() if size is not None
-    }
+    parts: dict[str, float] = {"noise": value(of, "noise")}
+    parts |= {str(name): float(size) for name, size in of["common"].items() if size is not None}
     return max(parts, key=lambda name: parts[name])
 
 

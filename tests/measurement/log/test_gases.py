@@ -173,6 +173,32 @@ def test_what_cannot_be_a_gas_is_refused_in_a_line(gases, capsys, text, message)
     assert printed.count("\n") == 1
 
 
+@BRIEFLY
+def test_a_log_without_so2_has_the_same_figures_of_the_others(gases, capsys):
+    configured(gases, ENGINE)
+    assert run(gases) == 0
+    with_sulphur = recorded(gases)["gases"]
+    pd.read_csv(gases).drop(columns=["so2_ppb", "so2_true_ppb"]).to_csv(gases, index=False)
+    assert run(gases) == 2
+    assert "no SO2 column 'so2_ppb'" in capsys.readouterr().err
+    configured(gases, f'[columns]\nso2 = ""\n{ENGINE}')
+    path = gases.parent / "record.json"
+    assert run(gases, "--record", str(path)) == 0
+    assert "without SO2" in capsys.readouterr().out
+    found = recorded(gases)
+    assert found["estimate"] is None
+    assert found["gases"] == with_sulphur
+    samples = pd.read_csv(gases.parent / "out" / "samples.csv")
+    assert {"time_s", "co2_ppm", "nox_reading", "nox_excess", "north_m"} <= set(samples)
+    figures = json.loads(path.read_text(encoding="utf-8"))["figures"]
+    assert [of["gas"] for of in figures] == ["nox", "ch4", "bc", "pn"]
+    # With nothing else to compare with CO2, there is no estimate.
+    table = pd.read_csv(gases)[["time_s", "co2_ppm"]]
+    table.to_csv(gases, index=False)
+    assert run(gases) == 2
+    assert "there is no other gas to compare with CO2" in capsys.readouterr().err
+
+
 def test_two_columns_of_one_gas_are_asked_about(gases, capsys):
     table = pd.read_csv(gases)
     table["ch4_ppb"] = 1900.0

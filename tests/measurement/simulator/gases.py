@@ -34,7 +34,7 @@ class GasLog:
     time, values : of the rows, and readings by column, shape (m,)
     stated : properties of each channel as its data sheet has them
     engine : of the ship, as far as it is known; empty for other gases than NOx
-    truth : emission [g/kWh of NOx, % of the fuel of CH4, 1e15/kg, g/kg]
+    truth : emission [g/kWh of NOx, % of the fuel of CH4, 10^15/kg, g/kg]
     limit, cycle : of NOx at one load and over the test cycle [g/kWh]; NaN for other gases
     stage : of the engine, or empty
     """

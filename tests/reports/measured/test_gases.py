@@ -92,3 +92,22 @@ def test_a_log_without_other_gases_has_no_such_section(record):
     assert gas_sections({name: of for name, of in record.items() if name != "gases"}) == []
     rejected = [{**record["gases"][0], "quality": "C", "value": None, "stage": None}]
     assert stage_chart(rejected) is None
+
+
+def test_a_flight_without_so2_is_judged_by_its_gases(directory, tmp_path, record):
+    for name in ("manifest.json", "samples.csv"):
+        (tmp_path / name).write_bytes((directory / name).read_bytes())
+    text = json.dumps({**record, "estimate": None})
+    (tmp_path / "estimate.json").write_text(text, encoding="utf-8")
+    found = content(read_run(tmp_path))
+    assert not found.verdict.holds
+    assert not found.verdict.complete
+    assert "NOx" in found.verdict.headline
+    assert "limit 5.1, stage III: above" in found.verdict.headline
+    assert "CH4" in found.verdict.detail
+    assert [panel.title for panel in found.picture.panels] == ["NOx", "CH4"]
+    anchors = {section.anchor for section in found.sections}
+    assert "gases" in anchors
+    assert not anchors & {"result", "instrument"}
+    instrument = next(fact for fact in found.facts if fact.name == "Instrument")
+    assert "figures are in" not in instrument.value
