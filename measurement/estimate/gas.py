@@ -70,12 +70,14 @@ class GasReadings:
     species : its constants
     readings, instrument : with the gas in the place of SO2
     remarks : how it was made of the log's columns
+    own_column : whether the log has a column of it; NOx may be made of NO and NO2
     """
 
     species: Species
     readings: Readings
     instrument: SnifferSpec
     remarks: tuple[str, ...] = ()
+    own_column: bool = True
 
     def words(self, text: str) -> str:
         """Return a sentence on SO2 as one on this gas."""
@@ -251,7 +253,7 @@ def nox_of(readings: Readings, instrument: SnifferSpec) -> GasReadings | None:
             cross_sd={},
         )
         remark = f"NO over {kept:g}, as NO2 is not measured"
-    return placed(
+    found = placed(
         SPECIES["nox"],
         channel,
         column,
@@ -260,6 +262,7 @@ def nox_of(readings: Readings, instrument: SnifferSpec) -> GasReadings | None:
         with_no2=known["no2"],
         remarks=(remark,),
     )
+    return replace(found, own_column=False)
 
 
 def estimate_gas(

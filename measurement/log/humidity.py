@@ -2,7 +2,7 @@
 
 Of eight systems that measured side by side at the Elbe seven read too little sulphur, possibly in
 air of more than 80 % relative humidity (Beecken et al., AMT 16:5883, 2023,
-doi 10.5194/amt-16-5883-2023). A log without a humidity is taken as before, and says so.
+doi 10.5194/amt-16-5883-2023). Of a log without a humidity nothing is concluded.
 """
 
 import math

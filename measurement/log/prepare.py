@@ -61,8 +61,8 @@ def prepare(
         )
         kept = found.calibrations
         instrument = _with_channels(instrument, found)
-        for gas in found.gases & set(config.species):
-            channels[gas] = found.channel(gas, channels.get(gas) or channel_of(gas, {}))
+        for gas in found.gases & {of.species.name for of in flight.gases if of.own_column}:
+            channels[gas] = found.channel(gas, channels.get(gas) or channel_of(gas))
         for gas in sorted(found.gases):
             for of in _of(gas, config):
                 problems.setdefault(of, []).extend(found.problems(gas))
@@ -115,10 +115,13 @@ def _in_humid_air(
     problems: dict[str, list[str]],
 ) -> tuple[SnifferSpec, dict[str, Channel]]:
     """Return channels in humid air, and add the problems of gases whose effect is not stated."""
-    names = {"so2", *(gas.species.name for gas in flight.gases)}
-    for gas in sorted(names):
-        for own in ("no", "no2") if gas == "nox" and "nox" not in channels else (gas,):
-            channel = instrument.channel(own) or channels.get(own) or channel_of(own, {})
+    made = {"so2": ("so2",)} | {
+        of.species.name: (of.species.name,) if of.own_column else ("no", "no2")
+        for of in flight.gases
+    }
+    for gas, parts in made.items():
+        for own in parts:
+            channel = instrument.channel(own) or channels.get(own) or channel_of(own)
             changed, problem = in_humid_air(channel, config.humidity.get(gas))
             if problem:
                 problems.setdefault(gas, []).append(problem.format(gas=gas.upper()))

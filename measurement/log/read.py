@@ -229,7 +229,7 @@ def _gases(
             remarks += (
                 "its channel is not declared: t90, delay and noise are those of the record",
             )
-        channel = config.channels.get(gas) or channel_of(gas, {"gain_sd": UNDECLARED_GAIN_SD})
+        channel = config.channels.get(gas) or channel_of(gas)
         found = placed(species, channel, column, logged, config.instrument, remarks=remarks)
         try:
             slot = replace(config, instrument=found.instrument)
@@ -239,11 +239,6 @@ def _gases(
         except MeasurementError as error:
             raise MeasurementError(found.words(str(error))) from None
         yield found
-
-
-UNDECLARED_GAIN_SD = 0.1
-"""Standard deviation of the gain of a gas whose channel is not declared [-]; that of SO2 of the
-instrument that is not specified."""
 
 
 def _new_gas(found: GasReadings) -> GasReadings:
