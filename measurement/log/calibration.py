@@ -50,8 +50,11 @@ bottle's certificate."""
 _REACHED = 0.15
 """Largest deviation of a gain from 1 with which the span counts as reached [-]; an assumption."""
 
-_MISFIT_MOST = 2.0
-"""Largest root mean square of the residuals over the noise [-]."""
+_SLOW_MOST = 0.015
+"""Largest slow part of the residuals, over the span [-]; an assumption."""
+
+_BLOCK_S = 15.0
+"""Time over which residuals are averaged to see their slow part [s]."""
 
 _SIGNIFICANT = 3.0
 """Standard deviations from which on a drift is shown."""
@@ -78,6 +81,8 @@ class CalibratedChannel:
     t90_s, t90_sd_s, delay_s, delay_sd_s : response and delay [s]
     noise : standard deviation of a reading [unit]
     misfit : root mean square of the residuals over the noise [-]
+    slow : standard deviation of the part of the residuals that noise does not explain, over the
+        span [-]
     problems : why it must not be used, as a leak
     remarks : what it shows, as a drift
     """
@@ -98,6 +103,7 @@ class CalibratedChannel:
     delay_sd_s: float
     noise: float
     misfit: float
+    slow: float
     problems: tuple[str, ...] = ()
     remarks: tuple[str, ...] = ()
 
@@ -286,6 +292,7 @@ def _channel(
     left = y - design @ linear
     noise = shown_scatter([y], shown_step(y))
     misfit = math.sqrt(float(np.mean(left**2))) / noise if noise > 0.0 else 1.0
+    slow = _slow_part(left, noise, max(1, round(_BLOCK_S / step))) / span
     whole = np.hstack([design, _derivatives(columns, fit.x, linear)])
     free = max(1, len(t) - whole.shape[1])
     variance = max(float(left @ left) / free, noise**2)
@@ -305,7 +312,7 @@ def _channel(
         unit=unit,
         span=span,
         gain=gain,
-        gain_sd=math.hypot(float(deviations[0]), span_sd * abs(gain)),
+        gain_sd=math.hypot(float(deviations[0]), span_sd * abs(gain), slow),
         offset=offset,
         offset_sd=float(deviations[2]),
         gain_drift=gain_drift,
@@ -318,7 +325,8 @@ def _channel(
         delay_sd_s=float(deviations[5]),
         noise=noise,
         misfit=misfit,
-        problems=tuple(_leaks(name, gain, misfit)),
+        slow=slow,
+        problems=tuple(_leaks(name, gain, slow)),
         remarks=tuple(drifts),
     )
 
@@ -333,7 +341,16 @@ def _derivatives(columns: Any, properties: Array, linear: Array) -> Array:
     return np.stack(found, axis=1)
 
 
-def _leaks(name: str, gain: float, misfit: float) -> list[str]:
+def _slow_part(left: Array, noise: float, block: int) -> float:
+    """Return the standard deviation of residuals over blocks of readings, less that by noise."""
+    count = len(left) // block
+    if count < 2:
+        return 0.0
+    means = left[: count * block].reshape(count, block).mean(axis=1)
+    return math.sqrt(max(0.0, float(np.mean(means**2)) - noise**2 / block))
+
+
+def _leaks(name: str, gain: float, slow: float) -> list[str]:
     """Return what looks like a leak."""
     found = []
     if abs(gain - 1.0) > _REACHED:
@@ -342,10 +359,11 @@ def _leaks(name: str, gain: float, misfit: float) -> list[str]:
             f" {100.0 * (1.0 + _REACHED):.0f} % are expected: a leak, a wrong bottle, or a cell to"
             " be replaced"
         )
-    if misfit > _MISFIT_MOST:
+    if slow > _SLOW_MOST:
         found.append(
-            f"{name} does not follow the steps as one lag: residuals are {misfit:.1f} times its"
-            " noise; a leak, a dead volume, or a supply that was not what the log says"
+            f"{name} does not follow the steps as one lag, but {100.0 * slow:.1f} % of the span"
+            f" beside it, and {100.0 * _SLOW_MOST:g} % are allowed: a leak, a dead volume, a second"
+            " pole, or a supply that was not what the log says"
         )
     return found
 
