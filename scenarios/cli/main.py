@@ -98,8 +98,10 @@ def estimate(
         bool, typer.Option("--no-report", help="Do not write report.html and report.pdf.")
     ] = False,
 ) -> None:
-    """Estimate the sulphur content of a ship's fuel, and other gases, from the log of a flight
-    through its plume, and judge them.
+    """Estimate the sulphur content of a ship's fuel from the log of a flight through its plume, and
+    judge it.
+
+    Other gases that the log has are estimated as well.
     """
     from measurement.log.command import main as estimate_logged
     from scenarios.cli.ship import read_ship
