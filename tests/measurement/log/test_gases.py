@@ -235,9 +235,10 @@ def test_the_page_shows_what_the_command_prints_and_a_calculator_agrees(tmp_path
     per_fuel = round(241.0 / 12.0, 1) / 1000.0 * 46.0 * 72.4
     assert per_fuel == pytest.approx(nox["per_fuel"], rel=0.05)
     assert pytest.approx(nox["load"], rel=0.01) == (12.0 / 13.0) ** 3
-    assert per_fuel * 0.187 == pytest.approx(nox["value"], rel=0.05)
-    assert np.linalg.norm((0.75, 0.62, 0.44, 0.42)) == pytest.approx(1.15, abs=0.01)
-    assert nox["total"] == pytest.approx(1.19, rel=0.1)
+    assert per_fuel * 0.208 == pytest.approx(nox["value"], rel=0.05)
+    assert np.linalg.norm((0.84, 0.69, 0.49, 0.47)) == pytest.approx(1.28, abs=0.01)
+    assert nox["total"] == pytest.approx(1.32, rel=0.1)
+    assert nox["verdict"]["limit"] == pytest.approx(44.0 * 500.0**-0.23)
 
 
 _NUMBER = r"(\d+(?:\.\d+)?)"
