@@ -21,7 +21,7 @@ TIERS = (
     (date(2011, 1, 1), "II", 14.4, 44.0, -0.23, 7.7),
 )
 """Keel laid from, stage, and limit of NOx [g/kWh]: below 130 rpm, factor and exponent of the rated
-speed [rpm], and from 2000 rpm on. MARPOL Annex VI, regulation 13, paragraphs 3 and 4, as of
+speed [rpm], and from 2000 rpm on. MARPOL Annex VI, regulation 13, paragraphs 3 and 4, by
 resolution MEPC.176(58), 2008 (the same curves: 40 CFR 1042.104)."""
 
 TIER_III = ("III", 3.4, 9.0, -0.2, 2.0)
@@ -52,18 +52,18 @@ LOAD_SD = 0.15
 an assumption."""
 
 SPEED_SD = 0.5
-"""Standard deviation of the speed through the water by that over ground, as of currents [m/s]; an
+"""Standard deviation of the speed through the water by that over ground, by currents [m/s]; an
 assumption."""
 
 CONSUMPTION_SD = 0.06
 """Relative standard deviation of an engine's consumption about its class [-].
 
-An assumption: engines differ by 10 % between editions of IMO's studies, an even spread of which has
+An assumption: engines differ by 10 % between editions of IMO's studies, and such an even spread has
 a standard deviation of 6 %.
 """
 
 _UNKNOWN_LOAD = (LOAD_LEAST, 1.0)
-"""Loads of which nothing is known, as likely as each other."""
+"""Range of a load that is not known, evenly spread [-]."""
 
 _POINTS = 41
 """Loads at which the consumption is evaluated."""
@@ -192,7 +192,7 @@ class Engine:
         return FUEL_G_KWH[self.strokes or (2 if slow else 4), self.residual]
 
     def limit(self) -> Limit | None:
-        """Return the limit of NOx; None for an engine of which there is none, or none known."""
+        """Return the limit of NOx; None where it is not known, or there is no limit."""
         if self.keel_laid is None or self.rated_rpm is None:
             return None
         return limit_of(self.keel_laid, self.rated_rpm, self.control_area)
@@ -210,8 +210,8 @@ class Engine:
 def limit_of(keel_laid: date, rated_rpm: float, control_area: str = "") -> Limit | None:
     """Return the limit of NOx of an engine, None for keels of before 2000.
 
-    >>> limit_of(date(2012, 5, 1), 500.0).cycle_g_kwh
-    10.536...
+    >>> round(limit_of(date(2012, 5, 1), 500.0).cycle_g_kwh, 1)
+    10.5
     """
     if control_area and keel_laid >= CONTROL_AREAS[control_area]:
         stage, *curve = TIER_III

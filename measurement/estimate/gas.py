@@ -115,7 +115,7 @@ class GasEstimate:
     stage : limit of NOx of the engine, or None
     rated_rpm : of the engine, NaN where it is not known [1/min]
     load, load_sd, consumption_kg_kwh : of the engine, as its speed lets expect
-    agreement, misfit : same as of ``FscEstimate``
+    agreement, misfit : see ``FscEstimate``
     t90_s, delay_s : response, and delay after CO2, as stated or as they fit best [s]
     figures : of the record
     remarks : how it was made of the log's columns

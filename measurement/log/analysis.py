@@ -88,7 +88,7 @@ class GasAnalysis:
 
     Attributes
     ----------
-    gases, gas_remarks, instrument : same as of ``Analysis``
+    gases, gas_remarks, instrument : see ``Analysis``
     """
 
     gases: tuple[GasEstimate, ...]
@@ -148,7 +148,7 @@ def analyse(
     points : even times of the estimate over time, in addition to those of ``ELAPSED_S``
     rule : by which the ship is reported, if there is one
     problems : further reasons why there can be no verdict
-    gases, gas_remarks : same as of ``Analysis``
+    gases, gas_remarks : see ``Analysis``
 
     Raises
     ------

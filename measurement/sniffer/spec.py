@@ -239,7 +239,7 @@ def sensor_of(given: str | Mapping[str, Any], name: str = "") -> SnifferSpec:
 def channel_of(gas: str, table: Any = ()) -> Channel:
     """Return the channel of a gas that is compared with CO2, in the place of that of SO2.
 
-    What its table leaves out is not known, as of SO2, but for a gain that is known to
+    What its table leaves out is not known, like that of SO2, but for a gain that is known to
     ``UNDECLARED_GAIN_SD``; it responds to no other gas.
 
     Raises
