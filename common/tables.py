@@ -841,7 +841,9 @@ def _times_of_day(table: Table, name: str, cells: Sequence[str], day: date | Non
 # Units
 
 _UNIT_IN_BRACKETS = re.compile(r"[\[(]\s*([^\[\]()]+?)\s*[\])]\s*$")
-_UNIT_AT_THE_END = re.compile(r"_(ppb|ppm|percent|ugm3|mgm3|ms|us|mps|kn|kt|deg)$", re.IGNORECASE)
+_UNIT_AT_THE_END = re.compile(
+    r"_(ppb|ppm|percent|ugm3|mgm3|ngm3|cm3|ms|us|mps|kn|kt|deg)$", re.IGNORECASE
+)
 
 MASS_TEMPERATURE_C, MASS_PRESSURE_HPA = 20.0, 1013.25
 """State of the air that masses per volume are of unless another is given: that of Directive
@@ -853,7 +855,16 @@ _GAS_CONSTANT = 8.314462618
 _MOLAR_MASS = {"so2": 64.064, "co2": 44.009, "no": 30.006, "no2": 46.005, "ch4": 16.043}
 """[g/mol]"""
 
-_SPELLINGS = {"%": "percent", "‰": "permille", "ugm3": "ug/m3", "mgm3": "mg/m3", "mps": "m/s"}
+_SPELLINGS = {
+    "%": "percent",
+    "‰": "permille",
+    "ugm3": "ug/m3",
+    "mgm3": "mg/m3",
+    "ngm3": "ng/m3",
+    "cm3": "1/cm3",
+    "#/cm3": "1/cm3",
+    "mps": "m/s",
+}
 
 
 def unit_in(name: str) -> str:

@@ -9,7 +9,7 @@ PARTS = {"so2": 1e9, "co2": 1e6, "no": 1e9, "no2": 1e9}
 UNITS = {"so2": "ppb", "co2": "ppm", "no": "ppb", "no2": "ppb"}
 """Units of readings, as they are printed."""
 
-_CARBON = 12.011e-3
+CARBON_MASS = 12.011e-3
 """Standard atomic weight [kg/mol], abridged (IUPAC 2021)."""
 
 _OXYGEN = 15.999e-3
@@ -23,7 +23,7 @@ SULPHUR_MASS = 32.06e-3
 
 MOLAR_MASS = {
     "so2": SULPHUR_MASS + 2.0 * _OXYGEN,
-    "co2": _CARBON + 2.0 * _OXYGEN,
+    "co2": CARBON_MASS + 2.0 * _OXYGEN,
     "no": _NITROGEN + _OXYGEN,
     "no2": _NITROGEN + 2.0 * _OXYGEN,
 }
@@ -32,7 +32,7 @@ MOLAR_MASS = {
 CARBON_FRACTION = 0.87
 """Carbon by mass that the published factor assumes [-]: Balzani Loov et al., AMT 7:2597 (2014)."""
 
-CARBON_PER_CO2 = _CARBON / MOLAR_MASS["co2"]
+CARBON_PER_CO2 = CARBON_MASS / MOLAR_MASS["co2"]
 """Carbon by mass in CO2 [-]."""
 
 EXPECTED_PPB_PER_PPM = {"no": (18.0, 7.5), "no2": (2.0, 1.2)}
@@ -69,4 +69,4 @@ def fsc_factor(carbon_fraction: float = CARBON_FRACTION) -> float:
     ----------
     carbon_fraction : carbon by mass in the fuel [-], usually 0.85 to 0.875
     """
-    return 0.1 * carbon_fraction * SULPHUR_MASS / _CARBON
+    return 0.1 * carbon_fraction * SULPHUR_MASS / CARBON_MASS

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from measurement.gases import EXPECTED_PPB_PER_PPM, fsc_factor
+from measurement.gases import EXPECTED_PPB_PER_PPM
 from measurement.sniffer.channel import Channel
 from measurement.sniffer.lag import Array
 from measurement.sniffer.spec import SnifferSpec
@@ -28,11 +28,13 @@ _CORRECTING = ("no", "no2")
 
 
 def unmeasured(
-    instrument: SnifferSpec, measured: tuple[str, ...], carbon: float
+    instrument: SnifferSpec, measured: tuple[str, ...], factor: float
 ) -> dict[str, tuple[float, float]]:
-    """Return the effect of NO and NO2 that are not measured, and its deviation, by gas [% m/m]."""
+    """Return the effect of NO and NO2 that are not measured, and its deviation, by gas.
+
+    Both are in the unit that ``factor`` makes of a ratio, as % m/m.
+    """
     so2, found = instrument.known("so2"), {}
-    factor = fsc_factor(carbon)
     for gas in _CORRECTING:
         share, deviation = so2.cross.get(gas, 0.0), so2.cross_sd.get(gas, 0.0)
         if gas not in measured and (share or deviation):

@@ -46,6 +46,7 @@ from measurement.gases import CARBON_FRACTION, fsc_factor
 from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
+from measurement.species import SPECIES, Species
 
 ELAPSED_S = (60.0, 120.0, 300.0, 600.0)
 """Times after which the estimate is reported [s]."""
@@ -64,7 +65,7 @@ _EXPLAINED_LEAST = 0.5
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Ratio:
+class Ratio:
     """A ratio of SO2 to CO2, and what depends on the method; NaN without a pass.
 
     Attributes
@@ -93,6 +94,7 @@ def estimate(
     method: Method = "regression",
     carbon: float = CARBON_FRACTION,
     limits_percent: Sequence[float] = LIMITS_PERCENT,
+    problems: Sequence[str] = (),
 ) -> FscEstimate:
     """Return the fuel sulphur content that the readings show.
 
@@ -105,6 +107,7 @@ def estimate(
     method : "regression" (equalise and regress), or "areas" over each pass
     carbon : mass share of the fuel [-], 0.5 to 0.95
     limits_percent : that verdicts are given on [% m/m], above 0, at most 10
+    problems : further reasons why there can be no verdict
 
     Raises
     ------
@@ -112,6 +115,86 @@ def estimate(
         times, units or shapes; or a parameter is out of range
     """
     check_parameters(method, carbon, limits_percent)
+    measured = measure_ratio(readings, instrument, method)
+    measured.problems.extend(problems)
+    return _estimate_from(measured, method, carbon, limits_percent)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Measured:
+    """What a record shows of the ratio of a gas to CO2, whatever the gas.
+
+    Attributes
+    ----------
+    record, passes, fit, ratio : of the readings
+    problems : reasons why there can be no verdict
+    """
+
+    record: Record
+    passes: tuple[Pass, ...]
+    fit: Fit
+    ratio: Ratio
+    problems: list[str]
+
+    def figure(self, species: Species, factor: float) -> "Figure":
+        """Return the figure of a gas by its ratio to CO2, with the errors that it has.
+
+        ``factor`` is the figure per small ratio, of ``Species.factor``.
+        """
+        ratio, instrument = self.ratio, self.ratio.instrument
+        value, slope = species.per_fuel(factor, ratio.ratio)
+        absent = unmeasured(instrument, self.record.gases, factor)
+        assumed = -sum(shift for shift, _ in absent.values())
+        value += assumed
+        common = {name: slope * size for name, size in ratio.common.items()}
+        for gas, (_, deviation) in absent.items():
+            common[gas] = math.hypot(common.get(gas, 0.0), deviation)
+        common["carbon"] = CARBON_SD * abs(value)
+        constant = instrument.known("co2").constants[0]
+        common["sampling"] = SAMPLING_SD * self.record.step / constant * abs(value)
+        return Figure(value=value, noise=slope * ratio.noise, common=common, assumed=assumed)
+
+    def pending_problem(self, value: float, total: float) -> tuple[str, ...]:
+        """Return the problem of a gas that may still come, where its delay is not stated."""
+        if not math.isinf(self.ratio.instrument.known("so2").delay_sd_s):
+            return ()
+        # The share that was read of the time in which it may come after each pass.
+        after = [self.record.time - found.end_s for found in self.passes]
+        samples = [np.count_nonzero((t > 0.0) & (t <= DELAY_MOST)) for t in after]
+        read = [min(1.0, count * self.record.step / DELAY_MOST) for count in samples]
+        return pending_so2_problem(value, total, read, [found.dose_ppm_s for found in self.passes])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Figure:
+    """A figure and its errors, in its own unit.
+
+    Attributes
+    ----------
+    value : NaN where it is not known
+    noise : standard uncertainty by noise
+    common : standard uncertainties by errors that do not average out, by name
+    assumed : part of the value that corrects for gases that were not measured
+    """
+
+    value: float
+    noise: float
+    common: dict[str, float]
+    assumed: float
+
+    @property
+    def total(self) -> float:
+        """Standard uncertainty by noise and common errors."""
+        return math.sqrt(self.noise**2 + sum(value**2 for value in self.common.values()))
+
+
+def measure_ratio(readings: Readings, instrument: SnifferSpec, method: Method) -> Measured:
+    """Return the ratio of the gas in the place of SO2 to CO2, and what speaks against it.
+
+    Raises
+    ------
+    MeasurementError : same as ``estimate``
+    """
     record = checked_record(readings, instrument)
     problems = [*record.problems, *implausibilities(record, readings, instrument)]
     noise = readings_noise(record, instrument)
@@ -122,7 +205,7 @@ def estimate(
     instrument = replace(instrument, channels=tuple(channels))
     passes = find_passes(record, instrument.known("co2"))
     fit = Fit(instrument=instrument)
-    ratio = _Ratio(instrument=instrument)
+    ratio = Ratio(instrument=instrument)
     if not passes:
         problems.append(_no_pass(noise["co2"]))
     else:
@@ -135,7 +218,7 @@ def estimate(
         else:
             ratio = _by_areas(record, instrument, passes)
         problems += [*ratio.problems, *fit.problems]
-    return _estimate_from(record, passes, fit, ratio, method, carbon, limits_percent, problems)
+    return Measured(record=record, passes=passes, fit=fit, ratio=ratio, problems=problems)
 
 
 def check_parameters(method: str, carbon: float, limits_percent: Sequence[float]) -> None:
@@ -180,7 +263,7 @@ def _too_short(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) 
     )
 
 
-def _by_regression(record: Record, instrument: SnifferSpec, fit: Fit) -> _Ratio:
+def _by_regression(record: Record, instrument: SnifferSpec, fit: Fit) -> Ratio:
     """Return the slope of SO2 over CO2, with response and delay as they are stated or fit best."""
     problems: tuple[str, ...] = ()
     parts: dict[str, float] = {}
@@ -194,7 +277,7 @@ def _by_regression(record: Record, instrument: SnifferSpec, fit: Fit) -> _Ratio:
             *_shown_delay_problem(record, instrument, fit),
             *residual_problem(fit.residuals, energy),
         )
-    return _Ratio(
+    return Ratio(
         ratio=fit.slope,
         noise=fit.noise,
         misfit=fit.residuals.misfit if fit.residuals else math.nan,
@@ -228,7 +311,7 @@ def _shown_delay_problem(record: Record, instrument: SnifferSpec, fit: Fit) -> t
     return delay_problem(stated, so2_delay(found.instrument), deviation)
 
 
-def _by_areas(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> _Ratio:
+def _by_areas(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> Ratio:
     """Return the ratio of areas, with a common error where passes overlap in the slow channel."""
     found = area_ratio(record, instrument, passes)
 
@@ -240,7 +323,7 @@ def _by_areas(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -
     if found.share < _OVERLAP_LEAST:
         problems = (found.truncation_reason(instrument.known("so2").t90_s),)
     overlap = found.separate - found.ratio
-    return _Ratio(
+    return Ratio(
         ratio=found.ratio,
         noise=found.noise,
         misfit=1.0,
@@ -252,38 +335,18 @@ def _by_areas(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -
 
 
 def _estimate_from(
-    record: Record,
-    passes: tuple[Pass, ...],
-    fit: Fit,
-    ratio: _Ratio,
-    method: Method,
-    carbon: float,
-    limits: Sequence[float],
-    problems: list[str],
+    measured: Measured, method: Method, carbon: float, limits: Sequence[float]
 ) -> FscEstimate:
     """Return the estimate of the fuel from a ratio of SO2 to CO2."""
+    record, passes, fit, ratio = measured.record, measured.passes, measured.fit, measured.ratio
     factor, instrument = fsc_factor(carbon), ratio.instrument
     so2 = instrument.known("so2")
-    absent = unmeasured(instrument, record.gases, carbon)
-    assumed = -sum(shift for shift, _ in absent.values())
-    fsc = factor * ratio.ratio + assumed
-    noise = factor * ratio.noise
-    common = {name: factor * value for name, value in ratio.common.items()}
-    for gas, (_, deviation) in absent.items():
-        common[gas] = math.hypot(common.get(gas, 0.0), deviation)
-    common["carbon"] = CARBON_SD * abs(fsc)
-    common["sampling"] = SAMPLING_SD * record.step / instrument.known("co2").constants[0] * abs(fsc)
-    total = math.sqrt(noise**2 + sum(value**2 for value in common.values()))
-    if math.isinf(so2.delay_sd_s):
-        # The share that was read of the time in which SO2 may come after each pass.
-        after = [record.time - found.end_s for found in passes]
-        samples = [np.count_nonzero((t > 0.0) & (t <= DELAY_MOST)) for t in after]
-        read = [min(1.0, count * record.step / DELAY_MOST) for count in samples]
-        doses = [found.dose_ppm_s for found in passes]
-        problems = [*problems, *pending_so2_problem(fsc, total, read, doses)]
+    figure = measured.figure(SPECIES["so2"], factor)
+    fsc, total, assumed = figure.value, figure.total, figure.assumed
+    problems = [*measured.problems, *measured.pending_problem(fsc, total)]
     signals = make_signals(record, instrument)
     table, so2_snr = signals_table(signals, ratio.ratio)
-    figures = _figures(record, passes, fit, instrument, so2_snr)
+    figures = figures_of(measured, so2_snr)
     quality, reasons = quality_class(
         problems=problems,
         snr=figures.co2_snr,
@@ -298,8 +361,8 @@ def _estimate_from(
     return FscEstimate(
         method=method,
         fsc_percent=fsc,
-        noise_percent=noise,
-        common_percent=common,
+        noise_percent=figure.noise,
+        common_percent=figure.common,
         overlap_percent=factor * ratio.overlap,
         assumed_percent=assumed,
         total_percent=total,
@@ -335,15 +398,13 @@ def _excluded(found: ExcludedPass, factor: float, assumed: float) -> PassContent
     )
 
 
-def _figures(
-    record: Record,
-    passes: tuple[Pass, ...],
-    fit: Fit,
-    instrument: SnifferSpec,
-    so2_snr: float,
-) -> Figures:
-    """Return the figures of a record: its length, its passes, and signal to noise."""
-    noise = instrument.known("co2").noise
+def figures_of(measured: Measured, gas_snr: float) -> Figures:
+    """Return the figures of a record: its length, its passes, and signal to noise.
+
+    ``gas_snr`` is that of the gas in the place of SO2.
+    """
+    record, passes, fit = measured.record, measured.passes, measured.fit
+    noise = measured.ratio.instrument.known("co2").noise
     above = sum(int(np.sum(excess > SNR_LEAST * noise)) for excess in co2_excesses(record, noise))
     times = np.array([found.centre_s for found in passes])
     return Figures(
@@ -353,7 +414,7 @@ def _figures(
         seconds_in_plume=above * record.step if passes else 0.0,
         dose_ppm_s=float(np.mean([found.dose_ppm_s for found in passes])) if passes else math.nan,
         co2_snr=float(np.median([found.snr for found in passes])) if passes else 0.0,
-        so2_snr=so2_snr,
+        so2_snr=gas_snr,
         background_ppm=fit.background_ppm,
         background_ppb=fit.background_ppb,
         background_s=fit.background_s,
@@ -369,6 +430,7 @@ def over_time(
     method: Method = "regression",
     carbon: float = CARBON_FRACTION,
     limits_percent: Sequence[float] = LIMITS_PERCENT,
+    problems: Sequence[str] = (),
 ) -> pd.DataFrame:
     """Return the estimate after each elapsed time within the record, a row per time.
 
@@ -392,7 +454,12 @@ def over_time(
         part = Readings(readings.time[:until], readings.values[:until])
         try:
             found = estimate(
-                part, instrument, method=method, carbon=carbon, limits_percent=limits_percent
+                part,
+                instrument,
+                method=method,
+                carbon=carbon,
+                limits_percent=limits_percent,
+                problems=problems,
             )
         except MeasurementError:
             found = None

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from measurement.estimate.fit import Residuals
 from measurement.estimate.result import Quality
 from measurement.estimate.timing import DELAY_MOST
-from measurement.gases import FUEL_SULPHUR_MOST
+from measurement.gases import MASS_PERCENT
+from measurement.species import SPECIES, Species
 
 SNR_GOOD = 20.0
 """Signal to noise of CO2 for class A."""
@@ -38,8 +39,9 @@ def quality_class(
     fsc: float,
     deviation: float,
     agreement: float,
-    limit: float,
+    limit: float | None,
     responses_stated: bool,
+    species: Species = SPECIES["so2"],
 ) -> tuple[Quality, tuple[str, ...]]:
     """Return the quality class and why it is not A.
 
@@ -47,22 +49,24 @@ def quality_class(
     ----------
     problems : of the record; each makes it C
     snr, passes : of CO2, median of the passes, and their number
-    fsc, deviation : result and its standard uncertainty [% m/m]
+    fsc, deviation : result and its standard uncertainty [unit of the gas's figure]
     agreement : probability that passes of one fuel differ as much
-    limit : lowest limit [% m/m]
+    limit : lowest limit, or None for a gas without one: then the result counts
     responses_stated : whether the response of the SO2 channel to NO and NO2 is known
+    species : gas that is compared with CO2
     """
-    rejected = [*problems, *_impossible(passes, fsc, deviation)]
+    rejected = [*problems, *_impossible(passes, fsc, deviation, species)]
     if rejected:
         return "C", tuple(rejected)
     reasons = []
     if snr < SNR_GOOD:
         reasons.append(f"CO2 signal to noise is {snr:.1f}; class A needs {SNR_GOOD:g}")
-    if deviation > UNCERTAINTY_GOOD * limit:
+    good = UNCERTAINTY_GOOD * (abs(fsc) if limit is None else limit)
+    if deviation > good:
         why = ", as the response of SO2 to NO and NO2 is not stated (cross)"
         reasons.append(
-            f"standard uncertainty is {deviation:.3f} %{'' if responses_stated else why};"
-            f" class A needs {UNCERTAINTY_GOOD * limit:.3f} %"
+            f"standard uncertainty is {_printed(deviation, species)}"
+            f"{'' if responses_stated else why}; class A needs {_printed(good, species)}"
         )
     if passes < PASSES_GOOD:
         counted = "1 pass" if passes == 1 else f"{passes} passes"
@@ -75,25 +79,35 @@ def quality_class(
     return ("B" if reasons else "A"), tuple(reasons)
 
 
-def _impossible(passes: int, fsc: float, deviation: float) -> list[str]:
+def _printed(value: float, species: Species) -> str:
+    """Return a figure of a gas as its limits are printed; a sulphur content in plain %."""
+    return f"{value:.{species.digits}f} {_unit(species)}"
+
+
+def _unit(species: Species) -> str:
+    return "%" if species.result == MASS_PERCENT else species.result
+
+
+def _impossible(passes: int, value: float, deviation: float, species: Species) -> list[str]:
     """Return why no fuel can have this result."""
-    found = []
-    if passes and not math.isfinite(fsc):
+    found, gas = [], species.title
+    most = f"{species.most:g} {_unit(species)}"
+    if passes and not math.isfinite(value):
         found.append("the CO2 excess is not above its noise")
-    if math.isfinite(fsc) and fsc < -_NEGATIVE_SIGMA * deviation:
+    if math.isfinite(value) and value < -_NEGATIVE_SIGMA * deviation:
         found.append(
-            f"the result is {fsc:.3f} %, negative by more than {_NEGATIVE_SIGMA:g} standard"
-            " uncertainties: check the corrections"
+            f"the result is {_printed(value, species)}, negative by more than"
+            f" {_NEGATIVE_SIGMA:g} standard uncertainties: check the corrections"
         )
-    if deviation > FUEL_SULPHUR_MOST:
+    if deviation > species.most:
         found.append(
-            f"the standard uncertainty is {deviation:.0f} %, and no fuel has above"
-            f" {FUEL_SULPHUR_MOST:g} %: SO2 does not follow CO2; check its sign and its sensor"
+            f"the standard uncertainty is {deviation:.0f} {_unit(species)}, and no fuel has above"
+            f" {most}: {gas} does not follow CO2; check its sign and its sensor"
         )
-    elif math.isfinite(fsc) and fsc - _NEGATIVE_SIGMA * deviation > FUEL_SULPHUR_MOST:
+    elif math.isfinite(value) and value - _NEGATIVE_SIGMA * deviation > species.most:
         found.append(
-            f"the result is {fsc:.1f} %, and no fuel has above {FUEL_SULPHUR_MOST:g} %: check the"
-            " units of SO2 and CO2"
+            f"the result is {value:.1f} {_unit(species)}, and no fuel has above {most}:"
+            f" check the units of {gas} and CO2"
         )
     return found
 

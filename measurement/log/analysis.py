@@ -1,6 +1,6 @@
 """Analysis of a flight's readings by both methods and over time, and what the log lacks."""
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -10,10 +10,12 @@ import pandas as pd
 
 from measurement.errors import MeasurementError
 from measurement.estimate.estimator import ELAPSED_S, estimate, over_time, time_to_verdict
+from measurement.estimate.gas import GasEstimate, GasReadings, estimate_gas
 from measurement.estimate.record import BRIDGED, SHORTEST, split_at_gaps
 from measurement.estimate.result import FscEstimate, Method, plain
 from measurement.estimate.verdict import LIMITS_PERCENT, Decision, decide
 from measurement.gases import CARBON_FRACTION, GASES, UNITS
+from measurement.log.read import LoggedFlight
 from measurement.rules import DecisionRule
 from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings
@@ -38,6 +40,8 @@ class Analysis:
     instrument : as the analyst knows it
     carbon : mass share of the fuel [-]
     decision : by the rule, or None without one
+    gases : of the others that are compared with CO2
+    gas_remarks : of gases that the log has and that cannot be estimated, why
     """
 
     estimate: FscEstimate
@@ -46,6 +50,12 @@ class Analysis:
     instrument: SnifferSpec
     carbon: float
     decision: Decision | None = None
+    gases: tuple[GasEstimate, ...] = ()
+    gas_remarks: tuple[str, ...] = ()
+
+    def sampled(self, flight: LoggedFlight) -> tuple[pd.DataFrame, Readings]:
+        """Return the signals of the estimate, and the readings that they are made of."""
+        return self.estimate.signals, flight.readings
 
     def record(self, true_percent: float | None = None) -> dict[str, Any]:
         """Return the content of a report, for JSON.
@@ -65,18 +75,51 @@ class Analysis:
             "time_to_verdict_s": {
                 f"{limit:g}": plain(time_to_verdict(self.table, limit)) for limit in limits
             },
-            "instrument": {
-                "name": self.instrument.name,
-                "title": self.instrument.title,
-                "source": self.instrument.source,
-                "rate_hz": self.instrument.rate_hz,
-                "stated": _channels(self.instrument),
-                "used": _channels(self.estimate.instrument),
-            },
+            "instrument": _instrument(self.instrument, self.estimate.instrument),
             "carbon": self.carbon,
             "decision": None if self.decision is None else plain(asdict(self.decision)),
             "true_percent": true_percent,
         }
+
+
+@dataclass(frozen=True, kw_only=True)
+class GasAnalysis:
+    """Analysis of a flight that did not measure SO2.
+
+    Attributes
+    ----------
+    gases, gas_remarks, instrument : see ``Analysis``
+    """
+
+    gases: tuple[GasEstimate, ...]
+    gas_remarks: tuple[str, ...]
+    instrument: SnifferSpec
+
+    def sampled(self, flight: LoggedFlight) -> tuple[pd.DataFrame, Readings]:
+        """Return the signals of the first gas, and the readings that they are made of."""
+        first = self.gases[0]
+        readings = next(of.readings for of in flight.gases if of.species.name == first.gas)
+        return first.signals, readings
+
+    def record(self) -> dict[str, Any]:
+        """Return the content of a report, for JSON."""
+        return {
+            "estimate": None,
+            "instrument": _instrument(self.instrument, self.instrument),
+            "true_percent": None,
+        }
+
+
+def _instrument(stated: SnifferSpec, used: SnifferSpec) -> dict[str, Any]:
+    """Return an instrument as it is stated, and as it was used, for JSON."""
+    return {
+        "name": stated.name,
+        "title": stated.title,
+        "source": stated.source,
+        "rate_hz": stated.rate_hz,
+        "stated": _channels(stated),
+        "used": _channels(used),
+    }
 
 
 def _channels(instrument: SnifferSpec) -> dict[str, Any]:
@@ -93,6 +136,9 @@ def analyse(
     limits_percent: Sequence[float] = LIMITS_PERCENT,
     points: int = POINTS,
     rule: DecisionRule | None = None,
+    problems: Sequence[str] = (),
+    gases: Sequence[GasEstimate] = (),
+    gas_remarks: Sequence[str] = (),
 ) -> Analysis:
     """Return the estimate by both methods, and over time.
 
@@ -101,12 +147,18 @@ def analyse(
     readings, instrument, method, carbon, limits_percent : same as for ``estimate``
     points : even times of the estimate over time, in addition to those of ``ELAPSED_S``
     rule : by which the ship is reported, if there is one
+    problems : further reasons why there can be no verdict
+    gases, gas_remarks : see ``Analysis``
 
     Raises
     ------
     MeasurementError : same as ``estimate``
     """
-    chosen: dict[str, Any] = {"carbon": carbon, "limits_percent": limits_percent}
+    chosen: dict[str, Any] = {
+        "carbon": carbon,
+        "limits_percent": limits_percent,
+        "problems": problems,
+    }
     found = estimate(readings, instrument, method=method, **chosen)
     second: Method = "areas" if method == "regression" else "regression"
     try:
@@ -128,7 +180,44 @@ def analyse(
         instrument=instrument,
         carbon=carbon,
         decision=decision,
+        gases=tuple(gases),
+        gas_remarks=tuple(gas_remarks),
     )
+
+
+# Other gases
+
+
+def estimate_gases(
+    gases: Sequence[GasReadings], declared: Container[str], **chosen: Any
+) -> tuple[list[GasEstimate], list[str]]:
+    """Return the figures of gases, and why there is none of those that are not declared.
+
+    Parameters
+    ----------
+    gases : of a log
+    declared : those whose errors are errors of the log
+    chosen : same as for ``estimate_gas``; ``problems`` and ``carbon`` by gas
+
+    Raises
+    ------
+    MeasurementError : a declared gas cannot be estimated
+    """
+    found, remarks = [], []
+    problems, carbon = chosen.pop("problems", {}), chosen.pop("carbon", {})
+    for gas in gases:
+        name = gas.species.name
+        try:
+            found.append(
+                estimate_gas(
+                    gas, problems=problems.get(name, ()), carbon=carbon.get(name), **chosen
+                )
+            )
+        except MeasurementError as error:
+            if name in declared:
+                raise
+            remarks.append(f"not estimated: {error}")
+    return found, remarks
 
 
 # Gaps

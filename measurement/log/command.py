@@ -3,14 +3,16 @@
 import argparse
 import math
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from common.command_line import PROGRAM, refuse
 from measurement.errors import MeasurementError, naming
-from measurement.estimate.result import FscEstimate
+from measurement.estimate.gas import SCREENING, GasEstimate, error_words, value_words
+from measurement.estimate.gas import verdict_words as verdict_words_of
+from measurement.estimate.result import Figures, FscEstimate
 from measurement.estimate.verdict import (
     OPEN,
     content_words,
@@ -21,8 +23,17 @@ from measurement.estimate.verdict import (
     verdict_words,
 )
 from measurement.gases import ASSUMED_LEAST, FUEL_SULPHUR_MOST, GASES
-from measurement.log.analysis import Analysis, analyse, find_gaps
+from measurement.log.analysis import (
+    Analysis,
+    GasAnalysis,
+    analyse,
+    estimate_gases,
+    find_gaps,
+)
+from measurement.log.calibration import read_calibration
 from measurement.log.config import FlightDetails, LogConfig, read_config
+from measurement.log.handover import NOT_APPROVED, record_of, write_record
+from measurement.log.prepare import Prepared, prepare
 from measurement.log.read import LoggedFlight, read_flight
 from measurement.log.run_files import (
     build_report,
@@ -61,26 +72,106 @@ def main(arguments: list[str] | None = None, *, read_ship: ReadShip | None = Non
         ships = list(_ships(config.flight, given, read_ship))
         flight = read_flight(given.flight, config, ships)
         check_directory(directory, given.flight, named_after_log=given.out is None)
+        calibrations = [read_calibration(path) for path in given.calibration]
         with naming(given.flight):
-            analysis = analyse(
-                flight.readings,
-                config.instrument,
+            prepared = prepare(flight, config, calibrations, ships)
+            config = prepared.config
+            if prepared.changed:
+                flight = read_flight(given.flight, config, ships)
+            gases, remarks = estimate_gases(
+                flight.gases,
+                config.declared,
                 method=config.method,
-                carbon=config.carbon,
-                limits_percent=config.limits_percent,
-                rule=config.rule,
+                air=config.air,
+                engine=config.engine,
+                problems=prepared.problems,
+                carbon=dict.fromkeys(config.species, config.carbon) if config.carbon_stated else {},
             )
+            analysis = _analysed(flight, prepared, gases, remarks)
         write_run(directory, flight, analysis, given.flight, given.config, _command(arguments))
+        handed = list(_handed_over(given, flight, analysis, prepared))
     except MeasurementError as error:
         return refuse(error)
     for line in (
         *_summary(analysis, given.flight.name),
+        *_gases(analysis),
+        *prepared.remarks,
+        *handed,
         *_missing(flight, analysis),
-        *_unused_gases(flight.readings, config.instrument),
+        *(_unused_gases(flight.readings, config.instrument) if config.with_sulphur else ()),
         f"files: {directory}" if given.no_report else build_report(directory),
     ):
         print(line)
     return 0
+
+
+def _analysed(
+    flight: LoggedFlight,
+    prepared: Prepared,
+    gases: Sequence[GasEstimate],
+    remarks: Sequence[str],
+) -> Analysis | GasAnalysis:
+    """Return the analysis of a flight, with SO2 or without.
+
+    Raises
+    ------
+    MeasurementError : the readings cannot be those of a flight through a plume, or there are none
+    """
+    config = prepared.config
+    if not config.with_sulphur:
+        if not gases:
+            why = f": {'; '.join(remarks)}" if remarks else ""
+            raise MeasurementError(
+                f"columns.so2 is empty, and there is no other gas to compare with CO2{why}"
+            )
+        return GasAnalysis(
+            gases=tuple(gases), gas_remarks=tuple(remarks), instrument=config.instrument
+        )
+    return analyse(
+        flight.readings,
+        config.instrument,
+        method=config.method,
+        carbon=config.carbon,
+        limits_percent=config.limits_percent,
+        rule=config.rule,
+        problems=prepared.problems.get("so2", ()),
+        gases=gases,
+        gas_remarks=remarks,
+    )
+
+
+def _handed_over(
+    given: argparse.Namespace,
+    flight: LoggedFlight,
+    analysis: Analysis | GasAnalysis,
+    prepared: Prepared,
+) -> Iterator[str]:
+    """Write the record, if one is wanted, and yield a line on it.
+
+    Raises
+    ------
+    MeasurementError : it cannot be written, or a picture cannot be read
+    """
+    if given.record is None:
+        if given.picture:
+            raise MeasurementError("--picture names a picture of --record FILE; give that, too")
+        return
+    inputs = {given.flight: "log"}
+    if given.config:
+        inputs[given.config] = "configuration"
+    inputs |= dict.fromkeys(given.calibration, "calibration")
+    if getattr(given, "ais", None):
+        inputs[given.ais] = "AIS"
+    record = record_of(
+        flight,
+        analysis,
+        prepared.config,
+        inputs=inputs,
+        calibrations=prepared.calibrations,
+        pictures=given.picture,
+    )
+    table = write_record(given.record, record)
+    yield f"record: {given.record}, {record['sha256'][:12]}; {table.name}, {NOT_APPROVED}"
 
 
 def _ships(
@@ -138,6 +229,23 @@ def _parser(*, with_ship: bool) -> argparse.ArgumentParser:
     if with_ship:
         parser.add_argument("--ais", type=Path)
         parser.add_argument("--mmsi", type=int)
+    parser.add_argument(
+        "--calibration",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="of plume-flight calibrate; one, or one before and one after the flight",
+    )
+    parser.add_argument("--record", type=Path, metavar="FILE.json", help="record to hand over")
+    parser.add_argument(
+        "--picture",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="picture that the record names, with its hash",
+    )
     parser.add_argument("--no-report", action="store_true", help="write no report")
     return parser
 
@@ -148,13 +256,15 @@ def _command(arguments: list[str] | None) -> list[str]:
     return sys.argv if arguments is None or console else ["", *arguments]
 
 
-def _summary(analysis: Analysis, name: str) -> Iterator[str]:
+def _summary(analysis: Analysis | GasAnalysis, name: str) -> Iterator[str]:
     """Yield the lines of a summary of a flight called ``name``."""
+    if isinstance(analysis, GasAnalysis):
+        yield f"{name}, with: {analysis.instrument.title}, without SO2"
+        yield _passes(analysis.gases[0].figures)
+        return
     found, figures = analysis.estimate, analysis.estimate.figures
-    passes = "1 pass" if figures.passes == 1 else f"{figures.passes} passes"
-    every = f" every {figures.interval_s:.1f} s" if figures.passes > 1 else ""
     yield f"{name}, with: {analysis.instrument.title}"
-    yield f"{figures.duration_s:.0f} s, {passes}{every}, CO2 signal to noise {figures.co2_snr:.0f}"
+    yield _passes(figures)
     yield from _result(found)
     reasons = "; ".join(found.quality_reasons)
     yield f"quality {found.quality}: {reasons}" if reasons else f"quality {found.quality}"
@@ -178,6 +288,45 @@ def _summary(analysis: Analysis, name: str) -> Iterator[str]:
     )
     if step:
         yield step
+
+
+def _passes(figures: Figures) -> str:
+    """Return how long a record is, and its passes."""
+    passes = "1 pass" if figures.passes == 1 else f"{figures.passes} passes"
+    every = f" every {figures.interval_s:.1f} s" if figures.passes > 1 else ""
+    return f"{figures.duration_s:.0f} s, {passes}{every}, CO2 signal to noise {figures.co2_snr:.0f}"
+
+
+def _gases(analysis: Analysis | GasAnalysis) -> Iterator[str]:
+    """Yield lines on the other gases: the figure, its uncertainty, quality and verdict."""
+    for found in analysis.gases:
+        yield f"{found.title}: {value_words(found)} ({'; '.join(found.remarks)})"
+        if math.isfinite(found.total):
+            yield f"  ratio to CO2 {found.slope:.4g} {found.slope_unit}"
+            parts = {"noise": found.noise, **found.common}
+            largest = sorted(parts.items(), key=lambda item: -item[1])[:_PARTS]
+            words = ", ".join(
+                f"{error_words(name, found.title)} {size:.{found.digits}f}"
+                for name, size in largest
+            )
+            yield f"  standard uncertainty {found.total:.{found.digits}f} {found.unit}: {words}"
+        if found.per_fuel_unit != found.unit and math.isfinite(found.per_fuel):
+            load = f"{found.load:.2f} ± {found.load_sd:.2f}" if math.isfinite(found.load) else "?"
+            yield (
+                f"  {found.per_fuel:.{found.digits}f} {found.per_fuel_unit} of fuel, burnt at"
+                f" {1000.0 * found.consumption_kg_kwh:.0f} g/kWh with a load of {load}, which has"
+                f" {100.0 * found.load_share:.0f} % of the variance"
+            )
+        reasons = "; ".join(found.quality_reasons)
+        yield f"  quality {found.quality}{f': {reasons}' if reasons else ''}"
+        yield f"  {verdict_words_of(found)}"
+    yield from analysis.gas_remarks
+    if any(found.verdict is not None for found in analysis.gases):
+        yield f"NOx: {SCREENING}"
+
+
+_PARTS = 3
+"""Parts of the uncertainty of a gas that are printed, the largest first."""
 
 
 def _largest_part(found: FscEstimate) -> str:
@@ -215,12 +364,13 @@ def _result(found: FscEstimate) -> Iterator[str]:
             yield f"  {_ERRORS.get(key, key)} {size:.4f}"
 
 
-def _missing(flight: LoggedFlight, analysis: Analysis) -> Iterator[str]:
+def _missing(flight: LoggedFlight, analysis: Analysis | GasAnalysis) -> Iterator[str]:
     """Yield lines on how the log was read, on repeated rows, missing readings, gaps, and places
     that count as missing.
     """
     yield f"table: {flight.about.table}"
-    gaps = find_gaps(flight.readings, analysis.estimate.signals, flight.about.readings)
+    signals, readings = analysis.sampled(flight)
+    gaps = find_gaps(readings, signals, flight.about.readings)
     yield from (f"{title.lower()}: {words}" for title, words in gaps.remarks.items())
     if flight.about.place_remark:
         yield f"places: {flight.about.place_remark}"

@@ -16,13 +16,17 @@ from common.tables import (
     table_format,
     unit_factor,
 )
+from measurement.engine import Engine
 from measurement.errors import MeasurementError, check_keys, naming
 from measurement.estimate.estimator import check_parameters
 from measurement.estimate.result import Method
 from measurement.estimate.verdict import LIMITS_PERCENT
 from measurement.gases import CARBON_FRACTION, GASES, UNITS
+from measurement.log.calibration import HOURS_MOST
 from measurement.rules import RULES, DecisionRule
-from measurement.sniffer.spec import SnifferSpec, sensor_of, sensor_preset
+from measurement.sniffer.channel import Channel
+from measurement.sniffer.spec import SnifferSpec, channel_of, sensor_of, sensor_preset
+from measurement.species import SPECIES, Species, species_of
 
 COLUMNS = {
     "time": "time_s",
@@ -35,22 +39,37 @@ COLUMNS = {
 }
 """Columns of a logged flight, and their names unless the configuration gives others."""
 
+HUMIDITY = "humidity"
+"""Name in ``[columns]`` of the relative humidity of the air [%]."""
+
 _FLIGHT_KEYS = (
     *("vessel", "imo", "mmsi", "latitude_deg", "longitude_deg"),
     *("date", "place", "operator"),
 )
 """Keys of the table ``[flight]``; each may be left out."""
 
+_ENGINE_KEYS = (
+    *("keel_laid", "rated_rpm", "control_area", "design_speed_mps", "speed_mps", "speed_sd_mps"),
+    *("strokes", "residual", "consumption_g_kwh", "consumption_sd"),
+)
+"""Keys of the table ``[engine]``; each may be left out."""
+
 _KEYS = (
+    "calibration_hours",
     "carbon",
+    "channels",
     "columns",
+    "engine",
     "flight",
+    "gases",
+    "humidity",
     "instrument",
     "limits_percent",
     "method",
     "missing",
     "rule",
     "scale",
+    "serial",
     "table",
     "units",
 )
@@ -63,6 +82,10 @@ _RULE_KEYS = ("limit_percent", "suspect_percent", "title")
 
 _DEFAULT_INSTRUMENT = "unspecified"
 """Instrument of a flight without a configuration."""
+
+
+_OTHERS: dict[str, Species] = {name: of for name, of in SPECIES.items() if name != "so2"}
+"""Gases beside SO2 whose constants are known."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -103,13 +126,21 @@ class LogConfig:
     rule : by which the ship is reported, or None
     method : "regression" or "areas"
     missing : numbers that stand for missing readings in the file, as -9999
-    columns : name in the file of each of ``COLUMNS``
+    columns : name in the file of each of ``COLUMNS``; that of SO2 may be empty: it was not measured
     scale : factors of gases' columns to ppb, or ppm of CO2; they come before any unit
     units : of gases' columns; those that are not given are in the columns' names or in a row of
         units
     air : temperature [deg C] and pressure [hPa] of the air that masses per volume are of
     table : how the file is written, as far as it is given
     flight : details that the log cannot show
+    species : gases beside SO2 that may be in the log, by name
+    channels : of these gases, as far as they are declared; each is in the place of SO2
+    engine : of the ship, or None
+    carbon_stated : whether the configuration gives the fuel's carbon
+    humidity : effect of humid air on the readings of a gas, and its standard deviation, relative to
+        them, by gas [-]
+    serial : number of the instrument, or empty
+    calibration_hours : largest time between a calibration and the flight [h]
     """
 
     instrument: SnifferSpec = field(default_factory=lambda: sensor_preset(_DEFAULT_INSTRUMENT))
@@ -125,6 +156,27 @@ class LogConfig:
     air: tuple[float, float] = (MASS_TEMPERATURE_C, MASS_PRESSURE_HPA)
     table: TableFormat = field(default_factory=TableFormat)
     flight: FlightDetails = field(default_factory=FlightDetails)
+    species: Mapping[str, Species] = field(default_factory=lambda: dict(_OTHERS))
+    channels: Mapping[str, Channel] = field(default_factory=dict)
+    engine: Engine | None = None
+    carbon_stated: bool = False
+    humidity: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    serial: str = ""
+    calibration_hours: float = HOURS_MOST
+
+    @property
+    def with_sulphur(self) -> bool:
+        """Whether SO2 was measured."""
+        return bool(self.columns["so2"])
+
+    @property
+    def declared(self) -> tuple[str, ...]:
+        """Gases beside SO2 that the configuration names: errors of these are errors of the log."""
+        return tuple(
+            gas
+            for gas in self.species
+            if gas in {*self.channels, *self.columns, *self.units, *self.scale}
+        )
 
 
 def read_config(path: Path) -> LogConfig:
@@ -150,14 +202,16 @@ def read_config(path: Path) -> LogConfig:
 def _config(table: Mapping[str, Any], name: str) -> LogConfig:
     """Return the configuration in a table; ``name`` is that of an instrument in it."""
     check_keys(table, _KEYS, "the configuration")
-    columns = _columns(table)
-    scale = _sub_table(table, "scale", GASES)
+    species = _species(table)
+    columns = _columns(table, species)
+    scale = _sub_table(table, "scale", (*GASES, *species))
     for gas, factor in scale.items():
         if not _is_finite(factor) or factor <= 0.0:
             raise MeasurementError(
                 f"scale of {gas} is {factor!r}; it must be positive, 1000 for ppm of SO2"
             )
-    units, air = _units(_sub_table(table, "units", (*GASES, *_AIR_KEYS)))
+    units_of = dict(UNITS) | {name: of.unit for name, of in species.items()}
+    units, air = _units(_sub_table(table, "units", (*units_of, *_AIR_KEYS)), units_of)
     method = table.get("method", "regression")
     carbon = table.get("carbon", CARBON_FRACTION)
     if not _is_finite(carbon):
@@ -181,6 +235,10 @@ def _config(table: Mapping[str, Any], name: str) -> LogConfig:
             f"instrument is {given!r}; give the name of a preset, or a table [instrument] with its"
             " channels"
         )
+    declared = _declared_channels(table, given, species)
+    if isinstance(given, dict) and isinstance(given.get("channels"), dict):
+        own = {gas: of for gas, of in given["channels"].items() if gas not in species}
+        given = {**given, "channels": own}
     instrument = sensor_of(given, name)
     stated = None
     if isinstance(given, dict):
@@ -199,7 +257,96 @@ def _config(table: Mapping[str, Any], name: str) -> LogConfig:
         air=air,
         table=_table_format(table),
         flight=_details(_sub_table(table, "flight", _FLIGHT_KEYS)),
+        species=species,
+        channels=declared,
+        engine=_engine(_sub_table(table, "engine", _ENGINE_KEYS)) if "engine" in table else None,
+        carbon_stated="carbon" in table,
+        humidity=_humidity_effects(table, species),
+        serial=_serial(table.get("serial", "")),
+        calibration_hours=_hours(table.get("calibration_hours", HOURS_MOST)),
     )
+
+
+def _serial(given: Any) -> str:
+    if not isinstance(given, str | int) or isinstance(given, bool) or not str(given).isprintable():
+        raise MeasurementError(f"serial is {given!r}; give the instrument's number as a text")
+    return str(given)
+
+
+def _hours(given: Any) -> float:
+    if not _is_finite(given) or not 0.0 < given <= 8760.0:
+        raise MeasurementError(f"calibration_hours is {given!r}; give hours, above 0, up to 8760")
+    return float(given)
+
+
+def _humidity_effects(
+    table: Mapping[str, Any], species: Mapping[str, Species]
+) -> dict[str, tuple[float, float]]:
+    """Return the effects of humid air by gas: relative to the reading, and its deviation [-]."""
+    found = {}
+    for gas, given in _sub_table(table, "humidity", ("so2", *species)).items():
+        if (
+            not isinstance(given, list)
+            or len(given) != 2
+            or not all(_is_finite(value) for value in given)
+            or not (-90.0 <= given[0] <= 90.0 and 0.0 <= given[1] <= 90.0)
+        ):
+            raise MeasurementError(
+                f"humidity.{gas} is {given!r}; give its effect on the reading and the standard"
+                " deviation of that, in per cent, as in [-5.0, 3.0]"
+            )
+        found[gas] = (given[0] / 100.0, given[1] / 100.0)
+    return found
+
+
+def _species(table: Mapping[str, Any]) -> dict[str, Species]:
+    """Return the gases beside SO2: known ones, and those whose constants the configuration has."""
+    given = table.get("gases", {})
+    if not isinstance(given, dict):
+        raise MeasurementError(f"gases is {given!r}; give a table [gases.NAME] of constants")
+    found = dict(_OTHERS)
+    for name, constants in given.items():
+        if name in (*COLUMNS, *_OTHERS, *_AIR_KEYS) or not name.isidentifier():
+            raise MeasurementError(f"gases has the name '{name}', which is taken or no word")
+        if not isinstance(constants, dict):
+            raise MeasurementError(f"gases.{name} is {constants!r}; give a table [gases.{name}]")
+        found[name] = species_of(name, constants)
+    return found
+
+
+def _declared_channels(
+    table: Mapping[str, Any], instrument: Any, species: Mapping[str, Species]
+) -> dict[str, Channel]:
+    """Return the channels of other gases, of ``[channels]`` or among those of the instrument."""
+    given = table.get("channels", {})
+    if not isinstance(given, dict):
+        raise MeasurementError(f"channels is {given!r}; give a table [channels.NAME]")
+    check_keys(given, tuple(species), "[channels]")
+    own = instrument.get("channels", {}) if isinstance(instrument, dict) else {}
+    if isinstance(own, dict):
+        given = {**{gas: of for gas, of in own.items() if gas in species}, **given}
+    return {gas: channel_of(gas, channel) for gas, channel in given.items()}
+
+
+def _engine(table: Mapping[str, Any]) -> Engine:
+    """Return the engine in the table ``[engine]``."""
+    values = dict(table)
+    if "keel_laid" in values:
+        keel = values["keel_laid"]
+        day = _parsed(keel) if isinstance(keel, str) else keel
+        if not isinstance(day, date):
+            raise MeasurementError(f"engine.keel_laid is {keel!r}; give a date, as 2012-05-01")
+        values["keel_laid"] = day.date() if isinstance(day, datetime) else day
+    for key, value in values.items():
+        kind = {"control_area": str, "residual": bool, "keel_laid": date}.get(key)
+        if kind is None and not _is_finite(value):
+            raise MeasurementError(f"engine.{key} is {value!r}; give a number")
+        if kind is not None and not isinstance(value, kind):
+            raise MeasurementError(f"engine.{key} is {value!r}; give {_KINDS[kind]}")
+    return Engine(**values)
+
+
+_KINDS = {str: "a text", bool: "true or false", date: "a date"}
 
 
 def _sub_table(table: Mapping[str, Any], key: str, names: Sequence[str]) -> dict[str, Any]:
@@ -211,8 +358,13 @@ def _sub_table(table: Mapping[str, Any], key: str, names: Sequence[str]) -> dict
     return found
 
 
-def _units(given: Mapping[str, Any]) -> tuple[dict[str, str], tuple[float, float]]:
-    """Return the units of gases, and the air [deg C, hPa] that masses per volume are of."""
+def _units(
+    given: Mapping[str, Any], known: Mapping[str, str]
+) -> tuple[dict[str, str], tuple[float, float]]:
+    """Return the units of gases whose own are ``known``, and the air of masses per volume.
+
+    The air is its temperature [deg C] and pressure [hPa].
+    """
     air = []
     for key, usual, low, high in (
         ("temperature_c", MASS_TEMPERATURE_C, -60.0, 60.0),
@@ -225,13 +377,13 @@ def _units(given: Mapping[str, Any]) -> tuple[dict[str, str], tuple[float, float
             )
         air.append(float(value))
     units = {}
-    for gas in GASES:
+    for gas, own in known.items():
         if gas not in given:
             continue
         if not isinstance(given[gas], str):
-            raise MeasurementError(f"units.{gas} is {given[gas]!r}; give a unit, as in 'ppb'")
+            raise MeasurementError(f"units.{gas} is {given[gas]!r}; give a unit, as in '{own}'")
         try:
-            unit_factor(given[gas], UNITS[gas], gas=gas)
+            unit_factor(given[gas], own, gas=gas)
         except TableError as error:
             raise MeasurementError(f"units.{gas}: {error}") from None
         units[gas] = given[gas]
@@ -282,13 +434,16 @@ def _rule(given: Any) -> DecisionRule | None:
     )
 
 
-def _columns(table: Mapping[str, Any]) -> dict[str, str]:
+def _columns(table: Mapping[str, Any], species: Mapping[str, Species]) -> dict[str, str]:
     """Return the column of each quantity; two would share the readings of one."""
-    columns = {**COLUMNS, **_sub_table(table, "columns", tuple(COLUMNS))}
+    given = _sub_table(table, "columns", (*COLUMNS, *species, HUMIDITY))
+    columns = {**COLUMNS, **given}
     used: dict[str, str] = {}
     for key, column in columns.items():
         if not isinstance(column, str):
             raise MeasurementError(f"columns.{key} is {column!r}; give a name")
+        if key == "so2" and not column:
+            continue
         if column in used:
             raise MeasurementError(
                 f"[columns] has the column '{column}' for {used[column]} and for {key}; name"

@@ -5,8 +5,8 @@ Rows are counted as in an editor: they are lines of the file.
 
 import math
 import re
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from datetime import UTC, date, datetime, timedelta
 from pathlib import Path
 from typing import Any
@@ -24,14 +24,18 @@ from common.tables import (
     longitude_within,
     read_table,
     unit_factor,
+    unit_in,
 )
 from measurement.errors import MeasurementError, naming
+from measurement.estimate.gas import GasReadings, nox_of, placed
 from measurement.estimate.record import check_increasing, check_units, lowest_reading, shown_step
 from measurement.gases import GASES, UNITS
-from measurement.log.config import COLUMNS, FlightDetails, LogConfig
+from measurement.log.config import COLUMNS, HUMIDITY, FlightDetails, LogConfig
 from measurement.log.ship import LoggedPlaces, ShipTrack, distance_words
 from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings
+from measurement.sniffer.spec import channel_of
+from measurement.species import SPECIES, Species
 
 TRUE_COLUMNS = {f"{gas}_true_{UNITS[gas]}": gas for gas in GASES}
 """Columns of the true concentrations of a simulated flight; shown, and not used by the estimate."""
@@ -104,11 +108,15 @@ class LoggedFlight:
     place : ``time_s``, and those of ``north_m``, ``east_m``, ``height_m`` and the true
         concentrations that the file has
     about : details of the flight and its log
+    gases : others that can be compared with CO2, as the fit takes them
+    humidity : relative humidity by row, shape (n,), or None where the log has none [%]
     """
 
     readings: Readings
     place: pd.DataFrame
     about: FlightRecord
+    gases: tuple[GasReadings, ...] = ()
+    humidity: Array | None = None
 
 
 def read_flight(path: Path, config: LogConfig, ships: Sequence[ShipTrack] = ()) -> LoggedFlight:
@@ -180,7 +188,123 @@ def _flight(table: Table, config: LogConfig, ships: Sequence[ShipTrack]) -> Logg
         table=_described(table, moments),
         stated=config.stated,
     )
-    return LoggedFlight(readings, pd.DataFrame({"time_s": time, **plane, **true}), about)
+    return LoggedFlight(
+        readings,
+        pd.DataFrame({"time_s": time, **plane, **true}),
+        about,
+        tuple(_gases(table, kept, Readings(time, values), rows, config)),
+        _humidity(table, kept, config),
+    )
+
+
+# Other gases
+
+
+def _gases(
+    table: Table,
+    kept: npt.NDArray[np.bool_],
+    logged: Readings,
+    rows: Rows,
+    config: LogConfig,
+) -> Iterator[GasReadings]:
+    """Yield the gases beside SO2 that the log has, declared or found by their names and units.
+
+    NOx of NO and NO2 is found where no column has NOx itself.
+    """
+    for gas, species in config.species.items():
+        name = config.columns.get(gas) or _named(table, species)
+        if name is None:
+            if gas in config.channels:
+                raise MeasurementError(
+                    f"[channels] has {gas}, and the log no column of it: name it in [columns], as"
+                    f' {gas} = "..."'
+                )
+            if gas == "nox" and (found := nox_of(logged, config.instrument)) is not None:
+                yield _new_gas(found)
+            continue
+        column = _known_numbers(table, name, config)[kept]
+        column *= _factor_of(table, gas, name, species.unit, config)
+        remarks: tuple[str, ...] = (f"column '{name}'",)
+        if gas not in config.channels:
+            remarks += (
+                "its channel is not declared: t90, delay and noise are those of the record",
+            )
+        channel = config.channels.get(gas) or channel_of(gas)
+        found = placed(species, channel, column, logged, config.instrument, remarks=remarks)
+        try:
+            slot = replace(config, instrument=found.instrument)
+            _check_range(found.readings.values, rows, slot)
+            values, found = found.readings.values, _new_gas(found)
+            _check_negative(values, rows, found.readings, slot)
+        except MeasurementError as error:
+            raise MeasurementError(found.words(str(error))) from None
+        yield found
+
+
+def _new_gas(found: GasReadings) -> GasReadings:
+    """Return a gas with each reading once, where the log's rows are faster."""
+    return replace(found, readings=new_readings(found.readings, found.instrument.gases))
+
+
+def _named(table: Table, species: Species) -> str | None:
+    """Return the column of a gas by its name before a unit, or None.
+
+    Raises
+    ------
+    MeasurementError : two columns are
+    """
+    names = [
+        name
+        for name in table.names
+        if species_name(name) in species.columns and table.units.get(name)
+    ]
+    if len(names) > 1:
+        raise MeasurementError(
+            f"columns '{names[0]}' and '{names[1]}' are both of {species.title}; name one of them"
+            f" in [columns] as {species.name}"
+        )
+    return names[0] if names else None
+
+
+def species_name(column: str) -> str:
+    """Return the words before the unit in a column's name, as "ch4" of "CH4 [ppm]"."""
+    words = column
+    if unit := unit_in(column):
+        words = column[: column.rindex(unit)]
+    return words.rstrip(" _([").strip().lower().replace("_", " ")
+
+
+def _humidity(table: Table, kept: npt.NDArray[np.bool_], config: LogConfig) -> Array | None:
+    """Return the relative humidity by row [%], or None.
+
+    Raises
+    ------
+    MeasurementError : the column is not there, or has what no humidity is
+    """
+    name = config.columns.get(HUMIDITY)
+    if name is None:
+        names = [of for of in table.names if of.lower() in _HUMIDITY_COLUMNS]
+        name = names[0] if names else None
+    elif name not in table:
+        raise MeasurementError(_missing_column(HUMIDITY, name, table.names))
+    if name is None:
+        return None
+    humidity = _known_numbers(table, name, config)[kept]
+    wrong = np.flatnonzero((humidity < 0.0) | (humidity > _HUMIDITY_MOST))
+    if wrong.size:
+        raise MeasurementError(
+            f"column '{name}' is {humidity[wrong[0]]:g} in row"
+            f" {np.array(table.lines)[kept][wrong[0]]}; a relative humidity is 0 to"
+            f" {_HUMIDITY_MOST:g} %"
+        )
+    return humidity
+
+
+_HUMIDITY_COLUMNS = ("humidity_percent", "rh_percent", "humidity [%]", "rh [%]")
+"""Names of columns with the relative humidity, in lower case."""
+
+_HUMIDITY_MOST = 110.0
+"""Largest relative humidity that a sensor shows [%]."""
 
 
 def _described(table: Table, moments: Moments) -> str:
@@ -190,26 +314,28 @@ def _described(table: Table, moments: Moments) -> str:
 
 
 def _factor(table: Table, gas: str, config: LogConfig) -> float:
-    """Return by what a gas's column is multiplied to be in its unit of ``UNITS``.
+    """Return by what a gas's column is multiplied to be in its unit of ``UNITS``."""
+    return _factor_of(table, gas, config.columns[gas], UNITS[gas], config)
+
+
+def _factor_of(table: Table, gas: str, name: str, own: str, config: LogConfig) -> float:
+    """Return by what the column ``name`` of a gas is multiplied to be in the unit ``own``.
 
     Raises
     ------
     MeasurementError : nothing says the column's unit, or it is no unit of a gas
     """
-    name = config.columns[gas]
     if gas in config.scale:
         return config.scale[gas]
     unit = config.units.get(gas) or table.units.get(name, "")
     if not unit:
         raise MeasurementError(
             f"column '{name}' does not say its unit; give it in the configuration, as in [units]"
-            f' {gas} = "{UNITS[gas]}", or in the column\'s name'
+            f' {gas} = "{own}", or in the column\'s name'
         )
     try:
         temperature, pressure = config.air
-        return unit_factor(
-            unit, UNITS[gas], gas=gas, temperature_c=temperature, pressure_hpa=pressure
-        )
+        return unit_factor(unit, own, gas=gas, temperature_c=temperature, pressure_hpa=pressure)
     except TableError as error:
         raise MeasurementError(f"column '{name}': {error}") from None
 
@@ -222,14 +348,17 @@ _NUMBER = re.compile(r"[-+]?[\d.]+(e[-+]?\d+)?", re.IGNORECASE)
 def _read_table(path: Path, config: LogConfig) -> Table:
     """Return the table of a file after checking its columns."""
     try:
-        table = read_table(path, config.table, head=tuple(config.columns.values()))
+        names = tuple(name for name in config.columns.values() if name)
+        table = read_table(path, config.table, head=names)
     except OSError as error:
         raise MeasurementError(f"cannot be read: {error.strerror or error}; give a table") from None
-    for name in (*config.columns.values(), *TRUE_COLUMNS):
+    for name in (*names, *TRUE_COLUMNS):
         if name in table:
             table.column(name)
     for key, name in config.columns.items():
-        if name not in table and (key in _REQUIRED or name != COLUMNS[key]):
+        if key == "so2" and not config.with_sulphur:
+            continue
+        if name not in table and (key in _REQUIRED or name != COLUMNS.get(key)):
             raise MeasurementError(_missing_column(key, name, table.names))
     if not len(table):
         raise MeasurementError("a head line and 0 readings; it needs a row per reading")
@@ -245,9 +374,9 @@ def _missing_column(key: str, name: str, names: Sequence[str]) -> str:
             "no head line, but numbers in the first line; add one that names every column, as in"
             f" {needed}"
         )
-    quantity = key.upper() if key in GASES else key
+    quantity = key.upper() if key in (*GASES, *SPECIES) else key
     remedy = f'name it in [columns] of the configuration: {key} = "..."'
-    if name != COLUMNS[key]:
+    if name != COLUMNS.get(key):
         remedy = f'correct {key} = "{name}" in [columns] of the configuration'
     return f"no {quantity} column '{name}', but {first_columns(names)}; {remedy}"
 

@@ -20,8 +20,9 @@ from common.run_layout import ESTIMATE, FORMAT, MANIFEST, SAMPLES
 from measurement.errors import MeasurementError
 from measurement.estimate.result import plain
 from measurement.gases import GASES, UNITS
-from measurement.log.analysis import Analysis, find_gaps, interpolated
+from measurement.log.analysis import Analysis, GasAnalysis, find_gaps, interpolated
 from measurement.log.read import LoggedFlight
+from measurement.sniffer.sniffer import Readings
 
 SAMPLE_MEANINGS = {
     "time_s": "time of the sample; longer intervals are gaps, or have too few readings to use",
@@ -47,6 +48,9 @@ _STUDY = "measurement"
 _SOURCE_HASH = "source_hash"
 """Entry of the manifest with the SHA-256 of the log's content."""
 
+_SHOWS = {Analysis: "Fuel sulphur content", GasAnalysis: "Emissions"}
+"""What an analysis shows, in its title."""
+
 _PACKAGES = ("numpy", "scipy", "pandas")
 """Packages whose versions the manifest has."""
 
@@ -69,7 +73,7 @@ def check_directory(directory: Path, source: Path, *, named_after_log: bool) -> 
         raise MeasurementError(
             f"output directory '{directory}' holds another run; choose another --out"
         )
-    if named_after_log and manifest.get(_SOURCE_HASH) != _sha256(source.read_bytes()):
+    if named_after_log and manifest.get(_SOURCE_HASH) != sha256(source.read_bytes()):
         raise MeasurementError(
             f"'{directory}' holds the estimate of another log than '{source}'; give another --out"
         )
@@ -78,7 +82,7 @@ def check_directory(directory: Path, source: Path, *, named_after_log: bool) -> 
 def write_run(
     directory: Path,
     flight: LoggedFlight,
-    analysis: Analysis,
+    analysis: Analysis | GasAnalysis,
     source: Path,
     config: Path | None,
     arguments: Sequence[str],
@@ -94,10 +98,17 @@ def write_run(
     ------
     MeasurementError : the directory cannot be written
     """
-    signals = analysis.estimate.signals
-    gaps = find_gaps(flight.readings, signals, flight.about.readings)
-    record = analysis.record() | {"flight": flight.about.record(), "gaps": vars(gaps)}
-    table = samples(signals, flight)
+    signals, readings = analysis.sampled(flight)
+    gaps = find_gaps(readings, signals, flight.about.readings)
+    record = analysis.record() | {
+        "flight": flight.about.record(),
+        "gaps": vars(gaps),
+        "gases": [found.record() for found in analysis.gases],
+        "gas_remarks": list(analysis.gas_remarks),
+    }
+    table = samples(signals, flight, readings)
+    if isinstance(analysis, GasAnalysis):
+        table = _of_gas(table, analysis.gases[0].gas)
     # A log's time may be seconds since 1970 or 1980, of which six digits are weeks: all digits of a
     # floating-point number.
     table["time_s"] = [f"{time:.15g}" for time in table["time_s"]]
@@ -119,19 +130,27 @@ def write_run(
         ) from None
 
 
-def samples(signals: pd.DataFrame, flight: LoggedFlight) -> pd.DataFrame:
+def samples(
+    signals: pd.DataFrame, flight: LoggedFlight, readings: Readings | None = None
+) -> pd.DataFrame:
     """Return the signals of an estimate with place and truth at their times.
 
-    Interpolated readings are left empty.
+    Interpolated readings are left empty. ``readings`` are those of the flight unless given.
     """
     table, place = signals.copy(), flight.place
-    readings = [name for name in (f"{gas}_{UNITS[gas]}" for gas in GASES) if name in table]
-    table.loc[interpolated(flight.readings, signals), readings] = np.nan
+    names = [name for name in (f"{gas}_{UNITS[gas]}" for gas in GASES) if name in table]
+    table.loc[interpolated(readings or flight.readings, signals), names] = np.nan
     for name in place.columns:
         known = np.isfinite(place[name].to_numpy())
         if name != "time_s" and known.any():
             table[name] = np.interp(table["time_s"], place["time_s"][known], place[name][known])
     return table
+
+
+def _of_gas(table: pd.DataFrame, gas: str) -> pd.DataFrame:
+    """Return samples with another gas in the place of SO2 under its name, in steps of its fit."""
+    names = {"so2_ppb": f"{gas}_reading", "so2_excess_ppb": f"{gas}_excess"}
+    return table.rename(columns={**names, "fit_ppb": "fit", "residual_ppb": "residual"})
 
 
 def build_report(directory: Path) -> str:
@@ -154,7 +173,7 @@ def build_report(directory: Path) -> str:
 
 
 def _manifest(
-    analysis: Analysis, source: Path, config: Path | None, arguments: Sequence[str]
+    analysis: Analysis | GasAnalysis, source: Path, config: Path | None, arguments: Sequence[str]
 ) -> dict[str, Any]:
     software = provenance()
     log, settings = source.read_bytes(), config.read_bytes() if config else b""
@@ -164,30 +183,31 @@ def _manifest(
         "begun_utc": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ}",
         "command": command_line("measurement.estimate", arguments),
         "name": source.stem,
-        "title": f"Fuel sulphur content of {source.stem}",
+        "title": f"{_SHOWS[type(analysis)]} of {source.stem}",
         "state": "complete",
         "overrides": [],
         "config": {
             "description": f"Logged flight {source.name}, measured with:"
             f" {analysis.instrument.title}."
         },
-        "config_hash": _sha256(log + settings)[:16],
+        "config_hash": sha256(log + settings)[:16],
         "source": source.name,
-        _SOURCE_HASH: _sha256(log),
+        _SOURCE_HASH: sha256(log),
         "settings": config.name if config else None,
-        "settings_hash": _sha256(settings) if config else None,
-        "version": _version(),
+        "settings_hash": sha256(settings) if config else None,
+        "version": version(),
         **{key: software[key] for key in ("git_revision", "python", "platform", "cores")},
         "packages": {name: software["packages"][name] for name in _PACKAGES},
         "files": [ESTIMATE, SAMPLES],
     }
 
 
-def _sha256(content: bytes) -> str:
+def sha256(content: bytes) -> str:
+    """Return the hash of a file's content."""
     return hashlib.sha256(content).hexdigest()
 
 
-def _version() -> str:
+def version() -> str:
     """Return the version of the program, if it is installed."""
     try:
         return importlib.metadata.version("plume-flight-study")

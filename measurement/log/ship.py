@@ -113,6 +113,27 @@ def _distance(places: LoggedPlaces, ship: ShipTrack) -> Array:
     return np.where(covered, np.linalg.norm(own - at, axis=-1), np.nan)
 
 
+def speed_of(ship: ShipTrack, begin: float, end: float) -> float | None:
+    """Return a ship's mean speed over ground from report to report [m/s], None where not known.
+
+    Parameters
+    ----------
+    begin, end : of the log, since 1970 in UTC [s]; at least a minute counts
+    """
+    if len(ship.time) < 2:
+        return None
+    middle, half = 0.5 * (begin + end), max(0.5 * (end - begin), _COVERED)
+    first = max(middle - half, float(ship.time[0]))
+    last = min(middle + half, float(ship.time[-1]))
+    if last - first < _COVERED:
+        return None
+    inside = ship.time[(ship.time > first) & (ship.time < last)]
+    times = np.concatenate([[first], inside, [last]])
+    track = cartesian(np.radians(ship.latitude), np.radians(ship.longitude))
+    at = np.column_stack([np.interp(times, ship.time, axis) for axis in track.T])
+    return float(np.linalg.norm(np.diff(at, axis=0), axis=1).sum()) / (last - first)
+
+
 def _mistaken(places: LoggedPlaces, ship: ShipTrack) -> Iterator[tuple[str, float]]:
     """Yield mistakes, and the least distance that the log would have without each [m]."""
     for mistake, corrected in MISTAKES.items():

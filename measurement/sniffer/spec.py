@@ -63,6 +63,10 @@ NO by 0 to 3 %, and to NO2 by 0, by -16 % with a filter, and by -160 % without o
 _T90_KNOWN = 0.1
 """Relative standard deviation of a t90 that is given without one [-]; an assumption."""
 
+UNDECLARED_GAIN_SD = 0.1
+"""Standard deviation of the gain of another gas than SO2 that does not state it [-]: that of SO2 of
+the instrument that is not specified."""
+
 _DELAY_KNOWN_S = 0.5
 """Standard deviation of a delay that is given without one [s]; an assumption."""
 
@@ -232,12 +236,36 @@ def sensor_of(given: str | Mapping[str, Any], name: str = "") -> SnifferSpec:
     )
 
 
+def channel_of(gas: str, table: Any = ()) -> Channel:
+    """Return the channel of a gas that is compared with CO2, in the place of that of SO2.
+
+    What its table leaves out is not known, like that of SO2, but for a gain that is known to
+    ``UNDECLARED_GAIN_SD``; it responds to no other gas.
+
+    Raises
+    ------
+    MeasurementError : a key is not known, or a value is not of its kind or range
+    """
+    where = f"channel '{gas}'"
+    if not isinstance(table or {}, dict):
+        raise MeasurementError(f"{where} is {table!r}; give a table [channels.{gas}]")
+    values = dict(table)
+    if values.get("cross"):
+        raise MeasurementError(f"{where} has a cross; only SO2, NO and NO2 may have one")
+    return _channel_of("so2", {"gain_sd": UNDECLARED_GAIN_SD, **values, "cross": {}}, where)
+
+
 def _channel(gas: str, table: Any, name: str) -> Channel:
     where = f"channel '{gas}' of instrument '{name}'"
     if gas not in GASES or not isinstance(table, dict):
         raise MeasurementError(
             f"{where} is not known; channels are tables called {', '.join(GASES)}"
         )
+    return _channel_of(gas, table, where)
+
+
+def _channel_of(gas: str, table: Mapping[str, Any], where: str) -> Channel:
+    """Return the channel in a table; ``where`` names it in errors."""
     check_keys(table, sorted({field.name for field in fields(Channel)} - {"gas"}), where)
     given: dict[str, Any] = dict(_UNKNOWN[gas])
     if "t90_s" in table:

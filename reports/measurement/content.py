@@ -11,8 +11,9 @@ from reports.measurement.charts import (
     over_time_chart,
     regression_chart,
 )
-from reports.measurement.data import read_estimate, read_samples
+from reports.measurement.data import Record, read_estimate, read_samples
 from reports.measurement.facts import logged_facts
+from reports.measurement.gases import gas_sections, gas_verdict, samples_chart
 from reports.measurement.instrument_tables import assumption_table, instrument_table
 from reports.measurement.tables import over_time_table, record_table, result_table
 from reports.measurement.verdict import measurement_verdict
@@ -22,6 +23,8 @@ from reports.run.run_data import RunData
 def measurement_content(run: RunData) -> Findings:
     """Return the findings of a measured flight."""
     record, samples = read_estimate(run), read_samples(run)
+    if record["estimate"] is None:
+        return _without_sulphur(run, record)
     shown = (
         []
         if samples is None
@@ -34,6 +37,7 @@ def measurement_content(run: RunData) -> Findings:
     )
     sections = [
         Section(anchor="result", title="Result", blocks=result),
+        *gas_sections(record),
         Section(anchor="signals", title="Signals", blocks=shown),
         Section(anchor="record", title="Record", blocks=[record_table(record)]),
         Section(
@@ -58,6 +62,19 @@ def measurement_content(run: RunData) -> Findings:
         verdict=measurement_verdict(record),
         picture=picture,
         sections=sections,
+        facts=logged_facts(run, record),
+    )
+
+
+def _without_sulphur(run: RunData, record: Record) -> Findings:
+    """Return the findings of a flight that did not measure SO2."""
+    figures = record["gases"][0]["figures"]
+    return Findings(
+        flown=f"A flight of {figures['duration_s']:.0f} s with {figures['passes']} passes through"
+        " the plume, without SO2.",
+        verdict=gas_verdict(record),
+        picture=samples_chart(record["gases"]),
+        sections=gas_sections(record, with_samples=False),
         facts=logged_facts(run, record),
     )
 

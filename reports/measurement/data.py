@@ -42,7 +42,10 @@ def read_estimate(run: RunData) -> Record:
         raise ReportError(
             f"'{run.path}': {ESTIMATE} cannot be read: {error}; measure the flight again"
         ) from None
-    if not (isinstance(record, dict) and isinstance(record.get("estimate"), dict)):
+    if not (
+        isinstance(record, dict)
+        and (isinstance(record.get("estimate"), dict) or record.get("gases"))
+    ):
         raise ReportError(f"'{run.path}': {ESTIMATE} holds no estimate; measure the flight again")
     return record
 

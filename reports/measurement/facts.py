@@ -45,7 +45,9 @@ def logged_facts(run: RunData, record: Record) -> list[Fact]:
         *operator,
         Fact(
             "Instrument",
-            f"{record['instrument']['title']}; its figures are in “Instrument and assumptions”",
+            record["instrument"]["title"]
+            + "; its figures are in “Instrument and assumptions”"
+            * (record["estimate"] is not None),
         ),
         Fact(
             "Log",

@@ -1,4 +1,4 @@
-"""Console command: ``plume-flight run|design|estimate|report|export|compare|describe|new|schema``.
+"""Console command: ``plume-flight run|design|estimate|calibrate|report|export|compare|describe|new|schema``.
 Each hands on to what does the work.
 """
 
@@ -82,21 +82,82 @@ def estimate(
             show_default="flight.mmsi of the configuration",
         ),
     ] = None,
+    calibration: Annotated[
+        list[Path] | None,
+        typer.Option(
+            metavar="FILE",
+            help="Calibration of `plume-flight calibrate`; one, or one before and one after.",
+        ),
+    ] = None,
+    record: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE.json", help="Record to hand over, with a CSV beside it."),
+    ] = None,
+    picture: Annotated[
+        list[Path] | None,
+        typer.Option(metavar="FILE", help="Picture that the record names; may be repeated."),
+    ] = None,
     no_report: Annotated[
         bool, typer.Option("--no-report", help="Do not write report.html and report.pdf.")
     ] = False,
 ) -> None:
     """Estimate the sulphur content of a ship's fuel from the log of a flight through its plume, and
     judge it.
+
+    Other gases that the log has are estimated as well.
     """
     from measurement.log.command import main as estimate_logged
     from scenarios.cli.ship import read_ship
 
-    options = [("--config", config), ("--out", out), ("--ais", ais), ("--mmsi", mmsi)]
+    options = [
+        *(("--config", config), ("--out", out), ("--ais", ais), ("--mmsi", mmsi)),
+        *(("--calibration", path) for path in calibration or ()),
+        ("--record", record),
+        *(("--picture", path) for path in picture or ()),
+    ]
     given = [f"{name}={value}" for name, value in options if value is not None]
     # A name that begins with a dash is no option.
     words = [*given, *(["--no-report"] if no_report else []), "--", str(flight)]
     raise typer.Exit(estimate_logged(words, read_ship=read_ship))
+
+
+def calibrate(
+    log: Annotated[
+        Path,
+        typer.Argument(
+            metavar="ZERO_AND_SPAN.csv",
+            help="Readings beside what was supplied, as so2_ppb and so2_supplied_ppb.",
+        ),
+    ],
+    instrument: Annotated[
+        str, typer.Option(metavar="NAME", help="Preset, or the title of the instrument's table.")
+    ],
+    serial: Annotated[str, typer.Option(help="Number of the instrument.")] = "",
+    time: Annotated[
+        str | None,
+        typer.Option(metavar="UTC", help="Of the first reading, where the log has no date."),
+    ] = None,
+    span_sd_percent: Annotated[
+        float, typer.Option(help="Standard uncertainty of the span gas [%].")
+    ] = 1.0,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE.json",
+            help="Calibration to write.",
+            show_default="ZERO_AND_SPAN.calibration.json",
+        ),
+    ] = None,
+) -> None:
+    """Find gain, offset, drift, t90 and delay of a sniffer in a log of zero and span gas, for
+    estimates.
+    """
+    from measurement.log.calibrate_command import main as calibrate_logged
+
+    options = [("--serial", serial), ("--time", time), ("--out", out)]
+    given = [f"{name}={value}" for name, value in options if value]
+    given += [f"--instrument={instrument}", f"--span-sd-percent={span_sd_percent}"]
+    raise typer.Exit(calibrate_logged([*given, "--", str(log)]))
 
 
 def describe(
@@ -170,6 +231,7 @@ def commands() -> dict[str, Callable[..., None]]:
         "run": run,
         "design": design,
         "estimate": estimate,
+        "calibrate": calibrate,
         "report": report,
         "export": export,
     }

@@ -44,7 +44,7 @@ def with_dates(logged):
     ("text", "quoted"),
     [
         ("[", "not TOML"),
-        ("zone = 1", "'zone'; it may have carbon"),
+        ("zone = 1", "'zone'; it may have calibration_hours, carbon"),
         ("limit_percent = 0.1", "'limit_percent'; did you mean 'limits_percent'?"),
         ("instrument = 'nose'", "instrument is 'nose'; there are alphasense_a4"),
         ("instrument = 'laserr'", "instrument is 'laserr'; did you mean 'laser'?"),

@@ -60,7 +60,7 @@ def test_the_report_shows_what_was_asked(run_directory):
     report = content(read_run(run_directory))
     charts = named_charts(report)
     # Page 1 has the sulphur content over time, and only page 1.
-    assert set(charts) == {"budget", "regression", "track", "channels"}
+    assert set(charts) == {"budget", "regression", "track", "channels", "gas-samples"}
     assert_axes_read_quantity_and_unit(charts.values())
     # In a narrow window panels stand below each other: captions name them, and not their places.
     assert not any(
@@ -331,7 +331,7 @@ def test_a_flight_without_a_result_says_why(run_directory, tmp_path, record):
     assert report.verdict.holds
     assert not report.verdict.complete
     assert report.verdict.failures == ["quality C: no pass through a plume"]
-    assert set(named_charts(report)) == {"channels", "track"}
+    assert set(named_charts(report)) == {"channels", "gas-samples", "track"}
     built(tmp_path)
 
 
@@ -348,7 +348,7 @@ def test_without_samples_the_report_says_so(run_directory, tmp_path):
     report = content(read_run(changed_run(run_directory, tmp_path, samples=False)))
     assert report.sections[0].anchor == "missing"
     assert "samples.csv" in blocks_of(report, Table, "missing")[0].rows[0][0]
-    assert set(named_charts(report)) == {"budget"}
+    assert set(named_charts(report)) == {"budget", "gas-samples"}
 
 
 def test_samples_without_a_place_have_no_track(run_directory, tmp_path):

@@ -58,7 +58,17 @@ def file(tmp_path):
 
 
 def test_the_commands_are_these():
-    words = ["run", "design", "estimate", "report", "export", "describe", "new", "schema"]
+    words = [
+        "run",
+        "design",
+        "estimate",
+        "calibrate",
+        "report",
+        "export",
+        "describe",
+        "new",
+        "schema",
+    ]
     added = announced("command")
     assert [word for word in commands() if word != "compare" and word not in added] == words
     assert importlib.metadata.version("plume-flight-study") in console("--version").out

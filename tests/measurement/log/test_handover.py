@@ -1,0 +1,204 @@
+"""The record to hand over: it fits its schema, loses nothing, and a changed figure is noticed."""
+
+import copy
+import csv
+import hashlib
+import json
+
+import pandas as pd
+import pytest
+from logged_flights import run
+
+from measurement.errors import MeasurementError
+from measurement.log.calibration import write_calibration
+from measurement.log.handover import items_csv, read_record, schema
+from tests.measurement.log.test_calibration import calibrated
+
+BRIEFLY = pytest.mark.usefixtures("briefly")
+
+CONFIG = """
+instrument = "electrochemical"
+serial = "7"
+rule = "eca_0.13"
+[flight]
+vessel = "Nordlys"
+imo = 9074729
+mmsi = 219000000
+date = 2026-06-01T10:00:00Z
+place = "Kattegat"
+operator = "Agency"
+[engine]
+keel_laid = 2012-05-01
+rated_rpm = 120
+design_speed_mps = 8.0
+speed_mps = 7.0
+"""
+
+
+@pytest.fixture
+def handed(logged, monkeypatch):
+    """Return the directory with the record of a flight with a calibration and a picture."""
+    folder = logged.parent
+    (folder / "instrument.toml").write_text(CONFIG, encoding="utf-8")
+    write_calibration(
+        folder / "before.json", calibrated(folder / "zero.csv", gain=1.0, t90=20.0, delay=1.0)
+    )
+    (folder / "ship.png").write_bytes(b"a picture")
+    monkeypatch.chdir(folder)
+    words = ["--record", "record.json", "--picture", "ship.png", "--calibration", "before.json"]
+    assert run(logged, *words) == 0
+    return folder
+
+
+def written(folder):
+    return json.loads((folder / "record.json").read_text(encoding="utf-8"))
+
+
+def problems(record):
+    # Here, as the tests of measurement are collected without the developers' tools.
+    from jsonschema import Draft202012Validator
+
+    Draft202012Validator.check_schema(schema())
+    return [error.message for error in Draft202012Validator(schema()).iter_errors(record)]
+
+
+@BRIEFLY
+def test_a_record_fits_its_schema_and_goes_round_without_loss(handed):
+    record = read_record(handed / "record.json")
+    assert problems(record) == []
+    assert record == written(handed) == json.loads(json.dumps(record))
+    estimate = json.loads((handed / "out" / "estimate.json").read_text(encoding="utf-8"))
+    sulphur, nox = record["figures"]
+    # To the last bit.
+    assert sulphur["value"] == estimate["estimate"]["fsc_percent"]
+    assert sulphur["parts"]["noise"] == estimate["estimate"]["noise_percent"]
+    assert nox["value"] == estimate["gases"][0]["value"]
+    assert nox["verdicts"][0]["limit"] == 14.4
+    total = sum(part**2 for part in nox["parts"].values()) ** 0.5
+    assert total == pytest.approx(nox["standard_uncertainty"])
+    assert record["ship"] == {"name": "Nordlys", "imo": 9074729, "mmsi": 219000000}
+    assert record["time"]["first_utc"] == "2026-06-01T10:00:00Z"
+    assert record["decision"]["rule"] == "eca_0.13"
+    assert "screens, and certifies nothing" in record["scope"]
+
+
+@BRIEFLY
+def test_a_record_has_the_hash_of_every_input(handed, logged):
+    record = written(handed)
+    files = {item["name"]: item["sha256"] for item in record["inputs"]}
+    assert list(files) == [logged.name, "instrument.toml", "before.json"]
+    files |= {item["path"]: item["sha256"] for item in record["pictures"]}
+    for name, shown in files.items():
+        assert shown == hashlib.sha256((handed / name).read_bytes()).hexdigest()
+    [calibration] = record["calibrations"]
+    content = json.loads((handed / "before.json").read_text(encoding="utf-8"))
+    assert calibration["sha256"] == content["sha256"]
+    log = (handed / "zero.csv").read_bytes()
+    assert calibration["log_sha256"] == hashlib.sha256(log).hexdigest()
+
+
+@BRIEFLY
+def test_a_change_is_noticed_by_the_hash_that_is_documented(handed):
+    record = written(handed)
+    bare = {key: value for key, value in record.items() if key != "sha256"}
+    text = json.dumps(bare, sort_keys=True, separators=(",", ":"))
+    assert hashlib.sha256(text.encode()).hexdigest() == record["sha256"]
+    path = handed / "changed.json"
+    # Another layout is no change.
+    path.write_text(json.dumps(record, indent=7), encoding="utf-8")
+    assert read_record(path) == record
+    for change in (
+        lambda of: of["figures"][0].update(value=0.09),
+        lambda of: of["figures"][1]["verdicts"][0].update(verdict="below"),
+        lambda of: of["ship"].update(imo=9074731),
+        lambda of: of["inputs"].pop(),
+    ):
+        changed = copy.deepcopy(record)
+        change(changed)
+        path.write_text(json.dumps(changed), encoding="utf-8")
+        with pytest.raises(MeasurementError, match="was changed after it was written"):
+            read_record(path)
+
+
+@BRIEFLY
+def test_the_schema_refuses_what_no_record_has(handed):
+    record = written(handed)
+    for change in (
+        lambda of: of["figures"][0].pop("standard_uncertainty"),
+        lambda of: of["figures"][0].update(quality="D"),
+        lambda of: of["figures"][0].update(quality="C", reasons=["a leak"]),  # with a verdict
+        lambda of: of.update(version=2),
+        lambda of: of["ship"].update(imo=1),
+        lambda of: of["inputs"].clear(),
+        lambda of: of["instrument"].update(sha256="0"),
+        lambda of: of.update(more=1),
+    ):
+        changed = copy.deepcopy(record)
+        changed["figures"][0]["verdicts"][0]["verdict"] = "above"
+        change(changed)
+        assert problems(changed)
+
+
+@BRIEFLY
+def test_a_record_of_a_log_that_says_nothing_fits_the_schema_too(logged):
+    table = pd.read_csv(logged)
+    table["co2_ppm"] = 420.0  # no plume: nothing is known
+    table[["time_s", "so2_ppb", "co2_ppm"]].to_csv(logged, index=False)
+    path = logged.parent / "record.json"
+    assert run(logged, "--record", str(path), config=False) == 0
+    record = read_record(path)
+    assert problems(record) == []
+    assert record["figures"][0]["value"] is None
+    assert record["figures"][0]["quality"] == "C"
+
+
+@BRIEFLY
+def test_the_table_of_inspection_items_says_that_nobody_has_approved_it(handed):
+    record = written(handed)
+    text = (handed / "record.thetis-eu.csv").read_text(encoding="utf-8")
+    assert text == items_csv(record)
+    rows = {row["item"]: row for row in csv.DictReader(text.splitlines())}
+    assert rows["status of this table"]["value"] == "not approved by anybody"
+    assert rows["IMO identification number"]["value"] == "9074729"
+    assert rows["flag State"] == {
+        "item": "flag State",
+        "value": "",
+        "from": "not known from the air",
+    }
+    assert rows["record, SHA-256"]["value"] == record["sha256"]
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--record", "r.json", "--picture", "none.png"], "'none.png' cannot be read"),
+        (["--picture", "none.png"], "give that, too"),
+        (["--record", "flight.csv/r.json"], "cannot be written"),
+    ],
+)
+@BRIEFLY
+def test_what_cannot_be_in_a_record_is_refused_in_a_line(
+    logged, capsys, monkeypatch, words, message
+):
+    monkeypatch.chdir(logged.parent)
+    assert run(logged, *words) == 2
+    printed = capsys.readouterr().err
+    assert message in printed
+    assert printed.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ("[", "cannot be read"),
+        ("{}", "is no record"),
+        ('{"format": "plume-flight record", "version": 9}', "has version 9"),
+        ('{"format": "plume-flight record", "version": 1}', "was changed"),
+    ],
+)
+def test_a_file_that_is_no_record_is_refused_in_a_line(tmp_path, content, message):
+    path = tmp_path / "record.json"
+    path.write_text(content, encoding="utf-8")
+    with pytest.raises(MeasurementError, match=message) as caught:
+        read_record(path)
+    assert "\n" not in str(caught.value)
