@@ -19,6 +19,7 @@ from measurement.estimate.model import (
     ALIKE,
     SLOPE_LEAST,
     BlockedRecord,
+    Copies,
     Likelihood,
     Property,
     Slope,
@@ -28,12 +29,12 @@ from measurement.estimate.model import (
     block_record,
     drawn_errors,
     error_energy,
+    in_one_shape,
     line_operator,
     orthonormal,
     read_errors,
     solve_slope,
     uncertain_properties,
-    with_one_shape,
 )
 from measurement.estimate.record import Record
 from measurement.estimate.timing import T90_LEAST, T90_MOST
@@ -67,9 +68,9 @@ CHANGE = 1e-4
 KEPT_LEAST = 0.8
 """Least share of the instrument's energy that the plume must have for a verdict."""
 
-_CORRECTED_MOST, _CORRECTED_SPREAD = 0.05, 0.3
-"""Share of that energy that noise and background have from which on passes get one shape; and
-relative standard deviation of it, as the background is not quite what the model says."""
+_CORRECTED_SPREAD = 0.3
+"""Relative standard deviation of what (7) corrects, as the background is not quite what the model
+says."""
 
 _STANDS_OUT = 3.0
 """Height of a pass over its line [standard deviations of the background over such a line]."""
@@ -176,16 +177,6 @@ class _State:
         """Return the state as if the instrument was known exactly to be that of ``place``."""
         return replace(self, data=replace(self.data, columns=0.0 * self.data.columns))
 
-    def properties_found(self) -> tuple[Array, Array]:
-        """Return mean and covariance of the properties, given the record [units]."""
-        inverse = self.with_known_properties().inverse(self.freed)
-        columns = self.distortions
-        weighted = inverse @ columns
-        priors = np.array([item.prior for item in self.properties])
-        precision = np.diag(priors**-2.0) + columns.T @ weighted
-        covariance: Array = np.asarray(np.linalg.inv(precision), dtype=np.float64)
-        return -covariance @ (weighted.T @ self.residual), covariance
-
     def unweighted_slope(self) -> float:
         """Return the slope by the instrument z without weights, 0 if there is none.
 
@@ -209,38 +200,80 @@ class _State:
         size = background_of_co2(self.data, self.variances, self.slope)
         return read_errors(self.data, self.variances, size)
 
-    def solved(self, inverse: Array) -> Slope:
-        """Return the slope of the ship's passes in their windows, as if these were given."""
-        windows = [self.data.windows[i] for i in self.own]
-        operator = line_operator(len(self.data.read), windows)
-        energy = error_energy(self.data, inverse, operator, self.read_errors)
-        return solve_slope(inverse, self.instrument_column, energy, self.signals)
-
-    def solved_with_drawn_windows(self, inverse: Array, *, one_shape: bool = False) -> Slope:
-        """Return the slope by (8), for windows that are found in CO2 as it is read.
+    def solved(self, varying: Array | None = None, *, draw_windows: bool = False) -> Slope:
+        """Return the slope by (8).
 
         Parameters
         ----------
-        one_shape : whether all passes get their mean shape
+        varying : the columns Z of passes whose slopes may differ
+        draw_windows : whether windows are found in c + w, and not as if they were given
         """
+        if not self.stated:
+            bare = self.without_properties()
+            copies = bare.copies(draw_windows=draw_windows)
+            inverse = self.inverse(self.fixed, varying)
+            return solve_slope(inverse, copies, self.signals[0], np.zeros(0), bare.place)
+        inverse = self.with_known_properties().inverse(self.fixed, varying)
+        precision = np.array([item.prior**-2.0 for item in self.properties])
+        copies = self.copies(draw_windows=draw_windows)
+        return solve_slope(inverse, copies, self.data.so2, precision, self.place)
+
+    @property
+    def stated(self) -> bool:
+        """Whether all properties are stated: only then (8) finds them beside the slope."""
+        return all(item.prior == 1.0 for item in self.properties)
+
+    def without_properties(self) -> "_State":
+        """Return the state of the stated instrument, without properties."""
+        so2, co2 = self.signals
+        data = replace(self.data, so2=so2, co2=co2, columns=self.data.columns[:, :0])
+        return replace(self, data=data, properties=[], place=np.zeros(0))
+
+    def properties_found(self) -> tuple[Array, Array]:
+        """Return mean and covariance of the properties by the residuals [units]."""
+        inverse = self.with_known_properties().inverse(self.freed)
+        columns = self.distortions
+        weighted = inverse @ columns
+        priors = np.array([item.prior for item in self.properties])
+        precision = np.diag(priors**-2.0) + columns.T @ weighted
+        covariance: Array = np.asarray(np.linalg.inv(precision), dtype=np.float64)
+        return -covariance @ (weighted.T @ self.residual), covariance
+
+    def copies(self, *, draw_windows: bool) -> Copies:
+        """Return the instruments of c + w and the columns of c - w, for each w of (7)."""
         data, errors = self.data, self.read_errors
         drawn = drawn_errors(errors)
-        instruments = np.zeros((len(data.known), drawn.shape[1]))
+        windows = [data.windows[i] for i in self.own]
+        operator = line_operator(len(drawn), windows)
+        over = np.zeros((len(drawn), 3, drawn.shape[1]))
         for i, added in enumerate(drawn.T):
-            read = data.read + added
-            windows = [window for window in data.windows_of(read) if self._is_own(window)]
-            operator = line_operator(len(read), windows)
-            windows = [
-                windows[j]
-                for j in np.flatnonzero(stands_out(operator, windows, read, 2.0 * errors))
-            ]
-            operator = line_operator(len(read), windows)
-            if one_shape and windows:
-                operator = with_one_shape(operator, windows, read)
-            instruments[:, i] = data.equalised(operator @ read)  # (5)
-        products = np.vdot(inverse @ data.equalised(drawn), instruments)
-        energy = float(products) / drawn.shape[1]  # (8)
-        return solve_slope(inverse, instruments.mean(axis=1), energy, self.signals)
+            if draw_windows:
+                windows = self._windows_of(data.read + added, 2.0 * errors)
+                operator = line_operator(len(drawn), windows)
+            copies = operator @ np.stack([data.read + added, data.read - added, data.read], axis=1)
+            copies[:, 0] = in_one_shape(copies[:, 0], windows)
+            over[:, :, i] = copies
+        found = data.regressors(over, self.properties, self.slope)
+        instruments, columns, noisy = (found[:, i].copy() for i in range(3))
+        # What SO2 follows is all of CO2, not the passes over their lines alone.
+        noisy[:, :, 0] = data.co2[:, np.newaxis]
+        columns[:, :, 0] = data.co2[:, np.newaxis] - data.equalised(drawn)
+        return Copies(instruments=instruments, columns=columns, noisy=noisy)
+
+    def plume_share(self, varying: Array) -> float:
+        """Return the share of the energy of the passes that is not noise and background [-]."""
+        inverse = self.with_known_properties().inverse(self.fixed, varying)
+        operator = line_operator(len(self.data.read), [self.data.windows[i] for i in self.own])
+        whole = float(self.instrument_column @ inverse @ self.data.co2)
+        errors = error_energy(self.data, inverse, operator, self.read_errors)
+        return 1.0 - errors / whole if whole > 0.0 else 0.0
+
+    def _windows_of(self, read: Array, errors: Array) -> list[Window]:
+        """Return the windows of the ship's passes in CO2 with errors of that covariance."""
+        windows = [window for window in self.data.windows_of(read) if self._is_own(window)]
+        operator = line_operator(len(read), windows)
+        high = stands_out(operator, windows, read, errors)
+        return [windows[i] for i in np.flatnonzero(high)]
 
     def _is_own(self, window: Window) -> bool:
         """Return whether no pass of another fuel is where this window has its peak."""
@@ -352,24 +385,19 @@ def fit_record(record: Record, instrument: SnifferSpec) -> Fit:
     state, alike, agreement = _without_foreign(state)
     own = state.data.passes[:, state.own]
     if len(state.own) > 2:
-        start = 0.1 * abs(state.slope) + state.solved(alike).deviation
+        start = 0.1 * abs(state.slope) + state.solved(own).deviation
         state = state.with_between(max(1e-3, start)).refitted(own)
     else:
         state = state.with_between(0.0)
-    inverse = state.inverse(state.fixed, own)
-    found = state.solved_with_drawn_windows(inverse)
-    bare = state.with_known_properties()
-    whole = bare.solved(bare.inverse(state.fixed, own)).kept
-    if found.kept < 1.0 - _CORRECTED_MOST:
-        found = state.solved_with_drawn_windows(inverse, one_shape=True)
+    found = state.solved(own, draw_windows=True)
     if not math.isfinite(found.slope):
         return Fit(instrument=instrument, problems=(_HAZE,))
-    if whole < KEPT_LEAST and not problems:
+    if state.plume_share(own) < KEPT_LEAST and not problems:
         problems = (_HAZE,)
     state = state.with_slope(found)
     corrected = _CORRECTED_SPREAD * state.slope * max(0.0, 1.0 / found.kept - 1.0)
     problems += _disagreement(state, alike, agreement)
-    return _result(instrument, state, inverse, found, corrected, agreement, problems)
+    return _result(instrument, state, found, corrected, agreement, problems)
 
 
 _HAZE = "CO2 background varies as much within passes as the plume; fly closer or wait"
@@ -396,9 +424,12 @@ def _linearised(record: Record, instrument: SnifferSpec, state: _State) -> _Stat
     for number in range(rounds):
         slope = max(SLOPE_LEAST, state.unweighted_slope())
         state = replace(state, slope=slope).refitted()
-        inverse = state.inverse(state.fixed)
-        state = state.with_slope(state.solved(inverse))
-        place, _ = state.properties_found()
+        found = state.solved()
+        state = state.with_slope(found)
+        if state.stated:
+            place = state.place + found.properties
+        else:
+            place, _ = state.properties_found()
         near = np.clip(place - state.place, -_STEP_MOST, _STEP_MOST) + state.place
         place = np.where(stated, np.clip(place, -_STEP_MOST, _STEP_MOST), near)
         place = _within_search(instrument, state.properties, place)
@@ -429,7 +460,7 @@ def _of_passes_that_stand_out(
 ) -> tuple[_State, tuple[str, ...]]:
     """Return the state with the passes that stand out of the background, and the problem of none.
 
-    Peaks of the background have been chosen for their height, so that (6) would not correct them.
+    Peaks of the background have been chosen for their height, so that (7) would not correct them.
     """
     data = state.data
     operator = line_operator(len(data.read), data.windows)
@@ -446,7 +477,7 @@ def _of_passes_that_stand_out(
         return state, ()
     foreign = tuple(int(np.searchsorted(kept, i)) for i in state.foreign)
     state = replace(state, data=fewer, foreign=foreign).refitted()
-    return state.with_slope(state.solved(state.inverse(state.fixed))), ()
+    return state.with_slope(state.solved()), ()
 
 
 def stands_out(
@@ -474,7 +505,7 @@ def _without_foreign(state: _State) -> tuple[_State, Array, float]:
         state = state.with_between(ALIKE * abs(state.slope))
         own = state.data.passes[:, state.own]
         inverse = state.inverse(state.fixed, own)
-        state = state.with_slope(state.solved(inverse))
+        state = state.with_slope(state.solved(own))
         against = own.T @ (inverse @ state.residual)
         inner = own.T @ (inverse @ own)
         strength = np.abs(against) / np.sqrt(np.maximum(np.diagonal(inner), 1e-12))
@@ -582,7 +613,6 @@ def _change_of_slope(state: _State, inverse: Array) -> tuple[int, float]:
 def _result(
     instrument: SnifferSpec,
     state: _State,
-    inverse: Array,
     found: Slope,
     corrected: float,
     agreement: float,
@@ -590,19 +620,23 @@ def _result(
 ) -> Fit:
     """Return the fit with its figures."""
     data, priors = state.data, np.array([item.prior for item in state.properties])
-    columns = state.distortions
     stated = priors == 1.0
-    # Of (7), what the columns D add.
-    response = float(np.sum((columns[:, stated].T @ found.weights) ** 2))
     t90_sd_s, delay_sd_s = _timing_deviations(instrument, state)
-    if not stated.all():
-        known = replace(state, properties=[p for p in state.properties if p.prior == 1.0])
-        known = replace(known, data=replace(data, columns=data.columns[:, stated]))
-        known = replace(known, place=state.place[stated])
-        own = data.passes[:, state.own] if state.variances.between else None
-        z = state.instrument_column
-        least = 1.0 / float(z @ known.inverse(state.fixed, own) @ z)
-        whole = 1.0 / float(z @ inverse @ z)
+    if stated.all():
+        response = float(np.sum(found.by_property**2))
+    else:
+        # What D adds to the noise.
+        response = float(np.sum((state.distortions[:, stated].T @ found.weights) ** 2))
+        known = replace(
+            state,
+            data=replace(data, columns=data.columns[:, stated]),
+            properties=[item for item in state.properties if item.prior == 1.0],
+            place=state.place[stated],
+        )
+        own, z = data.passes[:, state.own], state.instrument_column
+        least, whole = (
+            1.0 / float(z @ each.inverse(state.fixed, own) @ z) for each in (known, state)
+        )
         response += found.deviation**2 * max(0.0, 1.0 - least / whole)
     noise = math.sqrt(max(0.0, found.deviation**2 - response) + corrected**2)
     size = background_of_co2(data, state.variances, state.slope)

@@ -29,29 +29,46 @@ s, a, l and c have the least of
 which is the restricted likelihood (Patterson and Thompson, Biometrika 58:545): with the instrument
 z of (5) as one of the fixed columns, an error of b cannot look like a background.
 
-**Slope.** Noise and background of CO2 would weaken a regression on co2. The instrument is the CO2
-of the passes alone, each over the straight line between the troughs beside it,
+**Slope.** The plume is seen in the passes alone, each over the straight line between the troughs
+beside it,
 
     z = E Q c,   c the readings, Q the line taken away, E the equalising filter          (5)
 
-and the slope solves E[z' P r] = -b tr(P C), C the covariance of the errors of z and co2:
+and D is made of it. With the properties d from where the record is linearised [units], SO2 is
 
-    b = z' P so2 / (z' P co2 - tr(P C)),   C = E Q (noise + background of c) E'          (6)
-    var b = z' P z / (z' P co2 - tr(P C))^2                                              (7)
+    so2 = b p - H d + noise,   H = D b in the true plume p                               (6)
 
-(instrumental variables with a known error: Fuller, Measurement Error Models, 1987, section 2.4).
-The background of CO2 in C is what residuals and troughs show of it, the smaller of both.
+where the noise has the V of (2) without D, and d a normal distribution about -(that place). Both p
+and H are only known with the errors of c, its noise and background. These weaken b, and with
+D in P they do so in a way that no trace corrects: a longer t90 makes short passes in a slow cell
+lower, nearly as a smaller b does, so that z beside D is small, and the errors of z and of D, which
+are the same, are not. A fuel of 2.7 % was read 26 % too high.
 
-**Windows.** The passes are found in c, so that Q depends on its errors: a weak pass counts where
-noise raises it, and windows end where it is low. Errors that choose are not 0 in the mean, and (6)
-would be 2 % low where noise is a tenth of the passes. With other errors w of the same covariance,
-c + w and c - w are independent. So the slope is found with z(c + w), of which all is chosen in
-c + w, against the CO2 of c - w:
+So d is found beside b, and the errors are taken out of all products. With other errors w of the
+same covariance, c + w and c - w are independent. Instruments are made of the one, columns of the
+other:
 
-    E[z(c + w)' P (co2 - E w)] = E[z(c + w)]' P (plume of co2)                           (8)
+    Z = (z, -H) of c + w,   X = (co2 - E w, -H of c - w),   M = mean of Z' P X over w    (7)
 
-However z is found, its mean over w is the instrument, and that of z' P E w takes the place of
-tr(P C) (Oliveira, Lei and Tibshirani, arXiv:2111.09447; Leiner et al., arXiv:2112.11079).
+has the products of what is true in its mean, E[M] = E[Z]' P (p, -H), P that of (3) without D. Then
+
+    (M + G) (b, d) = mean of Z' P so2 - G (0, place),   G = diag(0, 1/prior^2)           (8)
+    var b = v' Z' P Z v + sum of (v_k / prior_k)^2,   v the first row of (M + G)^-1      (9)
+
+(instrumental variables: Fuller, Measurement Error Models, 1987, sections 1.4 and 2.4; splitting by
+added errors: Oliveira, Lei and Tibshirani, arXiv:2111.09447; Leiner et al., arXiv:2112.11079). M
+holds for any instruments that are made of c + w alone:
+
+* The windows of the passes are found there. In c, a weak pass would count where noise raises it,
+  and windows end where it is low: errors that choose are not 0 in the mean.
+* All passes get their mean shape, each of its own size. So a single number of each holds noise and
+  background, and C, their covariance, need not be known well.
+
+The part of M that is H' P H in the mean has no negative eigenvalue; one that errors make is set to
+0. The background of CO2 in C is what residuals and troughs show of it, the smaller of both.
+
+Where a t90 or delay is not stated, G holds nothing, and M alone leads away from the true t90 of a
+cell in which passes overlap. Then D stays in P, as in (2), (8) has b alone, and d is found from r.
 """
 
 import itertools
@@ -227,23 +244,27 @@ def line_operator(count: int, windows: Sequence[Window]) -> Array:
     return operator
 
 
-def with_one_shape(operator: Array, windows: Sequence[Window], co2: Array) -> Array:
-    """Return Q with each pass replaced by the mean shape of all, of the size that fits it.
+def in_one_shape(over: Array, windows: Sequence[Window]) -> Array:
+    """Return passes in the mean shape of all, each of the size that fits it, shape (n,).
 
     A single number of each pass then holds its noise and background, not each of its blocks.
+
+    Parameters
+    ----------
+    over : CO2 over the lines of the windows, of all blocks, shape (n,)
     """
-    over = operator @ co2
-    before = max(window.peak - window.first for window in windows)
-    after = max(window.last - window.peak for window in windows)
+    before = max((window.peak - window.first for window in windows), default=0)
+    after = max((window.last - window.peak for window in windows), default=0)
     total = np.zeros(before + after + 1)
-    for window in windows:
-        total[before + window.inside - window.peak] += over[window.inside]
-    shaped = np.zeros_like(operator)
-    for window in windows:
-        shape = total[before + window.inside - window.peak]
+    places = [before + window.inside - window.peak for window in windows]
+    for window, place in zip(windows, places, strict=True):
+        total[place] += over[window.inside]
+    shaped = np.zeros_like(over)
+    for window, place in zip(windows, places, strict=True):
+        shape = total[place]
         energy = float(shape @ shape)
         if energy > 0.0:
-            shaped[window.inside] = np.outer(shape, shape @ operator[window.inside]) / energy
+            shaped[window.inside] = shape * float(shape @ over[window.inside]) / energy
     return shaped
 
 
@@ -366,12 +387,27 @@ class BlockedRecord:
 
     def equalised(self, values: Array) -> Array:
         """Return E of (5) on CO2 of all blocks, at the known ones, shape (n, ...)."""
+        return self._equalised(values)[self.known]
+
+    def _equalised(self, values: Array) -> Array:
         own = self.signals.instrument.known("co2").constants
-        filtered = self.blocks.by_segment(
+        return self.blocks.by_segment(
             lambda part: equalised_from_rest(part, self.blocks.step, own, self.signals.common),
             values,
         )
-        return filtered[self.known]
+
+    def regressors(self, over: Array, properties: Sequence[Property], slope: float) -> Array:
+        """Return z of (5) and the columns -H of (7), shape (n, ..., 1 + p) [ppm], [ppb].
+
+        Parameters
+        ----------
+        over : CO2 of passes over their lines, of all blocks, shape (m, ...) [ppm]
+        """
+        z = self._equalised(over)
+        step, by_segment = self.blocks.step, self.blocks.by_segment
+        columns = _distortions(self.signals, z, properties, step, by_segment)
+        columns *= -self.slopes(properties, slope)
+        return np.concatenate([z[..., np.newaxis], columns], axis=-1)[self.known]
 
     @property
     def reading_noise(self) -> float:
@@ -429,7 +465,15 @@ def block_record(
         passes=passes,
         noises=_noises(signals, blocks, known),
         fixed=fixed,
-        columns=blocks.mean(_distortions(signals, each.sum(axis=1), properties))[known],
+        columns=blocks.mean(
+            _distortions(
+                signals,
+                each.sum(axis=1),
+                properties,
+                record.step,
+                lambda change, values: _by_segments(record, values, change),
+            )
+        )[known],
         cross=float(z @ others) / energy if energy > 0.0 else 0.0,
     )
 
@@ -507,13 +551,27 @@ def _from_rest(signals: Signals, values: Array) -> Array:
     return equalised_from_rest(values, signals.record.step, own, signals.common)
 
 
-def _distortions(signals: Signals, plume: Array, properties: Sequence[Property]) -> Array:
-    """Return the columns D of (2) for slope 1: change of r by a unit of each, by sample.
+def _distortions(
+    signals: Signals,
+    plume: Array,
+    properties: Sequence[Property],
+    step: float,
+    by_segment: Callable[[Callable[[Array], Array], Array], Array],
+) -> Array:
+    """Return the columns D of (2) for slope 1: change of r by a unit of each property.
 
     They are made of the passes over their lines. Readings would not do: the derivative of their
     background is correlated with the background of r.
+
+    Parameters
+    ----------
+    plume : equalised CO2 of the passes, ``step`` [s] apart, shape (m, ...) [ppm]
+    by_segment : applies a change to each segment of such values
+
+    Returns
+    -------
+    shape (m, ..., p) [ppm]
     """
-    step = signals.record.step
 
     def change(part: Array, item: Property) -> Array:
         sign = 1.0 if item.gas == "so2" else -1.0
@@ -525,9 +583,9 @@ def _distortions(signals: Signals, plume: Array, properties: Sequence[Property])
         slower = tuple(math.exp(item.unit) * constant for constant in constants)
         return sign * (equalised_from_rest(part, step, slower, constants) - part)
 
-    columns = np.zeros((len(plume), len(properties)))
+    columns = np.zeros((*plume.shape, len(properties)))
     for i, item in enumerate(properties):
-        columns[:, i] = _by_segments(signals.record, plume, partial(change, item=item))
+        columns[..., i] = by_segment(partial(change, item=item), plume)
     return columns
 
 
@@ -736,19 +794,29 @@ def _prior(logs: Array, between: float) -> tuple[float, Array]:
 
 @dataclass(frozen=True, kw_only=True)
 class Slope:
-    """Slope by (6) and (7).
+    """Solution of (8); a slope of NaN where the plume cannot be told from noise and background.
 
     Attributes
     ----------
-    slope, deviation : and its standard deviation by all of V [ppb/ppm]
-    weights : P z over the energy of (6): the slope is their sum with SO2, shape (n,) [1/ppm]
-    kept : share of the instrument's energy that is the plume's, and not noise and background [-]
+    slope, noise : and its standard deviation by V [ppb/ppm]
+    by_property : the same by each property, as far as it is stated, shape (p,) [ppb/ppm]
+    properties, covariance : of the properties, from where the record is linearised [units]
+    weights : the slope is their sum with SO2 (but for what is stated), shape (n,) [1/ppm]
+    kept : slope that noise and background of CO2 would leave of a slope of 1 [-]
     """
 
     slope: float
-    deviation: float
+    noise: float
+    by_property: Array
+    properties: Array
+    covariance: Array
     weights: Array
     kept: float
+
+    @property
+    def deviation(self) -> float:
+        """Standard deviation of the slope [ppb/ppm]."""
+        return math.sqrt(self.noise**2 + float(np.sum(self.by_property**2)))
 
 
 SLOPE_LEAST = 0.1
@@ -790,21 +858,8 @@ def read_errors(data: BlockedRecord, found: Variances, size: float) -> Array:
     return covariance
 
 
-def error_energy(data: BlockedRecord, inverse: Array, operator: Array, errors: Array) -> float:
-    """Return tr(P C) of (6) for windows that the errors of CO2 have no part in.
-
-    Parameters
-    ----------
-    inverse : P of (3), shape (n, n)
-    operator : Q of (5), of all blocks
-    errors : covariance of the errors of CO2 as read, of all blocks [ppm^2]
-    """
-    covariance = data.equalised(data.equalised(operator @ errors).T).T  # C of (6)
-    return float(np.vdot(inverse, covariance))
-
-
 _DRAWS, _SEED = 8, 60
-"""Pairs of draws w and -w in (8), and the seed of their random numbers: the same for all records,
+"""Pairs of draws w and -w in (7), and the seed of their random numbers: the same for all records,
 so that an estimate is repeated to the last bit."""
 
 _ROUNDING = 1e-10
@@ -812,7 +867,7 @@ _ROUNDING = 1e-10
 
 
 def drawn_errors(errors: Array) -> Array:
-    """Return draws w of (8), one in each column and each with its negative, shape (n, k) [ppm].
+    """Return draws w of (7), one in each column and each with its negative, shape (n, k) [ppm].
 
     Parameters
     ----------
@@ -825,27 +880,88 @@ def drawn_errors(errors: Array) -> Array:
     return np.hstack([drawn, -drawn])
 
 
-def solve_slope(
-    inverse: Array, z: Array, error_energy: float, signals: tuple[Array, Array]
-) -> Slope:
-    """Return the slope by (6) and (7).
+def error_energy(data: BlockedRecord, inverse: Array, operator: Array, errors: Array) -> float:
+    """Return the part of z' P co2 that errors of CO2 have in it, for windows that are given [-].
 
     Parameters
     ----------
     inverse : P of (3), shape (n, n)
-    z : of (5), shape (n,) [ppm]
-    error_energy : tr(P C) of (6) [-]
-    signals : so2 and co2 by the stated instrument, shape (n,) [ppb], [ppm]
+    operator : takes the lines away, of all blocks
+    errors : covariance of the errors of CO2 as read, of all blocks [ppm^2]
     """
-    so2, co2 = signals
-    weighted = inverse @ z
-    whole = float(weighted @ co2)
-    energy = whole - error_energy
-    if not (energy > 0.0 and float(z @ weighted) > 0.0):
-        return Slope(slope=math.nan, deviation=math.nan, weights=0.0 * z, kept=0.0)
-    return Slope(
-        slope=float(weighted @ so2) / energy,  # (6)
-        deviation=math.sqrt(float(z @ weighted)) / energy,  # (7)
-        weights=weighted / energy,
-        kept=energy / whole,
+    covariance = data.equalised(data.equalised(operator @ errors).T).T
+    return float(np.vdot(inverse, covariance))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Copies:
+    """Z and X of (7) for each draw w, shape (n, draws, 1 + p).
+
+    Attributes
+    ----------
+    instruments, columns : Z of c + w and X of c - w: z or co2 [ppm], and -H [ppb]
+    noisy : X of c
+    """
+
+    instruments: Array
+    columns: Array
+    noisy: Array
+
+
+def solve_slope(
+    inverse: Array, copies: Copies, so2: Array, precision: Array, place: Array
+) -> Slope:
+    """Return the slope by (8) and (9).
+
+    Parameters
+    ----------
+    inverse : P of (3), shape (n, n)
+    so2 : by the instrument that the record is linearised about, shape (n,) [ppb]
+    precision : of what is stated of each property [1/unit^2]
+    place : where the record is linearised [units]
+    """
+    count, _, size = copies.instruments.shape
+    weighted = (inverse @ copies.instruments.reshape(count, -1)).reshape(copies.instruments.shape)
+    stated = np.diag(np.concatenate([[0.0], precision]))
+    left, noisy = (
+        _products(weighted, columns) + stated for columns in (copies.columns, copies.noisy)
     )
+    if left[0, 0] > 0.0:
+        z, weights = copies.instruments.mean(axis=1), weighted.mean(axis=1)
+        solved = np.linalg.inv(left)
+        of_slope = solved[0]
+        found = solved @ (weights.T @ so2 - stated @ np.concatenate([[0.0], place]))  # (8)
+        variance = float(of_slope @ (z.T @ weights) @ of_slope)
+        kept = float(np.linalg.solve(noisy, left[:, 0])[0])
+        if of_slope[0] > 0.0 and variance > 0.0 and kept > 0.0:
+            return Slope(
+                slope=float(found[0]),
+                noise=math.sqrt(variance),  # (9)
+                by_property=of_slope[1:] * np.sqrt(precision),
+                properties=found[1:],
+                covariance=0.5 * (solved + solved.T)[1:, 1:],
+                weights=weights @ of_slope,
+                kept=kept,
+            )
+    return Slope(
+        slope=math.nan,
+        noise=math.nan,
+        by_property=np.zeros(size - 1),
+        properties=np.zeros(size - 1),
+        covariance=np.diag(1.0 / precision),
+        weights=np.zeros(count),
+        kept=0.0,
+    )
+
+
+def _products(weighted: Array, columns: Array) -> Array:
+    """Return M of (7), given P Z."""
+    matrix: Array = np.tensordot(weighted, columns, axes=([0, 1], [0, 1])) / weighted.shape[1]
+    matrix[1:, 1:] = _without_negative(matrix[1:, 1:])
+    return matrix
+
+
+def _without_negative(matrix: Array) -> Array:
+    """Return the nearest symmetric matrix that has no negative eigenvalue."""
+    values, vectors = np.linalg.eigh(0.5 * (matrix + matrix.T))
+    return np.asarray((vectors * np.maximum(values, 0.0)) @ vectors.T)

@@ -91,13 +91,17 @@ def shifted(signal: Array, step: float, delay: float) -> Array:
     """Return a smooth signal ``delay`` [s] later, by cubic interpolation.
 
     Beyond its ends it stays at its last value.
+
+    Parameters
+    ----------
+    signal : shape (n, ...), a step [s] apart
     """
     whole, weights = _between_samples(step, delay)
     samples = np.arange(len(signal)) + whole
-    moved = np.zeros(len(signal))
+    moved = np.zeros(signal.shape)
     for offset, weight in zip(_AROUND, weights, strict=True):
         if weight:
-            moved += weight * signal.take(samples + offset, mode="clip")
+            moved += weight * signal.take(samples + offset, axis=0, mode="clip")
     return moved
 
 
