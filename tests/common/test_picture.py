@@ -64,11 +64,3 @@ def test_what_is_no_picture_is_refused_in_one_line_that_names_the_file_alone(
     assert str(refused.value).startswith("'logo.png' ")
     assert said in str(refused.value)
     assert "\n" not in str(refused.value)
-
-
-def test_a_file_that_is_gone_is_refused(tmp_path):
-    with pytest.raises(
-        PictureError,
-        match=r"'gone\.png' cannot be read \(No such file or directory\); give a PNG, JPEG or SVG",
-    ):
-        read_picture(tmp_path / "gone.png")

@@ -2,7 +2,7 @@
 
 import pytest
 
-from common.provenance import command_line, provenance
+from common.provenance import command_line
 
 
 @pytest.mark.parametrize(
@@ -23,18 +23,3 @@ def test_a_command_line_names_no_host_and_no_folder_of_a_machine(arguments, show
         command_line("scenarios.run", ["scenarios/run.py", *arguments])
         == f"python -m scenarios.run {shown}"
     )
-
-
-@pytest.mark.parametrize(
-    "program", ["plume-flight", "/usr/local/bin/plume-flight", "plume-flight.exe"]
-)
-def test_a_command_line_is_the_one_that_was_typed(program):
-    assert (
-        command_line("scenarios.run", [program, "run", "sweep_nu"]) == "plume-flight run sweep_nu"
-    )
-
-
-def test_a_host_is_described_by_its_kind():
-    host = provenance()
-    assert host["cores"] >= 1
-    assert len(host["platform"].split()) == 2

@@ -17,8 +17,8 @@ from aircraft.fleet.x8 import X8
 from aircraft.state import body_velocity
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.jsbsim.system import HEADING_RATE, RESET, write_root
-from innerloop.law import COMMANDS, ControlLaw, bank_slopes, linear_controller, measurements
-from innerloop.schedule import LATERAL, LEVEL, LEVEL_GAINS, LONGITUDINAL, TRIM_BANKS
+from innerloop.law import ControlLaw, linear_controller
+from innerloop.schedule import LEVEL, LEVEL_GAINS, LONGITUDINAL, TRIM_BANKS
 
 MIDDLE = 2
 TIME_STEP = 1.0 / 120.0
@@ -314,22 +314,3 @@ def test_a_heading_rate_command_moves_the_aileron_as_the_linear_description_says
     late = time > 0.6
     np.testing.assert_allclose(flown[late], expected[late], rtol=0.03)
     np.testing.assert_allclose(flown, expected, atol=0.1 * np.abs(expected).max())
-
-
-def test_a_coordinated_turn_needs_nearly_the_textbooks_bank(x8_schedule):
-    # tan(bank) = V omega/g for a coordinated turn, so the slope is 1; sideslip's side force adds 3
-    # % or so without a rudder.
-    assert bank_slopes(x8_schedule) == pytest.approx([1.03] * 5, abs=0.05)
-
-
-@pytest.mark.parametrize(("name", "states"), [("x8", 5), ("aerosonde", 6)])
-def test_the_linear_description_is_named(designs, name, states):
-    schedule = designs(name).design.schedule
-    system = linear_controller(ControlLaw(schedule), schedule.level(MIDDLE))
-    measured = measurements(schedule)
-    assert tuple(system.input_labels) == (*COMMANDS, *measured)
-    assert tuple(system.output_labels) == tuple(i.name for i in schedule.spec.inputs)
-    assert set(LONGITUDINAL) < set(measured)
-    # Sideslip is measured where a rudder answers it, and only there its integral is a state.
-    assert set(LATERAL) - set(measured) == (set() if name == "aerosonde" else {"beta"})
-    assert len(system.state_labels) == states

@@ -16,18 +16,13 @@ from innerloop.designer import Grid, linear_grid, schedule_at
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.responses import flown_step
 from innerloop.jsbsim.system import write_root
-from innerloop.schedule import GAIN_BANKS, LEVEL, TRIM_BANKS
+from innerloop.schedule import LEVEL
 
 
 def even_and_odd(table):
     """Even and odd part over bank, relative to level flight."""
     change = table - table[LEVEL]
     return 0.5 * (change + change[::-1]), 0.5 * (change - change[::-1])
-
-
-@pytest.mark.parametrize("shares", [TRIM_BANKS, GAIN_BANKS])
-def test_banks_are_symmetric_about_level(shares):
-    assert [-b for b in reversed(shares)] == list(shares)
 
 
 def test_the_tables_reach_past_the_largest_commanded_bank_and_gains_are_those_of_equilibria(
@@ -44,16 +39,6 @@ def test_the_tables_reach_past_the_largest_commanded_bank_and_gains_are_those_of
             at = x8_schedule.gain_trim(i, j)
             assert at.airspeed == x8_schedule.airspeeds[i]
             assert at.roll == pytest.approx(x8_schedule.gain_banks[j], abs=1e-3)
-
-
-def test_level_is_the_straight_equilibrium_of_each_airspeed(x8_schedule):
-    for index, airspeed in enumerate(X8.envelope.design_airspeeds):
-        found = x8_schedule.level(index)
-        assert (found.airspeed, found.yaw_rate, found.altitude) == (
-            airspeed,
-            0.0,
-            x8_schedule.altitude,
-        )
 
 
 @pytest.mark.parametrize("quantity", ["elevator", "throttle", "pitch", "q"])
@@ -77,29 +62,6 @@ def test_what_a_turn_asks_for_across_it_is_nearly_odd_over_bank(x8_schedule, qua
     assert np.abs(even).max() < share * np.abs(odd).max()
 
 
-def test_a_turn_asks_for_more_lift_and_more_power(x8_schedule):
-    banks = np.abs(TRIM_BANKS)
-    order = np.argsort(banks[: LEVEL + 1])
-    for side in (slice(None, LEVEL + 1), slice(None, LEVEL - 1 if LEVEL else None, -1)):
-        elevator, throttle, pitch_rate = (
-            x8_schedule.over_bank(name)[side][order] for name in ("elevator", "throttle", "q")
-        )
-        assert (np.diff(elevator, axis=0) < 0.0).all()  # trailing edge up pitches up
-        assert (np.diff(throttle, axis=0) > 0.0).all()
-        assert (np.diff(pitch_rate, axis=0) > 0.0).all()  # nose up in a turn to either side
-
-
-def test_a_turn_goes_where_the_aircraft_banks(x8_schedule):
-    yaw_rates = x8_schedule.over_bank("yaw_rate")
-    assert (np.sign(yaw_rates) == np.sign(TRIM_BANKS)[:, None]).all()
-    assert (np.diff(yaw_rates, axis=0) > 0.0).all()
-
-
-def test_faster_flight_needs_less_angle_of_attack_and_more_throttle(x8_schedule):
-    assert (np.diff(x8_schedule.over_bank("pitch")[LEVEL]) < 0.0).all()
-    assert (np.diff(x8_schedule.over_bank("throttle")[LEVEL]) > 0.0).all()
-
-
 @pytest.mark.parametrize("index", range(5))
 def test_the_bank_for_a_turn_is_that_of_the_equilibrium_with_this_yaw_rate(x8_schedule, index):
     airspeed = x8_schedule.airspeeds[index]
@@ -118,25 +80,6 @@ def test_between_equilibria_the_bank_for_a_turn_is_within_a_tenth_of_a_degree(x8
     assert math.degrees(float(x8_schedule.bank_for_turn(turn)[0, 2])) == pytest.approx(
         bank, abs=0.1
     )
-
-
-def test_past_the_steepest_equilibrium_the_bank_goes_on_growing_and_stays_short_of_a_right_angle(
-    x8_schedule,
-):
-    turns = np.linspace(-3.0, 3.0, 61)
-    banks = x8_schedule.bank_for_turn(turns)
-    assert banks.shape == (61, 5)
-    assert (np.diff(banks, axis=0) > 0.0).all()
-    assert np.abs(banks).max() < 0.5 * math.pi
-
-
-def test_a_table_has_a_row_for_each_bank_and_a_column_for_each_airspeed(x8_schedule):
-    table = x8_schedule.over_bank("aileron")
-    assert table.shape == (len(TRIM_BANKS), len(X8.envelope.design_airspeeds))
-    assert table[2, 3] == x8_schedule.trims[3][2].inputs["aileron"]
-    # A trim's quantities by their names.
-    assert x8_schedule.over_bank("q")[1, 0] == x8_schedule.trims[0][1].rates_body[1]
-    assert x8_schedule.over_bank("pitch")[1, 0] == x8_schedule.trims[0][1].pitch
 
 
 def test_a_slower_heading_rate_model_is_designed_when_asked_for(x8_design, tmp_path):

@@ -2,10 +2,8 @@
 works.
 """
 
-import csv
 import json
 import os
-import re
 import subprocess
 import sys
 from html.parser import HTMLParser
@@ -13,7 +11,6 @@ from pathlib import Path
 
 import pytest
 
-from reports.run.run_data import read_run
 from tests.in_process import assert_refused, run_command
 from tests.scenarios.short_trial import short_trial
 
@@ -80,12 +77,6 @@ def test_a_name_that_no_file_can_have_is_one_line(folder, name, words):
     assert not (folder / "run").exists()
 
 
-@pytest.mark.parametrize("module", ["reports.build", "innerloop.design"])
-def test_the_other_commands_refuse_a_path_that_is_too_long_in_a_line_too(folder, module):
-    arguments = ["x8", "--out"] if module == "innerloop.design" else []
-    assert_refused(run_command(module, *arguments, "a" * 300), "File name too long")
-
-
 class Scripts(HTMLParser):
     """What a parser that knows the rules for script elements finds in them: text up to the first
     end tag that is one.
@@ -119,19 +110,6 @@ def test_a_report_keeps_its_charts_whatever_the_scenario_is_called(folder):
         # Between "<!--" and "-->" a parser does not see the end of a script element.
         assert not set(text) & set("<>&")
         json.loads(text)
-
-
-def test_a_scenario_whose_name_is_a_formula_is_none_in_its_tables(folder):
-    (folder / "=1+1.toml").write_text(TRIAL, encoding="utf-8")
-    ended = run_command("scenarios.run", "=1+1.toml", "--out", "run", "--jobs", "1", "--no-report")
-    assert ended.status == 0, ended
-    with (folder / "run" / "summary.csv").open(encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
-    # Numbers are numbers, also those below zero.
-    assert not [value for row in rows for value in row.values() if re.match(r"[=+@]|-[^\d]", value)]
-    run = read_run(folder / "run")
-    assert list(run.summary["flight_id"]) == ["=1+1_00000", "=1+1_00001"]
-    assert all(run.has_history(flight_id) for flight_id in run.summary["flight_id"])
 
 
 NO_HOME = """

@@ -19,7 +19,6 @@ from common.verdict import RunVerdict, read_verdict
 from extensions.telemetry.flightgear import FlightGear
 from scenarios.engine.runner import RunResult
 from scenarios.run import main
-from tests import in_process
 from tests.run_tables import manifest_of
 
 ROOT = Path(__file__).parents[2]
@@ -103,17 +102,6 @@ def test_what_is_not_needed_is_not_imported():
     )
     assert found.stderr == ""
     assert found.returncode == 0
-
-
-def test_help_and_list_answer():
-    command = [sys.executable, "-m", "scenarios.run", "--help"]
-    assert (
-        "--resume"
-        in subprocess.run(
-            command, cwd=ROOT, capture_output=True, text=True, check=True, timeout=120
-        ).stdout
-    )
-    assert "sweep_nu" in in_process.run_command("scenarios.run", "--list").out
 
 
 @pytest.mark.parametrize(
@@ -220,17 +208,6 @@ def test_bad_input_is_one_line_and_exit_status_2(arguments, words, tmp_path, run
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_directory_that_holds_another_run_is_left_alone(tmp_path, run_here):
-    (tmp_path / "manifest.json").write_text(
-        '{"config_hash": "other", "fingerprint": {}}', encoding="utf-8"
-    )
-    assert_refused(run_here("sweep_nu", "--out", tmp_path, *SHORT), "holds another run", "--resume")
-    assert_refused(
-        run_here("sweep_nu", "--out", tmp_path, "--resume", *SHORT), "another configuration"
-    )
-    assert [path.name for path in tmp_path.iterdir()] == ["manifest.json"]
-
-
 def test_a_run_that_is_resumed_with_other_keys_says_which_with_both_values(tmp_path, run_here):
     sweep = ["sweep_nu", "--out", tmp_path / "run", "--jobs", "1", *SHORT]
     sweep += ["--set", "fidelity=kinematic", "--set", "sweep.nu=[0.5]"]
@@ -260,17 +237,6 @@ def test_a_run_that_is_resumed_with_other_keys_says_which_with_both_values(tmp_p
         "guidance.reserve=0.1",
     )
     assert_refused(many, "; and 2 more; resume it")
-
-
-def test_a_run_is_no_scenario_and_its_flights_are_replayed_by_name(tmp_path, run_here, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "a").mkdir()
-    (tmp_path / "a" / "manifest.json").write_text("{}", encoding="utf-8")
-    for name in ("a", "a/flights"):
-        assert_refused(
-            run_here(name),
-            "'a' is a run, not a scenario; to replay one of its flights, give a/flights/ID",
-        )
 
 
 def test_flights_that_miss_a_criterion_or_cannot_be_flown_are_exit_status_1(tmp_path, run_here):
@@ -400,61 +366,3 @@ def test_an_interrupted_replay_is_resumed_by_the_command_that_is_printed(
     viewer = FlightGear("localhost:5550")
     assert study == again == (str(flight), viewer, {"aircraft_dir": Path("my fleet")})
     assert (there, resume) == (directory, True)
-
-
-def test_an_interrupted_run_is_resumed_by_what_was_typed_with_its_directory(run_here, monkeypatch):
-    def interrupted(_study, _stem, directory, **_):
-        return interrupted_run(directory, planned=9, done=2, comparisons_left=3)
-
-    monkeypatch.setattr("scenarios.studies.base.run_study", interrupted)
-    typed = [
-        "sweep_nu",
-        "--jobs",
-        "3",
-        "--seed",
-        "7",
-        "--set",
-        "flight.crossings=3",
-        "--time-limit",
-        "90",
-        "--memory-limit=2.5",
-    ]
-    told, _, again = run_here(*typed).stderr.rpartition("Continue with: ")
-    assert told.endswith(
-        "interrupted; 2 of 9 flights are done and kept, 7 are left to fly; of the comparisons 3 are left to fly. "
-    )
-    *words, out, directory, resume = shlex.split(again)
-    assert words == ["plume-flight", "run", *typed]
-    assert (out, resume) == ("--out", "--resume")
-    assert directory.startswith("runs/sweep_nu-")
-
-
-def test_a_list_of_trials_takes_its_own_keys_and_hands_on_those_of_the_trials(tmp_path, run_here):
-    # 0.005 of 200 flights, with the seed and the duration that the trials are told; too short to
-    # settle.
-    keys = [
-        "trials=['sea_wind']",
-        "share=0.005",
-        "fidelity=kinematic",
-        "flight.duration_max_s=10",
-        "start.spread_deg=0",
-    ]
-    settings = [word for key in keys for word in ("--set", key)]
-    result = run_here(
-        "sea_trial",
-        *settings,
-        "--seed",
-        "7",
-        "--no-report",
-        "--jobs",
-        "1",
-        "--out",
-        tmp_path / "run",
-    )
-    assert result.returncode == 1, result.stderr
-    assert "flights: 1 planned, 1 flown" in result.stdout
-    manifest = manifest_of(tmp_path / "run")
-    assert manifest["trials"]["sea_wind"]["seed"] == 7
-    summary = pd.read_csv(tmp_path / "run" / "summary.csv")
-    assert list(summary["outcome"]) == ["not_settled"]
-    assert summary["duration_s"][0] == 10.0

@@ -13,12 +13,11 @@ from gnc.laws import STEERING_LAWS
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.engine.runner import fly_study
 from scenarios.errors import InputError
-from scenarios.scenario.files import load_study, with_values
+from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
-from scenarios.studies.manifest import parameters
 from scenarios.studies.replay import Replay
 from tests.run_tables import manifest_of, rows_of
-from tests.scenarios.plugin_files import LAW, PARTS, TRACK, line_of, write_scenario
+from tests.scenarios.plugin_files import LAW, PARTS, line_of, write_scenario
 
 
 def run(path, out, *overrides, resume=False):
@@ -94,42 +93,6 @@ def test_parts_act_on_the_flight(tmp_path):
     assert -6.0 < history["so2_ppb"].min() < 1.0
 
 
-def test_a_steering_laws_fields_are_keys_of_guidance(tmp_path):
-    path = write_scenario(tmp_path, 'guidance.law = "law.py:Pursuit"\nguidance.lead_s = 0.5\n')
-    assert load_study(path).guidance.model_extra == {"lead_s": 0.5}
-    one, other = tmp_path / "one", tmp_path / "other"
-    run(path, one, "sweep.nu=[0.5]")
-    run(path, other, "sweep.nu=[0.5]", "guidance.lead_s=2.0")
-    errors = [rows_of(out)[0]["tracking_error_rms_m"] for out in (one, other)]
-    assert errors[0] != errors[1]
-    assert manifest_of(other)["config"]["guidance"]["lead_s"] == 2.0
-
-
-def test_the_fields_of_every_law_that_is_flown_are_listed(tmp_path):
-    laws = f'["cascade", "{tmp_path / "law.py"}:Pursuit"]'
-    listed = {
-        of["key"]: of["value"]
-        for of in parameters(
-            load_study(write_scenario(tmp_path, ""), [f"sweep.guidance.law={laws}"])
-        )
-    }
-    assert listed["guidance.lead_s"] == 1.0
-    assert "guidance.lyapunov_gain_per_m2" not in listed
-
-
-def test_another_law_does_not_inherit_the_keys_of_the_law_that_it_replaces(tmp_path):
-    path = write_scenario(tmp_path, 'guidance.law = "law.py:Pursuit"\nguidance.lead_s = 0.5\n')
-    scenario = load_study(path)
-    assert with_values(scenario, {"guidance.law": "lyapunov"}).guidance.model_extra == {}
-    assert with_values(scenario, {"guidance.law": scenario.guidance.law}).guidance.model_extra == {
-        "lead_s": 0.5
-    }
-    with pytest.raises(InputError, match=r"unknown key 'guidance\.lead_s'"):
-        with_values(scenario, {"guidance.law": "lyapunov", "guidance.lead_s": 1.0})
-    with pytest.raises(InputError, match="unknown steering law 'nosuch'"):
-        with_values(scenario, {"guidance.law": "nosuch"})
-
-
 @pytest.mark.parametrize(
     ("override", "words"),
     [
@@ -147,55 +110,6 @@ def test_a_key_that_the_law_does_not_have_or_cannot_use_is_refused(tmp_path, ove
     # And without that law its keys are no keys at all.
     assert "unknown key 'guidance.lead_s'" in refusal(
         str(tmp_path / "own.toml"), tmp_path / "run", "guidance={lead_s=1}"
-    )
-
-
-NEEDY = """
-from dataclasses import dataclass, field
-
-@dataclass(frozen=True, kw_only=True)
-class Needy:
-    lead_s: float
-    def heading_rate(self, *_): return 0.0
-
-@dataclass(frozen=True, kw_only=True)
-class Listed:
-    leads: list = field(default_factory=lambda: [0.5])
-    def heading_rate(self, *_): return self.leads[0]
-"""
-
-
-def test_a_field_of_a_law_without_a_default_is_refused_and_one_that_makes_its_default_has_it(
-    tmp_path,
-):
-    (tmp_path / "needy.py").write_text(NEEDY, encoding="utf-8")
-    path = write_scenario(tmp_path, "")
-    for key in ("guidance.law", "following.margin_law"):
-        message = refusal(path, tmp_path / "run", f"{key}={tmp_path}/needy.py:Needy")
-        assert "has no default for its field 'lead_s'" in message
-    assert load_study(path, [f"guidance.law={tmp_path}/needy.py:Listed"]).guidance.law_keys == {
-        "leads": [0.5]
-    }
-
-
-def test_a_file_is_relative_to_the_scenario_file_and_in_an_override_to_the_current_directory(
-    tmp_path, monkeypatch
-):
-    write_scenario(tmp_path, 'guidance.law = "law.py:Pursuit"\n')
-    elsewhere = tmp_path / "elsewhere"
-    elsewhere.mkdir()
-    (elsewhere / "other.py").write_text(LAW, encoding="utf-8")
-    trials = 'study = "trials"\ntitle = "list"\ntrials = ["sea_wind"]\nset = ["guidance.law=other.py:Pursuit"]\n'
-    (elsewhere / "trials.toml").write_text(trials, encoding="utf-8")
-    monkeypatch.chdir(elsewhere)
-    assert load_study("../own.toml").guidance.law == str(tmp_path / "law.py:Pursuit")
-    assert load_study("../own.toml", ["guidance.law=other.py:Pursuit"]).guidance.law == str(
-        elsewhere / "other.py:Pursuit"
-    )
-    monkeypatch.chdir(tmp_path)
-    # A list of trials hands it on to its trials, wherever they lie.
-    assert load_study("elsewhere/trials.toml").set == (
-        f'guidance.law="{elsewhere / "other.py:Pursuit"}"',
     )
 
 
@@ -316,13 +230,6 @@ def test_a_file_that_does_not_load_or_is_not_the_part_is_refused_in_one_line(
     assert not (tmp_path / "run").exists()
 
 
-def test_a_file_that_is_not_there_is_refused_with_its_path(tmp_path):
-    message = refusal(
-        write_scenario(tmp_path, 'guidance.law = "lav.py:Pursuit"\n'), tmp_path / "run"
-    )
-    assert f"{tmp_path / 'lav.py'}: cannot be read: No such file" in message
-
-
 def test_a_part_that_raises_in_flight_makes_a_row_that_says_where(tmp_path):
     text = LAW.replace(
         "        lead =",
@@ -337,20 +244,6 @@ def test_a_part_that_raises_in_flight_makes_a_row_that_says_where(tmp_path):
             f"steering law 'Pursuit': heading_rate() failed: RuntimeError: lost (own.py:{line})",
         )
     ] * 2
-
-
-def test_a_part_that_raises_before_any_flight_is_refused_in_one_line(tmp_path):
-    text = TRACK.replace(
-        "        self._speed,", '        raise RuntimeError("no chart")\n        self._speed,'
-    )
-    draws = '[[draws]]\nkey = "wind.speed_mps"\nuniform = [0.0, 5.0]\n'
-    message = refusal(
-        write_scenario(tmp_path, 'vessel.track = "own.py:Weaving"\n' + draws, text),
-        tmp_path / "run",
-    )
-    assert message.startswith(
-        f"a flight cannot be sampled: vessel.track '{tmp_path / 'own.py'}:Weaving': Weaving() failed: RuntimeError: no chart (own.py:"
-    )
 
 
 def test_a_run_is_resumed_and_replayed_with_the_same_file_only(tmp_path):

@@ -5,10 +5,6 @@ others go on.
 import pytest
 from flight_cases import fly
 
-from tests.run_tables import rows_of
-from tests.scenarios.plugin_files import write_scenario
-from tests.scenarios.test_extension_points import refusal, run
-
 PARTS = """
 import math
 from dataclasses import dataclass
@@ -164,32 +160,3 @@ def test_a_part_that_is_of_no_use_fails_with_its_name_and_what_it_has_to_be(name
     assert row["message"].startswith(f"{section}.{key} '{part}'")
     assert words in row["message"]
     assert "\n" not in row["message"]
-
-
-def test_a_shape_that_fails_at_one_point_of_a_sweep_leaves_the_others(tmp_path):
-    path = write_scenario(tmp_path, 'reference.shape = "own.py:ShapeForSlowShips"\n', PARTS)
-    run(path, tmp_path / "run")
-    slow, fast = rows_of(tmp_path / "run")
-    assert slow["outcome"] == "completed"
-    part, line = (
-        f"{tmp_path / 'own.py'}:ShapeForSlowShips",
-        PARTS.partition("nu > 0.4")[0].count("\n") + 1,
-    )
-    words = f"reference.shape '{part}': design() failed: ValueError: no design for fast ships (own.py:{line})"
-    assert (fast["outcome"], fast["message"]) == ("failed", words)
-
-
-STUDY = """
-from scenarios.studies.base import FlightStudy
-
-class Ends(FlightStudy):
-    def postprocess(self, run, journal, progress): raise SystemExit(7)
-"""
-
-
-def test_a_study_that_ends_the_process_is_an_error_with_its_line(tmp_path):
-    path = write_scenario(tmp_path, 'study = "own.py:Ends"\n', STUDY)
-    message = refusal(
-        path, tmp_path / "run", "sweep.nu=[0.5]", "flight.crossings=0", "flight.duration_max_s=5"
-    )
-    assert message == f"study '{tmp_path / 'own.py'}:Ends': SystemExit: 7 (own.py:5)"

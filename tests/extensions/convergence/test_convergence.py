@@ -1,4 +1,3 @@
-import json
 import math
 import multiprocessing
 import signal
@@ -10,7 +9,6 @@ import pytest
 from extensions.convergence.motion import Vehicle
 from extensions.convergence.references import (
     REFERENCES,
-    averaged_settling_time,
     draw_case,
     references_of,
 )
@@ -106,12 +104,6 @@ def test_rows_are_in_order_and_have_the_columns_of_the_table(small):
     )
 
 
-def test_half_of_all_trajectories_settle_close_to_the_averaged_motions_time(small):
-    ratio = small["settling_time_s"] / small["settling_time_predicted_s"]
-    # The transient of phi is not in the average; from below 500 m it is some 10 s of 100.
-    assert ratio[small["start_distance_m"] > 100.0].median() == pytest.approx(1.0, abs=0.15)
-
-
 def test_under_law_24_distance_never_exceeds_what_v_2_allows(small):
     rows = small[small["law"] == "lyapunov"]
     v_2 = 0.5 * rows["start_distance_m"] ** 2 + (1.0 - np.cos(rows["start_phi_rad"])) / 0.001
@@ -134,17 +126,6 @@ def test_the_same_seed_gives_the_same_rows_bit_for_bit_in_this_process_and_in_tw
     alone = study(**(few | {"laws": ("cascade",)}))
     assert alone.equals(one[one["law"] == "cascade"].reset_index(drop=True))
     assert not alone.equals(study(**(few | {"laws": ("cascade",), "seed": 1})))
-
-
-def test_trajectories_are_flown_in_blocks_of_one_law_and_kind_of_reference_the_longest_first():
-    blocks = convergence_blocks(**(STUDY | {"trajectories": 12, "distance_max": 60.0}))
-    # Two laws, three kinds of reference: six blocks of four trajectories.
-    assert [len(block.cases) for block in blocks] == [4] * 6
-    assert {(block.law.value, *{case.kind for case in block.cases}) for block in blocks} == {
-        (law, kind) for law in STUDY["laws"] for kind in REFERENCES
-    }
-    longest = [block.time_max.max() for block in blocks]
-    assert longest == sorted(longest, reverse=True)
 
 
 def test_an_interrupted_study_ends_its_processes_at_once():
@@ -175,18 +156,6 @@ def test_an_interrupted_study_ends_its_processes_at_once():
         signal.signal(signal.SIGALRM, earlier)
     assert time.perf_counter() - began < 5.0
     assert set(multiprocessing.active_children()) <= before
-
-
-def test_a_block_whose_process_was_lost_is_a_row_for_each_of_its_trajectories():
-    blocks = convergence_blocks(**(STUDY | {"trajectories": 12}))
-    result = ConvergenceWork(blocks=tuple(blocks)).lost(Task(number=2), "why")
-    rows = convergence_table(result.tables["summary.csv"], STUDY["laws"])
-    assert result.lost
-    assert result.items == len(rows) == 4
-    assert sorted(rows["trajectory"]) == sorted(case.trajectory for case in blocks[2].cases)
-    assert set(rows["law"]) == {blocks[2].law.value}
-    assert set(rows["message"]) == {"why"}
-    assert len(counterexamples(rows)) == 4
 
 
 def test_a_trajectory_that_has_too_little_time_is_a_counterexample(monkeypatch):
@@ -266,32 +235,3 @@ def test_starts_fill_the_disc_and_references_stay_within_their_bounds():
         assert rates.min() >= bounds[0] * (1.0 - 1e-12)
         assert rates.max() <= bounds[1] * (1.0 + 1e-12)
     assert {np.sign(case.rate) for case in cases if case.kind == "circle"} == {-1.0, 1.0}
-
-
-def test_a_draw_depends_on_its_seed_and_number_alone():
-    assert draw_case(1, 17, 5000.0, SPEED, HEADING_RATE_MAX) == draw_case(
-        1, 17, 5000.0, SPEED, HEADING_RATE_MAX
-    )
-    assert draw_case(1, 17, 5000.0, SPEED, HEADING_RATE_MAX) != draw_case(
-        2, 17, 5000.0, SPEED, HEADING_RATE_MAX
-    )
-    assert (
-        draw_case(1, 17, 5000.0, SPEED, HEADING_RATE_MAX).north
-        != draw_case(1, 20, 5000.0, SPEED, HEADING_RATE_MAX).north
-    )
-
-
-def test_the_rows_hold_what_the_prediction_is_made_from(small):
-    row = small.iloc[4]
-    terms = json.loads(row["reference_terms"])
-    refs = references_of(
-        [draw_case(STUDY["seed"], 2, STUDY["distance_max"], SPEED, HEADING_RATE_MAX)]
-    )
-    assert terms["amplitude"] == refs.amplitude[:, 0].tolist()
-    assert sum(map(abs, terms["amplitude"])) == pytest.approx(
-        row["reference_heading_rate_max_rad_s"], rel=1e-12
-    )
-    begin = [[-row["start_north_m"]], [-row["start_east_m"]]]
-    assert averaged_settling_time(LOOK_AHEAD, SPEED, refs, begin, BAND) == pytest.approx(
-        [row["settling_time_predicted_s"]], rel=1e-9
-    )

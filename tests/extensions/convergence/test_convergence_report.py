@@ -5,37 +5,16 @@ import re
 import numpy as np
 import pandas as pd
 import pytest
-from convergence_runs import LAWS, REFERENCES, TRAJECTORIES, write_convergence_run
+from convergence_runs import TRAJECTORIES, write_convergence_run
 from report_parts import blocks_of, built, draw_all_but, numbers_on_page_1
 
-from extensions.convergence.report import FAILED_ROWS, FAILURES_NAMED, settled_time
-from reports.build import build_reports, export_run
-from reports.document.blocks import Table, Text
+from extensions.convergence.report import FAILED_ROWS
+from reports.build import build_reports
+from reports.document.blocks import Table
 from reports.errors import ReportError
 from reports.registry import content
 from reports.run.run_data import read_run
 from tests.run_tables import manifest_of, write_manifest
-
-
-def small(path, **options):
-    return content(read_run(write_convergence_run(path / "run", 30, **options)))
-
-
-def test_a_study_in_which_all_converged_says_so(converged):
-    assert converged.verdict.holds
-    assert converged.verdict.complete
-    # Two laws that the theory is about.
-    assert converged.verdict.headline.startswith(
-        f"All {2 * TRAJECTORIES:,} trajectories converged; law (24) commanded up to "
-    )
-    assert converged.verdict.failures == []
-    assert [figure[1:4] for figure in converged.verdict.figures[:3]] == [
-        (f"{TRAJECTORIES:,} of {TRAJECTORIES:,}", "all", True),
-        (f"{TRAJECTORIES:,} of {TRAJECTORIES:,}", "all", True),
-        (f"{TRAJECTORIES:,} of {TRAJECTORIES:,}", "", None),
-    ]
-    anchors = [section.anchor for section in converged.sections]
-    assert anchors == ["figures", "question", "settling", "samples", "parameters", "provenance"]
 
 
 def test_counter_examples_are_named_with_their_reasons(failed):
@@ -53,34 +32,6 @@ def test_counter_examples_are_named_with_their_reasons(failed):
     assert [row[0] for row in lyapunov.rows] == ["3"]
     assert [row[0] for row in cascade.rows] == ["7", "200"]
     assert len(cut.rows) == FAILED_ROWS < 40
-
-
-def test_cut_commands_have_no_part_in_the_verdict_but_are_shown(tmp_path):
-    report = small(tmp_path, cut_failures=4)
-    assert report.verdict.holds
-    assert report.verdict.complete
-    assert "26 of 30 converged" in report.verdict.detail
-    assert report.verdict.figures[2][:2] == ("Law (30), cut at ω_max: converged", "26 of 30")
-    (table,) = blocks_of(report, Table, "counterexamples")
-    assert len(table.rows) == 4
-
-
-def test_the_verdict_names_the_first_counter_examples_and_counts_the_others(tmp_path):
-    report = small(
-        tmp_path, failures=[("cascade", i, "time_up") for i in range(FAILURES_NAMED + 5)]
-    )
-    assert len(report.verdict.failures) == FAILURES_NAMED + 1
-    assert report.verdict.failures[-1].startswith("and 5 more")
-
-
-def test_an_unfinished_study_is_not_called_complete(tmp_path):
-    report = small(tmp_path, state="interrupted", planned=100)
-    assert report.verdict.holds
-    assert not report.verdict.complete
-    assert report.verdict.headline.startswith(
-        "INTERRUPTED after 60 of 200 trajectories. All 60 trajectories converged; "
-    )
-    assert "continue it with --resume" in report.verdict.detail
 
 
 def test_trajectories_that_were_lost_with_their_process_are_no_counter_examples(tmp_path):
@@ -112,49 +63,6 @@ def test_trajectories_that_were_lost_with_their_process_are_no_counter_examples(
     assert [row[2:4] for row in table.rows if row[:2] == ["Law (30)", "all"]] == [["20", "20"]]
 
 
-def test_a_study_of_which_rows_are_missing_is_not_called_complete(tmp_path):
-    assert not small(tmp_path, planned=31).verdict.complete
-
-
-def test_the_table_counts_and_orders_as_the_run_did(failed_path, failed):
-    (table,) = blocks_of(failed, Table, "settling")
-    summary = pd.read_csv(failed_path / "summary.csv")
-    assert len(table.rows) == len(LAWS) * (len(REFERENCES) + 1)
-    for i, (law, cells) in enumerate(zip(LAWS, table.rows[3::4], strict=True)):
-        rows = summary[summary["law"] == law]
-        assert cells[2:4] == [f"{len(rows):,}", f"{(rows['outcome'] == 'converged').sum():,}"]
-        ordered = np.sort(rows["settling_time_s"].fillna(np.inf))
-        # The 600th or 601st of 1200 is their median: either may be printed, to the second.
-        assert float(cells[4].replace(",", "")) == pytest.approx(
-            ordered[600], abs=0.5 + ordered[600] - ordered[599]
-        )
-        # Under every law some never settled, so that there is no time by which all had.
-        assert cells[7] == "–"
-        assert [row[2] for row in table.rows[4 * i : 4 * i + 3]] == ["400", "400", "400"]
-
-
-def test_where_no_settling_time_is_predicted_none_is_compared(tmp_path):
-    path = write_convergence_run(tmp_path / "run", 30)
-    rows = pd.read_csv(path / "summary.csv")
-    rows.loc[rows["trajectory"] < 6, "settling_time_predicted_s"] = [0.0, np.inf, np.nan] * 6
-    rows.to_csv(path / "summary.csv", index=False)
-    known = rows[rows["trajectory"] >= 6].query("law != 'cascade_cut'")
-    ratio = (known["settling_time_s"] / known["settling_time_predicted_s"]).median()
-    report = content(read_run(path))
-    assert report.verdict.figures[-1][:2] == ("Settling over predicted, median", f"{ratio:.2f}")
-
-
-def test_the_text_says_what_was_drawn_and_what_converged_means(converged):
-    text = " ".join(block.text for block in blocks_of(converged, Text))
-    assert f"{TRAJECTORIES:,} initial states" in text
-    assert "400 are circling, 400 are oscillating, 400 are randomly turning" in text
-    # The manifest's limits.
-    assert "within 0.02 m of its reference" in text
-    assert "within 0.0002 rad" in text
-    assert "stays below 5 m" in text
-    assert "φ = π" in text
-
-
 def test_both_reports_are_built_and_self_contained(failed_path, monkeypatch):
     # Page 1 has the figures of distances again.
     draw_all_but(monkeypatch, "first")
@@ -171,15 +79,6 @@ def test_a_study_without_rows_or_with_next_to_none_can_be_reported_on(kept, tmp_
     assert ("Nothing was flown" in text) == (kept == 0)
     shown = re.sub(r"<script.*?</script>", "", text[text.index("<h1>") :], flags=re.DOTALL)
     assert not re.search(r"\bnan\b", shown)
-
-
-@pytest.mark.usefixtures("sketched")
-def test_a_study_in_which_nothing_ever_settles_can_be_reported_on(tmp_path):
-    path = write_convergence_run(
-        tmp_path / "run", 4, failures=[(law, i, "time_up") for law in LAWS for i in range(4)]
-    )
-    html, _ = build_reports(path)
-    assert "0 of 8 trajectories converged" in html.read_text(encoding="utf-8")
 
 
 def change(path, how):
@@ -221,21 +120,6 @@ def test_a_damaged_study_is_refused_in_one_line(damage, words, tmp_path):
     with pytest.raises(ReportError, match=words) as refusal:
         build_reports(path)
     assert "\n" not in str(refusal.value)
-
-
-def test_a_share_had_settled_when_so_many_had():
-    # Of 300 trajectories 99 % are 297: the 297th time, and not the 298th. Of four with one that
-    # never did, half had at the second.
-    assert settled_time(pd.Series(np.arange(1.0, 301.0)), 0.99) == "297"
-    assert settled_time(pd.Series([30.0, 10.0, np.nan, 20.0]), 0.5) == "20"
-    assert settled_time(pd.Series([30.0, 10.0, np.nan, 20.0]), 0.99) == "–"
-
-
-@pytest.mark.parametrize("exporter", ["tracks_csv", "kmz", "geojson"])
-def test_trajectories_are_no_flights_to_export(tmp_path, exporter):
-    write_convergence_run(tmp_path / "run", 4)
-    with pytest.raises(ReportError, match="has no time histories of flights"):
-        export_run(tmp_path / "run", exporter)
 
 
 def test_every_number_on_page_1_is_that_of_the_summary(failed_path, tmp_path):

@@ -1,15 +1,11 @@
 """A convergence study from its file to its run directory, with few trajectories from near by."""
 
-import shutil
-
 import pandas as pd
 import pytest
 
 from extensions.convergence import study as convergence_study
 from extensions.convergence.ensemble import DISTANCE_CONVERGED, PHI_CONVERGED
 from extensions.convergence.scenario import ConvergenceScenario
-from reports.output import write_report
-from reports.run.run_data import read_run
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.engine.runner import ExecutorFactory
 from scenarios.errors import InputError
@@ -51,23 +47,6 @@ def test_every_trajectory_is_a_row_and_those_that_did_not_converge_are_in_a_file
     assert len(pd.read_csv(directory / "counterexamples.csv")) == 0
     # The first two trajectories' time histories, with each law.
     assert len(list((directory / "trajectories").glob("*.parquet"))) == 4
-
-
-def test_both_laws_start_from_the_same_states(directory):
-    summary = pd.read_csv(directory / "summary.csv")
-    starts = summary[summary["law"] == "lyapunov"], summary[summary["law"] == "cascade"]
-    for name in ("start_north_m", "start_east_m", "start_course_rad", "reference_terms"):
-        assert list(starts[0][name]) == list(starts[1][name])
-
-
-def page_of(run_directory, path):
-    """Return the report of a run."""
-    write_report(read_run(run_directory), path)
-    return path.read_text(encoding="utf-8")
-
-
-def test_its_report_says_what_happened(directory, tmp_path):
-    assert "All 24 trajectories converged" in page_of(directory, tmp_path / "report.html")
 
 
 def test_those_that_do_not_converge_are_kept_with_their_time_histories(tmp_path):
@@ -136,23 +115,6 @@ def test_a_study_goes_on_with_the_blocks_that_are_left(tmp_path):
     assert [report for report in told if report[0] == "flying"] == [("flying", 12, 12)]
 
 
-def test_a_study_of_cut_commands_alone_is_no_verdict_on_the_theory(tmp_path):
-    # Every circle but those at the very limit converges; none of these 3 references, from near by,
-    # is one of them.
-    run(
-        study('guidance.laws=["cascade_cut"]', "ensemble.trajectories=3", "ensemble.samples=1"),
-        tmp_path / "run",
-    )
-    page = page_of(tmp_path / "run", tmp_path / "report.html")
-    assert "with commands cut at ω_max, of which the theory says nothing" in page
-
-
-@pytest.mark.parametrize("jobs", [1, 2])
-def test_a_study_that_is_done_can_be_resumed_all_the_same(jobs, directory, tmp_path):
-    copy = shutil.copytree(directory, tmp_path / "copy")
-    assert run(study(), copy, resume=True, factory=ExecutorFactory(jobs=jobs)).all_met
-
-
 def test_an_interrupt_while_time_histories_are_kept_leaves_a_run_that_can_be_resumed(
     tmp_path, monkeypatch
 ):
@@ -193,9 +155,3 @@ def test_bad_values_are_refused_in_one_line(override, words):
         study(override)
     for word in words:
         assert word in str(refusal.value)
-
-
-def test_a_look_ahead_that_cannot_work_is_refused_before_anything_is_written(tmp_path):
-    with pytest.raises(InputError, match=r"must exceed 1/\(4 epsilon\)"):
-        run(study("guidance.look_ahead_m=40"), tmp_path / "run")
-    assert not (tmp_path / "run").exists()

@@ -8,8 +8,6 @@ from hypothesis import strategies as st
 from gnc.errors import InfeasibleError
 from gnc.numeric import wrap
 from gnc.paper import (
-    LookAhead,
-    RelativeState,
     delta_length,
     distance_squared,
     distance_squared_rate,
@@ -181,50 +179,6 @@ def test_the_shortest_z_is_met_by_a_vehicle_right_ahead_of_the_reference(
     assert rho == pytest.approx(parameters.radius - 0.25 / epsilon, rel=1e-12)
 
 
-def test_the_look_ahead_grows_with_the_square_of_distance():
-    # Equation (15): 0.005 * 100^2 + 60.
-    assert delta_length(LOOK_AHEAD, 0.0) == 60.0
-    assert delta_length(LOOK_AHEAD, 100.0**2) == pytest.approx(110.0, rel=1e-15)
-
-
-@examples(50)
-@given(
-    reference_course=courses,
-    course_error=st.floats(-1.0, 1.0),
-    reference_heading_rate=heading_rates,
-)
-def test_on_the_reference_z_points_along_its_course_and_turns_with_it(
-    reference_course, course_error, reference_heading_rate
-):
-    state = relative_state(LOOK_AHEAD, 0.0, 0.0, reference_course, reference_course + course_error)
-    # Section IV.B: on top of the reference, chi_rho becomes chi_r; there is no singularity.
-    # Roundings.
-    assert state == pytest.approx(RelativeState(60.0, 60.0, 0.0, course_error), abs=1e-13)
-    on_course = RelativeState(60.0, 60.0, 0.0, 0.0)
-    assert relative_velocity(
-        LOOK_AHEAD, on_course, SPEED, SPEED, reference_heading_rate
-    ) == pytest.approx((0.0, reference_heading_rate), abs=1e-15)
-
-
-@examples(100)
-@given(state=cartesian_states(), reference_heading_rate=heading_rates)
-def test_mirrored_geometry_has_mirrored_angles(state, reference_heading_rate):
-    there = relative(state)
-    mirrored = relative([state[0], -state[1], -state[2], state[3], -state[4], -state[5]])
-    # Exact but for angles of half a turn, which are their own mirror.
-    assert (mirrored.delta, mirrored.rho) == pytest.approx((there.delta, there.rho), rel=1e-14)
-    assert wrap(mirrored.phi_r + there.phi_r) == pytest.approx(0.0, abs=1e-13)
-    assert wrap(mirrored.phi + there.phi) == pytest.approx(0.0, abs=1e-13)
-    here = relative_velocity(LOOK_AHEAD, there, SPEED, 17.0, reference_heading_rate)
-    other = relative_velocity(LOOK_AHEAD, mirrored, SPEED, 17.0, -reference_heading_rate)
-    # Roundings of up to 2 km/s.
-    assert other == pytest.approx((here[0], -here[1]), rel=1e-12, abs=1e-11)
-
-
-def test_the_look_ahead_keeps_its_parameters():
-    assert look_ahead(0.005, 60.0) == LookAhead(epsilon=0.005, radius=60.0)
-
-
 @pytest.mark.parametrize("radius", [50.0, 49.9, 0.0, -60.0, math.nan, math.inf])
 def test_a_look_ahead_too_short_for_its_epsilon_is_refused(radius):
     # Section IV.B: R > 1/(4 epsilon), 50 m at epsilon = 0.005.
@@ -233,12 +187,3 @@ def test_a_look_ahead_too_short_for_its_epsilon_is_refused(radius):
     ) as refusal:
         look_ahead(0.005, radius)
     assert f"R is {radius:g} m" in str(refusal.value)
-
-
-@pytest.mark.parametrize("epsilon", [0.0, -0.005, math.nan, math.inf])
-def test_a_look_ahead_that_does_not_grow_is_refused(epsilon):
-    with pytest.raises(
-        InfeasibleError, match=r"look-ahead epsilon is .* 1/m; it must be finite and above 0"
-    ) as refusal:
-        look_ahead(epsilon, 60.0)
-    assert f"epsilon is {epsilon:g} 1/m" in str(refusal.value)

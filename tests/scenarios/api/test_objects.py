@@ -9,8 +9,6 @@ import numpy as np
 import pytest
 
 from aircraft.fleet.x8 import X8
-from gnc.laws import LineOfSightLaw
-from gnc.reference.shapes import Sinusoid
 from scenarios import fly, run
 from scenarios.api.scenario import load
 from scenarios.errors import InputError
@@ -57,17 +55,6 @@ class Northbound:
         return self.speed * time, 0.0, self.speed, 0.0
 
 
-@dataclass(frozen=True)
-class SlowSinusoid(Sinusoid):
-    share: float = 0.9
-
-    def design(self, *, heading_rate_max, **limits):
-        return super().design(heading_rate_max=self.share * heading_rate_max, **limits)
-
-    def swing(self, *, heading_rate, **limits):
-        return super().swing(heading_rate=self.share * heading_rate, **limits)
-
-
 class Clock:
     COLUMNS = ("doubled_s",)
 
@@ -92,13 +79,6 @@ def test_a_law_as_an_object_flies_as_the_one_of_the_file():
     given = fly(SHORT, law=Pursuit(gain=1.5))
     assert given.history.equals(named.history)
     assert not given.history.equals(fly(SHORT, law=Pursuit).history)
-
-
-def test_a_law_of_the_project_keeps_its_name():
-    assert load(SHORT, law=LineOfSightLaw(gain_per_s=1.0)).changes == (
-        'guidance.law="line_of_sight"',
-        "guidance.gain_per_s=1.0",
-    )
 
 
 def test_laws_are_compared_and_swept_in_other_processes():
@@ -136,39 +116,6 @@ def test_a_track_is_given_as_a_class_or_as_an_object_of_which_flights_take_copie
     np.testing.assert_allclose(
         by_object.history["vessel_north_m"], by_class.history["vessel_north_m"], rtol=1e-12
     )
-
-
-def test_a_shape_of_the_same_name_is_not_taken_for_the_one_before():
-    reference = fly(SHORT, nu=0.5, wind={"speed_mps": 3.0}, shape=SlowSinusoid).row
-    slower = fly(SHORT, nu=0.5, wind={"speed_mps": 3.0}, shape=SlowSinusoid(share=0.7)).row
-    assert slower["omega_0_rad_s"] < reference["omega_0_rad_s"]
-
-
-def test_instruments_are_classes_and_names():
-    history = fly(SHORT, payload=[Clock]).history
-    assert history["doubled_s"].equals(2.0 * history["time_s"])
-
-
-def test_an_aircraft_is_a_spec():
-    scenario = load("sweep_nu", aircraft=replace(X8, name="slow_x8"))
-    assert scenario["aircraft"] == "slow_x8"
-
-
-def test_a_part_is_known_to_its_flights_alone():
-    fly(SHORT, law=Pursuit)
-    with pytest.raises(InputError, match="unknown steering law 'Pursuit'"):
-        load(SHORT, law="Pursuit")
-
-
-def test_a_law_as_an_object_may_have_parameters_of_numpy():
-    assert load(SHORT, law=Pursuit(gain=np.float64(1.5), lead_s=np.int64(2))) == load(
-        SHORT, law=Pursuit(gain=1.5, lead_s=2)
-    )
-
-
-def test_numbers_of_numpy_are_numbers():
-    scenario = load(SHORT, nu=np.linspace(0.3, 0.5, 3), seed=np.int64(3))
-    assert scenario.changes == ("sweep.nu=[0.3, 0.4, 0.5]", "seed=3")
 
 
 def local_law():
@@ -225,20 +172,3 @@ def test_what_is_wrong_is_one_line(keys, words, capfd):
     assert words in str(refused.value)
     assert "\n" not in str(refused.value)
     assert capfd.readouterr() == ("", "")
-
-
-def test_two_objects_of_one_name_are_refused():
-    other = type("Pursuit", (Pursuit,), {})
-    with pytest.raises(InputError, match="two objects are called 'Pursuit'"):
-        load(SHORT, **{"sweep.guidance.law": [Pursuit, other]})
-
-
-def test_a_directory_that_is_taken_is_refused_in_the_words_of_a_program(tmp_path):
-    (tmp_path / "manifest.json").write_text("{}", encoding="utf-8")
-    with pytest.raises(InputError) as refused:
-        fly(SHORT, nu=0.5, out=tmp_path)
-    assert str(refused.value).startswith("out: output directory '")
-    assert str(refused.value).endswith(
-        "holds another run; give the path of a directory that is new or empty"
-    )
-    assert "--" not in str(refused.value).replace(str(tmp_path), "")

@@ -8,7 +8,6 @@ from flight_cases import fly
 from scenarios import flight_runner
 from scenarios.errors import InputError
 from scenarios.scenario.files import load_study
-from scenarios.studies.base import study_of
 from scenarios.studies.checks import check_without_design
 
 INSTRUMENTS = """
@@ -43,15 +42,6 @@ def test_an_instrument_that_fills_a_column_that_is_filled_already_is_a_row_with_
         f"payload '{parts[-1]}' fills the column '{column}', which the flight or another"
     )
     assert "\n" not in row["message"]
-
-
-def test_instruments_with_columns_of_their_own_fly_together(tmp_path):
-    (tmp_path / "own.py").write_text(INSTRUMENTS, encoding="utf-8")
-    result = fly(
-        payload={"instruments": [f"{tmp_path / 'own.py'}:Own"]},
-        flight={"duration_max_s": 5.0, "crossings": 0},
-    )
-    assert result.history["so2_ppb"].tolist() == [1.0] * len(result.history)
 
 
 EVALUATED = """
@@ -174,49 +164,6 @@ def test_figures_and_tables_of_the_flight_and_of_others_are_refused_before_any_f
     assert "\n" not in str(refused.value)
 
 
-def test_an_instrument_that_is_evaluated_needs_no_figures_and_no_tables(tmp_path):
-    result = evaluated(tmp_path, "Bare")
-    assert (result.row["outcome"], result.history["y_ppb"].unique().tolist()) == (
-        "not_settled",
-        [1.0],
-    )
-    study = study_of(
-        load_study("sweep_nu", ["fidelity=kinematic", f'payload=["{tmp_path / "own.py"}:Bare"]']),
-        "own",
-    )
-    assert "y.csv" not in study.tables
-
-
-def test_columns_that_are_declared_with_what_they_are_are_written_with_it(tmp_path):
-    assert evaluated(tmp_path, "Described").history["y_ppb"].unique().tolist() == [1.0]
-    study = study_of(
-        load_study(
-            "sweep_nu", ["fidelity=kinematic", f'payload=["{tmp_path / "own.py"}:Described"]']
-        ),
-        "own",
-    )
-    figure = study.tables["summary.csv"]["y_peak_ppb"]
-    assert (figure.title, figure.unit, figure.meaning) == ("Y peak", "ppb", "largest y")
-    assert figure.part == "own.py:Described"
-
-
-def test_an_object_may_have_columns_of_its_own(tmp_path):
-    assert evaluated(tmp_path, "OfItsOwn").history["own_ppb"].unique().tolist() == [1.0]
-    (tmp_path / "own.py").write_text(EVALUATED, encoding="utf-8")
-    check_without_design(load_study("sweep_nu", [f'payload=["{tmp_path / "own.py"}:OfItsOwn"]']))
-
-
-def test_a_figure_that_is_declared_and_not_returned_is_empty_and_a_row_of_a_table_keeps_its_flight(
-    tmp_path,
-):
-    result = evaluated(tmp_path, "Peak")
-    assert result.row["y_peak_ppb"] == 3.0
-    assert "y_low_ppb" not in result.row
-    assert [(row["flight_id"], row["y_ppb"]) for row in result.tables["y.csv"]] == [
-        (result.row["flight_id"], 1.0)
-    ]
-
-
 @pytest.mark.parametrize(
     ("name", "words"),
     [
@@ -282,7 +229,3 @@ def test_an_instrument_that_cannot_be_made_or_read_is_named(name, words, tmp_pat
     assert row["outcome"] == "failed"
     assert row["message"].startswith("payload")
     assert words in row["message"]
-
-
-def test_settings_are_at_their_defaults_where_the_scenario_says_nothing(tmp_path):
-    assert evaluated(tmp_path, "Gain").history["x_ppb"].unique().tolist() == [2.0]

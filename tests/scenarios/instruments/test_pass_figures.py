@@ -7,8 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from scenarios.instruments.sniffer import INSIDE, PASS_FIGURES, pass_figures
-from scenarios.measures.columns import SUMMARY_COLUMNS
+from scenarios.instruments.sniffer import INSIDE, pass_figures
 
 TIME = 0.05 + 0.1 * np.arange(600)
 
@@ -43,18 +42,4 @@ def test_a_flight_that_never_met_the_smoke_has_crossings_and_no_passes_through_s
         6,
         0,
         0.0,
-    )
-
-
-def test_a_flight_beside_the_axis_has_neither():
-    nothing = pass_figures(np.full(9, 50.0), np.zeros(9), np.zeros(9), np.zeros(9), time_step=0.1)
-    assert (nothing["plume_axis_crossings"], nothing["smoke_passes"]) == (0, 0)
-
-
-def test_no_column_calls_a_crossing_of_the_axis_a_pass_through_the_plume():
-    columns = SUMMARY_COLUMNS | PASS_FIGURES
-    assert "plume_passes" not in PASS_FIGURES
-    assert all(
-        "with smoke" in columns[name].meaning
-        for name in ("plume_axis_crossings", "smoke_passes", "crossing_count")
     )

@@ -9,7 +9,6 @@ import pytest
 
 from common.errors import PluginError
 from scenarios.search.method import (
-    SEARCH_METHODS,
     Coordinate,
     SearchSettings,
     Space,
@@ -154,23 +153,6 @@ def test_a_search_around_a_point_that_has_found_a_violation_looks_for_another_on
     assert sum(map(sum, violating)) < 0.2 * len(tried)
 
 
-@pytest.mark.parametrize("method", ["differential_evolution", "local", "cma"])
-def test_a_method_that_is_stuck_begins_anew_as_often_as_it_may(method):
-    methods = methods_named((method,), BOWL, SearchSettings(population=16, restarts=2), 1)
-    generator = np.random.default_rng(1)
-
-    def chance(_, points):
-        tried.extend(points)
-        return generator.random(len(points))
-
-    tried = []
-    search_in_turns(methods, BOWL, chance, population=16, turns=10_000)
-    # Where nothing leads to anything better, a start is given up after some batches, and after
-    # three the search ends by itself.
-    assert methods[method].exhausted
-    assert 300 < len(tried) < 2000
-
-
 def test_what_lies_beyond_the_declared_ranges_is_avoided_by_all_that_propose_freely():
     space = space_of(*[Coordinate()] * 4, beyond=lambda point: max(0.0, float(point.sum()) - 2.0))
     for method in ("corners", "local"):
@@ -197,20 +179,6 @@ def test_corners_take_every_choice_equally_often_and_put_quantities_at_their_end
     assert ends[2:].tolist() == [0.0, 0.0]
 
 
-def test_cma_leaves_choices_as_they_are_and_has_nothing_to_search_without_two_quantities():
-    space = space_of(Coordinate(choices=THIRDS), *[Coordinate()] * 3)
-    _, tried = least(("cma",), space, lambda point: float(point[1]), turns=2)
-    assert len(np.unique(tried[:, 0])) == 1
-    narrow = space_of(Coordinate(choices=THIRDS), Coordinate())
-    methods = methods_named(("cma",), narrow, SearchSettings(population=16), 1)
-    assert (
-        len(
-            search_in_turns(methods, narrow, lambda _, points: points[:, 0], population=16, turns=5)
-        )
-        == 0
-    )
-
-
 def test_a_search_ends_when_its_time_is_over():
     batches = []
 
@@ -228,14 +196,6 @@ def test_a_search_ends_when_its_time_is_over():
         within_time=lambda: len(batches) < 7,
     )
     assert len(batches) == 7
-
-
-def test_an_unknown_method_is_refused_with_the_name_that_was_meant():
-    with pytest.raises(
-        PluginError,
-        match=r"unknown search method 'corner'; did you mean 'corners'\? known are cma, corners, diff",
-    ):
-        SEARCH_METHODS.get("corner")
 
 
 class Own:

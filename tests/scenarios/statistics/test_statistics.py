@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from common.intervals import clopper_pearson, quantile_interval, upper_bound
-from scenarios.statistics.estimates import NAMED_MAX, confidence_at, share, study_statistics
+from scenarios.statistics.estimates import confidence_at, study_statistics
 from scenarios.statistics.sensitivity import sensitivity_indices
 from tests.scenarios.study_rows import PREDICTED, RADIUS, few_indices, study_rows
 
@@ -91,13 +91,6 @@ def test_flights_without_a_measurement_are_named_and_count_as_violations_where_t
     assert found["modes_at_end"] == {"tracking": 97}
 
 
-def test_a_long_list_of_flights_is_cut_and_its_number_is_not():
-    rows, inputs = study_rows(50)
-    rows[["min_distance_m", "outcome"]] = [math.nan, "failed"]
-    failed = statistics_of(rows, inputs)["flights"]["unknown"]["failed"]
-    assert (failed["flights"], len(failed["flight_ids"])) == (50, NAMED_MAX)
-
-
 def test_quantiles_are_those_of_the_flights_that_have_the_figure(study, no_indices):
     rows, inputs = study
     rows = rows.copy()
@@ -149,16 +142,6 @@ def test_intervals_at_a_look_are_as_wide_as_all_looks_together_need(study, stati
     assert (statistics["look_number"], statistics["interval_confidence"]) == (None, 0.95)
 
 
-def test_what_drives_a_figure_is_found_whatever_order_the_inputs_are_in(study, statistics):
-    rows, inputs = study
-    for name in ("clearance_m", "tracking_error_rms_m"):
-        found = statistics["sensitivity"][name]
-        assert found["inputs"][0]["key"] == "wind.speed_mps"
-        assert found["inputs"][0]["delta"] > 2.0 * found["delta_floor"]
-    shuffled = statistics_of(rows, inputs.sample(frac=1.0, random_state=1))
-    assert shuffled["sensitivity"] == statistics["sensitivity"]
-
-
 def test_a_study_of_nothing_but_failures_and_one_of_nothing_have_statistics_that_json_can_say():
     rows, inputs = study_rows(5)
     figures = [
@@ -185,16 +168,6 @@ def test_a_study_of_nothing_but_failures_and_one_of_nothing_have_statistics_that
         assert found["sensitivity"]["clearance_m"]["message"].startswith(
             "0 flights have this figure"
         )
-
-
-@pytest.mark.parametrize(("events", "whole"), [(1, 0), (99, 0), (100, 1), (150, 1), (200, 2)])
-def test_the_lower_limit_of_flights_that_share_samples_takes_their_events_for_those_of_as_few_samples_as_can_be(
-    events, whole
-):
-    found = share(events, 200, 0.95, per_sample=100)
-    # 2 samples: events of one of them are up to 100, so that fewer need not be half of all.
-    assert found["low"] == clopper_pearson(whole, 2, 0.95).low <= found["share"]
-    assert found["high"] == clopper_pearson(min(events, 2), 2, 0.95).high
 
 
 @pytest.mark.parametrize(

@@ -2,19 +2,14 @@
 
 import math
 
-import numpy as np
 import pytest
 
 from gnc.errors import InfeasibleError
 from scenarios.scenario.sections.world import VesselConfig
 from scenarios.world.vessel import (
-    TRACK_STEP,
     ManoeuvringVessel,
-    SteadyVessel,
     check_manoeuvres,
     largest_inconsistency,
-    sampled,
-    track_times,
 )
 
 
@@ -86,26 +81,6 @@ def test_manoeuvres_follow_each_other():
     )
     # The slower of both parts: 30/0.5 s, against 3/0.1 s.
     assert vessel.manoeuvres_end == pytest.approx(260.0)
-
-
-@pytest.mark.parametrize("course_deg", [0.0, 30.0, -145.0])
-def test_a_vessel_without_manoeuvres_moves_as_a_steady_one(course_deg):
-    tabled = track({"speed_mps": 8.0, "course_deg": course_deg})
-    steady = SteadyVessel(8.0, math.radians(course_deg))
-    for time in (0.0, 0.01, 3.333, 100.0, 599.97):
-        # Sums of 12,000 steps over 4.8 km.
-        assert tabled.motion(time) == pytest.approx(steady.motion(time), rel=0.0, abs=1e-9)
-        assert tabled.course(time) == pytest.approx(steady.course(time), rel=0.0, abs=1e-9)
-    assert math.isnan(tabled.manoeuvres_end)
-    assert math.isnan(steady.manoeuvres_end)
-    for one, other in zip(sampled(tabled, 600.0), sampled(steady, 600.0), strict=True):
-        np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-9)
-
-
-def test_a_track_goes_on_somewhat_beyond_its_duration():
-    times = track_times(10.0)
-    assert times[-2] > 10.0
-    np.testing.assert_allclose(np.diff(times), TRACK_STEP, rtol=1e-12)
 
 
 @pytest.mark.parametrize(

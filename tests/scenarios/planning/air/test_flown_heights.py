@@ -5,13 +5,10 @@ outruns it, where it glides to.
 import pytest
 
 from gnc.errors import InfeasibleError
-from scenarios.planning.air.wind import check_not_outrun, climbed_along, flown_heights, wind_change
-from scenarios.planning.plume import axis_height
+from scenarios.planning.air.wind import check_not_outrun, wind_change
 from scenarios.scenario.files import load_study, with_values
 from scenarios.world.world import mean_wind, vessel_of
 
-LAYER = "height_m,speed_mps,from_deg\n1,8,0\n127,8,0\n130,8,180\n2000,8,180\n"
-"""A wind that turns round between 127 and 130 m."""
 FASTER_ALOFT = "height_m,speed_mps,from_deg\n1,10,0\n60,10,0\n250,26,0\n2000,26,0\n"
 JET_BELOW = "height_m,speed_mps,from_deg\n1,18,0\n45,18,0\n57,3,0\n200,3,0\n"
 
@@ -33,21 +30,6 @@ def scenario(tmp_path, table, **values):
     file.write_text(table, encoding="utf-8")
     found = with_values(load_study("sea_wind"), {"draws": [], "wind.table": str(file)} | values)
     return found, vessel_of(found)
-
-
-def test_a_layer_at_the_height_of_a_given_circle_counts_beyond_three_keepout_radii(tmp_path):
-    flown, vessel = scenario(tmp_path, LAYER, **CIRCLE)
-    # The wind turns from 8 m/s southwards to 8 northwards within the layer.
-    assert wind_change(flown, mean_wind(flown, vessel), 0.0) == pytest.approx(16.0)
-    level, vessel = scenario(tmp_path, LAYER, **CIRCLE | {"plume.elevation_deg": 0.0})
-    assert wind_change(level, mean_wind(level, vessel), 0.0) == 0.0
-
-
-def test_no_height_is_commanded_beyond_those_that_are_looked_at(tmp_path):
-    flown, vessel = scenario(tmp_path, LAYER, **CIRCLE)
-    highest = max(flown_heights(flown))
-    assert axis_height(flown, vessel).at(1e6, 10.0) == pytest.approx(highest)
-    assert climbed_along(flown) > 150.0
 
 
 def test_a_vessel_that_outruns_the_vehicle_where_it_climbs_to_is_refused(tmp_path):

@@ -81,14 +81,6 @@ def test_a_search_by_time_ends_where_no_point_is_within_the_declared_ranges(tmp_
     )
 
 
-def test_a_search_by_a_method_that_cannot_search_the_draws_is_refused(tmp_path):
-    # CMA-ES needs a covariance: two coordinates at the least.
-    line = refused(tmp_path, "search.methods=['cma']")
-    assert line.startswith(
-        "search.methods ['cma'] proposed no flight (continuous draws: 1 of 1, search.population: 16): add"
-    )
-
-
 @pytest.mark.parametrize(
     ("name", "words"),
     [
@@ -104,27 +96,6 @@ def test_a_method_of_ones_own_that_raises_is_named_with_its_file(tmp_path, name,
     method = f"{tmp_path / 'own.py'}:{name}"
     line = refused(tmp_path, f'search.methods=["{method}"]')
     assert line.startswith(f"search.methods: search method '{method}': {words}")
-
-
-def test_a_number_of_flights_is_refused_with_what_a_search_flies():
-    keys = [
-        "search.generations=2",
-        "search.population=16",
-        "search.kept=3",
-        "search.confirmations=2",
-    ]
-    with pytest.raises(InputError) as refused:
-        load_study("falsify", ["flights=5"])
-    assert (
-        "a search flies search.population times one more than search.generations, at most, and then search.confirmations of each"
-        " of search.kept flights: set these" in str(refused.value)
-    )
-    scenario = load_study("falsify", keys)
-    assert scenario.search.flights_max == 16 * (2 + 1)
-
-
-def test_a_search_without_anything_to_search_is_refused(tmp_path):
-    assert "draws is empty; give the keys to search over" in refused(tmp_path, "draws=[]")
 
 
 @pytest.mark.parametrize(
