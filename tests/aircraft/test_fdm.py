@@ -120,24 +120,6 @@ def test_hold_lets_servos_and_propeller_come_to_rest(x8_fdm):
     assert x8_fdm.read("propulsion/engine/propeller-rpm") == pytest.approx(speed, rel=1e-6)
 
 
-def test_a_frozen_body_keeps_its_velocity_and_rates_while_forces_go_on(x8_fdm):
-    x8_fdm.command({"elevator": -0.5, "aileron": 0.0, "throttle": 1.0})
-    x8_fdm.place(SOMEWHERE)
-    with x8_fdm.frozen():
-        x8_fdm.step(60)
-        assert velocity_body(x8_fdm) == pytest.approx(SOMEWHERE.velocity_body, abs=1e-6)
-        assert rates_body(x8_fdm) == pytest.approx(SOMEWHERE.rates_body, abs=1e-6)
-        assert max(abs(a) for a in x8_fdm.acceleration_body()) > 1.0
-
-
-def test_two_aircraft_do_not_share_state(x8_fdm):
-    other = Fdm(X8)
-    x8_fdm.place(SOMEWHERE)
-    other.place(replace(SOMEWHERE, roll=-0.3))
-    other.step(5)
-    assert x8_fdm.read("attitude/phi-rad") == pytest.approx(0.3, abs=1e-12)  # as placed, see above
-
-
 @pytest.mark.parametrize("throttle", [0.5, 0.9])
 def test_a_slow_engine_settles_where_it_would_at_its_own_pace(throttle):
     # The Cessna's piston engine changes its speed in a second: from 0.7 of its throttle it takes a

@@ -34,16 +34,6 @@ def test_level_is_the_rotation_back_from_body_to_ahead_right_down(vector, roll, 
     np.testing.assert_allclose(level(vector, roll, pitch), expected, atol=ROUNDING)
 
 
-@given(airspeed=st.floats(0.1, 100.0), alpha=st.floats(-1.5, 1.5), beta=st.floats(-1.5, 1.5))
-def test_airspeed_and_its_angles_come_back_from_the_body_velocity(airspeed, alpha, beta):
-    u, v, w = body_velocity(airspeed, alpha, beta)
-    # Definitions: V = |v|, tan(alpha) = w/u, sin(beta) = v/V. An arcsine near 1.5 rad loses a digit
-    # or two.
-    assert math.hypot(u, v, w) == pytest.approx(airspeed, rel=1e-14)
-    assert math.atan2(w, u) == pytest.approx(alpha, abs=1e-12)
-    assert math.asin(v / airspeed) == pytest.approx(beta, abs=1e-12)
-
-
 @given(yaw_rate=st.floats(-3.0, 3.0), roll=rolls, pitch=pitches)
 def test_the_rates_of_a_steady_turn_move_yaw_alone(yaw_rate, roll, pitch):
     roll_rate, pitch_rate, turned = euler_rates(turn_rates(yaw_rate, roll, pitch), roll, pitch)

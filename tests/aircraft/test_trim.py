@@ -11,7 +11,7 @@ from aircraft.fleet.find import find_spec
 from aircraft.fleet.x8 import X8
 from aircraft.spec import AircraftError
 from aircraft.state import body_velocity, level
-from aircraft.trim import TrimOutcome, search_trim, trim
+from aircraft.trim import TrimOutcome, trim
 from common.physics import METRES_PER_FOOT, NEWTONS_PER_POUND
 
 CONDITIONS = {
@@ -153,30 +153,6 @@ def test_an_impossible_airspeed_is_refused_in_one_line_that_names_it(x8_fdm, air
     assert "\n" not in str(caught.value)
 
 
-IMPOSSIBLE = {
-    # Needs eleven times the weight in lift: alpha 0.6 rad.
-    "bank 85 deg": {"bank": math.radians(85.0)},
-    # Full throttle gives 1.9 N at 35 m/s, where drag is 11 N.
-    "35 m/s": {"airspeed": 35.0},
-    "60 m/s": {"airspeed": 60.0},
-    "5 m/s": {"airspeed": 5.0},  # needs a lift coefficient of 2.9: alpha 0.7 rad
-    "climb 57.2958 deg": {"climb_angle": 1.0},  # needs 28 N of thrust, of which there are 19
-    # A sixth of the density: 20 m/s there is 8 m/s here, and thrust a sixth.
-    "15000 m": {"altitude": 15000.0},
-}
-
-
-@pytest.mark.parametrize("named", IMPOSSIBLE)
-def test_an_impossible_condition_is_refused_in_one_line_that_names_it_and_a_remedy(x8_fdm, named):
-    with pytest.raises(AircraftError, match="did not converge") as caught:
-        trim(x8_fdm, **{"airspeed": 20.0, "altitude": 100.0, **IMPOSSIBLE[named]})
-    assert named in str(caught.value)
-    # The X8's spec states its envelope, which may be what is wrong.
-    assert "choose a condition inside the flight envelope" in str(caught.value)
-    assert str(caught.value).endswith("or the envelope that its spec states")
-    assert "\n" not in str(caught.value)
-
-
 @pytest.mark.parametrize(
     "condition", [{"bank": math.radians(85.0)}, {"airspeed": -1.0}, {"altitude": math.nan}]
 )
@@ -245,24 +221,3 @@ def test_jsbsims_own_forces_carry_the_weight_and_turn_the_aircraft(jet, jet_trim
     along = (v_ahead * ahead + v_right * right) / horizontal
     assert along == pytest.approx(0.0, abs=mass * 0.015)
     assert -v_down == pytest.approx(found.airspeed * math.sin(found.climb_angle), abs=1e-9)
-
-
-# By hand: at 40 m/s drag is 14 N and full throttle gives nothing; a climb of 1 rad needs 28 N of
-# thrust of 19.
-@pytest.mark.parametrize("condition", [{"airspeed": 40.0}, {"airspeed": 20.0, "climb_angle": 1.0}])
-def test_a_condition_that_takes_more_than_the_throttle_gives_says_so(x8_fdm, condition):
-    found = search_trim(x8_fdm, altitude=100.0, **condition)
-    assert found.outcome is TrimOutcome.LIMITED
-    assert found.limits == ("throttle at its upper limit",)
-    # The equilibrium that would be there lies past the limit.
-    assert found.inputs["throttle"] > 1.0
-    with pytest.raises(AircraftError, match="throttle at its upper limit is not enough"):
-        trim(x8_fdm, altitude=100.0, **condition)
-
-
-def test_a_trim_found_from_a_neighbour_is_the_one_found_from_nothing(jet, jet_trims):
-    nearby = trim(jet, airspeed=84.0, altitude=1000.0)
-    found = trim(jet, **JET, start=nearby)
-    # Both solved to 1e-5 m/s^2 of 50 m/s^2 per rad.
-    assert found.alpha == pytest.approx(jet_trims["level"].alpha, abs=1e-6)
-    assert found.inputs == pytest.approx(jet_trims["level"].inputs, abs=1e-5)

@@ -15,7 +15,6 @@ from common.tables import (
     read_table,
     table_format,
     unit_factor,
-    unit_in,
 )
 
 PLAIN = [("0.5", "108.2", "543"), ("1.5", "110.9", "541.5"), ("2.5", "", "545")]
@@ -52,33 +51,6 @@ def test_separator_decimal_and_encoding_are_found(tmp_path, separator, decimal, 
     same(table)
     assert table.format.decimal == decimal
     assert table.format.separator == separator
-
-
-def test_lines_above_the_head_comments_and_blank_lines_are_no_rows(tmp_path):
-    text = "UAV 3; flight 7\noperator: N. N.\n\n" + rows(";").replace("\n", "\n# note; a\n\n", 1)
-    table = read_table(written(tmp_path, text))
-    same(table)
-    assert table.head_line == 4
-    # A head, a comment and an empty line are above the first row.
-    assert table.lines == [7, 8, 9]
-    assert "head in line 4" in table.described()
-
-
-def test_a_row_of_units_says_the_units(tmp_path):
-    head, rest = rows(";", ",").split("\n", 1)
-    table = read_table(written(tmp_path, f"{head}\ns;[ppb];ppm\n{rest}"))
-    same(table)
-    assert table.units == {"t": "s", "so2": "ppb", "co2": "ppm"}
-
-
-def test_a_comma_that_may_be_of_thousands_is_asked_for(tmp_path):
-    path = written(tmp_path, "t;p\n1;1,013\n2;1,014\n")
-    with pytest.raises(
-        TableError, match=r"'1,013' may be a decimal or thousands; give table.decimal"
-    ):
-        read_table(path)
-    table = read_table(path, TableFormat(decimal=","))
-    assert table.numbers("p") == pytest.approx([1.013, 1.014])
 
 
 # Times
@@ -158,20 +130,6 @@ def test_units_are_converted(unit, to, factor):
 def test_what_is_no_unit_of_the_quantity_is_refused(unit, words):
     with pytest.raises(TableError, match=words):
         unit_factor(unit, "ppb", gas="so2")
-
-
-@pytest.mark.parametrize(
-    ("name", "unit"),
-    [
-        ("SO2 [ppb]", "ppb"),
-        ("SO2 (µg/m³)", "µg/m³"),
-        ("so2_ppb", "ppb"),
-        ("SO2", ""),
-        ("time_s", ""),
-    ],
-)
-def test_names_may_say_their_unit(name, unit):
-    assert unit_in(name) == unit
 
 
 # What is refused

@@ -6,24 +6,6 @@ from pathlib import Path
 
 from docstrings import as_text
 
-from gnc.reference.reference import Reference
-
-
-def test_entries_are_terms_with_their_descriptions_and_units():
-    """As ``Reference`` has them."""
-    text = as_text(inspect.getdoc(Reference).splitlines())
-    start = text.index(":Attributes:")
-    assert text[start : start + 7] == [
-        ":Attributes:",
-        "",
-        "   ``north``, ``east``",
-        "      position [m]",
-        "",
-        "   ``course``",
-        "      chi_r [rad]",
-    ]
-
-
 ROOMS = ("aircraft", "common", "gnc", "innerloop", "measurement", "reports", "scenarios")
 
 

@@ -34,7 +34,7 @@ from gnc.estimation.vessel import (
     VesselLimits,
     VesselReport,
 )
-from gnc.guard.guard import Guarded, GuardParameters, GuardStatus
+from gnc.guard.guard import GuardParameters, GuardStatus
 from gnc.guidance import Guidance, GuidanceParameters, ReportedVessel
 from gnc.laws import CascadeLaw, LineOfSightLaw, LyapunovLaw
 from gnc.mission.axis import AxisHeight, Climb, PredictedPlume
@@ -56,24 +56,6 @@ QUICK_GUARD = GuardParameters(
     slow_lag=0.0,
     time_step=TIME_STEP,
 )
-
-
-class RecordingGuard:
-    """Records what it has to filter, and returns the same commands at each step."""
-
-    def __init__(self, guarded):
-        self.guarded = guarded
-        self.demands, self.motions, self.vessels, self.replaced = [], [], [], []
-
-    def filter(self, demand, own, vessels, _others=()):
-        self.demands.append(demand)
-        place = (own.ground_north, own.ground_east, own.course, own.heading_rate, own.speed)
-        self.motions.append((*place, own.wind_north, own.wind_east))
-        self.vessels.append(vessels)
-        return self.guarded
-
-    def replace(self, heading_rate, pace=None):
-        self.replaced.append((heading_rate, pace))
 
 
 class RecordingFilter:
@@ -106,17 +88,6 @@ class OnTheWay:
     def plan(self, _time, _own, _vessel, **_):
         self.flown.append(self.tracker.heading_rate_command)
         return Order(0.1, self._airspeed, 60.0, Mode.APPROACH)
-
-
-@pytest.fixture
-def guarded_by(monkeypatch):
-    """Return a function that makes the paper's guidance with another guard."""
-
-    def guarded_by(guard, **how):
-        monkeypatch.setattr("gnc.guidance.KeepoutGuard", lambda *_: guard)
-        return make_guidance(make_reference(paper_oscillation(0.5)), guard=QUICK_GUARD, **how)
-
-    return guarded_by
 
 
 @pytest.fixture
@@ -194,16 +165,6 @@ def test_the_airspeed_is_trimmed_by_the_along_track_error_within_its_limit(
     assert guidance.airspeed_command == pytest.approx(expected, abs=1e-12)
 
 
-@pytest.mark.parametrize("answer", [0.2, -0.3, 0.0])
-def test_the_guards_heading_rate_is_commanded(guarded_by, answer):
-    guidance = guarded_by(RecordingGuard(Guarded(answer, SPEED, True, GuardStatus.INTERVENING)))
-    guidance.step(0.0, motion(-300.0, 0.0, 0.0))
-    assert guidance.heading_rate_command == answer
-    assert guidance.guarding
-    # The tracker's preview goes on from it.
-    assert guidance.mission.tracker.heading_rate_command == answer
-
-
 def test_a_turn_away_has_to_keep_off_at_v_r_and_at_the_airspeed_now(filtered_by):
     # Trimmed to less than V_r, the vehicle is back at V_r in a turn away. While a disc closes in
     # the slower vehicle may come nearer.
@@ -270,15 +231,6 @@ def test_from_astern_a_guarded_vehicle_settles_and_keeps_out(nu, seed):
     assert np.min(flight.to_vessel) >= 200.75
     # Settled within the half metre that holding commands leaves; see test_tracker.py.
     assert np.max(flight.distance[-600:]) < 0.5
-
-
-def test_an_order_follows_what_was_flown_and_not_what_the_law_demands_meanwhile():
-    guidance = make_guidance(make_reference(paper_oscillation(0.5)), lag=0.4)
-    guidance.mission = OnTheWay(guidance.mission, SPEED)
-    for step in range(3):
-        guidance.step(step * TIME_STEP, motion(-300.0, 0.0, 2.0))
-    assert abs(guidance.mission.tracker.heading_rate_demand - 0.1) > 0.1
-    assert guidance.mission.flown == [0.0, 0.1, 0.1]
 
 
 GUARD = GuardParameters(

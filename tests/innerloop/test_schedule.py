@@ -7,15 +7,10 @@ import numpy as np
 import pytest
 
 from aircraft.envelope import TABLE_REACH
-from aircraft.fdm import Fdm
 from aircraft.fleet.x8 import X8
 from aircraft.spec import AircraftError
-from aircraft.trim import trim
 from common.physics import STANDARD_GRAVITY
-from innerloop.designer import Grid, linear_grid, schedule_at
-from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from innerloop.flight.responses import flown_step
-from innerloop.jsbsim.system import write_root
+from innerloop.designer import linear_grid
 from innerloop.schedule import LEVEL
 
 
@@ -69,36 +64,6 @@ def test_the_bank_for_a_turn_is_that_of_the_equilibrium_with_this_yaw_rate(x8_sc
     banks = x8_schedule.bank_for_turn(turns)[:, index]
     # At the nodes: rounding.
     np.testing.assert_allclose(banks, [t.roll for t in x8_schedule.trims[index]], atol=1e-12)
-
-
-@pytest.mark.parametrize("bank", [-50.0, -28.0, -11.0, 11.0, 28.0, 50.0])
-def test_between_equilibria_the_bank_for_a_turn_is_within_a_tenth_of_a_degree(x8_schedule, bank):
-    found = trim(Fdm(X8), airspeed=20.0, altitude=100.0, bank=math.radians(bank))
-    turn = np.array([20.0 * found.yaw_rate / STANDARD_GRAVITY])
-    # tan(bank) is nearly proportional to V omega/g; half-way between two equilibria it is off by
-    # second order of that "nearly".
-    assert math.degrees(float(x8_schedule.bank_for_turn(turn)[0, 2])) == pytest.approx(
-        bank, abs=0.1
-    )
-
-
-def test_a_slower_heading_rate_model_is_designed_when_asked_for(x8_design, tmp_path):
-    old = x8_design.schedule
-    grid = Grid(
-        spec=X8,
-        envelope=old.envelope,
-        altitude=old.altitude,
-        trims=old.trims,
-        models=old.models,
-        edges=old.edges,
-    )
-    schedule = schedule_at(grid, replace(x8_design.bandwidths, lateral=3.0))
-    aircraft = AutopilotedAircraft(X8, write_root(schedule, tmp_path))
-    flown = flown_step(aircraft, schedule.level(1), "heading_rate", 0.1, 6.0)
-    # From 10 to 90 % a second-order answer with a damping of 0.9 takes 2.9/omega_n (1.8 at 0.5, 3.4
-    # at 1: control textbooks); the aircraft follows within a fifth.
-    assert schedule.weights.model_frequency == pytest.approx(3.0)
-    assert flown.rise_time() == pytest.approx(2.9 / 3.0, rel=0.2)
 
 
 def test_a_design_condition_that_cannot_be_flown_is_refused():

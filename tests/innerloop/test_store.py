@@ -3,7 +3,6 @@
 import dataclasses
 import hashlib
 import math
-import os
 import pickle
 import shutil
 from types import SimpleNamespace
@@ -168,16 +167,6 @@ def test_any_changed_source_file_is_another_key(monkeypatch, tmp_path, package, 
     assert design_key(X8, 100.0) != before
 
 
-class Planted:
-    """Leaves a mark when it is unpickled."""
-
-    def __init__(self, mark):
-        self.mark = mark
-
-    def __reduce__(self):
-        return (os.mkdir, (os.fspath(self.mark),))
-
-
 def hashed(text):
     """Return a file of the cache with this text, as anyone can make one."""
     return f"{hashlib.sha256(text.encode()).hexdigest()}\n{text}".encode()
@@ -212,32 +201,6 @@ def test_a_file_that_holds_no_design_is_ignored_and_replaced(requests, content):
     assert len(requests) == 2
     designed(X8)
     assert len(requests) == 2
-
-
-def test_nothing_in_a_planted_file_is_executed(requests, tmp_path):
-    designed(X8)
-    (file,) = remembered()
-    planted = pickle.dumps(Planted(tmp_path / "executed"))
-    # As the cache had its files before, and under the names that it had for them, too.
-    for name in (file, file.with_name(file.name.removesuffix(".json"))):
-        name.write_bytes(hashlib.sha256(planted).digest() + planted)
-    assert designed(X8).record["aircraft"] == "x8"
-    assert not (tmp_path / "executed").exists()
-
-
-def test_a_file_with_a_wrong_byte_anywhere_is_ignored(requests):
-    designed(X8)
-    (file,) = remembered()
-    whole = file.read_bytes()
-    rng = np.random.default_rng(5)
-    # Read as it is, it might be another autopilot.
-    for place in rng.integers(0, len(whole), 8):
-        spoilt = bytearray(whole)
-        spoilt[place] ^= int(rng.integers(1, 256))
-        file.write_bytes(bytes(spoilt))
-        designed(X8)
-        assert file.read_bytes() == whole
-    assert len(requests) == 9
 
 
 @pytest.mark.parametrize("kind", [AircraftError, DesignError])

@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from dataclasses import astuple, fields, replace
+from dataclasses import astuple, replace
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from scipy.linalg import solve_continuous_are
 
 from aircraft.linearise import LinearModel
 from innerloop import synthesis
-from innerloop.schedule import GAIN_BANKS, LATERAL, LEVEL_GAINS, LONGITUDINAL, LoopBandwidths
+from innerloop.schedule import GAIN_BANKS, LATERAL, LEVEL_GAINS, LONGITUDINAL
 from innerloop.synthesis import (
     control_weights,
     design_gains,
@@ -119,40 +119,6 @@ def test_airspeed_is_as_fast_as_the_engine_and_slower_than_altitude():
     assert reachable_bandwidths([simple(z_alpha=-1.2)], BANK).airspeed == pytest.approx(
         0.27 * 0.9, rel=1e-12
     )
-
-
-def test_the_controls_may_do_what_moves_their_axis_at_its_frequency_against_its_damping():
-    bandwidths = LoopBandwidths(lateral=3.0, longitudinal=2.0, airspeed=0.5)
-    weights = design_weights(bandwidths, 20.0)
-    found = control_weights(simple(), bandwidths, weights)
-    # w hypot(w, damping) times the acceptable angle, over authority: by hand, 0.3 rad of pitch and
-    # 0.1 rad of roll.
-    assert found.elevator == pytest.approx(0.3 * 2.0 * math.hypot(2.0, 5.0) / 20.0, rel=1e-12)
-    assert found.aileron == pytest.approx(0.1 * 3.0 * math.hypot(3.0, 4.0) / 30.0, rel=1e-12)
-    assert found.throttle == pytest.approx(weights.airspeed * 0.5 / 6.0, rel=1e-12)
-    # The rudder: 0.05 rad of sideslip, at w hypot(w, 1.5) or, if that is less, against the
-    # weathercock's own 8 1/s^2.
-    assert found.rudder == pytest.approx(0.05 * 8.0 / 5.0, rel=1e-12)
-    stiff = control_weights(simple(yaw_stiffness=50.0), bandwidths, weights)
-    assert stiff.rudder == pytest.approx(0.05 * 3.0 * math.hypot(3.0, 1.5) / 5.0, rel=1e-12)
-
-
-def test_with_half_the_speed_everything_takes_twice_as_long():
-    quick = design_weights(LoopBandwidths(lateral=4.0, longitudinal=2.0, airspeed=0.5), 20.0)
-    slow = design_weights(LoopBandwidths(lateral=2.0, longitudinal=1.0, airspeed=0.25), 20.0)
-    # At the same V and g: lengths V/w and airspeeds g/w double, their integrals quadruple, angles
-    # stay, and rates halve.
-    exponents = dict.fromkeys((field.name for field in fields(quick)), 0)
-    exponents |= dict.fromkeys(("airspeed", "altitude", "heading_integral", "sideslip_integral"), 1)
-    exponents |= dict.fromkeys(("altitude_error_max", "airspeed_error_max"), 1)
-    exponents |= dict.fromkeys(("airspeed_integral", "altitude_integral"), 2)
-    exponents |= dict.fromkeys(("pitch_rate", "roll_rate", "model_frequency"), -1)
-    exponents |= {"anti_windup_rate": -1}
-    ratios = {
-        field.name: getattr(slow, field.name) / getattr(quick, field.name)
-        for field in fields(quick)
-    }
-    assert ratios == pytest.approx({name: 2.0**exponent for name, exponent in exponents.items()})
 
 
 SCALES = {

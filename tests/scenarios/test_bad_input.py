@@ -2,11 +2,9 @@
 works.
 """
 
-import json
 import os
 import subprocess
 import sys
-from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
@@ -75,41 +73,6 @@ def test_a_name_that_no_file_can_have_is_one_line(folder, name, words):
         (folder / name).write_text(TRIAL, encoding="utf-8")
     assert_refused(run_command("scenarios.run", name, "--no-report", "--out", "run"), words)
     assert not (folder / "run").exists()
-
-
-class Scripts(HTMLParser):
-    """What a parser that knows the rules for script elements finds in them: text up to the first
-    end tag that is one.
-    """
-
-    def __init__(self):
-        super().__init__()
-        self.texts, self._inside = [], False
-
-    def handle_starttag(self, tag, attrs):
-        self._inside = tag == "script" and ("type", "application/json") in attrs
-
-    def handle_endtag(self, _):
-        self._inside = False
-
-    def handle_data(self, data):
-        if self._inside:
-            self.texts.append(data)
-
-
-@pytest.mark.usefixtures("sketched")
-def test_a_report_keeps_its_charts_whatever_the_scenario_is_called(folder):
-    (folder / "<!--<script>.toml").write_text(TRIAL, encoding="utf-8")
-    ended = run_command("scenarios.run", "<!--<script>.toml", "--out", "run", "--jobs", "1")
-    assert ended.status == 0, ended
-    page = (folder / "run" / "report.html").read_text(encoding="utf-8")
-    found = Scripts()
-    found.feed(page)
-    assert len(found.texts) == page.count('type="application/json"') > 1
-    for text in found.texts:
-        # Between "<!--" and "-->" a parser does not see the end of a script element.
-        assert not set(text) & set("<>&")
-        json.loads(text)
 
 
 NO_HOME = """

@@ -5,7 +5,6 @@ refused in one line.
 import importlib.metadata
 from dataclasses import replace
 
-import pandas as pd
 import pytest
 
 from common.registry import ENTRY_POINTS, file_hash
@@ -71,46 +70,6 @@ def test_a_part_of_one_file_flies_in_a_sweep_and_stands_in_the_manifest(tmp_path
     section, _, last = key.partition(".")
     value = config[section][last] if last else config[section]
     assert value == ({"instruments": [part]} if key == "payload" else part)
-
-
-@pytest.mark.usefixtures("asked")
-def test_parts_act_on_the_flight(tmp_path):
-    path = write_scenario(
-        tmp_path,
-        "".join(line_of(key, name) for key, name in PARTS.items() if key != "guidance.law"),
-    )
-    run(path, tmp_path / "run", "sweep.nu=[0.5]")
-    (row,) = rows_of(tmp_path / "run")
-    # Of the slower aircraft, 19.1 m/s; of the plume's model, 190 deg from the bow, which points
-    # north at first.
-    assert row["vessel_speed_mps"] == pytest.approx(9.55)
-    assert row["plume_heading_deg"] == pytest.approx(190.0)
-    history = pd.read_parquet(tmp_path / "run" / "flights" / "nu_0.50.parquet")
-    # The vessel weaves by 10 deg; the instrument reads its 100 ppb on the axis, and noise of 1 ppb
-    # off it.
-    assert history["vessel_velocity_east_mps"].max() == pytest.approx(9.55 * 0.1745, rel=1e-3)
-    assert history["so2_ppb"].max() > 90.0
-    assert -6.0 < history["so2_ppb"].min() < 1.0
-
-
-@pytest.mark.parametrize(
-    ("override", "words"),
-    [
-        ("guidance.leed_s=2", "unknown key 'guidance.leed_s'; did you mean 'guidance.lead_s'?"),
-        ("guidance.lead=2", "unknown key 'guidance.lead'; did you mean 'guidance.lead_s'?"),
-        ("guidance.xyz=2", "unknown key 'guidance.xyz'; those of law "),
-        ("guidance.lead_s=long", "lead_s is 'long'; law "),
-        ("guidance.lead_s=inf", "takes a finite number, by default 1"),
-    ],
-)
-def test_a_key_that_the_law_does_not_have_or_cannot_use_is_refused(tmp_path, override, words):
-    assert words in refusal(
-        write_scenario(tmp_path, 'guidance.law = "law.py:Pursuit"\n'), tmp_path / "run", override
-    )
-    # And without that law its keys are no keys at all.
-    assert "unknown key 'guidance.lead_s'" in refusal(
-        str(tmp_path / "own.toml"), tmp_path / "run", "guidance={lead_s=1}"
-    )
 
 
 def test_files_may_be_swept_sampled_compared_and_set_in_cases(tmp_path):

@@ -4,7 +4,6 @@ flights.
 
 import hashlib
 
-import pandas as pd
 import pytest
 from PIL import Image
 
@@ -62,18 +61,3 @@ def test_a_run_keeps_what_its_reports_say_of_themselves_without_a_path_of_the_ma
     assert "<h1>Survey of the strait</h1>" in page
     assert "A. Author, Agency" in page
     assert '<img src="data:image/png;base64,' in page
-
-
-def test_a_complete_run_that_is_resumed_with_another_report_flies_nothing_and_is_reported_anew(
-    scenario, tmp_path
-):
-    out = tmp_path / "run"
-    run_command("scenarios.run", scenario, "--out", out, "--no-report")
-    before, flown = manifest_of(out), pd.read_csv(out / "summary.csv")
-    ended = run_command(
-        "scenarios.run", scenario, "--out", out, "--resume", "--set", "report.title=Another"
-    )
-    assert ended.status == 0, ended.errors
-    assert manifest_of(out) == before | {"report": before["report"] | {"title": "Another"}}
-    pd.testing.assert_frame_equal(pd.read_csv(out / "summary.csv"), flown)
-    assert "<h1>Another</h1>" in (out / "report.html").read_text(encoding="utf-8")

@@ -4,15 +4,12 @@ and what is refused.
 
 import math
 import re
-import shutil
 from pathlib import Path
 
 import jsbsim
 import pytest
 
-from aircraft.fdm import Fdm
 from aircraft.fleet.find import find_spec
-from aircraft.model import model_hash
 from aircraft.spec import AircraftError
 from aircraft.user_check import check_user_aircraft
 
@@ -56,26 +53,6 @@ def test_a_folder_is_read_as_jsbsims_own_model_is(heavy):
     assert (mine.name, mine.model) == ("heavy", "heavy")
     for name in ("inputs", "configuration", "engine_flags", "settle_time", "envelope", "actuators"):
         assert getattr(mine, name) == getattr(stock, name)
-
-
-# As JSBSim searches: the model's folder and its Engines, then the root beside it; JSBSim's own only
-# where there is none.
-@pytest.mark.parametrize("place", ["fleet/heavy", "fleet/heavy/Engines", "engine"])
-def test_engines_are_found_in_the_folder_in_its_engines_and_beside_the_directory(
-    heavy, tmp_path, place
-):
-    (tmp_path / place).mkdir(exist_ok=True)
-    copy = tmp_path / place / "own_io320.xml"
-    shutil.copy(STOCK / "engine" / "eng_io320.xml", copy)
-    edited(heavy, 'file="eng_io320"', 'file="own_io320"')
-    spec = find_spec(str(heavy))
-    Fdm(spec).step(3)
-    before = model_hash(spec.files)
-    copy.write_text(
-        re.sub(r"(<displacement[^>]*>)[^<]*", r"\g<1>300.0", copy.read_text(encoding="utf-8")),
-        encoding="utf-8",
-    )
-    assert model_hash(spec.files) != before
 
 
 def test_settings_say_title_commands_properties_and_envelope(heavy):
@@ -171,24 +148,6 @@ def test_settings_that_are_wrong_are_refused_in_a_line(heavy, text, why):
 def test_a_model_that_cannot_be_flown_is_refused_in_a_line(heavy, old, new, why):
     edited(heavy, old, new)
     assert re.search(why, refused(heavy))
-
-
-def test_a_model_that_ends_jsbsims_process_and_a_property_that_does_not_exist_are_refused_in_a_line(
-    heavy,
-):
-    spec = said(heavy, "[properties]\n'fcs/flap-comd-norm' = 1")
-    with pytest.raises(AircraftError, match="has no JSBSim property 'fcs/flap-comd-norm'"):
-        check_user_aircraft(spec)
-    (heavy / "heavy.toml").unlink()
-    function = (
-        '<axis name="DRAG"><function name="aero/x"><property>no/such</property></function></axis>'
-    )
-    edited(heavy, "<aerodynamics>", f"<aerodynamics>{function}")
-    with pytest.raises(
-        AircraftError, match=r"JSBSim ends the whole process with its model: .*no/such"
-    ) as caught:
-        check_user_aircraft(find_spec(str(heavy)))
-    assert "\n" not in str(caught.value)
 
 
 def test_an_error_while_the_model_runs_is_one_line_without_a_traceback_that_names_the_model_file(

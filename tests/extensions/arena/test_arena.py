@@ -100,40 +100,6 @@ def test_flights_have_the_tuned_parameters_and_the_manifest_says_them(run, recor
     )
 
 
-def test_laws_are_compared_within_a_task_and_crossings_over_both(record):
-    def of(figure, condition="all"):
-        return [
-            e for e in record["estimates"] if (e["figure"], e["condition"]) == (figure, condition)
-        ]
-
-    assert sum(estimate["best"] for estimate in of("error_rms_m")) == 2
-    assert sum(estimate["best"] for estimate in of("crossings_per_minute")) == 1
-    for estimate in of("error_rms_m", "wind"):
-        assert estimate["low"] <= estimate["mean"] <= estimate["high"]
-        assert estimate["flights"] == 2
-    # nu is 0.5 in calm air; the limit is 5 + 4 nu there.
-    assert record["limits"]["calm"] == pytest.approx(7.0, abs=1e-3)
-
-
-def test_every_flight_is_measured_over_its_end_and_what_a_minute_is_worth_is_compared(run, record):
-    flights, windows = pd.read_csv(run / "summary.csv"), pd.read_csv(run / "window.csv")
-    # The window of QUICK, whether the flight has settled or not.
-    assert windows["plume_s_per_minute"].to_numpy() == pytest.approx(
-        flights["seconds_in_plume_s"].to_numpy() * 60.0 / 30.0
-    )
-    admitted = flights["sulphur_quality"] != "C"
-    assert (windows["sulphur_information_per_minute"] > 0.0).tolist() == admitted.tolist()
-    assert admitted.any()
-    compared = [
-        e
-        for e in record["estimates"]
-        if (e["figure"], e["condition"]) == ("sulphur_information_per_minute", "all")
-    ]
-    assert len(compared) == len(record["entrants"])
-    best = max(compared, key=lambda estimate: estimate["mean"])
-    assert best["best"]
-
-
 def test_a_resumed_arena_has_nothing_to_do_and_a_flight_replays_as_it_was(run, tmp_path, law):
     before = (run / "arena.json").read_bytes()
     result = run_study(

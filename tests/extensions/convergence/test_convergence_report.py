@@ -5,80 +5,18 @@ import re
 import numpy as np
 import pandas as pd
 import pytest
-from convergence_runs import TRAJECTORIES, write_convergence_run
-from report_parts import blocks_of, built, draw_all_but, numbers_on_page_1
+from convergence_runs import write_convergence_run
+from report_parts import built, draw_all_but, numbers_on_page_1
 
-from extensions.convergence.report import FAILED_ROWS
 from reports.build import build_reports
-from reports.document.blocks import Table
 from reports.errors import ReportError
-from reports.registry import content
-from reports.run.run_data import read_run
 from tests.run_tables import manifest_of, write_manifest
-
-
-def test_counter_examples_are_named_with_their_reasons(failed):
-    assert not failed.verdict.holds
-    all_of = 2 * TRAJECTORIES
-    assert failed.verdict.headline.startswith(
-        f"{all_of - 3:,} of {all_of:,} trajectories converged; "
-    )
-    assert [line.split(": ")[:2] for line in failed.verdict.failures] == [
-        ["Law (24), trajectory 3", "time up"],
-        ["Law (30), trajectory 7", "steps up"],
-        ["Law (30), trajectory 200", "not finite"],
-    ]
-    lyapunov, cascade, cut = blocks_of(failed, Table, "counterexamples")
-    assert [row[0] for row in lyapunov.rows] == ["3"]
-    assert [row[0] for row in cascade.rows] == ["7", "200"]
-    assert len(cut.rows) == FAILED_ROWS < 40
-
-
-def test_trajectories_that_were_lost_with_their_process_are_no_counter_examples(tmp_path):
-    path = write_convergence_run(tmp_path / "run", 30)
-    rows = pd.read_csv(path / "summary.csv")
-    # What the study writes of them: nothing that was flown.
-    lost = (rows["law"] == "cascade") & (rows["trajectory"] < 10)
-    known = ["trajectory", "law", "reference"]
-    rows.loc[lost, [name for name in rows if name not in known]] = np.nan
-    rows["outcome"] = rows["outcome"].astype(object)
-    rows.loc[lost, "outcome"], rows.loc[lost, "message"] = (
-        "lost",
-        "2 processes that flew it were lost",
-    )
-    rows.to_csv(path / "summary.csv", index=False)
-    report = content(read_run(path))
-    assert report.verdict.holds
-    assert not report.verdict.complete
-    assert report.verdict.headline.startswith(
-        "INCOMPLETE after 50 of 60 trajectories. All 50 trajectories converged; "
-    )
-    assert (
-        "10 trajectories were lost with their processes, and count as not flown; --resume"
-        in report.verdict.detail
-    )
-    assert report.verdict.figures[1][1:4] == ("20 of 20", "all", True)
-    assert "counterexamples" not in [section.anchor for section in report.sections]
-    (table,) = blocks_of(report, Table, "settling")
-    assert [row[2:4] for row in table.rows if row[:2] == ["Law (30)", "all"]] == [["20", "20"]]
 
 
 def test_both_reports_are_built_and_self_contained(failed_path, monkeypatch):
     # Page 1 has the figures of distances again.
     draw_all_but(monkeypatch, "first")
     assert "<option" not in built(failed_path)
-
-
-@pytest.mark.parametrize("kept", [0, 1])
-def test_a_study_without_rows_or_with_next_to_none_can_be_reported_on(kept, tmp_path):
-    path = write_convergence_run(tmp_path / "run", 3, state="interrupted")
-    rows = pd.read_csv(path / "summary.csv")
-    rows.head(kept).to_csv(path / "summary.csv", index=False)
-    html, _ = build_reports(path)
-    text = html.read_text(encoding="utf-8")
-    assert ("Nothing was flown" in text) == (kept == 0)
-    shown = re.sub(r"<script.*?</script>", "", text[text.index("<h1>") :], flags=re.DOTALL)
-    assert not re.search(r"\bnan\b", shown)
 
 
 def change(path, how):

@@ -3,7 +3,6 @@
 import pandas as pd
 import pytest
 
-from extensions.convergence import study as convergence_study
 from extensions.convergence.ensemble import DISTANCE_CONVERGED, PHI_CONVERGED
 from extensions.convergence.scenario import ConvergenceScenario
 from scenarios.engine.processes import InProcessExecutor
@@ -47,22 +46,6 @@ def test_every_trajectory_is_a_row_and_those_that_did_not_converge_are_in_a_file
     assert len(pd.read_csv(directory / "counterexamples.csv")) == 0
     # The first two trajectories' time histories, with each law.
     assert len(list((directory / "trajectories").glob("*.parquet"))) == 4
-
-
-def test_those_that_do_not_converge_are_kept_with_their_time_histories(tmp_path):
-    # Circles at more than 99 % of omega_max hold a vehicle with cut commands off; here it is given
-    # no time: one second, and no patience, is too short for anything.
-    scenario = study("ensemble.time_max_s=1.0", 'guidance.laws=["cascade"]', "ensemble.samples=0")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(convergence_study, "TIME_FACTOR", 1e-6)
-        result = run(scenario, tmp_path / "run")
-    failed = pd.read_csv(tmp_path / "run" / "counterexamples.csv")
-    assert not result.all_met
-    assert len(failed) == 12
-    assert failed["message"].str.contains("m from the reference after 1 s").all()
-    assert len(list((tmp_path / "run" / "trajectories").glob("cascade_*.parquet"))) == 12
-    manifest = manifest_of(tmp_path / "run")
-    assert manifest["outcomes"]["time_up"] == 12
 
 
 def test_an_interrupted_study_resumes_to_the_same_rows(directory, tmp_path):
@@ -113,23 +96,6 @@ def test_a_study_goes_on_with_the_blocks_that_are_left(tmp_path):
     told.clear()
     assert run(few, tmp_path / "whole", resume=True, progress=tell).all_met
     assert [report for report in told if report[0] == "flying"] == [("flying", 12, 12)]
-
-
-def test_an_interrupt_while_time_histories_are_kept_leaves_a_run_that_can_be_resumed(
-    tmp_path, monkeypatch
-):
-    few = study("ensemble.trajectories=3", "ensemble.distance_max_m=60")
-
-    def interrupt(*_, **__):
-        raise KeyboardInterrupt
-
-    with monkeypatch.context() as patch:
-        patch.setattr("extensions.convergence.study.trajectory_of", interrupt)
-        first = run(few, tmp_path / "run")
-    assert first.verdict.interrupted
-    assert first.verdict.counts.done == first.verdict.counts.planned
-    assert manifest_of(tmp_path / "run")["state"] == "interrupted"
-    assert run(few, tmp_path / "run", resume=True).all_met
 
 
 @pytest.mark.parametrize(

@@ -140,25 +140,6 @@ def test_a_seed_gives_the_same_episodes_and_another_seed_others(kinematic):
     assert not np.array_equal(once[1], once[2])
 
 
-def test_an_observation_is_what_the_flight_is_in_the_frame_of_the_plume(kinematic):
-    observed, _ = kinematic.reset(options={"flight_id": "nu_0.30"})
-    seen = dict(zip(MEANINGS, observed, strict=True))
-    plan = kinematic.unwrapped._episode.loop.plan
-    # The vessel starts at the origin, and her plume trails to the south: astern of a ship that
-    # sails north.
-    assert seen["along_m"] == pytest.approx(-plan.start.north)
-    assert seen["across_m"] == pytest.approx(-plan.start.east)
-    assert seen["clearance_m"] == pytest.approx(
-        math.hypot(plan.start.north, plan.start.east) - 200.0
-    )
-    # nu = 0.3 of 19.42 m/s, to the north.
-    assert seen["vessel_along_mps"] == pytest.approx(-0.3 * 19.42)
-    assert math.hypot(seen["velocity_along_mps"], seen["velocity_across_mps"]) == pytest.approx(
-        19.42, abs=1e-9
-    )
-    assert math.hypot(seen["reference_cos"], seen["reference_sin"]) == pytest.approx(1.0)
-
-
 def test_flying_at_the_vessel_ends_in_the_keepout_area_with_its_reward(kinematic):
     observed, _ = kinematic.reset(options={"flight_id": "nu_0.30"})
     names, limit = list(MEANINGS), kinematic.action_space.high[0]
@@ -209,22 +190,6 @@ def test_actions_outside_the_space_are_cut_and_the_guidance_knows_what_was_flown
         kinematic.unwrapped.step(np.array([math.nan, 19.0]))
     kinematic.unwrapped.step(0.5 * high)
     assert loop.vehicle.motion()[4] == 0.5 * high[0]
-
-
-def test_a_flight_whose_time_is_up_is_truncated_and_not_terminated_even_where_it_completes():
-    # Without a number of crossings a flight that has crossed completes when its time is up.
-    env = make(
-        **{
-            "fidelity": "kinematic",
-            "sweep.nu": [0.3],
-            "flight.crossings": 0,
-            "flight.duration_max_s": 90.0,
-        }
-    )
-    _, info, terminated = followed(env, "nu_0.30")
-    assert env.unwrapped.record.outcome.name == "COMPLETED"
-    assert info["crossings"] > 0
-    assert not terminated
 
 
 @pytest.mark.parametrize(

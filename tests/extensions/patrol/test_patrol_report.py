@@ -3,7 +3,6 @@ one that cannot be.
 """
 
 import math
-from dataclasses import replace
 
 import pandas as pd
 import pytest
@@ -37,26 +36,6 @@ def test_the_verdict_compares_with_the_oracle(run):
     assert found.holds
     assert right.met == (row["correct"] >= 0.8 * row["oracle_verdicts"])
     assert 4 <= len(found.figures) <= CARDS_MAX
-
-
-def of_row(run, **values):
-    """Return the verdict on a run whose only row has other values."""
-    return patrol_content(replace(run, summary=run.summary.assign(**values))).verdict
-
-
-@pytest.mark.parametrize("oracle", [0, 2])
-def test_patrols_that_served_no_ship_are_red_and_claim_no_share(run, oracle):
-    none = dict.fromkeys(
-        ("served", "verdicts", "correct", "wrong", "open", "keepout_violations"), 0
-    )
-    found = of_row(run, **none, oracle_verdicts=oracle, kept_out=True, criteria_met=True)
-    words = f"No ship was served; an oracle reaches {oracle} right verdicts"
-    assert (found.headline, found.tone) == (words, "bad")
-    figures = {card.name: card.met for card in found.figures}
-    assert figures["Ships served per hour"] is False
-    assert figures["Keep-out violations"] is False
-    assert figures["Right verdicts"] is (False if oracle else None)
-    assert figures["Wrong verdicts"] is None
 
 
 def test_every_number_on_page_1_is_that_of_the_tables(run, tmp_path):

@@ -24,7 +24,6 @@ from gnc.analysis.bounds import (
     heading_rate_bound,
 )
 from gnc.analysis.worst_case_search import heading_rates
-from gnc.errors import InfeasibleError
 from gnc.laws import CascadeLaw
 from gnc.paper import delta_length, look_ahead
 
@@ -193,18 +192,3 @@ def test_the_guidance_flies_its_preview_without_a_command_above_the_bound():
     assert np.abs(flight.command).max() <= heading_rate_bound(
         LOOK_AHEAD, speed=SPEED, reference_heading_rate_max=HEADING_RATE_MAX, steering_max=0.4
     )
-
-
-@pytest.mark.parametrize(
-    ("distance_from", "distance_to"), [(5.0, 5.0), (5.0, 500.0), (math.inf, 5.0), (500.0, 0.0)]
-)
-def test_convergence_that_goes_nowhere_is_refused(distance_from, distance_to):
-    task = {"speed": SPEED, "distance_from": distance_from, "distance_to": distance_to, "gain": 1.5}
-    with pytest.raises(
-        InfeasibleError, match=r"distance_to is .* m and distance_from .* from far to near"
-    ):
-        convergence_time(LOOK_AHEAD, steering_max=0.4, **task)
-    with pytest.raises(
-        InfeasibleError, match=r"distance_to is .* m and distance_from .* from far to near"
-    ):
-        fastest_within(heading_rate_max=0.5, reference_heading_rate_max=0.3, **task)

@@ -191,27 +191,6 @@ def test_the_least_bound_is_a_command_that_is_met_and_no_larger_one_is_met_head_
     assert least <= bound
 
 
-@examples(200)
-@given(parameters=look_aheads(), turn=turns, steering_max=steering)
-def test_on_the_reference_itself_the_command_takes_the_references_turn_and_what_the_look_ahead_adds(
-    parameters, turn, steering_max
-):
-    # docs, "What is necessary": d = 0 makes rho = delta = R. So a reference that spends omega_max
-    # leaves no bound within it.
-    on_it = turn + SPEED / parameters.radius + min(steering_max, 0.75 * math.pi)
-    assert command(parameters, 0.0, 0.0, -0.5 * math.pi, turn, 1.5, steering_max) == pytest.approx(
-        on_it, rel=1e-12
-    )
-    least = largest_head_on(
-        parameters,
-        speed=SPEED,
-        reference_heading_rate_max=turn,
-        gain=1.5,
-        steering_max=steering_max,
-    )
-    assert on_it <= least * (1.0 + 1e-12)
-
-
 @pytest.mark.parametrize(
     ("changes", "message"),
     [

@@ -108,14 +108,6 @@ def test_equation_33_is_23_at_phi_zero_and_never_positive(driven, speed):
     assert unforced <= 0.0
 
 
-@examples(200)
-@given(driven=any_driven, phi=courses, speed=speeds)
-def test_equation_35_is_23_whatever_the_state(driven, phi, speed):
-    state = RelativeState(*driven, phi)
-    # Rounding of 40 m/s * 3 km * 2, a few times over.
-    assert v_1_rate_split(state, speed) == pytest.approx(v_1_rate(state, speed), rel=0.0, abs=1e-9)
-
-
 @examples(150)
 @given(start=tracking_starts(phi_max=0.0), time=st.floats(0.0, 20.0))
 def test_equation_34_is_the_numerical_rate_of_33_along_the_unforced_system(start, time):

@@ -6,9 +6,7 @@ import numpy as np
 import pytest
 from gnc_cases import (
     LOOK_AHEAD,
-    OSCILLATION,
     SPEED,
-    circling,
     courses,
     delta_steering,
     examples,
@@ -36,14 +34,6 @@ offsets = st.floats(-300.0, 300.0)
 heading_rates = st.floats(-0.5, 0.5)
 
 K_2 = 1.0 / K_1
-REFERENCES = pytest.mark.parametrize("reference_heading_rate", [oscillating, circling])
-
-
-# From behind, abeam, close by and almost opposite; not exactly opposite, where law (24) is
-# singular.
-STARTS = pytest.mark.parametrize(
-    "start", [(-250.0, 40.0, 0.5), (20.0, -150.0, -1.0), (3.0, 2.0, 2.5), (120.0, 5.0, 3.0)]
-)
 
 
 def fly_law_24(reference_heading_rate, start, duration):
@@ -102,29 +92,6 @@ def test_equation_26_is_the_rate_of_v_2_for_k_1_k_2_of_1_only(
     left_over = (1.0 - k_1_k_2) * state.rho * SPEED * (1.0 - math.cos(state.phi))
     # Roundings of 1e4 m^2 times up to k_1 rho V_r tan(1.55) = 1e3 rad/s.
     assert rate == pytest.approx(v_2_rate(state, SPEED) + left_over, rel=1e-10, abs=1e-6)
-
-
-@REFERENCES
-@STARTS
-def test_under_law_24_the_states_converge_as_the_proof_says(reference_heading_rate, start):
-    course = OSCILLATION.eta if reference_heading_rate is oscillating else 0.0
-    times, states, cartesian = fly_law_24(reference_heading_rate, [0.0, 0.0, course, *start], 250.0)
-    final, time = states[-1], times[-1]
-    motion = tracking_motion(delta_steering(law_24, reference_heading_rate), reference_heading_rate)
-    rates = state_rates(
-        LOOK_AHEAD, final, SPEED, reference_heading_rate(time), motion(time, cartesian[-1])[5]
-    )
-    # (28): phi_r and phi go to zero, and with them V_2's rate; (29): so does phi_r's rate; so rho
-    # goes to delta, and delta to R. Convergence is exponential, and 250 s are ample: all is
-    # rounding by then, 1e-12. Of the look-ahead's 60 m, 1e-6 is 0.06 mm.
-    assert abs(v_2_rate(final, SPEED)) < 1e-6
-    assert abs(final.phi_r) < 1e-6
-    assert abs(final.phi) < 1e-6
-    assert abs(rates.phi_r) < 1e-6
-    assert final.rho == pytest.approx(final.delta, rel=1e-6)
-    assert final.delta == pytest.approx(LOOK_AHEAD.radius, rel=1e-6)
-    # And at the start they were not there already.
-    assert max(abs(states[0].phi_r), abs(states[0].phi)) > 0.01
 
 
 @examples(50)

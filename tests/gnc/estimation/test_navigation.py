@@ -72,22 +72,6 @@ def test_dead_reckoning_with_exact_sensors_in_steady_wind_does_not_drift():
     )
 
 
-def test_the_air_frame_drifts_with_the_estimated_wind():
-    navigation = make()
-    total = [0.0, 0.0]
-    for step in range(400):
-        time = step * TIME_STEP
-        sense(navigation, (0.0, 0.0, *velocity_at(time)), SPEED, course_at(time))
-        total[0] += TIME_STEP * navigation.wind.north
-        total[1] += TIME_STEP * navigation.wind.east
-    # Rounding.
-    assert (navigation.drift_north, navigation.drift_east) == pytest.approx(total, abs=1e-9)
-    # The wind is known to 2 % after the first look: each of 20 s at 5 m/s is 100 m.
-    assert (navigation.drift_north, navigation.drift_east) == pytest.approx(
-        (20.0 * WIND[0], 20.0 * WIND[1]), rel=0.02
-    )
-
-
 @pytest.mark.parametrize(
     ("roll", "offset"),
     # The table of ``make``, halfway between its points, and beyond its ends along the last piece.
@@ -123,16 +107,6 @@ def test_after_a_loss_of_satellites_the_wind_is_known_as_little_as_it_has_wander
     wandered = before**2 + drift**2 * 60.25
     after = wandered * error**2 / (wandered + error**2)
     assert navigation.wind.sigma == pytest.approx(math.sqrt(after), rel=1e-9)
-
-
-def test_a_first_wind_that_is_wrong_by_the_vehicles_own_motion_is_averaged_out():
-    navigation = make(first_wind_error=0.8)
-    fly(navigation, steps=1)
-    assert navigation.wind_error == pytest.approx(0.8)
-    first = navigation.wind.sigma
-    fly(navigation, steps=40, first=1)
-    assert navigation.wind_error == pytest.approx(0.8 * (navigation.wind.sigma / first) ** 2)
-    assert 0.0 < navigation.wind_error < 0.4
 
 
 @pytest.mark.parametrize("measured", [1, 3, 20])

@@ -21,7 +21,6 @@ from gnc.estimation.vessel import (
     VesselFilter,
     VesselReport,
     singer_noise,
-    singer_response,
     tube,
 )
 
@@ -75,12 +74,6 @@ def test_its_process_noise_is_singers(time):
     )
 
 
-@pytest.mark.parametrize("time", [0.5, 12.0, 60.0])
-def test_it_extrapolates_an_acceleration_that_fades(time):
-    # Rounding.
-    assert singer_response(MEMORY, time) == pytest.approx(singer(time)[0][:, 2], rel=1e-10)
-
-
 def test_it_is_a_plain_matrix_kalman_filter():
     rng = np.random.default_rng(3)
     vessel = make()
@@ -128,23 +121,6 @@ def test_a_late_report_counts_for_when_it_was_true():
     looked.report(late)
     silent.report(late)
     assert looked.at(9.0) == silent.at(9.0)
-
-
-def test_exact_reports_give_exact_states_and_find_the_acceleration():
-    vessel = make(position_sigma=0.0, velocity_sigma=0.0)
-    # 6 m/s, speeding up northward by 0.1 m/s^2, reported every half a second, as with exact
-    # knowledge.
-    for step in range(200):
-        time = 0.5 * step
-        vessel.report(VesselReport(time, 6.0 * time + 0.05 * time**2, 0.0, 6.0 + 0.1 * time, 0.0))
-        motion = vessel.at(time)
-        # Rounding of 1,100 m.
-        assert motion.north == pytest.approx(6.0 * time + 0.05 * time**2, rel=0.0, abs=1e-9)
-        assert motion.velocity_north == pytest.approx(6.0 + 0.1 * time, rel=0.0, abs=1e-9)
-        assert motion.sigma == pytest.approx(0.0, abs=1e-6)
-    # It reckons with accelerations that fade with 40 s, so it sees 0.1 within the half second's
-    # share of that, 1.3 %.
-    assert motion.acceleration_north == pytest.approx(0.1, rel=0.02)
 
 
 def test_it_knows_how_wrong_it_is_about_the_manoeuvres_that_it_reckons_with():
@@ -236,17 +212,6 @@ def test_the_vessel_is_in_every_disc_at_every_time(manoeuvre, velocity, reported
             share * limits.acceleration * math.sin(towards),
             STEP,
         )
-
-
-def test_the_disc_is_no_larger_than_what_the_vessel_can_do():
-    # A vessel that does the most it can, with the largest error, is on the edge of its disc: at
-    # rest, and reported 20 s ago.
-    limits = replace(LIMITS, speed_max=math.inf)
-    vessel, age = Vessel(limits=limits), 20.0
-    # The split of the error that is worst at that age: the gradient of 5 cos + 0.15 * 20 sin.
-    report = report_of(vessel, 0.0, split=math.atan2(0.15 * age, 5.0), place=math.pi, drift=math.pi)
-    vessel.accelerate(limits.acceleration, 0.0, age)
-    assert beyond(tube(report, limits, age), vessel, age) == pytest.approx(0.0, abs=ROUNDING)
 
 
 @examples(100)

@@ -5,13 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from exhaust_cases import PRIOR, SENSOR, MadePlume, estimated
+from exhaust_cases import PRIOR, SENSOR, MadePlume
 from hypothesis import given
 from hypothesis import strategies as st
 
 from gnc.estimation.navigation import AirMotion
-from gnc.estimation.plume.estimator import HIT, PlumeEstimator
-from gnc.estimation.plume.passes import SensorState
+from gnc.estimation.plume.estimator import PlumeEstimator
 from gnc.estimation.plume.prior import Expectation
 from gnc.estimation.vessel import SteadyTarget
 from gnc.mission.axis import (
@@ -133,36 +132,6 @@ def test_the_demanded_height_has_the_least_expected_time_to_find() -> None:
     assert _search().next_altitude(estimator, 62.0, PASS_TIME) == pytest.approx(best)
 
 
-def test_the_height_that_is_flown_has_the_most_hits_in_it_and_in_what_it_says() -> None:
-    """Against the definition: hits now, and three at the deviation that is expected after it."""
-    estimator = estimated(MadePlume(height=75.0), [65.0, 65.0])
-    demanded = _search().next_altitude(estimator, 65.0, PASS_TIME)
-    around = estimator.height + estimator.height_deviation * np.linspace(-1.6, 1.6, 9)
-    reach = estimator.sigma_z * math.sqrt(-2.0 * math.log(HIT))
-
-    def worth(altitude: float) -> float:
-        at = np.array([altitude])
-        off = math.hypot(float(estimator.expected_deviation(at)[0]), PRIOR.meander_z)
-        return float(estimator.hits(at)[0]) + 3.0 * math.erf(reach / off / math.sqrt(2.0))
-
-    assert demanded == pytest.approx(max(around.tolist(), key=worth))
-
-
-def test_hits_are_those_of_centres_drawn_at_random() -> None:
-    estimator = estimated(MadePlume(height=68.0), [65.0, 74.0, 56.0])
-    generator, altitudes = np.random.default_rng(4), np.array([50.0, 66.0, 80.0])
-    weights = estimator._weights.sum(axis=1)
-    axes = generator.choice(len(weights), 100_000, p=weights / weights.sum())
-    heights = estimator.grid.coarse_heights(estimator._heights)[axes]
-    # The made ways are square to the plume in its frame, and have a correlation length of a
-    # kilometre: one look.
-    centres = heights + PRIOR.meander_z * generator.standard_normal(len(axes))
-    for altitude, chance in zip(altitudes, estimator.hits(altitudes), strict=True):
-        peak = np.exp(-0.5 * ((altitude - centres) / estimator._spread[axes]) ** 2)
-        # A share of 100,000 has a deviation of at most 0.0016.
-        assert chance == pytest.approx(float(np.mean(peak > HIT)), abs=0.01)
-
-
 FAST = replace(SENSOR, saturated=20000.0)
 EXPECTED = Expectation(
     source_height=35.0,
@@ -249,17 +218,6 @@ def test_a_plume_is_searched_for_found_and_followed(ladder):
     # To about its own spread: strength and height off the axis look alike.
     assert abs(axis.estimate.height - 75.0) < WIDTH
     assert axis.estimate.height_deviation < WIDTH
-
-
-@pytest.mark.parametrize(
-    ("sensor", "state"),
-    [(lambda *_: 420.0, SensorState.STUCK), (lambda *_: 20000.0, SensorState.SATURATED)],
-)
-def test_a_sensor_that_fails_is_recognised_and_adds_no_evidence(sensor, state):
-    axis = SEARCHED.begin()
-    modes = flown(axis, height=75.0, duration=40.0, sensor=sensor)
-    assert modes[-1] is Mode.SENSOR_FAILED
-    assert axis.sensor is state
 
 
 def test_a_reading_counts_for_the_place_at_which_it_was_read():

@@ -238,20 +238,6 @@ def test_held_by_the_guard_on_a_course_beside_the_vessel_it_flies_abeam(east, si
     )
 
 
-def test_whom_the_guard_threw_back_joins_from_half_as_far_but_not_from_nearer_than_counts_as_lost():
-    found, reached = Way((-390.0 + 1.0, 0.0)), []
-    for _ in range(4):
-        reached.append([off for off in (149.0, 74.0, 37.0, 35.0) if joins_from(found, off)])
-        found.approach.halve_join_distance()
-    # 150, 75, 37.5 and 36 m: three times 12.
-    assert reached == [[149.0, 74.0, 37.0, 35.0], [74.0, 37.0, 35.0], [37.0, 35.0], [35.0]]
-
-
-def joins_from(found, off):
-    # The vehicle is 389 m astern.
-    return found.should_track((-389.0 + off, 0.0))
-
-
 def fly_out(x, y, course, heading_rate=0.0, duration=30.0):
     """Return distances from the vessel, and heading rates, of a vehicle that answers at once and
     leaves a vessel at rest.

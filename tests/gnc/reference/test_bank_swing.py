@@ -64,20 +64,6 @@ def test_neither_heading_rate_nor_roll_rate_ever_exceed_their_limits(
     assert abs(banks[1] - banks[0]) <= roll_rate * step * (1.0 + 1e-9)
 
 
-@given(eta=etas, phase=st.floats(-3.1, 3.1), roll_rate=roll_rates)
-@examples(60)
-def test_the_slopes_are_those_of_the_course(eta, phase, roll_rate):
-    swing, step = courses(roll_rate=roll_rate), 1e-6
-    by_eta, by_phase = swing.slopes(eta, phase)
-    over_eta = (swing.course(eta + step, phase) - swing.course(eta - step, phase)) / (2.0 * step)
-    over_phase = (swing.course(eta, phase + step) - swing.course(eta, phase - step)) / (2.0 * step)
-    # Differences over 1e-6 with roundings of 1e-16 eta, and the roll rate that jumps within one.
-    assert by_eta == pytest.approx(over_eta, rel=0.0, abs=1e-5)
-    assert eta * by_phase == pytest.approx(over_phase, rel=0.0, abs=1e-5)
-    # The Protocol: a steered reference relies on it for its bound on the heading rate.
-    assert abs(by_eta) <= 1.0
-
-
 @pytest.mark.parametrize("roll_rate", [0.2, ROLL_RATE, math.inf])
 @pytest.mark.parametrize("eta", [0.05, 0.4, 1.7, 3.0, 3.9])
 def test_the_mean_speed_is_the_mean_of_the_cosine_of_the_course(eta, roll_rate):
@@ -160,18 +146,3 @@ def test_the_orbit_is_that_of_its_fourier_series_and_of_its_path(eta):
     assert float(
         np.sum(np.abs(fourier_coefficients(functools.partial(COURSES.course, eta))) ** 2)
     ) == pytest.approx(1.0, rel=1e-12)
-
-
-def test_the_frequency_spends_what_is_left_of_the_heading_rate():
-    for eta in (0.1, 0.5, 2.0):
-        for left in (0.2 * HEADING_RATE, 0.8 * HEADING_RATE, HEADING_RATE):
-            frequency = COURSES.frequency(eta, left)
-            largest = max(
-                abs(eta * frequency * COURSES.slopes(eta, phase)[1])
-                for phase in np.linspace(0.0, math.pi, 101)
-            )
-            # Rounding.
-            assert largest <= left * (1.0 + 1e-12)
-        assert COURSES.frequency(eta, HEADING_RATE) == pytest.approx(
-            math.pi / COURSES.half_period(max(eta, 0.2)), rel=1e-14
-        )

@@ -73,32 +73,6 @@ def test_behind_a_steady_vessel_it_is_where_equations_9_to_11_put_it(nu):
     assert centre.in_place
 
 
-@pytest.mark.parametrize("velocity", [(0.0, 0.0), (0.2, 0.1)])
-def test_beside_a_vessel_too_slow_to_have_a_course_a_given_plume_is_where_the_bow_says(velocity):
-    centre = make(plume_heading=math.pi, vessel_course=math.radians(90.0))
-    for _ in range(20):
-        # Bow east, plume astern; the little that it drifts does not matter, nor does a wind.
-        move(centre, velocity, wind=(5.0, -5.0))
-        assert math.remainder(centre.axis - math.radians(270.0), 2.0 * math.pi) == pytest.approx(
-            0.0, abs=1e-12
-        )
-    # Under way it has a course: north-east.
-    for _ in range(400):
-        move(centre, (4.0, 4.0))
-    assert math.remainder(centre.axis - math.radians(225.0), 2.0 * math.pi) == pytest.approx(
-        0.0, abs=1e-3
-    )
-
-
-def test_the_plume_trails_behind_the_motion_through_the_air():
-    centre = make()
-    # A vessel at rest in a wind to the south-east: smoke blows to the south-east, 135 degrees.
-    move(centre, (0.0, 0.0), wind=(-5.0, 5.0), time_step=0.0)
-    assert centre.axis == pytest.approx(math.radians(135.0), abs=1e-12)
-    # Seen from the air mass, vessel and centre move to the north-west at the speed of the wind.
-    assert (centre.velocity_north, centre.velocity_east) == pytest.approx((5.0, -5.0), abs=1e-9)
-
-
 @pytest.mark.parametrize("wind", [(0.0, 0.0), (3.0, -4.0)])
 @pytest.mark.parametrize(("turn_rate", "acceleration"), [(0.02, 0.0), (-0.015, 0.05), (0.0, 0.1)])
 @pytest.mark.parametrize("plume_heading", [None, 2.6])

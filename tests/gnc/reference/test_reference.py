@@ -1,6 +1,5 @@
 """The paper's reference over time, and where its orbit is joined."""
 
-import copy
 import math
 
 import numpy as np
@@ -9,7 +8,6 @@ from gnc_cases import (
     HEADING_RATE_MAX,
     SPEED,
     TIME_STEP,
-    assert_a_copy_goes_on,
     courses,
     examples,
     make_reference,
@@ -96,15 +94,6 @@ def test_the_reference_starts_on_the_course_of_equation_7(phase):
     assert reference.heading_rate == pytest.approx(
         -oscillation.amplitude * math.sin(phase), abs=1e-15
     )
-
-
-@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy])
-def test_a_copy_goes_on_as_its_original_would_and_leaves_that_where_it_is(copied):
-    _, reference = make(0.5, phase=1.1)
-    reference.set_turn_rate_fraction(0.6)
-    for _ in range(137):
-        reference.step()
-    assert_a_copy_goes_on(reference, copied)
 
 
 ORBIT = JoinedOrbit(

@@ -14,7 +14,6 @@ from aircraft.spec import MODELS
 from aircraft.state import RigidBodyState
 from innerloop.jsbsim.system import (
     RESET,
-    clipped,
     function,
     integrator,
     minus,
@@ -23,8 +22,6 @@ from innerloop.jsbsim.system import (
     read,
     system_name,
     system_xml,
-    table_1d,
-    table_2d,
     times,
     total,
 )
@@ -154,48 +151,6 @@ def test_expressions_compute_what_they_say(run):
         },
         abs=1e-14,
     )
-
-
-@pytest.mark.parametrize(
-    ("x", "kept"), [(-3.0, -0.5), (-0.5, -0.5), (0.2, 0.2), (2.0, 2.0), (7.0, 2.0)]
-)
-def test_a_clipped_value_stays_within_its_limits(run, x, kept):
-    assert value_at(
-        run(function("test/out", clipped(read("test/x"), -0.5, 2.0))), x
-    ) == pytest.approx(kept, abs=1e-15)
-
-
-@pytest.mark.parametrize("x", [-5.0, 1.0, 1.4, 2.0, 3.9, 4.0, 50.0])
-def test_a_table_is_linear_between_its_rows_and_constant_past_its_ends(run, x):
-    rows, values = (1.0, 2.0, 4.0), (10.0, -5.0, 7.0)
-    # numpy's interpolation, which is also constant past the ends.
-    assert value_at(
-        run(function("test/out", table_1d("test/x", rows, values))), x
-    ) == pytest.approx(np.interp(x, rows, values))
-
-
-@pytest.mark.parametrize(
-    ("x", "y"),
-    [(0.0, 10.0), (0.5, 10.0), (0.0, 15.0), (0.25, 12.5), (1.7, 19.0), (-9.0, 12.0), (9.0, 99.0)],
-)
-def test_a_table_over_two_properties_is_bilinear_with_rows_first(run, x, y):
-    rows, columns = (0.0, 1.0, 2.0), (10.0, 20.0)
-    values = np.array([[1.0, 2.0], [4.0, -3.0], [0.5, 7.0]])
-    by_column = [np.interp(y, columns, line) for line in values]
-    expected = np.interp(x, rows, by_column)
-    assert value_at(
-        run(function("test/out", table_2d("test/x", "test/y", rows, columns, values))), x, y
-    ) == pytest.approx(expected)
-
-
-def test_an_integrator_integrates_by_the_trapezoidal_rule(run):
-    fdm = run(integrator("test/out", "test/x"))
-    assert value_at(fdm, 0.0) == 0.0
-    inputs = np.sin(np.arange(1, 60))
-    found = [value_at(fdm, float(x)) for x in inputs]
-    before = np.concatenate([[0.0], inputs[:-1]])
-    # Rounding.
-    np.testing.assert_allclose(found, np.cumsum(0.5 * (inputs + before) * TIME_STEP), atol=1e-14)
 
 
 def test_an_integrator_is_held_at_zero_by_its_reset_and_starts_from_there(run):

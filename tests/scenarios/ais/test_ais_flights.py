@@ -98,33 +98,6 @@ def test_a_ship_that_does_more_than_is_declared_is_a_row_with_that_reason(change
         assert word in row["message"]
 
 
-def test_a_start_is_judged_by_the_report_that_the_guard_has_and_not_by_where_the_ship_is(tmp_path):
-    lines = (
-        (CATALOG / "ais" / "synthetic_marine_cadastre.csv")
-        .read_text(encoding="utf-8")
-        .splitlines(keepends=True)
-    )
-    (tmp_path / "sparse.csv").write_text("".join([lines[0], *lines[1:60:2]]), encoding="utf-8")
-    sparse = {"track": str(tmp_path / "sparse.csv"), "gap_max_s": 180.0}
-    near = {"distance_m": (320.0, 320.0), "aspect_deg": 0.0, "course_deg": 0.0}
-    flight = {"crossings": 0, "duration_max_s": 60.0}
-
-    def planned(utc):
-        return plan(
-            scenario(
-                vessel=sparse, following=DECLARED, start=near, flight=flight, place={"utc": utc}
-            )
-        )
-
-    # Reports come each 119 s. Just after one the ship is where it says; 100 s later she may be up
-    # to 500 m from there.
-    planned("2026-06-01T10:02:01Z")
-    with pytest.raises(
-        InfeasibleError, match=r"where the best turn away comes within 0\.0 m of where it may be"
-    ):
-        planned("2026-06-01T10:03:40Z")
-
-
 @pytest.mark.parametrize(
     ("slows_down", "silence", "fastest", "words"),
     [

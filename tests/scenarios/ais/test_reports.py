@@ -106,37 +106,6 @@ def test_a_row_of_no_use_is_dropped_and_counted(read, row, reason):
     )
 
 
-@pytest.mark.parametrize("order", [reversed, lambda lines: [*lines[::2], *lines[1::2]]])
-def test_rows_of_a_file_that_is_not_in_order_are_sorted(read, order):
-    seconds = tuple(range(0, 60, 10))
-    found = read(table(*order(rows(seconds))))
-    expected = read(table(*rows(seconds)))
-    assert (found.dropped, found.warning) == ({}, "")
-    np.testing.assert_array_equal(found.time, expected.time)
-    np.testing.assert_array_equal(found.latitude, expected.latitude)
-
-
-def test_signed_speeds_and_courses_of_marine_cadastre_are_what_was_sent(read):
-    head, row = LAYOUTS["up to 2024"]
-    lines = [row.format(second, 57.0 + 1e-5 * second) for second in range(0, 60, 10)]
-    plain = read(table(*lines, head=head))
-    course = round(float(np.degrees(plain.course[0])), 1)
-    speed = lines[0].split(",")[4]
-    # Of 12 bits in tenths of a degree from -204.8 on, and of 10 bits of a knot from -51.2 on.
-    signed = [line.replace(f",{course}", f",{course - 409.6:.1f}") for line in lines]
-    found = read(table(*signed, head=head))
-    np.testing.assert_allclose(found.course, plain.course, atol=1e-9)
-    assert (found.dropped, float(speed) > 0.0) == ({}, True)
-
-
-def test_longitudes_from_0_to_360_are_those_from_minus_180(read):
-    east = [line.replace(",11.3,", ",359.9,") for line in rows()]
-    west = [line.replace(",11.3,", ",-0.1,") for line in rows()]
-    np.testing.assert_allclose(
-        read(table(*east)).longitude, read(table(*west)).longitude, atol=1e-12
-    )
-
-
 def danish(*sizes):
     """Return a Danish file with a row for each "width,length" and "A,B,C,D"."""
     head, row = LAYOUTS["danish"]
@@ -174,25 +143,6 @@ def test_length_beam_and_antenna_are_read(read, size, sides, expected):
         "",
         asdict(expected),
     )
-
-
-@pytest.mark.parametrize(
-    ("size", "sides", "left", "remark"),
-    [
-        # A + B is 120 m: the ship has no length that is known, and its beam is not in doubt.
-        ("18,200", "90,30,7,11", ShipSize(None, 18.0, None, 7.0), "200 m and A + B 90 + 30 m"),
-        ("40,120", "90,30,7,11", ShipSize(120.0, None, 90.0), "width is 40 m and C + D 7 + 11 m"),
-        # The largest numbers stand for more: ITU-R M.1371-5, table 52.
-        (",", "511,30,7,11", ShipSize(None, 18.0, None, 7.0), "511 m may be more"),
-        ("18,120", "90,30,63,11", ShipSize(120.0, 18.0, 90.0), "63 m may be more"),
-        ("120,18", ",,,", None, "18 m long and 120 m wide"),
-    ],
-)
-def test_a_size_that_contradicts_itself_is_not_used_and_said(read, size, sides, left, remark):
-    found = read(danish(*[(size, sides)] * 3))
-    assert found.size == left
-    assert remark in found.size_remark
-    assert remark in found.described()
 
 
 @pytest.mark.parametrize(
@@ -289,16 +239,6 @@ def test_a_track_that_jumps_by_a_mistake_is_refused_with_rows_and_mistake(read, 
     assert f"from that in row {of[0] + 1}, 10 s earlier, which is faster than 60 m/s" in line
     assert f"fit together with {words}" in line
     assert "\n" not in line
-
-
-@pytest.mark.parametrize(
-    ("interval", "rate"), [(10, 0.0), (90, 0.0), (90, 0.1), (90, 0.5), (90, 2.0)]
-)
-def test_a_file_in_its_own_units_is_read_straight_or_in_turns(read, interval, rate):
-    """At 0.1 deg/s and 90 s pairs of reports count as straight; at 2 deg/s she turns by 180 deg
-    between two of them.
-    """
-    assert len(read(sailed(interval=interval, rate=rate)).time) == 30
 
 
 @pytest.mark.parametrize(

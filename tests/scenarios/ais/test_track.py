@@ -16,9 +16,7 @@ from scenarios.world.ais.track import (
     VELOCITY_SIGMA,
     ais_vessel,
     smooth_motion,
-    usual_intervals,
 )
-from scenarios.world.vessel import sampled
 
 HOUR = 3600.0
 
@@ -57,17 +55,6 @@ def test_the_track_keeps_to_the_reports_but_for_their_scatter(name, scatter):
     # Speed and course as reported: 0.05 m/s of each component, and rounding of 0.1 kn and 0.1
     # degrees.
     assert np.sqrt(np.mean(found[:, 2:] ** 2)) < 0.08
-
-
-def test_it_begins_at_the_origin_and_place_and_velocity_agree():
-    ship = vessel()
-    assert ship.motion(0.0)[:2] == (0.0, 0.0)
-    velocity, _ = sampled(ship, HOUR)
-    for time in (100.0, 1300.03, 2450.0, HOUR):
-        before, after = ship.motion(time - 0.5), ship.motion(time + 0.5)
-        # Central differences over 1 s: 1/24 of the jerk, 0.01 m/s^3, and the table's 0.05 s.
-        assert np.subtract(after[:2], before[:2]) == pytest.approx(ship.motion(time)[2:], abs=2e-3)
-    assert np.abs(np.diff(velocity, axis=0)).max() < 0.1 * 0.05
 
 
 def test_a_flight_may_begin_at_any_time_of_the_file_and_knows_the_reports_before():
@@ -147,37 +134,3 @@ def test_smoothing_is_the_least_squares_solution_of_its_model():
     # Conditioned by gaps of up to 90 s: 1e-8 of the places.
     np.testing.assert_allclose(smooth(time), states[::3], rtol=0.0, atol=1e-4)
     np.testing.assert_allclose(smooth.derivative()(time), states[1::3], rtol=0.0, atol=1e-5)
-
-
-def thinned(path, rows, **changes):
-    """Return the settings of a vessel of which some rows of a made file are known."""
-    lines = (
-        (CATALOG / "ais" / "synthetic_marine_cadastre.csv")
-        .read_text(encoding="utf-8")
-        .splitlines(keepends=True)
-    )
-    path.write_text("".join([lines[0], *(lines[1 + row] for row in rows)]), encoding="utf-8")
-    return VesselConfig(track=str(path), **changes)
-
-
-def test_the_last_report_before_a_flight_is_known_at_its_start_however_old_it_is(tmp_path):
-    config = thinned(tmp_path / "thin.csv", range(0, 60, 2))
-    # Reports each 119 s; the flight begins 70 s after one.
-    ship = ais_vessel(
-        config,
-        altitude=60.0,
-        utc=datetime(2026, 6, 1, 10, 1, 10, tzinfo=UTC),
-        duration=300.0,
-        margin=5.0,
-    )
-    assert [round(report.time) for report in ship.reports] == [-70, 49, 168, 289]
-    # Where a flight has a single report, those of the file say how often they come.
-    short = ais_vessel(
-        config,
-        altitude=60.0,
-        utc=datetime(2026, 6, 1, 10, 2, 30, tzinfo=UTC),
-        duration=80.0,
-        margin=5.0,
-    )
-    assert len(short.reports) == 1
-    assert usual_intervals(short) == pytest.approx((119.0, 120.0), abs=1.1)

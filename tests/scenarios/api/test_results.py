@@ -13,7 +13,6 @@ import pytest
 
 from common.intervals import clopper_pearson, upper_bound
 from scenarios import fly, run
-from scenarios.api.statistics import statistics_of
 from scenarios.errors import InputError
 
 SHORT = {
@@ -35,9 +34,6 @@ SAMPLED = {
     "flight": {"crossings": 1, "log_rate_hz": 5.0},
     "draws": [{"key": "wind.speed_mps", "uniform": [0.0, 4.0]}],
 }
-
-
-SEARCHED = {key: value for key, value in SAMPLED.items() if key != "flights"} | {"study": "falsify"}
 
 
 @pytest.fixture(scope="module")
@@ -106,51 +102,6 @@ def test_nothing_is_left_on_disk_nor_printed(capfd, monkeypatch, tmp_path):
     assert capfd.readouterr() == ("", "")
 
 
-def test_a_run_directory_is_written_where_it_is_asked_for(tmp_path):
-    flown = fly(SHORT, nu=0.5, out=tmp_path / "run")
-    assert flown.run.directory == tmp_path / "run"
-    del flown
-    gc.collect()
-    assert (tmp_path / "run" / "summary.csv").is_file()
-    with pytest.raises(InputError, match="holds another run"):
-        fly(SHORT, nu=0.5, out=tmp_path / "run")
-
-
-@pytest.mark.parametrize(
-    ("scenario", "words"),
-    [
-        (
-            SHORT,
-            "'scenario' has 2 flights; name one of them by flight_id (nu_0.30 to nu_0.50), set nu to a single number, or use run",
-        ),
-        (
-            "monte_carlo",
-            "has 1000 flights; name one of them by flight_id (monte_carlo_00000 to monte_carlo_00999), or use run",
-        ),
-        ("sweep_nu", "by flight_id (nu_0.00 to nu_0.95)"),
-        (42, "scenario is 42, of type int; give the name of a catalog scenario"),
-        (["sweep_nu"], "scenario is ['sweep_nu'], of type list; give"),
-        (SEARCHED, "whose flights cannot be flown one by one; use run"),
-        ("convergence", "whose flights cannot be flown one by one; use run"),
-        ("sweep_un", "unknown scenario 'sweep_un'; did you mean 'sweep_nu'?"),
-        ("missing.toml", "no scenario file 'missing.toml'"),
-        ({"title": "Mine", "sead": 1}, "unknown key 'sead'; did you mean 'seed'?"),
-        (
-            {"title": "Mine", "extends": "sweep_un"},
-            "scenario: extends: unknown scenario 'sweep_un'",
-        ),
-        (
-            SHORT | {"following": {"standoff_m": 3.0}},
-            "key 'following.standoff_m' has no effect here",
-        ),
-    ],
-)
-def test_a_scenario_of_which_no_one_flight_can_be_flown_is_refused(scenario, words):
-    with pytest.raises(InputError) as refused:
-        fly(scenario)
-    assert words in str(refused.value)
-
-
 def test_statistics_are_an_object_with_the_bounds_of_the_file(tmp_path):
     study = run(SAMPLED, jobs=1, out=tmp_path / "run")
     found = study.statistics
@@ -176,26 +127,3 @@ def test_statistics_are_an_object_with_the_bounds_of_the_file(tmp_path):
         InputError, match=r"no quantile 0.5 of 'distance'; figures are min_distance_m"
     ):
         found.quantile("distance", 0.5)
-
-
-def test_statistics_of_subset_simulation_have_the_same_names():
-    content = {
-        "confidence": 0.95,
-        "flights": {"done": 300, "measured": 299, "unknown": {}},
-        "outcomes": {"completed": 300},
-        "violation": {
-            "estimate": 1e-5,
-            "low": 1e-6,
-            "high": 1e-4,
-            "upper": 8e-5,
-            "events": 4,
-            "pessimistic": {"upper": 0.01},
-        },
-    }
-    found = statistics_of(content)
-    assert (found.violation.estimate, found.violation.upper, found.violation.flights) == (
-        1e-5,
-        8e-5,
-        299,
-    )
-    assert (found.violation_at_most, found.quantiles) == (0.01, {})

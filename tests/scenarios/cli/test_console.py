@@ -136,42 +136,6 @@ def test_a_log_has_to_lie_beside_its_ship_where_a_file_says_where_that_was(tmp_p
     assert_refused(console("estimate", beside, *words[:5], "--mmsi", 5), "--mmsi", "--ais FILE")
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        ((), ("Missing command", "plume-flight --help")),
-        (("rum",), ("No such command 'rum'",)),
-        (("run", "sweep_un"), ("did you mean 'sweep_nu'?",)),
-        (("run", "sweep_nu", "--sed", "3"), ("No such option",)),
-        (("export", "."), ("--to", "--stream udp://HOST:PORT")),
-        (("export", ".", "--to", "kmz"), ("holds no run",)),
-        (("report", "."), ("holds no run",)),
-        (("run", "sweep_nu", "--set", "title="), ("title: value is ''; give one word at least",)),
-        (("design", "x9"), ("unknown aircraft 'x9'",)),
-        (
-            ("describe", "wind.sped_mps"),
-            ("unknown key 'wind.sped_mps'; did you mean 'wind.speed_mps'?",),
-        ),
-        (
-            ("describe", "guidance.lead_s"),
-            (
-                "did you mean 'guidance.law'? A key of a part of your own (FILE.py:NAME) is described in",
-            ),
-        ),
-        (
-            ("describe", "gravity_of_the_situation"),
-            ("unknown key", "plume-flight describe lists the sections"),
-        ),
-        (("new", "mine.toml", "--from", "sweep_un"), ("did you mean 'sweep_nu'?",)),
-        (("new", "missing/mine.toml"), ("'missing/mine.toml' cannot be written",)),
-    ],
-)
-def test_bad_input_is_one_line(arguments, words, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    assert_refused(console(*arguments), *words)
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_a_new_file_flies_the_same(file, tmp_path):
     assert console("new", tmp_path / "mine.toml", "--from", file).status == 0
     assert fly(tmp_path / "mine.toml", nu=0.5).history.equals(fly(file, nu=0.5).history)

@@ -25,16 +25,6 @@ def state_of(out):
     }
 
 
-def test_a_resumed_run_that_had_nothing_to_do_rewrites_nothing(marks, out):
-    study = SquareStudy(Squares(marks=marks), recorded=())
-    assert fly(study, out).changed
-    (out / "report.html").touch()
-    before = state_of(out)
-    result = fly(study, out, resume=True)
-    assert (result.all_met, result.changed) == (True, False)
-    assert state_of(out) == before
-
-
 def test_a_resumed_run_makes_what_is_missing_and_leaves_the_rest(marks, out):
     study = SquareStudy(Squares(marks=marks))
     fly(study, out)

@@ -81,18 +81,6 @@ def test_results_stand_in_the_table_though_what_follows_from_them_fails_and_the_
     assert [begun(marks, number) for number in range(8)] == [1] * 8
 
 
-def test_tasks_that_are_recorded_are_flown_for_their_files_alone(marks, out, whole):
-    told = []
-    study = SquareStudy(Squares(marks=marks), recorded=(2, 5))
-    fly(study, out, progress=lambda *report: told.append(report))
-    assert [begun(marks, number) for number in range(8)] == [1, 1, 2, 1, 1, 2, 1, 1]
-    assert (out / "files" / "2.txt").read_bytes() == b"recorded"
-    assert (out / "files" / "3.txt").read_bytes() == b"flown"
-    # Neither their rows nor their number change.
-    assert (out / TABLE).read_bytes() == whole
-    assert [done for doing, done, _ in told if doing == "flying"] == list(range(9))
-
-
 def test_a_task_whose_process_was_lost_is_a_row_and_is_tried_again_when_the_run_goes_on(
     marks, out, whole
 ):
@@ -189,15 +177,6 @@ def test_a_run_that_other_code_began_is_not_gone_on_with(marks, out):
     assert len(list((out / "files").iterdir())) >= 3
     write_manifest(out, before)
     assert fly(study, out, resume=True).all_met
-
-
-def test_a_run_of_another_study_is_neither_gone_on_with_nor_overwritten(marks, out):
-    fly(SquareStudy(Squares(marks=marks)), out)
-    with pytest.raises(InputError, match="was run with another configuration"):
-        fly(SquareStudy(Squares(marks=marks), config_hash="b"), out, resume=True)
-    with pytest.raises(InputError, match="holds another run"):
-        fly(SquareStudy(Squares(marks=marks)), out)
-    assert [begun(marks, number) for number in range(8)] == [1] * 8
 
 
 def test_a_run_that_another_program_flies_is_left_to_it(marks, out):

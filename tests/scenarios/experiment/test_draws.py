@@ -1,4 +1,3 @@
-import math
 from collections import Counter
 
 import pytest
@@ -135,23 +134,6 @@ def test_what_is_drawn_is_distributed_as_was_said():
         assert stats.kstest(drawn, distribution).pvalue > 1e-3
 
 
-def test_choices_with_weights_come_as_often_as_they_weigh():
-    draw = {
-        "key": "fault.kind",
-        "choice": ["none", "vessel_data", "satellite_navigation", "engine"],
-        "weights": [6, 3, 1, 0],
-    }
-    trial = scenario(draws=[draw], flight={"duration_max_s": 300.0})
-    count = 600
-    drawn = Counter(
-        sampled_flight("trial", trial, number).values["fault.kind"] for number in range(count)
-    )
-    for kind, weight in zip(draw["choice"], draw["weights"], strict=True):
-        share = weight / 10.0
-        # Four standard deviations of a binomial count; what has no weight never comes.
-        assert abs(drawn[kind] - count * share) <= 4.0 * math.sqrt(count * share * (1.0 - share))
-
-
 MANOEUVRES = {
     "speed_mps": 8.0,
     "manoeuvres": [{"at_s": 50.0, "turn_deg": 10.0}, {"at_s": 150.0, "turn_deg": 20.0}],
@@ -171,27 +153,3 @@ def test_a_key_within_a_list_is_drawn_and_the_rest_of_the_list_stays():
         assert 30.0 <= second.turn_deg == drawn.values[draw["key"]] <= 60.0
         turns.append(second.turn_deg)
     assert len(set(turns)) == 5
-
-
-POINTED = (
-    {"key": "wind.speed_mps", "weibull": [2.0, 4.0], "within": [0.0, 9.0]},
-    {"key": "wind.from_deg", "uniform": [0.0, 360.0]},
-    {"key": "fault.kind", "choice": ["none", "vessel_data", "satellite_navigation"]},
-)
-
-
-def test_a_point_says_where_each_key_is_in_its_distribution():
-    trial = scenario(draws=POINTED, flight={"duration_max_s": 300.0})
-    drawn = sampled_flight("trial", trial, 5, (0.5, 0.25, 0.9))
-    assert drawn.values == {
-        # The median of what is below 9 m/s, by hand: 4 (-ln(1 - F(9)/2))^(1/2), F(9) = 1 -
-        # exp(-(9/4)^2).
-        "wind.speed_mps": pytest.approx(
-            4.0 * math.sqrt(-math.log(1.0 - 0.5 * (1.0 - math.exp(-((9.0 / 4.0) ** 2))))), rel=1e-12
-        ),
-        "wind.from_deg": 90.0,
-        "fault.kind": "satellite_navigation",
-    }
-    assert drawn.scenario.fault.kind == "satellite_navigation"
-    # Start, air and noise are the number's all the same.
-    assert drawn.seed == sampled_flight("trial", trial, 5).seed

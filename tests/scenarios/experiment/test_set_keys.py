@@ -4,7 +4,6 @@ all others start alike.
 
 import pytest
 
-from scenarios.experiment.draws import sampled_flight
 from scenarios.experiment.requests import Experiment
 from scenarios.scenario.scenario import Scenario
 
@@ -71,13 +70,3 @@ def test_a_flight_of_a_comparison_is_sampled_again_where_the_flight_beside_it_is
             key: value for key, value in study.inputs.items() if key != "wind.speed_mps"
         }
         assert calm.scenario.wind.speed_mps == 0.0
-
-
-def test_a_sample_that_gives_way_keeps_its_place_in_a_spread_sample_too():
-    scenario = Scenario.model_validate(BASE)
-    at = (0.1, 0.5, 0.3, 0.7)
-    every, without = (
-        sampled_flight("t", scenario, 0, at, given=given).values
-        for given in ((), ("wind.speed_mps",))
-    )
-    assert without == {key: value for key, value in every.items() if key != "wind.speed_mps"}

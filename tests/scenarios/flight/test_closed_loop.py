@@ -1,7 +1,5 @@
 """The one loop: what it records, payload, plume elevation, and where a flight is released."""
 
-import math
-
 import numpy as np
 import pytest
 from flight_cases import ASTERN, SPEED, fly, plan, scenario
@@ -72,25 +70,3 @@ def test_a_kinematic_vehicle_is_released_at_the_start_of_its_plan_in_its_wind():
         (flight.start.north, flight.start.east, 5.0, SPEED, 0.0), abs=1e-12
     )
     assert vehicle.sample()[0] == flight.altitude == 60.0
-
-
-def test_a_following_flight_in_a_rising_plume_is_commanded_to_the_height_of_its_centre(monkeypatch):
-    commanded = []
-    monkeypatch.setattr(
-        KinematicVehicle, "command_altitude", lambda _, altitude: commanded.append(altitude)
-    )
-    record = flown(scenario(plume={"elevation_deg": 10.0}, **SHORT))
-    centre, seen = (
-        [record.column(f"{of}_{axis}_m") for axis in ("north", "east")]
-        for of in ("centre", "vessel_seen")
-    )
-    to_centre = np.hypot(*np.subtract(centre, seen))
-    # Above the funnel's 60 m as the axis rises to the centre of oscillation.
-    expected = 60.0 + math.tan(math.radians(10.0)) * to_centre
-    climbs = np.diff(commanded) * 2.0
-    # It follows in 20 s, no steeper than 5 % at 19.42 m/s; plans come every half a second.
-    assert np.max(np.abs(climbs)) <= 0.05 * SPEED * (1.0 + 1e-9)
-    assert commanded[0] == pytest.approx(60.0, abs=0.5)
-    towards = np.sign(expected[-1] - 60.0)
-    assert towards * (commanded[-1] - commanded[0]) > 25.0
-    assert abs(commanded[-1] - expected[-1]) < 0.05 * abs(expected[-1] - 60.0)

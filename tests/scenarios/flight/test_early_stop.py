@@ -90,17 +90,3 @@ def test_off_its_orbit_and_where_it_is_detected_no_plume_is_out_of_reach(monkeyp
     found, _ = judged(monkeypatch, [0.1] * 9, axis=Axis(measurable=0.01, mode=Mode.FOUND))
     looks(found, 3)
     assert (stop.reason, found.reason) == (None, None)
-
-
-@pytest.mark.parametrize(
-    ("beliefs", "reason"),
-    [
-        ({"sensor": SensorState.STUCK}, StopReason.SENSOR),
-        ({"measurable": 0.01}, StopReason.OUT_OF_REACH),
-    ],
-)
-def test_what_cannot_be_measured_is_left_with_what_is_believed(monkeypatch, beliefs, reason):
-    stop, mission = judged(monkeypatch, [], axis=Axis(**beliefs))
-    looks(stop, 2)
-    assert (stop.reason, mission.departing) == (reason, True)
-    assert "131 m high, with a deviation of 8 m" in stop.message

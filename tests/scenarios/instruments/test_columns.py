@@ -164,30 +164,6 @@ def test_figures_and_tables_of_the_flight_and_of_others_are_refused_before_any_f
     assert "\n" not in str(refused.value)
 
 
-@pytest.mark.parametrize(
-    ("name", "words"),
-    [
-        ("Undeclared", "evaluate() returned 'y_peak_ppb', which FIGURES and TABLES do not name"),
-        ("UndeclaredTable", "evaluate() returned 'y.csv', which FIGURES and TABLES do not name"),
-        ("Short", "it has to be numbers of shape (51, 1): a row for each sample, a column for"),
-        ("Pair", "figure 'y_peak_ppb' of evaluate() is array([1., 1.]); it has to be a number,"),
-        ("Words", "it has to be numbers of shape (51, 1)"),
-        ("Plain", ": evaluate(nan) returned [1.0]; it has to be an Evaluation"),
-        ("Late", ": evaluate(nan) failed: ValueError: late (own.py:28)"),
-        (
-            "Misspelt",
-            " the flight's record has no column 'times_s'; did you mean 'time_s'? (own.py:30)",
-        ),
-    ],
-)
-def test_what_fails_after_the_flight_leaves_what_is_known_of_it(name, words, tmp_path):
-    row = evaluated(tmp_path, name).row
-    assert (row["outcome"], row["criteria_met"], row["kept_out"]) == ("failed", False, True)
-    assert row["min_distance_m"] > 200.0
-    assert row["message"].startswith(f"payload '{tmp_path / 'own.py'}:{name}'")
-    assert words in row["message"]
-
-
 @pytest.mark.parametrize(("outcome", "kept_out"), [("diverged", False), ("aircraft_lost", True)])
 def test_an_aircraft_that_is_gone_is_gone_whatever_fails_after_it(
     outcome, kept_out, tmp_path, monkeypatch
@@ -202,30 +178,3 @@ def test_an_aircraft_that_is_gone_is_gone_whatever_fails_after_it(
     row = evaluated(tmp_path, "Late").row
     assert (row["outcome"], row["kept_out"], row["criteria_met"]) == (outcome, kept_out, False)
     assert "failed: ValueError: late (own.py:28)" in row["message"]
-
-
-@pytest.mark.parametrize(
-    ("name", "words"),
-    [
-        (
-            "WithoutArguments",
-            ": WithoutArguments() failed: TypeError: WithoutArguments.__init__() takes",
-        ),
-        (
-            "ReadsTwo",
-            "class ReadsTwo: read(0) returned (1.0, 2.0); it has to be 1 number, one for each",
-        ),
-        ("ReadsNone", "class ReadsNone: read(0) returned None; it has to be 1 number"),
-        ("ReadsText", "class ReadsText: read(0) returned ('high',); it has to be 1 number"),
-        ("ReadsAtOnce", "class ReadsAtOnce: read(0) failed: TypeError: ReadsAtOnce.read() takes 2"),
-        (
-            "GainOfTheSection",
-            "'gain_factor' is a key of SETTINGS, which this scenario leaves at its default; take it, given or not,",
-        ),
-    ],
-)
-def test_an_instrument_that_cannot_be_made_or_read_is_named(name, words, tmp_path):
-    row = evaluated(tmp_path, name).row
-    assert row["outcome"] == "failed"
-    assert row["message"].startswith("payload")
-    assert words in row["message"]

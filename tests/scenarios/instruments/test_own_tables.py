@@ -9,7 +9,6 @@ from reports.output import write_report
 from reports.run.run_data import read_run
 from scenarios.errors import InputError
 from scenarios.scenario.files import load_study
-from scenarios.studies.checks import check_without_design
 from tests.in_process import run_command
 from tests.run_tables import manifest_of
 
@@ -137,15 +136,3 @@ def test_a_table_of_no_use_is_refused_in_one_line(override, words):
         load_study(EXAMPLE, [override])
     assert words in str(refused.value)
     assert "\n" not in str(refused.value)
-
-
-@pytest.mark.parametrize("scenario", ["patrol", "plume_search"])
-def test_a_sniffer_without_so2_is_flown_but_not_until_a_verdict(scenario):
-    alone = 'payload.sensor={title="CO2 alone",channels={co2={t90_s=3,delay_s=0,noise=1}}}'
-    check_without_design(load_study("plume_search", [alone]))
-    with pytest.raises(InputError) as refused:
-        check_without_design(load_study(scenario, [alone, "flight.until=verdict"]))
-    assert str(refused.value) == (
-        "flight.until is 'verdict', but the channels of payload.sensor 'CO2 alone' are co2, and so2, without which there is no"
-        " verdict, is not among them: add the table payload.sensor.channels.so2"
-    )

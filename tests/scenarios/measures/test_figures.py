@@ -25,16 +25,6 @@ def plan():
     return planned(scenario(vessel=vessel, following={"vessel_acceleration_mps2": 0.15}))
 
 
-@pytest.fixture(scope="module")
-def tracking_plan():
-    """A flight beside a steady vessel that is known exactly, in still air."""
-    return planned(
-        Scenario.model_validate(
-            {"title": "test", "fidelity": "kinematic", "vessel": {"speed_mps": 8.0}}
-        )
-    )
-
-
 def weave(plan, *, duration=100.0, distance=230.0, **columns):
     """Return the history of a vehicle that swings across the axis astern, 60 m to either side: it
     crosses every ``INTERVAL``.
@@ -130,36 +120,6 @@ def loiter_plan():
     )
 
 
-OFF = 30.0
-"""How far the middle of a weave lies to one side of the axis [m]: it crosses where 60 m cos(phase)
-is that, so that 2/3 and 4/3 of ``INTERVAL`` go by in turn.
-"""
-
-
-def weave_to_one_side(plan, crossings):
-    """Return the history of a weave with so many crossings, at 10/3 s, 50/3 s, 70/3 s, ..."""
-    duration = 10.0 * crossings - 2.0
-    time = np.arange(0.0, duration + 0.5 * STEP, STEP)
-    east = -60.0 * np.cos(math.pi / INTERVAL * time) + OFF
-    return weave(plan, duration=duration, east_m=east)
-
-
-@pytest.mark.parametrize("crossings", [3, 4, 5, 8, 9])
-@pytest.mark.parametrize("which", ["loiter_plan", "plan"])
-def test_where_crossings_alternate_their_means_are_over_whole_periods(which, crossings, request):
-    # By the orbit; and where the centre follows estimates, which put it beside the axis.
-    flown = request.getfixturevalue(which)
-    row, found = figures(flown, weave_to_one_side(flown, crossings))
-    assert row["crossing_count"] == len(found) == crossings
-    intervals = np.diff([crossing.time for crossing in found])
-    assert {round(value, 3) for value in intervals.tolist()} == {
-        round(part * INTERVAL / 3.0, 3) for part in (2.0, 4.0)
-    }
-    # Two intervals are a period, 20 s; of an odd number, the last one is left out.
-    assert row["crossing_interval_mean_s"] == pytest.approx(INTERVAL, abs=1e-4)
-    assert row["crossing_interval_std_s"] == pytest.approx(INTERVAL / 3.0, abs=1e-4)
-
-
 def test_mean_distance_and_angle_of_crossings_that_alternate_are_over_whole_periods(loiter_plan):
     # Near and far in turn: the distance from the vessel is a cosine of twice the period.
     time = np.arange(0.0, 60.05, STEP)
@@ -251,17 +211,6 @@ def test_the_guards_time_is_counted_and_its_losses_too(plan):
     row, _ = figures(plan, weave(plan, guard=guard), settled_at=50.0)
     assert row["guard_lost_s"] == pytest.approx(0.5)
     assert row["guard_after_settling_s"] == pytest.approx(1.0)
-
-
-@pytest.mark.parametrize("settled_at", [0.0, 10.0])
-def test_the_tracking_error_counts_from_settling_on(tracking_plan, settled_at):
-    history = weave(tracking_plan)
-    # 9 m off for the first 10 s, 3 m from then on.
-    off = np.where(column(history, "time_s") < 9.95, 9.0, 3.0)
-    history = weave(tracking_plan, reference_east_m=column(history, "east_m") + off)
-    row, _ = figures(tracking_plan, history, settled_at=settled_at)
-    assert row["settling_time_s"] == settled_at
-    assert row["tracking_error_max_m"] == pytest.approx(9.0 if settled_at == 0.0 else 3.0)
 
 
 @pytest.mark.parametrize("mode", [Mode.DEPARTING, Mode.GLIDING, Mode.TERMINATING])

@@ -72,8 +72,3 @@ def test_the_height_is_judged_at_the_crossing_nearest_to_three_minutes():
     assert row["axis_height_3min_m"] == 64.0
     assert (row["axis_height_error_3min_m"], row["axis_height_deviation_3min_m"]) == (16.0, 4.0)
     assert (row["axis_height_end_m"], row["axis_measurable_end"]) == (80.0, 0.9)
-
-
-def test_the_hit_rate_counts_passes_since_the_plume_was_found():
-    # Every second of them is above 0.6 of the axis.
-    assert figures(history())["hit_rate_found"] == pytest.approx(0.5, abs=0.05)

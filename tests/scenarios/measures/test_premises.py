@@ -14,10 +14,7 @@ from common.premises import EXCEEDED, ratio_column, time_column
 from gnc.estimation.error_budget import (
     Bias,
     ErrorBudget,
-    Growth,
     Process,
-    TurnDeviation,
-    WindErrorByGusts,
 )
 from scenarios.flight.closed_loop import fly, release
 from scenarios.flight.guard_belief import GuardBelief
@@ -112,18 +109,6 @@ def test_in_turbulence_the_wind_has_k_standard_deviations_of_gusts_in_it(plan):
     assert math.isnan(row[ratio_column("airspeed")])
 
 
-def test_dead_reckoning_is_compared_with_its_drift_since_the_loss(plan):
-    budget = with_budget(plan, drift=Growth(rate=0.8))
-    time = np.arange(0.0, 60.05, STEP)
-    lost = np.maximum(0.0, time - 20.0)
-    # The error at the loss, 3 m, is not of dead reckoning.
-    values = {"satellites_lost_s": lost, "own_seen_east_m": 3.0 + 1.0 * lost}
-    row = premise_figures(budget, record(values))
-    assert row[ratio_column("drift")] == pytest.approx(1.25)
-    assert "drift" in row[EXCEEDED]
-    assert 20.0 < row[time_column("drift")] <= 60.0
-
-
 def turn(plan, *, towards_vessel=0.0, at=None, begins=10.0):
     """Return a half turn at omega_max behind the lag of a vehicle, which jumps towards the vessel by
     some metres in its course: where it flies across the direction of the vessel, unless ``at`` says
@@ -197,20 +182,6 @@ def test_a_turn_that_is_faster_than_predicted_turns_away_all_the_same(plan):
     assert ratio(budget, late, "response") > 1.0
     slowing = late | {"airspeed_command_mps": 0.8 * plan.guidance.speed}
     assert math.isnan(ratio(budget, slowing, "response"))
-
-
-def test_in_turbulence_a_turn_is_compared_with_its_displacement_too(plan):
-    turbulence = Process(sigma=2.0, correlation_time=10.0)
-    turning = TurnDeviation(interval=1.0, sigmas=(0.0, 1.0, 3.0))
-    terms = {"response": Bias(size=2.0), "turbulence": turbulence, "turning": turning}
-    budget = with_budget(plan, **terms)
-    # The jump is over in the first step of the turn: after it more and more would be kept.
-    values = turn(budget, towards_vessel=5.0, at=10.0 + STEP)
-    kept = 2.0 + ErrorBudget(**terms).displacement(wind=WindErrorByGusts(turbulence)).after(STEP)
-    # It flies at the vessel yet: 30 degrees from where a turn away from one that draws ahead ends.
-    nearer = 5.0 * math.cos(math.radians(30.0))
-    assert ratio(budget, values, "turning") == pytest.approx(nearer / kept, rel=0.02)
-    assert math.isnan(ratio(budget, values, "response"))
 
 
 def test_a_violation_is_explained_by_a_premise_or_is_the_error_of_the_theorem(plan):

@@ -4,12 +4,11 @@ the distance.
 
 import math
 
-import numpy as np
 import pytest
 
 from gnc.errors import InfeasibleError
 from gnc.mission.axis import SearchedPlume
-from scenarios.planning.plume import additional_distance, information, plume_axis
+from scenarios.planning.plume import plume_axis
 from scenarios.scenario.files import load_study
 from scenarios.scenario.sections.flight import ALTITUDE_MARGIN
 from scenarios.world.plume import emission
@@ -59,29 +58,3 @@ def test_limits_that_leave_no_room_and_a_search_without_a_sniffer_are_refused_in
         plume_axis(searching(*overrides), VESSEL)
     assert words in str(refusal.value)
     assert "\n" not in str(refusal.value)
-
-
-@pytest.mark.parametrize("sensor", ["fast", "electrochemical"])
-@pytest.mark.parametrize("wind", [4.0, 9.0, 16.0])
-def test_the_sulphur_is_known_best_from_as_near_as_may_be(sensor, wind):
-    scenario = load_study(
-        "sulphur", [f"payload.sensor={sensor}", "following.distance=best_measurement"]
-    )
-    assert additional_distance(scenario, VESSEL, 220.0, wind) == 0.0
-    # Flights at 500 m had up to three times the noise of those at 200 m
-    # (docs/explanation/sulphur.md).
-    near, far = information(scenario, VESSEL, np.array([200.0, 500.0]), wind)
-    assert 1.5 < math.sqrt(near / far) < 4.0
-
-
-def test_where_the_axis_is_below_the_limits_near_the_ship_it_is_measured_farther_off():
-    low = load_study(
-        "sulphur",
-        [
-            "following.distance=best_measurement",
-            "plume.source_height_m=15",
-            "flight.altitude_m=80",
-            "flight.altitude_min_m=55",
-        ],
-    )
-    assert additional_distance(low, VESSEL, 220.0, 8.0) > 50.0

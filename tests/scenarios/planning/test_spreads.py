@@ -10,7 +10,7 @@ from flight_cases import plan, scenario
 from aircraft.fleet.x8 import X8
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.experiment.requests import Experiment
-from scenarios.planning.margin.keepout_margin import CALM_AIR_SPREAD, Spread, SpreadTable
+from scenarios.planning.margin.keepout_margin import Spread, SpreadTable
 from scenarios.planning.scaling import scaled
 from scenarios.planning.spreads import SPREAD_RATIOS, predicted_spreads
 from scenarios.vehicles.vehicle_setup import aircraft_setup
@@ -33,16 +33,6 @@ TABLED = SpreadTable(
         for s in (1.0, 2.0)
     ),
 )
-
-
-def test_a_flight_has_the_spread_of_its_speed_ratio_and_none_in_still_air():
-    # A quarter and three quarters of the way between 0.2 and 0.6; the nearest counts.
-    for nu, sigma in ((0.3, 1.0), (0.5, 2.0)):
-        trial = scenario(
-            fidelity="six_dof", turbulence={"level": "light"}, vessel={"speed_mps": 19.42 * nu}
-        )
-        assert plan(trial, spreads=lambda _: TABLED).margin.tracking_sigma == sigma
-        assert plan(trial).margin.tracking_sigma == CALM_AIR_SPREAD.radial == 0.0
 
 
 @pytest.fixture(scope="module")

@@ -7,9 +7,6 @@ from flight_cases import plan, scenario
 
 from gnc.errors import InfeasibleError
 from gnc.estimation.navigation import MeasuredMotion
-from gnc.estimation.vessel import Tube
-from gnc.guard.guard import GuardParameters
-from scenarios.planning.missions import Start, check_start
 from scenarios.scenario.scenario import Scenario
 
 
@@ -83,20 +80,3 @@ def test_a_vehicle_whose_lag_keeps_a_turn_away_from_leading_away_is_refused():
     ):
         plan(tracking(kinematic={"heading_rate_lag_s": 4.0}))
     plan(tracking(kinematic={"heading_rate_lag_s": 0.4}))
-
-
-@pytest.mark.parametrize("reported", [19.95, 20.0, 25.0])
-def test_a_vessel_that_is_reported_to_be_as_fast_as_the_vehicle_is_refused(reported):
-    guard = GuardParameters(
-        radius=200.0, heading_rate_max=0.49, lag=0.26, delay=0.26, slow_lag=0.39, time_step=0.05
-    )
-    start, known = (
-        Start(north=300.0, east=0.0, course=0.0),
-        {"wind": (0.0, 0.0), "airspeed": 20.0, "keepout_radius": 200.0},
-    )
-    with pytest.raises(
-        InfeasibleError,
-        match=f"leaves at only 19.8 of its 20.0 m/s, beside a vessel with {reported:.1f} m/s",
-    ):
-        check_start(start, guard, [Tube(0.0, 0.0, 0.0, reported, 0.0)], **known)
-    check_start(start, guard, [Tube(0.0, 0.0, 0.0, 19.0, 0.0)], **known)

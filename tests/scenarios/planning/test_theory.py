@@ -8,7 +8,6 @@ from benchmarks.crossing_limit import designed
 from scenarios.planning.limits import omega_max
 from scenarios.planning.theory import (
     CROSSING_LIMITS,
-    crossing_limit,
 )
 from scenarios.scenario.sections.guidance import GuidanceConfig
 
@@ -41,20 +40,3 @@ def test_no_solution_is_shorter_than_what_is_proven_for_an_infinite_roll_rate():
         assert interval >= 2.0 * amplitude / unit * (1.0 - 1e-5)
     for nu, interval in rows("going_round"):
         assert interval >= math.pi / (1.0 - nu) / unit * (1.0 - 1e-5)
-
-
-def test_the_limit_is_that_of_the_loiter_beside_slow_vessels_and_of_the_oscillation_beside_others():
-    limit = crossing_limit(GUIDANCE)
-    shortest = dict(zip(limit["limit_nu"], limit["crossing_interval_limit_s"], strict=True))
-    for nu, shape in (
-        (0.0, "loiter"),
-        (0.25, "loiter"),
-        (0.5, "fastest"),
-        (0.75, "fastest"),
-        (0.9, "fastest"),
-    ):
-        # As above.
-        assert designed(GUIDANCE, shape, nu) == pytest.approx(shortest[nu], rel=2e-4)
-        # The issue: flown within 3 % of the limit; the reserve of the flown reference takes 1.5 %
-        # of it.
-        assert designed(GUIDANCE, shape, nu, reserve=GUIDANCE.reserve) <= 1.03 * shortest[nu]

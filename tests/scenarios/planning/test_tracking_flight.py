@@ -72,15 +72,3 @@ def test_the_guard_keeps_the_disc_that_the_keep_out_sphere_cuts_out_at_the_heigh
     assert (
         plan("plume.elevation_deg=60", "guidance.tracking_allowance_m=400").guidance.guard is None
     )
-
-
-@pytest.mark.parametrize(
-    ("overrides", "nu", "words"),
-    [
-        ([], 1.0, "nu is 1; it must be below 1"),
-        (["guidance.look_ahead_m=40"], 0.5, "R is 40 m; it must exceed"),
-    ],
-)
-def test_infeasible_flights_say_why(overrides, nu, words):
-    with pytest.raises(InfeasibleError, match=words):
-        plan(*overrides, nu=nu)

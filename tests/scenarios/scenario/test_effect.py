@@ -3,7 +3,6 @@
 import pytest
 
 from scenarios.errors import InputError
-from scenarios.scenario.consistency import unsteady
 from scenarios.scenario.files import load_study
 
 LAG = 'sweep."kinematic.heading_rate_lag_s" = [0.1, 0.2]\n'
@@ -83,29 +82,3 @@ def test_a_key_of_another_law_than_flights_and_variants_have_is_refused(tmp_path
 )
 def test_a_swept_or_sampled_key_that_some_flights_use_is_accepted(tmp_path, text):
     assert loaded(tmp_path, text).title == "own"
-
-
-TRACKS = "guidance.mission=track"
-
-
-@pytest.mark.parametrize(
-    ("name", "key"),
-    [
-        ("sea_wind", "wind.speed_mps"),
-        ("sea_turbulence_light", "turbulence.level"),
-        ("sea_manoeuvres", "reports.interval_s"),
-        ("ship_from_ais", "vessel.track"),
-        ("arena", "emission.ship"),
-        ("sulphur", "emission.ship"),
-    ],
-)
-def test_an_override_by_which_air_vessel_or_equipment_would_go_is_refused_with_the_mission(
-    name, key
-):
-    # Each of them has the key from its file, from a base or from its random variables.
-    assert key in unsteady(load_study(name))
-    with pytest.raises(
-        InputError,
-        match=r"^key '[a-z_.]+' has no effect here: .* guidance\.mission 'track' is in still air",
-    ):
-        load_study(name, [TRACKS])

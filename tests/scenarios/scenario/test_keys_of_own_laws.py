@@ -38,16 +38,6 @@ class Other(Same):
 """
 
 
-def test_a_field_called_as_a_key_of_guidance_is_that_key_and_has_its_default(tmp_path):
-    (tmp_path / "own.py").write_text(OWN, encoding="utf-8")
-    law = f"guidance.law={tmp_path}/own.py:"
-    assert steering_law(loaded(law + "Same").guidance).gain_per_s == 1.5
-    assert steering_law(loaded(law + "Same", "guidance.gain_per_s=0.4").guidance).gain_per_s == 0.4
-    assert "has no effect" in refusal(law + "Same", "guidance.epsilon_per_m=0.01")
-    words = "look_ahead_m = 25.0, which is a key of [guidance] already, by default 60.0; give the field another name"
-    assert words in refusal(law + "Other")
-
-
 @pytest.mark.parametrize(
     ("override", "words"),
     [

@@ -7,8 +7,7 @@ import pytest
 from scenarios.errors import InputError
 from scenarios.experiment.points import points_of
 from scenarios.experiment.requests import Experiment
-from scenarios.scenario.files import load_document, load_study
-from scenarios.scenario.overrides import given_keys
+from scenarios.scenario.files import load_study
 
 
 def write(folder, name, text):
@@ -174,25 +173,3 @@ def test_what_cannot_be_extended_is_refused_in_one_line(tmp_path, extends, words
         tmp_path, "b.toml", f'title = "b"\nextends = {extends.replace("b.toml", "a.toml")}\n'
     )
     assert words in refusal(path)
-
-
-def test_given_keys_are_those_of_the_file_its_base_and_the_overrides(tmp_path):
-    write(
-        tmp_path,
-        "base.toml",
-        'study = "flights"\ntitle = "base"\n[wind]\nspeed_mps = 3.0\n[sensors]\n',
-    )
-    path = write(
-        tmp_path,
-        "own.toml",
-        'extends = "base.toml"\n[[draws]]\nkey = "wind.from_deg"\nuniform = [0.0, 5.0]\n',
-    )
-    document = load_document(path, ["guidance.preview=false"])
-    assert given_keys(document) == {
-        "study",
-        "title",
-        "wind.speed_mps",
-        "sensors",
-        "draws",
-        "guidance.preview",
-    }

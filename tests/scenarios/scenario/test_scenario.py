@@ -150,21 +150,6 @@ def test_flights_with_swept_seeds_share_their_random_variables_where_these_are_c
     assert len(winds) == samples == 3 // flights_per_sample(scenario)
 
 
-def test_what_is_random_at_a_point_of_a_sweep_follows_from_its_values_alone():
-    def seeds(**sweep):
-        scenario = Scenario(title="own", flights=2, sweep=sweep, **OWN)
-        experiment = Experiment("own", scenario)
-        return {
-            (*experiment.request(i).inputs.values(), i % 2): experiment.request(i).seed
-            for i in range(experiment.flights)
-        }
-
-    alone = seeds(**{"keepout.radius_m": [200]})
-    among = seeds(**{"keepout.radius_m": [150.0, 200.0, 250.0]})
-    assert alone.items() <= among.items()
-    assert len({*among.values()}) == 6
-
-
 @pytest.mark.parametrize(
     ("keys", "several"),
     [
@@ -178,37 +163,6 @@ def test_what_is_random_at_a_point_of_a_sweep_follows_from_its_values_alone():
 )
 def test_an_experiment_has_several_points_by_what_varies_otherwise_than_at_random(keys, several):
     assert Scenario(title="own", **keys).several_points is several
-
-
-def test_what_some_flights_may_depend_on_is_set_for_them():
-    of_flights = {"flight_seed": 3, "criteria.settles": False, "wind": {"speed_mps": 3.0}}
-    conditions = [
-        {
-            "name": "own",
-            "title": "Own",
-            "set": of_flights | {"draws": [WIND], "speed_ratio": [0.2, 0.5]},
-        }
-    ]
-    cases = [{"name": "own", "set": of_flights | {"sweep.nu": [0.3]}}]
-    assert (
-        Scenario(title="own", study="arena", arena={"conditions": conditions})
-        .arena.conditions[0]
-        .set["flight_seed"]
-        == 3
-    )
-    assert Scenario(title="own", cases=cases).cases[0].set["flight_seed"] == 3
-    variants = [
-        {
-            "name": "own",
-            "set": of_flights | {"fidelity": "kinematic", "draws.0.uniform": [0.0, 1.0]},
-        }
-    ]
-    assert (
-        Scenario(title="own", draws=[WIND], comparison={"variants": variants})
-        .comparison.variants[0]
-        .set["flight_seed"]
-        == 3
-    )
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,5 @@
 """Several faults in one flight, ``[[fault]]``: how they are read, refused, sampled, flown and shown."""
 
-import tomllib
-
 import pytest
 from flight_cases import fly, plan, scenario
 
@@ -26,14 +24,6 @@ SHORT = {"flight": {"crossings": 0, "duration_max_s": 130.0}, "criteria": {"sett
 
 def checked(*faults, **changes):
     check_without_design(scenario(fault=faults, **changes))
-
-
-def test_another_fault_leaves_start_air_and_the_first_fault_as_they_were():
-    alone, two = (plan(scenario(fault=given, **SHORT)) for given in (TWICE[0], TWICE))
-    assert alone.start == two.start
-    assert alone.world.weather == two.world.weather
-    assert two.world.faults.each[0] == alone.world.faults.each[0]
-    assert 100.0 <= two.world.faults.each[1].begins <= 110.0
 
 
 def test_each_fault_acts_at_its_time_and_is_in_the_row_in_the_order_of_time():
@@ -74,42 +64,6 @@ def test_each_fault_acts_at_its_time_and_is_in_the_row_in_the_order_of_time():
 def test_faults_that_cannot_be_are_refused_with_their_keys(faults, words):
     with pytest.raises(InputError, match=words.replace(".", r"\.")) as refused:
         checked(*faults)
-    assert "\n" not in str(refused.value)
-
-
-DOCUMENT = """
-title = "two faults"
-fidelity = "kinematic"
-guidance.mission = "follow"
-[[fault]]
-kind = "vessel_data"
-at_s = [40.0, 60.0]
-vessel_data_s = 20.0
-[[fault]]
-kind = "satellite_navigation"
-at_s = 70.0
-"""
-
-
-@pytest.mark.parametrize(
-    ("changed", "words"),
-    [
-        ("fault.1.at_s=[90, 80]", r"fault\.1\.at_s is \[90\.0, 80\.0\]"),
-        ("fault.1.at_s=[90, 1e6]", r"fault\.1\.at_s ends at 1e\+06 s; it must lie within"),
-        ("fault.1.kin=none", r"unknown key 'fault\.1\.kin'; did you mean 'fault\.1\.kind'"),
-        ("fault.2.kind=none", r"unknown key 'fault\.2\.kind'; fault has 2 entries"),
-        ("fault.kind=none", r"unknown key 'fault\.kind'; fault has 2 entries"),
-        ("fault.1.vessel_data_s=-3", r"fault\.1\.vessel_data_s is -3"),
-        (
-            "fault.1.vessel_data_s=30",
-            r"key 'fault\.1\.vessel_data_s' has no effect here: .* set fault\.1\.kind to 'vessel_data'",
-        ),
-        ("fault=7", r"fault"),
-    ],
-)
-def test_what_is_wrong_with_one_of_them_is_said_with_its_number(changed, words):
-    with pytest.raises(InputError, match=words) as refused:
-        load_study(tomllib.loads(DOCUMENT), [changed])
     assert "\n" not in str(refused.value)
 
 

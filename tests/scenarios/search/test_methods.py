@@ -134,25 +134,6 @@ def test_a_search_around_a_point_begins_at_the_worst_that_others_found(method):
     assert together < 1.0
 
 
-@pytest.mark.parametrize("method", ["local", "cma"])
-def test_a_search_around_a_point_that_has_found_a_violation_looks_for_another_one(method):
-    # Two pits with violations; from a point between them either is found, and then the other one.
-    pits = np.full(6, 0.2), np.full(6, 0.8)
-    space = space_of(*[Coordinate()] * 6)
-
-    def depth(point, pit):
-        return 100.0 * float(np.linalg.norm(point - pit)) - 10.0
-
-    _, tried = least(
-        (method,), space, lambda point: min(depth(point, pit) for pit in pits), turns=100
-    )
-    violating = [[depth(point, pit) < 0.0 for point in tried] for pit in pits]
-    assert all(any(of) for of in violating)
-    # Once a pit is known no point of it is a start any more: it takes a few flights, not most of
-    # them.
-    assert sum(map(sum, violating)) < 0.2 * len(tried)
-
-
 def test_what_lies_beyond_the_declared_ranges_is_avoided_by_all_that_propose_freely():
     space = space_of(*[Coordinate()] * 4, beyond=lambda point: max(0.0, float(point.sum()) - 2.0))
     for method in ("corners", "local"):
@@ -177,25 +158,6 @@ def test_corners_take_every_choice_equally_often_and_put_quantities_at_their_end
     # ends.
     assert ends[1] == pytest.approx(0.8, abs=0.06)
     assert ends[2:].tolist() == [0.0, 0.0]
-
-
-def test_a_search_ends_when_its_time_is_over():
-    batches = []
-
-    def attempt(_, points):
-        batches.append(len(points))
-        return points[:, 0]
-
-    methods = methods_named(METHODS, BOWL, SearchSettings(population=POPULATION), 1)
-    search_in_turns(
-        methods,
-        BOWL,
-        attempt,
-        population=POPULATION,
-        turns=None,
-        within_time=lambda: len(batches) < 7,
-    )
-    assert len(batches) == 7
 
 
 class Own:

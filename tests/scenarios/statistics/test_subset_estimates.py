@@ -101,17 +101,6 @@ def test_chains_that_began_at_copies_of_one_state_count_as_one():
         )
 
 
-def test_a_simulation_that_reaches_nothing_beside_others_that_do_widens_the_interval_to_zero():
-    reached = repeats_of(linear(1e-4), 2, flights=200)
-    stuck, _ = simulated(linear(1e-12), 3, flights=200, levels=3)
-    found, without = rare_probability([*reached, stuck], 0.95), rare_probability(reached, 0.95)
-    assert (found.low, found.reached) == (0.0, REPEATS)
-    assert found.upper > without.upper
-    assert found.estimate == pytest.approx(
-        np.mean([*(one.below(0.0)[0] for one in reached), 0.0]), rel=1e-12
-    )
-
-
 def test_the_curve_follows_the_normal_distribution_over_the_whole_range_and_ends_where_the_event_begins():
     simulations = repeats_of(linear(1e-5), 4)
     points = curve(simulations, 0.95)
@@ -150,16 +139,3 @@ def test_what_decides_is_apart_from_what_has_no_effect_by_the_noise_floor():
     # but not by much.
     assert shifts[1].distance < 2.0 * floor
     assert sum(shifts[0].near) == pytest.approx(1.0, abs=1e-12)
-
-
-@pytest.mark.parametrize("probability", [0.5, 0.9995])
-def test_of_what_the_first_levels_see_the_interval_is_that_of_a_plain_sample(probability):
-    # Where all but one in 2,000 have it most repeats see nothing else: their scatter of 0 gave
-    # [1, 1], which holds nothing.
-    studies = [repeats_of(linear(probability), i, flights=200) for i in range(20)]
-    found = [rare_probability(simulations, 0.95) for simulations in studies]
-    values = np.concatenate([simulation.levels[0].values for simulation in studies[0]])
-    assert found[0].estimate == np.mean(values < 0.0)
-    assert found[0].upper == upper_bound(int(np.sum(values < 0.0)), len(values), 0.95)
-    assert sum(study.low <= probability <= study.high for study in found) >= 17
-    assert all(study.low < study.high for study in found)

@@ -4,7 +4,6 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from common.intervals import clopper_pearson
 from scenarios.statistics.sulphur import COLUMNS, sulphur_statistics
 
 
@@ -98,21 +97,3 @@ def test_flights_of_one_seed_are_one_sample():
     assert all(
         entry["above_interval"] == alone["coverage_interval"] for entry in swept["operating_curve"]
     )
-
-
-def test_a_seed_whose_flights_differ_counts_for_its_share_of_events():
-    table = pd.concat([rows([0.0, 0.05, 0.05]), rows([0.05, 0.0, 0.05])], ignore_index=True)
-    entry = sulphur_statistics(table, confidence=0.95)["accuracy"][0]
-    # 2 of 6 flights are covered, half of those of two of the three seeds: one of three samples at
-    # least, and at most.
-    assert entry["coverage_interval"] == pytest.approx([*_clopper(1, 3)])
-    table.loc[1, "fsc_high_percent"] = 1.0
-    table.loc[1, "fsc_low_percent"] = 0.0
-    entry = sulphur_statistics(table, confidence=0.95)["accuracy"][0]
-    # 1.5 of three: more than one, and less than two.
-    assert entry["coverage_interval"] == pytest.approx([_clopper(1, 3)[0], _clopper(2, 3)[1]])
-
-
-def _clopper(events, trials):
-    interval = clopper_pearson(events, trials, 0.95)
-    return interval.low, interval.high

@@ -8,9 +8,7 @@ from scenarios.scenario.sections.flight import CriteriaConfig
 from scenarios.studies.summary import (
     bound_line,
     counts_line,
-    premise_lines,
     trial_line,
-    unexplained_lines,
 )
 
 
@@ -96,24 +94,3 @@ def test_the_bound_follows_from_the_flights_and_counts_unknown_ones_as_violation
         planned=flights, done=flights, violated=violated, unknown=unknown, hours=0.5 * flights
     )
     assert words in bound_line(bound_of(counts, samples), counts.hours)
-
-
-def test_premises_that_did_not_hold_are_told_by_their_term():
-    rows = [
-        row(0, premises_exceeded="none"),
-        row(1, premises_exceeded="wind, drift"),
-        row(2, premises_exceeded="drift"),
-        # Without a guard there are none.
-        row(3),
-    ]
-    verdict = judged(rows)
-    (line,) = premise_lines(verdict)
-    assert "exceeded in 2 of 3 flights: drift of dead reckoning in 2, wind" in line
-    assert unexplained_lines(verdict) == []
-    assert premise_lines(judged(rows[3:])) == []
-
-
-def test_a_violation_that_no_premise_explains_is_said_loudly():
-    inside = row(0, "unexplained_violation", met=False, keepout_violations=1)
-    (line,) = unexplained_lines(judged([inside]))
-    assert line.startswith("THE KEEP-OUT GUARD IS WRONG: in 1 flight")

@@ -9,11 +9,8 @@ import pytest
 
 from common.intervals import clopper_pearson
 from scenarios.engine.processes import InProcessExecutor
-from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import ExecutorFactory
-from scenarios.engine.task import Task
 from scenarios.errors import InputError
-from scenarios.experiment.draws import value_at
 from scenarios.experiment.sampling import beyond_declared
 from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study, study_of
@@ -214,33 +211,6 @@ def test_a_flight_of_a_late_level_is_replayed_to_the_last_bit_its_blended_noise_
         progress=lambda *_: None,
     )
     assert result.all_met, result.lines
-
-
-@pytest.mark.usefixtures("x8_design")
-@pytest.mark.parametrize("level", ["none", "light"])
-def test_a_flight_depends_on_the_seed_beside_its_blend_in_turbulence_alone(tmp_path, level):
-    study = study_of(
-        load_study(
-            "monte_carlo", ["method=subset", "flight.duration_max_s=10", "turbulence.gusts=1"]
-        ),
-        "monte_carlo",
-    )
-    run = RunDirectory(tmp_path / "run")
-    run.open("a", resume=False)
-    work, draws = study.work(run), study.trials["monte_carlo"].draws
-    drawn = next(i for i, draw in enumerate(draws) if draw.key == "turbulence.level")
-    inputs = [0.3] * len(draws)
-    inputs[drawn] = next(
-        at for at in np.linspace(0.01, 0.99, 99) if value_at(draws[drawn], at) == level
-    )
-    assert not beyond_declared(study.trials["monte_carlo"], inputs)
-    one, other = (
-        work.run(Task(number=0, point=(*inputs, seed, 5.0, 1.0))).tables["summary.csv"][0]
-        for seed in (17.0, 18.0)
-    )
-    assert one["min_distance_m"] > 0.0
-    assert (one["min_distance_m"] == other["min_distance_m"]) is (level == "none")
-    assert study._seeded(np.array(inputs)) is (level != "none")
 
 
 def test_a_lost_flight_is_not_flown_again_once_others_depend_on_it(rare, whole, tmp_path):

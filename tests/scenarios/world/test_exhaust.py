@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from aircraft.wind import WindField, constant_wind
+from aircraft.wind import constant_wind
 from measurement.plume.spread import MarineAir
 from scenarios.scenario.files import load_study
 from scenarios.world.plume import Exhaust, emission, exhaust_of, fuel_of
@@ -160,25 +160,3 @@ def test_the_smoke_of_a_ship_that_turned_lies_along_her_own_track():
     now = vessel.motion(125.0)
     straight = exhaust.sample(at, np.array([now[0] - 300.0]), np.array([now[1]]), np.array([60.0]))
     assert straight.dilution[0] == 0.0
-
-
-def test_wind_that_turns_bends_the_plume():
-    vessel = SteadyVessel(8.0, 0.0)
-    turning = WindField([[[0.0, 6.0]], [[0.0, -6.0]]], times=(0.0, 60.0))
-    exhaust = smoke(turning, vessel, "plume.meander=false")
-    # Emitted at 10 s, at (80, 0); until 60 s it is carried by the integral of the wind.
-    moved = [
-        d[0]
-        for d in (
-            np.subtract(
-                turning.displacement(np.array([60.0]), 35.0),
-                turning.displacement(np.array([10.0]), 35.0),
-            )
-        )
-    ]
-    found = exhaust.sample(
-        np.array([60.0]), np.array([80.0 + moved[0]]), np.array([moved[1]]), np.array([65.0])
-    )
-    assert found.age[0] == pytest.approx(50.0, abs=0.5)
-    assert abs(found.across[0]) < 0.5
-    assert found.dilution[0] > 0.0

@@ -67,22 +67,6 @@ def test_a_change_of_speed_is_a_parabola(speed, end):
     assert vessel.motion(50.0 + takes + 1.0)[3] == pytest.approx(end, abs=1e-12)
 
 
-def test_manoeuvres_follow_each_other():
-    vessel = track({"speed_mps": 8.0, "manoeuvres": [
-        {"at_s": 10.0, "turn_deg": 90.0, "turn_rate_deg_s": 1.0},
-        {"at_s": 200.0, "turn_deg": -30.0, "turn_rate_deg_s": 0.5, "speed_mps": 5.0, "acceleration_mps2": 0.1},
-    ]})  # fmt: skip
-    _, _, v_north, v_east = vessel.motion(150.0)
-    assert (v_north, v_east) == pytest.approx((0.0, 8.0), abs=1e-9)
-    _, _, v_north, v_east = vessel.motion(300.0)
-    course = math.radians(60.0)
-    assert (v_north, v_east) == pytest.approx(
-        (5.0 * math.cos(course), 5.0 * math.sin(course)), abs=1e-9
-    )
-    # The slower of both parts: 30/0.5 s, against 3/0.1 s.
-    assert vessel.manoeuvres_end == pytest.approx(260.0)
-
-
 @pytest.mark.parametrize(
     ("second", "words"),
     [

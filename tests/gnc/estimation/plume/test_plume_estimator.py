@@ -49,43 +49,6 @@ def test_a_mirrored_flight_has_the_mirrored_estimate() -> None:
     assert straight.offset > 5.0
 
 
-def test_a_constant_background_says_nothing() -> None:
-    prior = replace(PRIOR, sensor=replace(SENSOR, noise=0.5))
-
-    def with_background(level: float) -> PlumeEstimator:
-        estimator = PlumeEstimator(prior)
-        update = estimator.update
-
-        def shifted(along: float, across: float, altitude: float, reading: float) -> bool:
-            return update(along, across, altitude, reading + level)
-
-        estimator.update = shifted  # type: ignore[method-assign, assignment]
-        MadePlume(height=70.0).fly(estimator, AROUND)
-        return estimator
-
-    usual, more = with_background(0.0), with_background(150.0)
-    # The first level is only known to 1000 ppm, so that a shift of 150 ppm leaves rounding.
-    assert more.height == pytest.approx(usual.height, abs=0.01)
-    assert more.offset == pytest.approx(usual.offset, abs=0.01)
-
-
-def test_absence_moves_the_estimate_away_from_the_flown_height() -> None:
-    estimator = PlumeEstimator(PRIOR)
-    grid = estimator.grid
-    near = np.abs(grid.height - 60.0) < 8.0
-    before, chance = estimator.cells[:, near].sum(), estimator.detection(60.0)
-    MadePlume(height=60.0, peak=0.0).fly(estimator, [60.0] * 4)
-    assert estimator.state is PlumeState.SEARCHING
-    assert estimator.cells[:, near].sum() < 0.2 * before
-    assert estimator.detection(60.0) < 0.3 * chance
-    # What is left lies above and below, and the best height to fly with it.
-    altitudes = np.linspace(20.0, 120.0, 51)
-    best = altitudes[
-        int(np.argmax([estimator.detection(float(altitude)) for altitude in altitudes]))
-    ]
-    assert abs(best - 60.0) > 8.0
-
-
 def test_stated_intervals_hold_the_truth() -> None:
     generator = np.random.default_rng(20)
     inside, squares = [], []
@@ -191,38 +154,6 @@ GRID = PlumeGrid(PRIOR)
 MIDDLE = len(GRID.sigma_z) // 2
 """The expected spread."""
 
-SPREAD = GRID.coarse_heights(GRID.sigma_z[MIDDLE])
-
-
-def test_the_prior_has_the_moments_that_it_was_given() -> None:
-    assert GRID.prior.sum() == pytest.approx(1.0)
-    of_heights = GRID.prior.sum(axis=(0, 2))
-    # Cut at three deviations, a Gaussian keeps 98.7 % of its deviation, and a funnel in a range has
-    # shorter tails.
-    assert of_heights @ GRID.height == pytest.approx(PRIOR.height, abs=0.1)
-    deviation = np.sqrt(of_heights @ (GRID.height - PRIOR.height) ** 2)
-    assert 0.97 * PRIOR.height_deviation < deviation < 1.001 * PRIOR.height_deviation
-    assert GRID.bearing_prior.sum() == pytest.approx(1.0)
-    # The sum over steps of a quarter of a deviation is the integral; cut at three, a Gaussian keeps
-    # 98.7 %.
-    assert np.sqrt(GRID.bearing_prior @ GRID.bearing**2) == pytest.approx(
-        0.987 * PRIOR.bearing_deviation, rel=0.005
-    )
-
-
-@pytest.mark.parametrize("looks", [1, 3])
-def test_fading_is_that_of_centres_drawn_at_random(looks: int) -> None:
-    altitude, i = 70.0, len(GRID.height) // 2
-    fading = GRID.fading(GRID.height - altitude, looks)[MIDDLE, i]
-    centres = GRID.height[i] + PRIOR.meander_z * np.random.default_rng(1).standard_normal(
-        (looks, 200_000)
-    )
-    off = np.abs(centres - altitude).min(axis=0)
-    steps = np.rint(0.5 * (off / GRID.sigma_z[MIDDLE, i]) ** 2 / STRENGTH_STEP).astype(int)
-    drawn = np.bincount(steps, minlength=len(fading))[: len(fading)] / 200_000
-    # A share p of 200,000 has a deviation of at most 0.0011.
-    assert fading == pytest.approx(drawn, abs=0.005)
-
 
 @pytest.mark.parametrize("steps", [0.0, 0.1, 0.5, 0.7, 10.0])
 def test_a_random_walk_has_the_variance_that_it_should_and_loses_nothing(steps: float) -> None:
@@ -235,21 +166,6 @@ def test_a_random_walk_has_the_variance_that_it_should_and_loses_nothing(steps: 
     # Exact: each round moves a share by one step either way. At ten deviations from the ends,
     # rounding is left.
     assert found[2] @ off**2 / found[2].sum() == pytest.approx(steps, abs=1e-12)
-
-
-def test_a_pass_is_never_expected_to_widen_the_height() -> None:
-    """The law of total variance."""
-    weights, heights = GRID.coarse(GRID.prior), GRID.coarse_heights(GRID.height)
-    altitudes = np.array([-500.0, 40.0, 65.0, 90.0, 500.0])
-    expected = GRID.expected_deviation(
-        weights, heights, heights - altitudes[:, np.newaxis], 1.0, SPREAD
-    )
-    of_heights = weights.sum(axis=1)
-    now = float(np.sqrt(of_heights @ heights**2 - (of_heights @ heights) ** 2))
-    assert np.all(expected <= now + 1e-9)
-    # A pass far away says nothing, one within the plume does.
-    assert expected[[0, -1]] == pytest.approx(now, rel=1e-6)
-    assert expected[1:4].max() < 0.95 * now
 
 
 def test_what_a_pass_is_expected_to_read_adds_up_to_its_chance_of_anything() -> None:

@@ -7,7 +7,6 @@ import pytest
 from exhaust_cases import SENSOR
 
 from gnc.estimation.plume.passes import (
-    PassCollector,
     PassReader,
     Path,
     SensorState,
@@ -152,25 +151,6 @@ def test_slope_and_bend_are_those_of_the_whole_covariance() -> None:
     assert evidence.bend.ravel() == pytest.approx(
         np.einsum("km,mn,kn->k", templates, inverse, templates), rel=1e-5
     )
-
-
-def test_there_is_a_pass_for_each_half_of_an_oscillation() -> None:
-    collector = PassCollector(delay=1.0, tail=0.43)
-    step, period = 0.1, 16.0
-    paths = []
-    for i in range(round(5.0 * period / step)):
-        time = i * step
-        across = 50.0 * math.cos(2.0 * math.pi * time / period)
-        path = collector.add(time, 230.0, across, 60.0, 420.0 if i % 2 == 0 else math.nan)
-        if path is not None:
-            paths.append(path)
-    # The last one has not been read to its end.
-    assert len(paths) == 9
-    for path in paths[1:]:
-        # From turn to turn, and what the sensor still has of it.
-        assert path.duration == pytest.approx(0.5 * period + 0.43, abs=0.3)
-        assert path.across[0] * path.across[-1] < 0.0
-        assert len(path.readings) == pytest.approx(0.5 * period / 0.2, abs=1)
 
 
 def _sensor(noise: float = 1.0, resolution: float = 0.1) -> GasSensor:

@@ -5,12 +5,11 @@ outruns it, where it glides to.
 import pytest
 
 from gnc.errors import InfeasibleError
-from scenarios.planning.air.wind import check_not_outrun, wind_change
+from scenarios.planning.air.wind import check_not_outrun
 from scenarios.scenario.files import load_study, with_values
 from scenarios.world.world import mean_wind, vessel_of
 
 FASTER_ALOFT = "height_m,speed_mps,from_deg\n1,10,0\n60,10,0\n250,26,0\n2000,26,0\n"
-JET_BELOW = "height_m,speed_mps,from_deg\n1,18,0\n45,18,0\n57,3,0\n200,3,0\n"
 
 CIRCLE = {
     "guidance.mission": "standoff",
@@ -42,17 +41,3 @@ def test_a_vessel_that_outruns_the_vehicle_where_it_climbs_to_is_refused(tmp_pat
     ):
         check_not_outrun(flown, vessel, mean_wind(flown, vessel), 150.0)
     check_not_outrun(flown, vessel, mean_wind(flown, vessel), 10.0)
-
-
-@pytest.mark.parametrize("fault", ["engine", "left_elevon", "throttle"])
-def test_winds_below_count_where_the_aircraft_may_have_to_glide(tmp_path, fault):
-    sound, vessel = scenario(tmp_path, JET_BELOW, **{"vessel.speed_mps": 10.0})
-    check_not_outrun(sound, vessel, mean_wind(sound, vessel), 250.0)
-    assert wind_change(sound, mean_wind(sound, vessel), 0.0) == 0.0
-    declared = with_values(sound, {"fault.declared": [fault]})
-    with pytest.raises(
-        InfeasibleError,
-        match=r"height of 4\d m, to which it glides if a part of it fails, the vessel moves at up to 28",
-    ):
-        check_not_outrun(declared, vessel, mean_wind(declared, vessel), 250.0)
-    assert wind_change(declared, mean_wind(declared, vessel), 0.0) == pytest.approx(15.0)

@@ -84,19 +84,6 @@ def test_a_gaussian_process_goes_above_a_level_as_often_as_rice_says():
         assert level_crossed(1.0, rate, per_hour) == pytest.approx(level, rel=1e-9)
 
 
-def test_what_exceeds_the_limits_is_the_area_of_the_peak_above_them():
-    per_hour = 1e-3
-    peak = level_crossed(SPREAD.airspeed, SPREAD.airspeed_rate, per_hour)
-    ratio = SPREAD.airspeed_rate / SPREAD.airspeed
-    time = np.linspace(-10.0, 10.0, 200_001)
-    above = np.maximum(peak * (1.0 - 0.5 * (ratio * time) ** 2) - SPREAD.airspeed_limit, 0.0)
-    # Trapezoids of 0.1 ms on an area with two kinks: 1e-6 of it.
-    assert beyond_limits(SPREAD, per_hour) == pytest.approx(
-        float(np.trapezoid(above, time)), rel=1e-5
-    )
-    assert beyond_limits(replace(SPREAD, airspeed_limit=peak), per_hour) == 0.0
-
-
 def test_the_margin_grows_with_the_spread_and_with_care():
     margin = planned_margin(SPREAD, touches_per_hour=1e-3)
     # With deviation and rate alike the part by tracking grows in proportion, that by limits not at

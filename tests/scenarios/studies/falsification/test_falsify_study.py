@@ -7,10 +7,9 @@ import pandas as pd
 import pytest
 
 from scenarios.engine.processes import InProcessExecutor
-from scenarios.engine.runner import ExecutorFactory, fly_study
+from scenarios.engine.runner import ExecutorFactory
 from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
-from scenarios.studies.replay import Replay
 from tests.run_tables import manifest_of
 from tests.scenarios.short_search import (
     CONFIRMATIONS,
@@ -82,19 +81,6 @@ def test_the_worst_flights_are_kept_as_scenarios_that_fly_again_to_the_last_bit(
     changed = load_study(str(kept[0]), ["keepout.radius_m=150"])
     other = run_study(changed, "changed", tmp_path / "changed", executor_factory=InProcessExecutor)
     assert other.verdict.counts.done == 1
-
-
-def test_flights_of_a_search_are_replayed_identically(found, tmp_path):
-    searched, repeats = tables(found)
-    for flight_id in (searched["flight_id"].iloc[-1], repeats["flight_id"].iloc[-1]):
-        result = fly_study(
-            Replay(str(found / "flights" / flight_id)),
-            tmp_path / flight_id,
-            executor_factory=InProcessExecutor,
-            resume=False,
-            progress=lambda *_: None,
-        )
-        assert result.all_met, result.lines
 
 
 def test_the_search_goes_the_same_way_whatever_the_number_of_processes_and_where_it_was_interrupted(
