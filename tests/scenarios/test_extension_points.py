@@ -107,17 +107,11 @@ def test_files_may_be_swept_sampled_compared_and_set_in_cases(tmp_path):
             "import nowhere_to_be_found\n",
             "own.py: load() failed: ModuleNotFoundError: No module named 'nowhere_to",
         ),
-        ("guidance.law", "class Part:\n", "own.py: load() failed: IndentationError"),
         ("guidance.law", "import sys\nsys.exit(0)\n", "own.py: load() failed: SystemExit: 0"),
         (
             "guidance.law",
             "\n1 / 0\n",
             "own.py: load() failed: ZeroDivisionError: division by zero (own.py:2)",
-        ),
-        (
-            "guidance.law",
-            "import beside\n",
-            "load() failed: ModuleNotFoundError: No module named 'beside' (own.py:1)",
         ),
         (
             "vessel.track",
@@ -126,55 +120,19 @@ def test_files_may_be_swept_sampled_compared_and_set_in_cases(tmp_path):
         ),
         (
             "guidance.law",
-            LAW.replace("Pursuit:", "Part:\n    unsupported_tasks = 'standoff'"),
-            "has unsupported_tasks = 'standoff'; give the reason",
-        ),
-        (
-            "guidance.law",
             LAW.replace("Pursuit:", "Part:\n    unsupported_tasks = {'oscillaton': 'no'}"),
             "has the task 'oscillaton' in unsupported_tasks; did you mean 'oscillation'? tasks are oscillation and standoff",
-        ),
-        (
-            "guidance.law",
-            LAW.replace("Pursuit:", "Part:\n    unsupported_tasks = {'standoff': 3}"),
-            "has unsupported_tasks['standoff'] = 3; give the reason",
         ),
         (
             "study",
             "class Part: ...\n",
             "has no method work(); see the Protocol in scenarios.studies",
         ),
-        (
-            "study",
-            "class Part:\n    work = run = postprocess = export = summary = planned = None.__init__\n",
-            "Part': TypeError: Part() takes no arguments",
-        ),
         ("guidance.law", "class Pert: ...\n", "own.py has no 'Part'; did you mean 'Pert'?"),
         (
             "guidance.law",
             "class Part: ...\n",
             "has no method heading_rate(); see the Protocol in gnc.laws",
-        ),
-        (
-            "guidance.law",
-            "class Part:\n    def heading_rate(self): ...\n",
-            "is not a dataclass; its fields are the keys",
-        ),
-        ("plume.model", "class Part: ...\n", "plume.model: plume model '"),
-        (
-            "vessel.track",
-            "class Part:\n    def motion(self, time): ...\n",
-            "has no method course(); see the Protocol",
-        ),
-        (
-            "payload",
-            "class Part: ...\n",
-            "has no method read() or evaluate(); see the Protocol in scenarios.instruments",
-        ),
-        (
-            "reference.shape",
-            "class Part: ...\n",
-            "has no method design(); see the Protocol in gnc.reference",
         ),
         ("aircraft", "Part = 3\n", "own.py:Part' is of type int; it must be an AircraftSpec"),
     ],

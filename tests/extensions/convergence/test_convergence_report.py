@@ -34,22 +34,13 @@ def without_ensemble(path):
     [
         (lambda path: (path / "summary.csv").unlink(), "no summary.csv"),
         (
-            lambda path: (path / "summary.csv").write_text("x,y\n1,2\n", encoding="utf-8"),
-            "is damaged",
-        ),
-        (
             lambda path: change(path, lambda rows: rows.assign(law="pursuit")),
             "law is pursuit; known are lyapunov",
-        ),
-        (
-            lambda path: change(path, lambda rows: rows.assign(reference="square")),
-            "reference is square; known are circle",
         ),
         (
             lambda path: change(path, lambda rows: rows.drop(columns="settling_time_s")),
             "is damaged",
         ),
-        (without_ensemble, "is damaged"),
     ],
 )
 def test_a_damaged_study_is_refused_in_one_line(damage, words, tmp_path):

@@ -102,17 +102,11 @@ def test_a_study_goes_on_with_the_blocks_that_are_left(tmp_path):
     ("override", "words"),
     [
         ('guidance.laws=["cascade", "cascade"]', ["laws is ['cascade', 'cascade']", "once"]),
-        ("guidance.laws=cascade", ["guidance.laws", "'cascade'", "valid tuple"]),
         ('guidance.laws=["magic"]', ["guidance.laws.0", "'magic'", "lyapunov"]),
-        (
-            "ensemble.trajectories=0",
-            ["ensemble.trajectories is 0; input should be greater than or equal to 1"],
-        ),
         (
             "guidance.heading_rate_max_rad_s=0.4",
             ["heading_rate_max_rad_s", "0.4", "greater than 0.5 [rad/s]"],
         ),
-        ("fidelity=six_dof", ["fidelity", "'six_dof'", "kinematic"]),
         ("keepout.radius_m=200", ["unknown key 'keepout'"]),
     ],
 )

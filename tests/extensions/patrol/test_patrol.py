@@ -204,36 +204,17 @@ def ship(number, **values):
     ("override", "words"),
     [
         ("patrol.ships=0", ("patrol.ships is 0; input should be greater than or equal to 1",)),
-        ("patrol.endurance_s=60", ("patrol.endurance_s is 60 s", "patrol.service_s = 165 s")),
         ("patrol.separation_m=9000", ("patrol.separation_m is 9000 m", "patrol.area_m")),
-        (
-            "patrol.separation_m=0",
-            ("patrol.separation_m is 0 m", "800 m", "start.distance_m", "give 1000 m or more"),
-        ),
         ("flight.until=flown", ("flight.until is 'flown'", "'verdict'")),
-        ("sweep.keepout.radius_m=[200,210]", ("beside a sweep",)),
         ("vessel.manoeuvres=[{at_s=20.0,turn_deg=30.0}]", ("vessel.manoeuvres",)),
-        (
-            "start.range_m=500",
-            ("beside start.range_m; a flight beside a ship begins where the way to it ends",),
-        ),
         ("start.place_m=[-500,10]", ("beside start.place_m",)),
-        ('draws=[{key="start.aspect_deg",uniform=[0.0,30.0]}]', ("beside start.aspect_deg",)),
         (
             "patrol.clearance_m=700",
             ("are 900 m together, more than start.distance_m, whose end is 800 m",),
         ),
         (
-            "flight.duration_max_s=900",
-            ("'flight.duration_max_s' has no effect here", "patrol.patience_s"),
-        ),
-        (
             "criteria.required=keep_out",
             ("'criteria.required' has no effect here", "judged by patrol.oracle_share_min and"),
-        ),
-        (
-            "criteria.settles=false",
-            ("'criteria.settles' has no effect here", "patrol.wrong_share_max: set these"),
         ),
         (
             "histories=4",

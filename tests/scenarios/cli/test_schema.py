@@ -82,17 +82,11 @@ def test_an_example_that_the_program_reads_is_accepted(text, validator):
     "text",
     [
         'payload = ["sniffer"]',
-        "fault = {kind = 'engine', at_s = 100.0}",
         "[sweep.wind]\nspeed_mps = [0.0, 5.0]",
-        "[criteria]\ncrossing_interval_s = false\ntracking_error_rms_m = false",
         "extends = false",
-        "aircraft = 747",
         "[place]\nutc = 2026-06-01T12:00:00Z",
-        "[plume]\nmodel = 'mine.py:Mine'\nkey_of_mine = 3",
         "[guidance]\nlaw = 'mine.py:Mine'\nkey_of_mine = 'word'",
-        "[payload]\ninstruments = ['mine.py:Mine']\nkey_of_mine = [1, 2]",
         "[emission]\nship = {length_m = 100.0}",
-        "study = 'mine.py:Study'",
     ],
 )
 def test_what_the_loader_brings_into_form_is_accepted(text, validator):
@@ -103,19 +97,12 @@ def test_what_the_loader_brings_into_form_is_accepted(text, validator):
     ("text", "key"),
     [
         ("titel = 'A study'", ""),
-        ("[wind]\nspeed_mp = 5.0", "wind"),
         ("[wind]\nspeed_mps = 'fast'", "wind.speed_mps"),
-        ("[wind]\nspeed_mps = -1.0", "wind.speed_mps"),
         ("[wind]\nspeed_mps = true", "wind.speed_mps"),
-        ("[guidance]\nairspeed_mps = 'fast'", "guidance.airspeed_mps"),
         ("[guidance]\nbank_deg = 'steep'", "guidance.bank_deg"),
-        ("[guidance]\nbank_deg = 0.0", "guidance.bank_deg"),
         ("[keepout]\nshape = 'cube'", "keepout.shape"),
-        ("[[vessel.manoeuvres]]\nturn_deg = 90.0", "vessel.manoeuvres.0"),
         ("[reports]\ninterval_s = [1.0, 2.0, 3.0]", "reports.interval_s"),
-        ("[criteria]\ncrossing_interval_s = true", "criteria.crossing_interval_s"),
         ("[sweep]\nnu = 0.3", "sweep.nu"),
-        ("extends = true", "extends"),
         ("fidelity = 'seven_dof'", "fidelity"),
     ],
 )

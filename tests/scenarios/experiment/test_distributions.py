@@ -83,29 +83,20 @@ def test_a_choice_takes_as_much_of_its_distribution_as_it_weighs():
     ("values", "words"),
     [
         ({}, "has none of uniform, normal, weibull and choice; give one"),
-        ({"uniform": [0.0, 1.0], "normal": [0.0, 1.0]}, "has uniform and normal of uniform"),
         (
             {"uniform": [1.0, 0.0]},
             "uniform of the draw of 'wind.speed_mps' is .* its first value must not exceed",
         ),
-        ({"normal": [5.0, 1.0], "within": [6.0, 4.0]}, "within of the draw of 'wind.speed_mps' is"),
         (
             {"uniform": [0.0, 1.0], "within": [0.0, 1.0]},
             "has within beside uniform; it cuts off normal or weibull",
         ),
-        ({"normal": [5.0, 0.0]}, "greater than 0"),
         ({"weibull": [0.0, 8.0]}, "greater than 0"),
-        (
-            {"choice": [1.0, 2.0], "weights": [1.0]},
-            "has weights .* give each choice one, with a sum above 0",
-        ),
         (
             {"choice": [1.0, 2.0], "weights": [1e308, 1e308]},
             "give each choice one, with a sum above 0",
         ),
-        ({"choice": [1.0, 2.0], "weights": [0.0, 0.0]}, "give each choice one, with a sum above 0"),
         ({"choice": [1.0, 2.0], "weights": [-1.0, 2.0]}, "greater than or equal to 0"),
-        ({"normal": [5.0, 1.0], "weights": [1.0]}, "has weights .* give each choice one"),
     ],
 )
 def test_a_distribution_that_makes_no_sense_is_refused(values, words):

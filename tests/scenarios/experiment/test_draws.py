@@ -83,24 +83,12 @@ def test_flights_keep_to_their_speed_ratios_also_after_a_manoeuvre():
     ("draw", "words"),
     [
         ({"key": "wind.sped_mps", "uniform": [0.0, 1.0]}, "unknown key 'wind.sped_mps'"),
-        ({"key": "vessel.speed_mps", "uniform": [5.0, 500.0]}, "vessel.speed_mps is 500.0"),
         ({"key": "vessel.speed_mps", "uniform": [-5.0, 10.0]}, "vessel.speed_mps is -5.0"),
-        # Only the third flight would have met it.
-        (
-            {"key": "plume.direction", "choice": ["given", "apparent_wind", "up"]},
-            "plume.direction is 'up'",
-        ),
         ({"key": "title.first", "choice": ["a"]}, "'title' is a value, not a section"),
-        # 8 m/s on average, but a normal distribution has no end.
-        ({"key": "vessel.speed_mps", "normal": [8.0, 2.0]}, "vessel.speed_mps is -"),
         # Some 4e-12 of it lies beyond 41 m/s: rounding takes a little from the limit.
         (
             {"key": "wind.speed_mps", "weibull": [2.0, 8.0], "within": [0.0, 41.0]},
             "wind.speed_mps is 40.9999",
-        ),
-        (
-            {"key": "vessel.manoeuvres.0.turn_deg", "uniform": [-90.0, 90.0]},
-            r"vessel\.manoeuvres has 0 entries, .*: add one, as in --set 'vessel\.manoeuvres=\[\{at_s=\.\.\.\}\]'",
         ),
         (
             {"key": "vessel.manoeuvres.first.turn_deg", "uniform": [-90.0, 90.0]},

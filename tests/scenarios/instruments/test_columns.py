@@ -140,16 +140,12 @@ def evaluated(folder, *names):
     ("names", "words"),
     [
         (("Safe",), "Safe' fills the figure 'keepout_violations', which the flight or another"),
-        (("Replaced",), "Replaced' fills the table 'crossings.csv', which the flight or another"),
         (("Peak", "Also"), "Also' fills the figure 'y_peak_ppb', which the flight or another"),
-        (("Renamed",), "Renamed' fills the column 'flight_id', which the flight or another"),
         (("Folder",), "names of files that end in .csv, without a folder; not '../y.csv'"),
-        (("Text",), "Text': FIGURES is 'y_peak_ppb'; it has to be a tuple of names"),
         (
             ("Numbered",),
             "column 'y_peak_ppb' is declared by 3; give a common.columns.Column, or text",
         ),
-        (("Nameless",), "Nameless' has no COLUMNS, the names of the columns it fills"),
     ],
 )
 def test_figures_and_tables_of_the_flight_and_of_others_are_refused_before_any_flight(

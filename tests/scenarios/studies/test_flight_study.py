@@ -122,36 +122,22 @@ def test_a_run_is_resumed_with_the_same_trials_only(tmp_path):
     ("line", "words"),
     [
         ('trials = ["sea_nowhere"]', "unknown scenario 'sea_nowhere'"),
-        ('trials = ["paper"]', "'paper' is a study of paper; list scenarios of flights"),
         ('trials = ["sea_trial"]', "'sea_trial' is a study of trials; list scenarios of flights"),
-        ('trials = ["sea_wind", "sea_wind"]', "two are called 'sea_wind'; list each once"),
         ("trials = []", r"trials is \[\]; tuple should"),
-        ('trials = ["sea_wind"]\nset = 5', "set is 5; input should be a valid tuple"),
         (
             'trials = ["sea_wind"]\nset = "share=1"',
             "set is 'share=1'; input should be a valid tuple",
         ),
-        ('trials = ["sea_wind"]\nset = ["colour"]', "'colour' is not of the form key=value"),
         ('trials = ["sea_wind"]\nset = ["vessel.colour=1"]', "unknown key 'vessel.colour'"),
-        ('trials = ["sea_wind"]\nshare = 0.0', "share is 0.0"),
         (
             'trials = ["sea_wind"]\nset = ["fidelity=kinematic", "fault.kind=engine"]',
             "fault.kind is 'engine'; .*what can fail is none, satellite_navigation, sniffer_dead, sniffer_saturated, vessel_data",
         ),
         (
-            'trials = ["sea_wind"]\nset = ["fault.at_s=[300, 100]"]',
-            r"at_s is \[300.0, 100.0\]; its first value must not exceed",
-        ),
-        (
             'trials = ["sea_wind"]\nset = ["speed_ratio=[0.9, 0.1]"]',
             r"speed_ratio is \[0.9, 0.1\]; its first value",
         ),
-        (
-            'trials = ["sea_turbulence_light"]\nset = ["flight.altitude_m=400"]',
-            "turbulence.level is 'light': .*altitude is 400 m; it holds up to 304.8 m; fly lower",
-        ),
         ('trials = ["sea_wind"]\nset = ["aircraft=zeppelin"]', "unknown aircraft 'zeppelin'"),
-        ('trials = ["sea_wind"', "not valid TOML"),
     ],
 )
 def test_bad_trials_are_refused_in_one_line_before_anything_is_written(line, words, tmp_path):

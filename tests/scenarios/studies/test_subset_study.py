@@ -240,37 +240,20 @@ def test_a_lost_flight_is_not_flown_again_once_others_depend_on_it(rare, whole, 
     [
         (["method=subsett"], ["method", "'subsett'", "did you mean 'subset'"]),
         (
-            ["method=subset", "sweep.nu=[0.3,0.4]"],
-            ["method is 'subset'", "sweep", "set method to 'plain'"],
-        ),
-        (
             ["method=subset", "statistics.violation_upper=0.1"],
             ["method is 'subset'", "statistics.violation_upper", "leave them out"],
         ),
-        (["method=subset", "flights=10"], ["'flights' has no effect", "subset.flights_per_level"]),
         (
             ["method=subset", "draws=[]"],
             ["method is 'subset'", "draws is empty", "set method to 'plain'"],
-        ),
-        (
-            ["method=subset", "sampling=random"],
-            ["'sampling' has no effect", "set study to 'monte_carlo' and method to 'plain'"],
         ),
         (
             ["method=subset", "subset.flights_per_level=60"],
             ["6 flights that pass on", "must be 10", "100 or more"],
         ),
         (
-            ["method=subset", "subset.repeats=2"],
-            ["subset.repeats is 2; input should be greater than or equal to 3"],
-        ),
-        (
             ["method=subset", "subset.conditional_probability=0.7"],
             ["subset.conditional_probability", "0.7", "0.5"],
-        ),
-        (
-            ["subset.repeats=4"],
-            ["'subset.repeats' has no effect", "set study to 'monte_carlo' and method to 'subset'"],
         ),
     ],
 )
