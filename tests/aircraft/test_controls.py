@@ -91,20 +91,6 @@ def test_the_effect_of_a_nonlinear_elevator_becomes_linear(twin):
     assert np.ptp(found) < 0.12 * abs(found.mean())
 
 
-def test_the_new_command_runs_from_nought_at_the_old_and_over_two_from_stop_to_stop(twin):
-    _, _, spec = twin
-    for name in AXES:
-        control_input = spec.input(name)
-        assert control_input.command(0.0) == pytest.approx(0.0, abs=1e-12)
-        assert control_input.upper - control_input.lower == pytest.approx(2.0)
-        assert (
-            -1.0
-            <= control_input.command(control_input.lower)
-            < control_input.command(control_input.upper)
-            <= 1.0
-        )
-
-
 @pytest.mark.parametrize(("lower", "upper"), [(-0.5, 0.5), (-0.75, 0.25)])
 def test_a_surface_is_commanded_within_the_range_that_its_spec_states(twin, lower, upper):
     fdm, level, whole = twin

@@ -1,9 +1,6 @@
 """The linear model against derivatives of published equations, and against flights of JSBSim."""
 
 import math
-import re
-import shutil
-from dataclasses import replace
 
 import control
 import numpy as np
@@ -13,7 +10,6 @@ import x8_published as x8
 from aircraft.fdm import TIME_STEP, Fdm
 from aircraft.fleet.x8 import X8
 from aircraft.linearise import EXTRA_OUTPUTS, linearise
-from aircraft.spec import MODELS, AircraftError, propeller_speed
 from aircraft.trim import trim
 
 DRIVEN = ("elevator_position", "aileron_position", "propeller_speed")
@@ -271,46 +267,6 @@ def test_at_120_hertz_a_small_doublet_is_flown_as_predicted_but_for_the_step(tri
     # And of first order it is: four times less with a quarter of the step, down to thrust's change
     # of slope (airspeed, 2 %).
     assert fine < max(0.3 * coarse, 0.03)
-
-
-# The X8's elevons without their lag of 40 rad/s, and with lags of whose way JSBSim's filter goes
-# too far in a step: 400 rad/s is more than two of 1/120 s.
-@pytest.mark.parametrize("lag", ["", "<lag>400</lag>", "<lag>1e9</lag>"])
-def test_a_servo_that_follows_at_once_is_no_state(trims, tmp_path, lag):
-    root = shutil.copytree(MODELS, tmp_path / "models")
-    file = root / "aircraft" / "x8" / "x8.xml"
-    text, count = re.subn("<lag>.*?</lag>", lag, file.read_text(encoding="utf-8"))
-    assert count == 2
-    file.write_text(text, encoding="utf-8")
-    why = (
-        "'fcs/elevator-pos-rad' follows input 'elevator' within a time step of 0.008333 s.*;"
-        " leave 'elevator_position' out of"
-    )
-    with pytest.raises(AircraftError, match=why) as caught:
-        linearise(Fdm(replace(X8, root=root)), trims["level"])
-    assert "\n" not in str(caught.value)
-    assert np.isfinite(
-        linearise(Fdm(replace(X8, root=root, driven_states=(propeller_speed(),))), trims["level"]).A
-    ).all()
-
-
-def test_an_unnamed_servo_is_found_by_measuring_what_its_input_does(x8_fdm):
-    level = trim(x8_fdm, airspeed=20.0, altitude=100.0)
-    named = linearise(x8_fdm, level)
-    # A spec that names neither servos nor propeller, as of a stock aircraft, whose model file says
-    # nothing that could be relied on.
-    blind = linearise(Fdm(replace(X8, driven_states=())), level)
-    assert tuple(blind.state_labels[9:]) == ("elevator_effect", "aileron_effect", "throttle_effect")
-    # The servos: 40 rad/s in the model file, which JSBSim's trapezoidal lag makes 40.38 (above),
-    # and half a step more, for it takes the mean of the old and the new input over a step. Within
-    # 0.002 of a step's answer is not waited for: 1 % with the rest.
-    for name in ("elevator", "aileron"):
-        time_constant = -1.0 / entry(blind, f"{name}_effect", f"{name}_effect")
-        assert time_constant == pytest.approx(1.0 / 40.38 + 0.5 * TIME_STEP, rel=0.02)
-    # Settled, controls do what they do with the servos as states.
-    for rate, name in (("q", "elevator"), ("p", "aileron"), ("r", "aileron")):
-        whole = entry(named, rate, f"{name}_position") * x8.ELEVON_FULL
-        assert entry(blind, rate, f"{name}_effect") == pytest.approx(whole, rel=1e-3)
 
 
 @pytest.mark.parametrize("name", ["T37"])

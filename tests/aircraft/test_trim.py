@@ -132,19 +132,6 @@ def test_in_a_level_turn_the_horizontal_force_is_centripetal_and_the_vertical_on
     assert -down == pytest.approx(x8.MASS * x8.equatorial_gravity(found.altitude), rel=1e-3)
 
 
-@pytest.mark.parametrize("name", ["climbing", "descending", "climbing turn"])
-def test_a_climb_trim_climbs_at_the_asked_angle_when_flown(x8_fdm, trims, name):
-    found = trims[name]
-    x8_fdm.command(dict(found.inputs))
-    x8_fdm.hold(found.state(), 240)
-    x8_fdm.step(120)
-    # One second in equilibrium: V sin(gamma). The thousandth of a m/s^2 of the earth's rotation
-    # lets it go off by millimetres.
-    climbed = x8_fdm.read("position/h-sl-meters") - found.altitude
-    assert climbed == pytest.approx(found.airspeed * math.sin(found.climb_angle), abs=0.01)
-    assert x8_fdm.read("velocities/vt-fps") * 0.3048 == pytest.approx(found.airspeed, abs=0.01)
-
-
 @pytest.mark.parametrize("airspeed", [-3.0, 0.0, math.nan, math.inf])
 def test_an_impossible_airspeed_is_refused_in_one_line_that_names_it(x8_fdm, airspeed):
     with pytest.raises(AircraftError, match=f"'x8': airspeed is {airspeed:g} m/s") as caught:

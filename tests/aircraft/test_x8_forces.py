@@ -87,21 +87,6 @@ def test_density_is_that_of_the_standard_atmosphere(x8_fdm):
         assert density == pytest.approx(x8.standard_density(altitude), rel=2e-5)
 
 
-def test_gravity_at_the_equator_is_that_of_wgs_84(x8_fdm):
-    # A body without aerodynamics to speak of, level and at rest in the air, falls with gravity
-    # alone.
-    with x8_fdm.frozen():
-        x8_fdm.command({"elevator": 0.0, "aileron": 0.0, "throttle": 0.0})
-        x8_fdm.place(
-            RigidBodyState(altitude=100.0, roll=0.0, pitch=0.0, velocity_body=(0.01, 0.0, 0.0))
-        )
-        x8_fdm.step(2)
-        down = x8_fdm.acceleration_body()[2]
-    # Normal gravity of WGS 84, 9.7803253 m/s^2, less 3.09e-6 a metre. JSBSim keeps the oblateness
-    # term alone: 1e-5 of it.
-    assert down == pytest.approx(x8.equatorial_gravity(100.0), rel=2e-5)
-
-
 # JSBSim takes 1 lbf ft s^2 as 1.35594 kg m^2 where it is 1.35582: inertia is 9e-5 low and angular
 # acceleration as much too high.
 JSBSIM_INERTIA_ERROR = 2e-4

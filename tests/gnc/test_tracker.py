@@ -125,22 +125,3 @@ def test_a_kinematic_vehicle_settles_on_the_reference_at_20_hertz(nu, law):
     # nu = 0.8 under the Lyapunov law.
     assert np.max(flight.distance[-1000:]) < 0.8
     assert flight.distance[0] > 100.0
-
-
-@pytest.mark.parametrize("lag", [0.0, 0.4])
-def test_the_reference_shown_is_the_one_now_also_with_preview(lag):
-    alone = make_reference(
-        paper_oscillation(0.3), phase=0.7, centre=(-214.0, 5.0), vessel_course=0.3
-    )
-    tracker = Tracker(tracking_parameters(lag=lag), copy.copy(alone))
-    for _ in range(100):
-        shown = tracker.reference
-        # The same arithmetic.
-        assert (shown.north, shown.east, shown.course, shown.heading_rate) == (
-            alone.north,
-            alone.east,
-            alone.course,
-            alone.heading_rate,
-        )
-        tracker.step(0.0, 0.0, 0.0, SPEED, 0.0)
-        alone.step()

@@ -14,9 +14,9 @@ import aircraft
 import common
 import innerloop
 from aircraft.fleet.x8 import X8
-from aircraft.spec import MODELS, AircraftError
-from innerloop import designer, store
-from innerloop.store import DesignError, as_text, cache_directory, design_key, designed
+from aircraft.spec import MODELS
+from innerloop import store
+from innerloop.store import as_text, cache_directory, design_key, designed
 
 
 @pytest.fixture(autouse=True)
@@ -133,24 +133,6 @@ def test_the_same_model_elsewhere_on_disk_is_the_same_key_and_any_changed_file_o
         assert design_key(there, 100.0) != before, name
 
 
-def test_a_design_made_of_the_same_model_elsewhere_flies_the_model_that_is_here(
-    requests, designs, monkeypatch, tmp_path
-):
-    root = shutil.copytree(MODELS, tmp_path / "models")
-    there = dataclasses.replace(X8, root=root)
-    made, schedule = designs("x8"), designs("x8").design.schedule
-    elsewhere = dataclasses.replace(
-        made,
-        design=dataclasses.replace(made.design, schedule=dataclasses.replace(schedule, spec=there)),
-    )
-    design_as(monkeypatch, elsewhere)
-    assert designed(there).design.schedule.spec.root == root
-    shutil.rmtree(root)
-    # A worktree or an environment that is gone by now, say.
-    assert designed(X8).design.schedule.spec.root == MODELS
-    assert len(remembered()) == 1
-
-
 @pytest.mark.parametrize(
     ("package", "file"),
     [("aircraft", "spec.py"), ("common", "physics.py"), ("innerloop", "synthesis.py")],
@@ -201,23 +183,6 @@ def test_a_file_that_holds_no_design_is_ignored_and_replaced(requests, content):
     assert len(requests) == 2
     designed(X8)
     assert len(requests) == 2
-
-
-@pytest.mark.parametrize("kind", [AircraftError, DesignError])
-def test_that_an_aircraft_has_no_design_is_remembered_with_its_reason(monkeypatch, tmp_path, kind):
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    attempts = []
-
-    def refuse(spec, altitude):
-        attempts.append(spec.name)
-        raise kind("aircraft 'x8' flies no more: 5 dB of 6 dB")
-
-    monkeypatch.setattr(designer, "design_autopilot", refuse)
-    for _ in range(2):
-        with pytest.raises(AircraftError, match="5 dB of 6 dB") as caught:
-            designed(X8)
-        assert type(caught.value) is kind
-    assert attempts == ["x8"]
 
 
 def test_a_cache_that_cannot_be_written_is_done_without(requests, monkeypatch, tmp_path):

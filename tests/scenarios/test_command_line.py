@@ -4,20 +4,16 @@ one, which has imported all.
 
 import multiprocessing
 import os
-import shlex
 import signal
 import subprocess
 import sys
 import time
-from dataclasses import replace
 from pathlib import Path
 
 import pandas as pd
 import pytest
 
-from common.verdict import RunVerdict, read_verdict
-from extensions.telemetry.flightgear import FlightGear
-from scenarios.engine.runner import RunResult
+from common.verdict import read_verdict
 from scenarios.run import main
 from tests.run_tables import manifest_of
 
@@ -247,54 +243,3 @@ def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(
         check_exact=True,
     )
     assert (broken / "crossings.csv").read_bytes() == (whole / "crossings.csv").read_bytes()
-
-
-def interrupted_run(directory, *, planned, done, comparisons_left=0):
-    verdict = replace(
-        RunVerdict.of_items("flights", planned=planned, done=done, met=done),
-        comparisons_left=comparisons_left,
-        interrupted=True,
-    )
-    return RunResult(directory=directory, verdict=verdict, lines=[])
-
-
-def test_an_interrupted_replay_is_resumed_by_the_command_that_is_printed(
-    tmp_path, run_here, monkeypatch
-):
-    out, flight = tmp_path / "a run", tmp_path / "before" / "flights" / "nu_0.30"
-    flight.parent.mkdir(parents=True)
-    (flight.parents[1] / "manifest.json").touch()
-    calls = []
-
-    def interrupted(study, directory, *, resume, **_):
-        calls.append((study, directory, resume))
-        return interrupted_run(directory, planned=1, done=0)
-
-    monkeypatch.setattr("scenarios.engine.runner.fly_study", interrupted)
-    monkeypatch.setattr(
-        "scenarios.studies.replay.Replay", lambda name, viewer, **given: (name, viewer, given)
-    )
-    typed = [
-        flight,
-        "--aircraft-dir",
-        "my fleet",
-        "--flightgear",
-        "localhost:5550",
-        "--out",
-        out,
-        "--no-report",
-        "--jobs",
-        "1",
-    ]
-    ended = run_here(*typed)
-    assert ended.returncode == 130
-    program, command, *arguments = shlex.split(ended.stderr.rpartition("Continue with: ")[2])
-    assert (program, command, arguments) == ("plume-flight", "run", [*map(str, typed), "--resume"])
-    assert (
-        shlex.split(run_here(*arguments).stderr.rpartition("Continue with: ")[2])[2:] == arguments
-    )
-    assert len(calls) == 2
-    (study, directory, _), (again, there, resume) = calls
-    viewer = FlightGear("localhost:5550")
-    assert study == again == (str(flight), viewer, {"aircraft_dir": Path("my fleet")})
-    assert (there, resume) == (directory, True)

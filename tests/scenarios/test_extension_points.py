@@ -2,13 +2,11 @@
 refused in one line.
 """
 
-import importlib.metadata
 from dataclasses import replace
 
 import pytest
 
-from common.registry import ENTRY_POINTS, file_hash
-from gnc.laws import STEERING_LAWS
+from common.registry import file_hash
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.engine.runner import fly_study
 from scenarios.errors import InputError
@@ -70,33 +68,6 @@ def test_a_part_of_one_file_flies_in_a_sweep_and_stands_in_the_manifest(tmp_path
     section, _, last = key.partition(".")
     value = config[section][last] if last else config[section]
     assert value == ({"instruments": [part]} if key == "payload" else part)
-
-
-def test_files_may_be_swept_sampled_compared_and_set_in_cases(tmp_path):
-    write_scenario(tmp_path, 'flights = 2\nstudy = "monte_carlo"\nhistories = 0\n')
-    law = "law.py:Pursuit"
-    text = {
-        "sweep": f'sweep."guidance.law" = ["{law}", "cascade"]\n',
-        "draws": f'[[draws]]\nkey = "guidance.law"\nchoice = ["{law}", "cascade"]\n',
-        "comparison": f'[[comparison.variants]]\nname = "own"\nset = {{ "guidance.law" = "{law}" }}\n',
-    }
-    for name, more in text.items():
-        (tmp_path / f"{name}.toml").write_text('extends = "own.toml"\n' + more, encoding="utf-8")
-        run(str(tmp_path / f"{name}.toml"), tmp_path / name, "sweep.nu=[0.5]")
-        assert list(manifest_of(tmp_path / name)["plugins"]) == [str(tmp_path / law)], name
-        assert {row["outcome"] for row in rows_of(tmp_path / name)} == {"completed"}, name
-    assert {row["flight_id"][:15] for row in rows_of(tmp_path / "sweep")} == {
-        "nu_0.50_law_Pur",
-        "nu_0.50_law_cas",
-    }
-    assert {row["variant"] for row in rows_of(tmp_path / "comparison", "comparison.csv")} == {"own"}
-    case = '[[cases]]\nname = "one"\nset = { "guidance.law" = "law.py:Pursuit", "vessel.speed_ratio" = 0.5 }\n'
-    (tmp_path / "cases.toml").write_text(
-        f'title = "cases"\nfidelity = "kinematic"\n{case}', encoding="utf-8"
-    )
-    assert load_study(str(tmp_path / "cases.toml")).cases[0].set["guidance.law"] == str(
-        tmp_path / law
-    )
 
 
 @pytest.mark.parametrize(
@@ -188,26 +159,3 @@ def test_a_run_is_resumed_and_replayed_with_the_same_file_only(tmp_path):
         match=r"own\.py' has changed since the run; use it as it was then, or start a new run",
     ):
         replay(tmp_path / "changed")
-
-
-def test_an_installed_package_announces_a_part_as_an_entry_point(tmp_path, monkeypatch):
-    (tmp_path / "their_package.py").write_text(LAW, encoding="utf-8")
-    monkeypatch.syspath_prepend(tmp_path)
-    point = importlib.metadata.EntryPoint(
-        "pursuit", "their_package:Pursuit", f"{ENTRY_POINTS}.{STEERING_LAWS.kind}"
-    )
-    found = importlib.metadata.entry_points
-
-    def entry_points(**selected):
-        return importlib.metadata.EntryPoints(
-            [*found(**selected), *([point] if selected == {"group": point.group} else [])]
-        )
-
-    monkeypatch.setattr(importlib.metadata, "entry_points", entry_points)
-    # Pursuit of a point ahead flies 1.7 m beside its reference, and settles within the band.
-    lines = 'guidance.law = "pursuit"\nguidance.lead_s = 0.5\ncriteria.tracking_error_rms_m = 2.5\n'
-    path = write_scenario(tmp_path, lines)
-    assert run(path, tmp_path / "run").all_met
-    assert "pursuit" in STEERING_LAWS.names()
-    # It is installed, with a version of its own: no file to be asked for again.
-    assert manifest_of(tmp_path / "run")["plugins"] == {}

@@ -1,7 +1,5 @@
 """One flight as a task: whatever becomes of it is a row."""
 
-import re
-
 import pytest
 from flight_cases import ASTERN, fly
 
@@ -49,28 +47,6 @@ def test_what_cannot_be_flown_is_an_infeasible_row_with_one_clear_line(changes, 
     assert not ("emission" in changes and "plume.direction" in result.row["message"])
     assert set(result.row) <= set(SUMMARY_COLUMNS)
     assert result.history is None
-
-
-@pytest.mark.parametrize(
-    ("duration", "outcome", "words"),
-    [
-        (
-            20.0,
-            "not_settled",
-            r"did not settle within 20 s: fly longer \(flight\.duration_max_s\) or start closer, though neither may be enough",
-        ),
-        # 400 m astern it settles within a minute and a half; 40 crossings take six.
-        (
-            120.0,
-            "incomplete",
-            r"flew [1-9]\d? of 40 crossings after settling within 120 s: allow more time \(flight\.duration_max_s\)",
-        ),
-    ],
-)
-def test_a_flight_that_has_not_all_its_crossings_in_time_says_so(duration, outcome, words):
-    row = fly(start=ASTERN, flight={"crossings": 40, "duration_max_s": duration}).row
-    assert (row["outcome"], row["criteria_met"], row["kept_out"]) == (outcome, False, True)
-    assert re.search(words, row["message"])
 
 
 @pytest.mark.parametrize(

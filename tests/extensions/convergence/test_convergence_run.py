@@ -5,6 +5,8 @@ import pytest
 
 from extensions.convergence.ensemble import DISTANCE_CONVERGED, PHI_CONVERGED
 from extensions.convergence.scenario import ConvergenceScenario
+from reports.output import write_report
+from reports.run.run_data import read_run
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.engine.runner import ExecutorFactory
 from scenarios.errors import InputError
@@ -46,6 +48,12 @@ def test_every_trajectory_is_a_row_and_those_that_did_not_converge_are_in_a_file
     assert len(pd.read_csv(directory / "counterexamples.csv")) == 0
     # The first two trajectories' time histories, with each law.
     assert len(list((directory / "trajectories").glob("*.parquet"))) == 4
+
+
+def test_its_report_says_what_happened(directory, tmp_path):
+    write_report(read_run(directory), tmp_path / "report.html")
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "All 24 trajectories converged" in page
 
 
 def test_an_interrupted_study_resumes_to_the_same_rows(directory, tmp_path):

@@ -1,7 +1,5 @@
 """The fastest parameters whose command is bounded: docs/actuation_bounds.md."""
 
-import math
-
 import numpy as np
 import pytest
 from bounds_cases import LIMIT, fastest, largest_head_on, time_of
@@ -23,9 +21,8 @@ from gnc.analysis.bounds import (
     fastest_within,
     heading_rate_bound,
 )
-from gnc.analysis.worst_case_search import heading_rates
 from gnc.laws import CascadeLaw
-from gnc.paper import delta_length, look_ahead
+from gnc.paper import look_ahead
 
 
 @examples(15)
@@ -97,75 +94,6 @@ def test_no_neighbour_of_the_fastest_is_faster_within_the_limit(reserve):
             }
             # The bound may lie 1e-4 high.
             assert heading_rate_bound(neighbour, **states) > LIMIT * (1.0 - 1e-4)
-
-
-def convergence(parameters, steering_max, turn, phi, *, distance=500.0, longest=1.5):
-    """Return when distance falls below 5 m to stay, from 16 directions, and the largest |omega|;
-    ``longest`` is in estimates.
-
-    The reference starts north, turning at ``turn(time)``; the vehicle starts with ``phi``.
-    Runge-Kutta steps of a 500th of the estimate, 0.2 s to 0.9 s, are some hundredths of a
-    reference's turn.
-    """
-    direction = np.linspace(0.0, 2.0 * math.pi, 16, endpoint=False)
-    north, east = distance * np.cos(direction), distance * np.sin(direction)
-    course = np.arctan2(east, north + delta_length(parameters, distance**2)) + phi
-    state = np.array([north, east, np.zeros(16), course])
-
-    def rates(time, state):
-        omega = heading_rates(
-            parameters,
-            north=state[0],
-            east=state[1],
-            reference_course=state[2],
-            course=state[3],
-            speed=SPEED,
-            reference_heading_rate=turn(time),
-            gain=1.5,
-            steering_max=steering_max,
-        )
-        return np.array(
-            [
-                SPEED * (np.cos(state[2]) - np.cos(state[3])),
-                SPEED * (np.sin(state[2]) - np.sin(state[3])),
-                np.full(16, turn(time)),
-                omega,
-            ]
-        )
-
-    step = time_of(parameters, steering_max, distance_from=distance) / 500.0
-    since, largest = np.zeros(16), 0.0
-    for index in range(round(500 * longest)):
-        time = index * step
-        k_1 = rates(time, state)
-        k_2 = rates(time + 0.5 * step, state + 0.5 * step * k_1)
-        k_3 = rates(time + 0.5 * step, state + 0.5 * step * k_2)
-        k_4 = rates(time + step, state + step * k_3)
-        largest = max(largest, float(np.abs(k_1[3]).max()))
-        state = state + step / 6.0 * (k_1 + 2.0 * k_2 + 2.0 * k_3 + k_4)
-        since = np.where(np.hypot(state[0], state[1]) > 5.0, time + step, since)
-    return since, largest
-
-
-def closing_time(parameters):
-    """Return the estimate without the first turn, which a vehicle with phi = 0 does not make."""
-    # A steering so strong that it takes no time, but for the last part from 0.1 rad to itself:
-    # ln(1) = 0.
-    return time_of(parameters, 1e9) - math.log(math.pi / 0.1) / 1.5
-
-
-@pytest.mark.parametrize("reserve", [0.3, 0.7])
-def test_about_a_circling_reference_distance_closes_as_estimated_with_no_command_above_the_limit(
-    reserve,
-):
-    found = fastest(reserve)
-    since, largest = convergence(
-        found.look_ahead, found.steering_max, lambda _: (1.0 - reserve) * LIMIT, 0.0
-    )
-    # The estimate averages over the reference's circle; measured 0.95 to 1.03, the spread of where
-    # on the circle 5 m is crossed.
-    assert since == pytest.approx(closing_time(found.look_ahead), rel=0.07)
-    assert largest <= found.bound <= LIMIT
 
 
 def test_the_guidance_flies_its_preview_without_a_command_above_the_bound():

@@ -296,27 +296,3 @@ def test_the_scatter_of_reports_is_left_out_of_the_acceleration():
     steady.update(7.0, True)
     assert steady.vessel.at(7.0).acceleration_north > 0.0
     assert (steady.acceleration_north, steady.acceleration_east) == (0.0, 0.0)
-
-
-def test_between_plans_it_goes_on_at_its_acceleration():
-    target = reported((0.0, 100.0, -40.0, 6.0, 2.0), (5.0, 130.0, -30.0, 6.5, 2.0))
-    target.update(7.0, True)
-    for step in range(1, 10):
-        target.update(7.0 + step * TIME_STEP, False)
-    seen = target.vessel.at(7.0 + 9 * TIME_STEP)
-    # 0.45 s at an acceleration that decays over 40 s, of 0.02 m/s^2 or so: 1 % of 9 mm/s; and half
-    # of it, as sums run, of 0.2 mm.
-    assert fields(target) == pytest.approx(
-        (seen.north, seen.east, seen.velocity_north, seen.velocity_east), abs=1e-3
-    )
-    # A report that comes meanwhile is used at the next plan.
-    target.report(VesselReport(7.4, 0.0, 0.0, 0.0, 0.0))
-    before = fields(target)
-    target.update(7.5, False)
-    assert fields(target) == pytest.approx(before, abs=1.0)
-    tubes = target.tubes
-    target.update(7.55, True)
-    assert target.north < before[0] - 20.0
-    assert (tubes[0].time, target.tubes[0].time) == (7.0, 7.55)
-    # The newest report's disc is about where it says, 0.15 s on.
-    assert (target.tubes[0].north, target.tubes[0].east) == (0.0, 0.0)

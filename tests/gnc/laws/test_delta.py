@@ -1,7 +1,7 @@
 import math
 
 import pytest
-from gnc_cases import LOOK_AHEAD, SPEED, courses, examples, moved, relative, tracking_motion
+from gnc_cases import LOOK_AHEAD, courses, examples, moved, relative, tracking_motion
 from hypothesis import example, given
 from hypothesis import strategies as st
 
@@ -53,17 +53,6 @@ def test_the_relative_state_holds_the_geometry_of_figure_2(north, east, referenc
 
 
 @examples(200)
-@given(state=cartesian_states())
-def test_the_law_of_cosines_gives_the_cartesian_distance(state):
-    there = relative(state)
-    # Between equations (19) and (20). The squares of rho and delta, up to 6.7e6 m^2 each, cancel
-    # but for their rounding.
-    assert distance_squared(there) == pytest.approx(
-        state[3] ** 2 + state[4] ** 2, rel=0.0, abs=1e-14 * there.delta**2
-    )
-
-
-@examples(200)
 @given(
     state=cartesian_states(),
     reference_speed=speeds,
@@ -103,39 +92,6 @@ def test_relative_rates_are_those_of_the_cartesian_motion_also_at_unequal_speeds
     assert delta_rate == pytest.approx(numerical_delta, rel=0.0, abs=5e-6)
     assert rho_rate == pytest.approx(numerical_rho, rel=0.0, abs=1e-4)
     assert omega_rho == pytest.approx(numerical_omega, rel=0.0, abs=2e-5)
-
-
-@examples(200)
-@given(state=cartesian_states(), reference_heading_rate=heading_rates)
-def test_at_equal_speeds_the_rates_are_the_papers(state, reference_heading_rate):
-    there = relative(state)
-    delta, rho, phi_r, phi = there
-    # Equation (20), as printed.
-    printed = (
-        -2.0
-        * SPEED
-        * (rho * (math.cos(phi) - math.cos(phi_r)) + delta * (1.0 - math.cos(phi_r - phi)))
-    )
-    # Roundings of products of up to 2 * 19 m/s * 2.6 km.
-    assert distance_squared_rate(there, SPEED, SPEED) == pytest.approx(printed, rel=0.0, abs=1e-9)
-    # Equation (18), as printed.
-    delta_rate = LOOK_AHEAD.epsilon * printed
-    swing = delta * reference_heading_rate
-    along = (
-        SPEED * math.cos(phi_r)
-        - SPEED * math.cos(phi)
-        - swing * math.sin(phi_r)
-        + delta_rate * math.cos(phi_r)
-    )
-    across = (
-        SPEED * math.sin(phi_r)
-        - SPEED * math.sin(phi)
-        + swing * math.cos(phi_r)
-        + delta_rate * math.sin(phi_r)
-    )
-    rho_rate, omega_rho = relative_velocity(LOOK_AHEAD, there, SPEED, SPEED, reference_heading_rate)
-    assert rho_rate == pytest.approx(along, rel=0.0, abs=1e-10)
-    assert omega_rho * rho == pytest.approx(across, rel=0.0, abs=1e-10)
 
 
 @examples(500)

@@ -9,10 +9,8 @@ from orbit_cases import assert_a_point_that_turns_so_flies
 from scipy.optimize import brentq
 
 from common.physics import STANDARD_GRAVITY
-from gnc.errors import InfeasibleError
 from gnc.paper import PlumeAxis, distance_exact
 from gnc.reference.oscillating import JoinedOrbit
-from gnc.reference.reference import REFERENCE_SHAPES
 from gnc.reference.shapes import Fastest
 
 LIMITS = {
@@ -147,23 +145,3 @@ def test_a_reference_that_is_slowed_down_has_a_larger_orbit_about_the_same_centr
     east = np.mean(places, axis=0)[1]
     # A period of 316 steps and a bit: half a step of 55 m over a period.
     assert east == pytest.approx(5.0, abs=0.2)
-
-
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ({"nu": 1.0}, "speed ratio nu is 1; it must be below 1"),
-        ({"nu": -0.1}, "speed ratio nu is -0.1; it must lie within 0 and 1"),
-        ({"nu": math.nan}, "speed ratio nu is nan; it must lie within 0 and 1"),
-        (
-            {"vessel_heading_rate": 0.6},
-            "vessel heading rate is 0.6 rad/s; with a reserve of 0.015 it must stay below",
-        ),
-        ({"roll_rate_max": 0.0}, "roll_rate_max is 0 rad/s; it must be above 0"),
-        ({"reserve": 1.0}, "reserve is 1 of omega_max"),
-    ],
-)
-def test_what_cannot_be_flown_is_refused_as_of_the_sinusoid(changes, words):
-    for shape in ("sinusoid", "fastest"):
-        with pytest.raises(InfeasibleError, match=words):
-            REFERENCE_SHAPES.get(shape)().design(**({"nu": 0.5} | LIMITS | changes))

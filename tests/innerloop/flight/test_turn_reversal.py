@@ -17,7 +17,6 @@ from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.responses import measure_lag
 from innerloop.flight.turn_reversal import (
     TurnReversalResponse,
-    _deviation,
     _Flight,
     displacement,
     measure_turn_reversal,
@@ -164,19 +163,3 @@ def test_a_vehicle_of_just_that_response_is_predicted(x8_schedule):
     # (.. + 0.5) exp(-0.6/0.4) is -0.348 rad/s when the reversal acts, and half of 1 + 0.348/0.5 the
     # change.
     assert change == pytest.approx(0.848, abs=2e-3)
-
-
-def test_the_deviation_is_the_way_that_is_lacking_in_the_direction_of_the_turn():
-    # Northbound; to the right, away is east, or up to 60 degrees forward of it. 3 m less of the
-    # east, and 1 m more of the north.
-    north = np.arange(1.0, 101.0)
-    predicted = np.column_stack([north, np.zeros(100)])
-    flown = predicted + np.outer(np.linspace(0.0, 1.0, 100), [1.0, -3.0])
-    assert _deviation(flown, predicted, 1.0) == pytest.approx(3.0, rel=1e-12)
-    # To the left the same is a gain in the west, and a lack of none of the directions.
-    assert _deviation(flown, predicted, -1.0) <= 0.0
-    # 2 m behind: by 30 and 60 degrees forward of abeam, that is sin(60 deg) of it.
-    behind = predicted - np.outer(np.linspace(0.0, 1.0, 100), [2.0, 0.0])
-    assert _deviation(behind, predicted, 1.0) == pytest.approx(
-        2.0 * math.sin(math.radians(60.0)), rel=1e-12
-    )

@@ -3,16 +3,13 @@ disk.
 """
 
 import gc
-import json
-import math
 import tempfile
 
 import pandas as pd
 import pyarrow.feather
 import pytest
 
-from common.intervals import clopper_pearson, upper_bound
-from scenarios import fly, run
+from scenarios import fly
 from scenarios.errors import InputError
 
 SHORT = {
@@ -23,22 +20,6 @@ SHORT = {
     "flight": {"crossings": 2, "log_rate_hz": 5.0},
     "criteria": {"crossing_interval_error": False, "tracking_error_rms_m": False},
 }
-
-SAMPLED = {
-    "title": "Sampled",
-    "study": "monte_carlo",
-    "extends": "operational",
-    "fidelity": "kinematic",
-    "flights": 8,
-    "guidance": {"rate_hz": 5.0},
-    "flight": {"crossings": 1, "log_rate_hz": 5.0},
-    "draws": [{"key": "wind.speed_mps", "uniform": [0.0, 4.0]}],
-}
-
-
-@pytest.fixture(scope="module")
-def study():
-    return run(SHORT, jobs=1, histories=1)
 
 
 @pytest.fixture(scope="module")
@@ -100,30 +81,3 @@ def test_nothing_is_left_on_disk_nor_printed(capfd, monkeypatch, tmp_path):
     gc.collect()
     assert list(tmp_path.iterdir()) == []
     assert capfd.readouterr() == ("", "")
-
-
-def test_statistics_are_an_object_with_the_bounds_of_the_file(tmp_path):
-    study = run(SAMPLED, jobs=1, out=tmp_path / "run")
-    found = study.statistics
-    content = json.loads((tmp_path / "run" / "statistics.json").read_text(encoding="utf-8"))
-    assert found.content == content
-    violation = found.violation
-    interval = clopper_pearson(violation.events, violation.flights, found.confidence)
-    assert (violation.low, violation.high) == (interval.low, interval.high)
-    assert violation.upper == upper_bound(violation.events, violation.flights, found.confidence)
-    assert (found.flights, violation.flights) == (8, 8)
-    # Eight flights do not bound a quantile of 1 %: its limit is not a number.
-    assert math.isnan(found.quantile("min_distance_m", 0.01).low)
-    # numpy's quantile of an even number of values: the mean of the two in the middle.
-    assert found.quantile("min_distance_m", 0.5).value == pytest.approx(
-        study.summary["min_distance_m"].median(), rel=1e-12
-    )
-    with pytest.raises(
-        InputError,
-        match=r"no quantile 0.3 of 'min_distance_m'; it has those of 0.01, 0.05, 0.5, 0.95, 0.99",
-    ):
-        found.quantile("min_distance_m", 0.3)
-    with pytest.raises(
-        InputError, match=r"no quantile 0.5 of 'distance'; figures are min_distance_m"
-    ):
-        found.quantile("distance", 0.5)

@@ -4,14 +4,9 @@ import json
 import re
 from pathlib import Path
 
-import numpy as np
-import pandas as pd
 import pytest
 
 from measurement.log.command import main as estimate_logged
-from scenarios import fly
-from scenarios.experiment.points import points_of
-from scenarios.scenario.files import CATALOG, load_study
 from tests.in_process import assert_refused, run_command
 
 ROOT = Path(__file__).parents[3]
@@ -104,52 +99,3 @@ def test_a_log_is_estimated_as_by_the_program_that_stands_alone(tmp_path, capsys
     )
     assert ended.out.replace("one", "two") == capsys.readouterr().out
     assert_refused(console("estimate", tmp_path / "none.csv"), "none.csv")
-
-
-def test_a_log_has_to_lie_beside_its_ship_where_a_file_says_where_that_was(tmp_path):
-    plain = pd.read_csv(ROOT / "docs" / "examples" / "example_flight.csv")
-    # The ship of the file begins at 57.2 deg north, 11.3 deg east, when the log does.
-    degree = 111_195.0
-    log = plain.drop(columns=["north_m", "east_m"]).assign(
-        latitude_deg=57.2 + plain["north_m"] / degree,
-        longitude_deg=11.3 + plain["east_m"] / (degree * np.cos(np.radians(57.2))),
-    )
-    beside, exchanged = tmp_path / "beside.csv", tmp_path / "exchanged.csv"
-    log.to_csv(beside, index=False)
-    log.rename(columns={"latitude_deg": "longitude_deg", "longitude_deg": "latitude_deg"}).to_csv(
-        exchanged, index=False
-    )
-    words = (
-        *("--config", ROOT / "docs" / "examples" / "example_instrument.toml"),
-        *("--out", tmp_path / "out", "--no-report"),
-        *("--ais", CATALOG / "ais" / "synthetic_danish.csv"),
-    )
-    several = console("estimate", beside, *words)
-    assert_refused(several, "it has 2 vessels", "--mmsi")
-    found = console("estimate", beside, *words, "--mmsi", 219999001)
-    assert (found.status, "km from MMSI 219999001 (synthetic_danish.csv)" in found.out) == (0, True)
-    flight = json.loads((tmp_path / "out" / "estimate.json").read_text(encoding="utf-8"))["flight"]
-    assert f"ship: {flight['ships'][0]}\n" in found.out
-    mistaken = console("estimate", exchanged, *words, "--mmsi", 219999001)
-    assert_refused(mistaken, "with latitude and longitude exchanged it would be", "20.0 km")
-    assert_refused(console("estimate", beside, *words, "--mmsi", 5), "no row of MMSI 5", "--mmsi")
-    assert_refused(console("estimate", beside, *words[:5], "--mmsi", 5), "--mmsi", "--ais FILE")
-
-
-def test_a_new_file_flies_the_same(file, tmp_path):
-    assert console("new", tmp_path / "mine.toml", "--from", file).status == 0
-    assert fly(tmp_path / "mine.toml", nu=0.5).history.equals(fly(file, nu=0.5).history)
-
-
-@pytest.mark.parametrize(("swept", "compared"), [([0.3], []), ([0.15, 0.3], [0.15])])
-def test_a_new_file_flies_the_comparisons_of_its_source(swept, compared, tmp_path):
-    # Those of sweep_nu are of 0.15 and 0.5; the first of these sources flies none, and the second
-    # at one ratio.
-    source, path = tmp_path / "source.toml", tmp_path / "mine.toml"
-    source.write_text(
-        f'title = "Own"\nextends = "sweep_nu"\nsweep = {{ nu = {swept} }}\n', encoding="utf-8"
-    )
-    assert console("new", path, "--from", source).status == 0
-    for file in (source, path):
-        points = points_of(load_study(str(file)))
-        assert [point.nu for point in points if point.variant == "no_preview"] == compared

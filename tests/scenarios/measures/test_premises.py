@@ -89,26 +89,6 @@ def test_the_own_position_is_compared_with_k_standard_deviations_of_the_discs(pl
     assert ratio(budget, {"own_seen_east_m": 0.4 * k * 1.5}, "position") == pytest.approx(0.4)
 
 
-def test_wind_and_own_velocity_are_compared_with_all_that_may_make_them_wrong(plan):
-    # b is 0.5 of sensors, 0.3 of gusts and 0.2 that is allowed for at first.
-    budget = with_budget(plan, own_velocity=Bias(size=0.5), gusts=Bias(size=0.3))
-    allowed = {"wind_allowance_mps": 0.2}
-    assert ratio(budget, allowed | {"wind_north_mps": 0.4}, "wind") == pytest.approx(0.4)
-    assert ratio(budget, allowed | {"own_seen_speed_mps": 20.7}, "wind") == pytest.approx(0.7)
-
-
-def test_in_turbulence_the_wind_has_k_standard_deviations_of_gusts_in_it(plan):
-    turbulence = Process(sigma=2.0, correlation_time=10.0)
-    budget = with_budget(plan, turbulence=turbulence)
-    k = ErrorBudget(turbulence=turbulence).k
-    values = {"gust_in_wind_mps": 0.5, "wind_east_mps": 0.25 * k * 0.5}
-    values["velocity_east_mps"] = 0.0
-    row = premise_figures(budget, record(values))
-    assert row[ratio_column("wind")] == pytest.approx(0.25)
-    # In turbulence the speed is a part of turning.
-    assert math.isnan(row[ratio_column("airspeed")])
-
-
 def turn(plan, *, towards_vessel=0.0, at=None, begins=10.0):
     """Return a half turn at omega_max behind the lag of a vehicle, which jumps towards the vessel by
     some metres in its course: where it flies across the direction of the vessel, unless ``at`` says

@@ -186,20 +186,3 @@ def test_in_its_own_units_every_aircraft_flies_the_same_flight(
     # Twice the speed at 45 degrees of bank: factors are powers of two, so even roundings scale.
     # Equal to the last bit, whatever the law does with a difference.
     np.testing.assert_array_equal(other, base)
-
-
-@pytest.mark.parametrize(
-    ("nu", "overrides"), [(0.0, []), (0.5, []), (0.7, ["guidance.law=lyapunov"])]
-)
-def test_it_is_the_same_flight_at_another_bank_as_far_as_roundings_go(
-    kinematic_flight, nu, overrides
-):
-    # tan(bank) = 2.4/1.5^2, 47 degrees. A reference that is limited by its roll rate would differ:
-    # with the bank, by gravity.
-    base, other = (
-        kinematic_flight(*unit, *overrides, nu=nu, lag=0.3) for unit in ((1.0, 1.0), (1.5, 2.4))
-    )
-    assert base.shape == other.shape
-    # Roundings of thousands of steps that contract towards the reference, of lengths up to 4 km;
-    # measured 3e-11.
-    np.testing.assert_allclose(other, base, rtol=1e-8, atol=1e-8)

@@ -7,7 +7,6 @@ import pytest
 
 from gnc.errors import InfeasibleError
 from innerloop.flight.turn_reversal import TurnReversalResponse
-from scenarios.errors import InputError
 from scenarios.planning.missions import plan_flight
 from scenarios.scenario.files import load_study, with_values
 from scenarios.vehicles.vehicle_setup import VehicleSetup
@@ -25,20 +24,6 @@ SETUP = VehicleSetup(
 def plan(*overrides, nu=0.5, seed=1, setup=SETUP):
     scenario = with_values(load_study("sweep_nu", overrides), {"vessel.speed_ratio": nu})
     return plan_flight(scenario, flight_id="x", seed=seed, setup=setup)
-
-
-def test_the_guard_and_an_orbit_that_is_joined_need_commands_that_are_cut():
-    # At 5 Hz 5 of 6 flights of a law that flies at the vessel came within r_min, by up to 3 m.
-    with pytest.raises(
-        InputError,
-        match=r"command_limit is false; .*the keep-out guard .*guidance.keepout_guard to false",
-    ):
-        plan("fidelity=kinematic", "guidance.command_limit=false", "guidance.approach=false")
-    with pytest.raises(
-        InputError,
-        match=r"command_limit is false; the way to the orbit.*: set guidance.approach",
-    ):
-        plan("fidelity=kinematic", "guidance.command_limit=false")
 
 
 def test_a_start_from_which_no_command_keeps_out_is_refused():

@@ -7,7 +7,6 @@ import functools
 import numpy as np
 import pytest
 
-from common.errors import PluginError
 from scenarios.search.method import (
     Coordinate,
     SearchSettings,
@@ -158,41 +157,3 @@ def test_corners_take_every_choice_equally_often_and_put_quantities_at_their_end
     # ends.
     assert ends[1] == pytest.approx(0.8, abs=0.06)
     assert ends[2:].tolist() == [0.0, 0.0]
-
-
-class Own:
-    """A method that proposes what it is given, once."""
-
-    exhausted = True
-
-    def __init__(self, *points):
-        self.points = points
-
-    def ask(self, *_):
-        points, self.points = self.points, ()
-        return [[x] * BOWL.dimension for x in points]
-
-    def tell(self, _):
-        raise ZeroDivisionError("no\nclearance")
-
-
-@pytest.mark.parametrize(
-    ("method", "words"),
-    [
-        (Own(*[0.5] * 5), "ask(4) returned [[0.5, "),
-        (Own(0.5, 1.5), "it has to be points whose coordinates lie from 0 to 1"),
-        (Own(float("nan")), "it has to be points whose coordinates lie from 0 to 1"),
-        (Own("far"), "ask(4) returned [['far', "),
-        (Own(0.5), "tell() failed: ZeroDivisionError: no clearance (test_methods.py:"),
-    ],
-)
-def test_what_a_method_of_ones_own_cannot_be_asked_for_is_said_in_one_line_with_its_name(
-    method, words
-):
-    with pytest.raises(PluginError) as refused:
-        search_in_turns(
-            {"own.py:Own": method}, BOWL, lambda _, points: points[:, 0], population=4, turns=2
-        )
-    assert str(refused.value).startswith("search method 'own.py:Own': ")
-    assert words in str(refused.value)
-    assert "\n" not in str(refused.value)

@@ -3,7 +3,6 @@ engine fails.
 """
 
 import itertools
-import math
 
 import numpy as np
 import pytest
@@ -19,7 +18,6 @@ from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.jsbsim.system import write_root
 from scenarios.vehicles.jsbsim import Telemetry
 from scenarios.vehicles.thrust_expectation import (
-    airspeed_slope,
     hard_flight,
     thrust_expectation,
 )
@@ -120,18 +118,3 @@ def test_an_engine_that_fails_in_level_flight_is_noticed_within_the_stated_time(
     noticed = next(i for i in checks if (check(), monitor.lost)[1])
     # The propeller brakes while it runs down: that is noticed the earlier.
     assert 0.5 < noticed * CHECK_INTERVAL <= tested.detection_time + 1e-9
-
-
-def test_errors_of_the_airspeed_are_those_that_the_tables_make_of_it(expectation):
-    model = expectation.model
-    slope = airspeed_slope(model, AIRSPEED)
-    # Less thrust at more airspeed, and more drag: 0.5 m/s too much shows as this much less.
-    level = model.drag(AIRSPEED, 1.0)
-    throttles = np.linspace(0.3, 1.0, 7001)
-    at = min(throttles, key=lambda t: abs(model.settled_thrust(AIRSPEED, t) - level))
-    attack = model.angle_of_attack(AIRSPEED, 1.0)
-    read = AIRSPEED + 0.5
-    lack = model.settled_thrust(read, at) - model.measured_thrust(
-        read, math.sin(attack), math.cos(attack)
-    )
-    assert lack == pytest.approx(0.5 * slope, abs=0.1 * abs(0.5 * slope))

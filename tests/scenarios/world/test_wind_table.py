@@ -8,12 +8,10 @@ import pytest
 from flight_cases import fly, scenario
 
 from scenarios.errors import InputError
-from scenarios.scenario.files import load_study
 from scenarios.scenario.sections.world import WindConfig
-from scenarios.studies.base import FlightStudy
 from scenarios.world.vessel import Place
 from scenarios.world.wind import first_time, read_netcdf, tabled_wind
-from scenarios.world.world import mean_wind, place_of, vessel_of
+from scenarios.world.world import mean_wind, vessel_of
 
 HOURLY = """time_utc,speed_mps,from_deg
 2026-06-01T10:00:00Z,4.0,0
@@ -87,24 +85,6 @@ def test_a_table_of_no_use_is_refused_in_one_line(table, text, changes, words):
     assert "\n" not in str(refusal.value)
     for word in ["wind.csv", *words]:
         assert word in str(refusal.value)
-
-
-def test_a_table_is_relative_to_its_scenario_and_its_start_is_that_of_a_flight_without_a_time(
-    table, tmp_path
-):
-    table(HOURLY)
-    (tmp_path / "mine.toml").write_text(
-        'title = "mine"\nwind.table = "wind.csv"\nfidelity = "kinematic"\n', encoding="utf-8"
-    )
-    given = load_study(str(tmp_path / "mine.toml"))
-    assert given.follows
-    assert place_of(given, vessel_of(given)).utc == START
-    study = FlightStudy(given, "mine", {"mine": given})
-    assert list(study.initial_manifest()["plugins"]) == [str(tmp_path / "wind.csv")]
-    with pytest.raises(InputError, match="a wind that is not read from a table"):
-        load_study(str(tmp_path / "mine.toml"), ["wind.speed_mps=5"])
-    with pytest.raises(InputError, match=r"give a file \.csv or \.nc"):
-        load_study(str(tmp_path / "mine.toml"), ["wind.table=hourly"])
 
 
 def test_a_flight_in_a_wind_that_changes_knows_it_and_crosses_as_predicted(table):

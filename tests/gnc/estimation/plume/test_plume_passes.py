@@ -12,7 +12,7 @@ from gnc.estimation.plume.passes import (
     SensorState,
     SensorWatch,
 )
-from gnc.estimation.plume.prior import BACKGROUND_DRIFT, GasSensor
+from gnc.estimation.plume.prior import GasSensor
 
 _SPEED = 20.0
 
@@ -127,30 +127,6 @@ def test_the_background_at_the_end_of_a_pass_is_what_its_pulse_leaves(
     # variance is 0.22 off at one sigma.
     assert abs(np.mean(off)) < 1.0
     assert np.sqrt(np.mean(np.square(off))) < 1.5
-
-
-def test_slope_and_bend_are_those_of_the_whole_covariance() -> None:
-    """Woodbury's identity: against the inverse of the full matrix."""
-    path = _path(seed=3)
-    reader = PassReader(SENSOR)
-    templates = reader.templates(path, PLACES, SPREADS)
-    evidence = reader.read(path, PLACES, SPREADS)
-    assert evidence is not None
-    y = path.readings - np.median(path.readings)
-    since = path.read_at
-    background = np.stack(
-        [
-            np.full(len(y), 1e3),
-            BACKGROUND_DRIFT * (since - 0.5 * since[-1]),
-            SENSOR.noise * np.exp(-since / SENSOR.time_constant),
-        ]
-    )
-    variance = SENSOR.noise**2 + (0.15 * (y - np.median(y)).max()) ** 2
-    inverse = np.linalg.inv(variance * np.eye(len(y)) + background.T @ background)
-    assert evidence.slope.ravel() == pytest.approx(templates @ inverse @ y, rel=1e-5, abs=1e-8)
-    assert evidence.bend.ravel() == pytest.approx(
-        np.einsum("km,mn,kn->k", templates, inverse, templates), rel=1e-5
-    )
 
 
 def _sensor(noise: float = 1.0, resolution: float = 0.1) -> GasSensor:
