@@ -15,11 +15,11 @@ sweep_nu: .venv
 	@$(BIN)/python -m scenarios.run sweep_nu
 
 test: .venv/.developer
-	@$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
+	@$(BIN)/python -m pytest -n 2 --dist worksteal
 
 # Without what is marked slow: long flights, studies, stock aircraft, the browser, tutorials.
 test-quick: .venv/.developer
-	@$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder -m 'not slow'
+	@$(BIN)/python -m pytest -n 2 --dist worksteal -m 'not slow'
 
 # Compiles guidance and closed loop; needs a C compiler. Flights with them are compared with those of the sources, to
 # the last bit.
