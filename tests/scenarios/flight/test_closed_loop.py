@@ -1,11 +1,14 @@
 """The one loop: what it records, payload, plume elevation, and where a flight is released."""
 
+import math
+
 import numpy as np
 import pytest
 from flight_cases import ASTERN, SPEED, fly, plan, scenario
 
 from scenarios.flight import closed_loop
 from scenarios.flight.closed_loop import release
+from scenarios.instruments.instrument import payload
 from scenarios.scenario.scenario import Scenario
 from scenarios.vehicles.kinematic import KinematicVehicle
 from scenarios.vehicles.vehicle_setup import kinematic_setup
@@ -31,6 +34,20 @@ def flown(given, instruments=(), **how):
 MISSIONS = pytest.mark.parametrize(
     "given", [scenario(**SHORT), tracking()], ids=["following", "tracking"]
 )
+
+
+@payload("distance_meter_of_this_test")
+class DistanceMeter:
+    """Reads its distance from the origin, and a number that is random."""
+
+    COLUMNS = ("reading_m", "noise_ppb")
+
+    def __init__(self, _scenario, world, generator):
+        self._world, self._generator = world, generator
+
+    def read(self, time, motion, _sample):
+        vessel = self._world.vessel.motion(time)
+        return math.hypot(motion[0] - vessel[0], motion[1] - vessel[1]), self._generator.random()
 
 
 def test_what_an_instrument_reads_is_in_the_time_history():
