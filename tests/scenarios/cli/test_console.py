@@ -64,6 +64,7 @@ def test_a_shell_completes_commands_and_options(words, completed, shell, monkeyp
     assert {*found} == completed
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("sketched")
 def test_a_run_is_flown_reported_and_exported(file, tmp_path):
     out = tmp_path / "run"
@@ -84,6 +85,7 @@ def test_a_run_is_flown_reported_and_exported(file, tmp_path):
     )
 
 
+@pytest.mark.slow
 def test_a_log_is_estimated_as_by_the_program_that_stands_alone(tmp_path, capsys):
     log, config = (
         ROOT / "docs" / "examples" / "example_flight.csv",

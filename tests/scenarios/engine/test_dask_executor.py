@@ -21,6 +21,8 @@ from scenarios.errors import InputError
 from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 
+pytestmark = pytest.mark.slow
+
 SETTINGS = [
     "flights=6",
     "histories=4",

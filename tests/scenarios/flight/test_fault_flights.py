@@ -13,6 +13,8 @@ from scenarios.scenario.sections.flight import DITCHED
 from scenarios.studies.base import run_study
 from tests.run_tables import rows_of
 
+pytestmark = pytest.mark.slow
+
 KINDS = ("engine", "throttle", "left_elevon", "right_elevon")
 FAILS, ENDS = 55.0, 130.0
 ENDS_IN = {

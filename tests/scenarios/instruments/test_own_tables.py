@@ -12,6 +12,8 @@ from scenarios.scenario.files import load_study
 from tests.in_process import run_command
 from tests.run_tables import manifest_of
 
+pytestmark = pytest.mark.slow
+
 EXAMPLE = str(Path(__file__).parents[3] / "docs" / "examples" / "own_ship.toml")
 QUICK = (
     "fidelity=kinematic", "reports.interval_s=[0,0]", "sensors={}", "start.place_m=[-250,-120]", "start.course_deg=-90",

@@ -18,6 +18,8 @@ from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 from tests.run_tables import manifest_of
 
+pytestmark = pytest.mark.slow
+
 SHORT = ["sweep.nu=[0.5]", "flight.crossings=2", "comparison.variants=[]"]
 
 # Two crossings, right after settling, are too few for means over them.

@@ -17,6 +17,8 @@ from scenarios.planning.scaling import scaled
 from scenarios.scenario.files import load_study, with_values
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 
+pytestmark = pytest.mark.slow
+
 SPEED, GRAVITY = 19.42, 9.80665
 
 NOT_SCALED = {

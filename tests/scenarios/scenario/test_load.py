@@ -43,6 +43,7 @@ def test_cases_that_cannot_be_flown_are_refused_by_name(tmp_path, cases, words):
         assert word in str(refusal.value)
 
 
+@pytest.mark.slow
 def test_a_trial_in_a_file_is_relative_to_the_list_and_in_an_override_to_the_current_directory(
     tmp_path, monkeypatch
 ):

@@ -5,6 +5,8 @@ import pytest
 
 from scenarios.statistics.sensitivity import first_order_index
 
+pytestmark = pytest.mark.slow
+
 REPEATS = 100
 """Samples of each model and size: a share of 95 % is known to 2.2 %."""
 

@@ -20,6 +20,8 @@ from scenarios.statistics.subset_simulation import (
 )
 from tests.scenarios.statistics.rare_events import DIMENSION, linear, noisy, simulated
 
+pytestmark = pytest.mark.slow
+
 REPEATS = 5
 
 

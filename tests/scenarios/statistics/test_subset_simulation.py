@@ -16,6 +16,8 @@ from tests.scenarios.statistics.rare_events import (
     simulated,
 )
 
+pytestmark = pytest.mark.slow
+
 
 def estimates(value, count, **settings):
     return np.array(

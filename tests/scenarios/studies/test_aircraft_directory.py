@@ -17,6 +17,8 @@ from reports.run.run_data import read_run
 from tests.in_process import assert_refused, run_command
 from tests.run_tables import manifest_of
 
+pytestmark = pytest.mark.slow
+
 SCRIPT = Path(__file__).parents[3] / "docs" / "scripts" / "aircraft_directory.py"
 SWEEP = [
     "--set",

@@ -10,6 +10,8 @@ from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 from tests.run_tables import manifest_of, rows_of
 
+pytestmark = pytest.mark.slow
+
 SLOW_STEPS = ("fidelity=kinematic", "guidance.rate_hz=5", "flight.log_rate_hz=5")
 BOTH_LAWS = '[{name="line_of_sight", set={"guidance.law"="line_of_sight"}}, {name="lyapunov", set={"guidance.law"="lyapunov"}}]'
 

@@ -16,6 +16,8 @@ from scenarios.statistics.sensitivity import sensitivity_indices
 from scenarios.studies.base import run_study, study_of
 from tests.run_tables import manifest_of
 
+pytestmark = pytest.mark.slow
+
 SHORT = [
     "fidelity=kinematic",
     "turbulence.level=none",

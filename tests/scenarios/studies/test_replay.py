@@ -15,6 +15,8 @@ from scenarios.studies.replay import Replay
 from tests.run_tables import manifest_of, write_manifest
 from tests.scenarios.short_trial import short_trial
 
+pytestmark = pytest.mark.slow
+
 TRIAL = short_trial(flights=3, duration=10.0, histories=3, spread=180.0)
 
 

@@ -16,6 +16,8 @@ from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study, study_of
 from scenarios.studies.replay import Replay
 
+pytestmark = pytest.mark.slow
+
 RARE = """
 study = "monte_carlo"
 method = "subset"

@@ -35,6 +35,8 @@ from scenarios.scenario.files import load_study, with_values
 from scenarios.vehicles.jsbsim import JsbsimVehicle
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 
+pytestmark = pytest.mark.slow
+
 MIDDLE = 2
 LIGHT = low_altitude_turbulence(60.0, 7.717)  # 15 knots at 20 ft
 SPREAD = Spread(

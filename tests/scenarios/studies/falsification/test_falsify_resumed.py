@@ -4,11 +4,14 @@ import itertools
 from types import SimpleNamespace
 
 import pandas as pd
+import pytest
 
 from scenarios.studies import falsify as falsification
 from tests.run_tables import manifest_of
 from tests.scenarios.losing_executor import losing
 from tests.scenarios.short_search import CONFIRMATIONS, KEPT, POPULATION, run, same_tables, tables
+
+pytestmark = pytest.mark.slow
 
 TURNS = "search.generations=4"
 """Each method's turn, and one more: what the first turns found decides the later ones."""

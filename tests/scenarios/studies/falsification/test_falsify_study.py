@@ -21,6 +21,8 @@ from tests.scenarios.short_search import (
     tables,
 )  # fmt: skip
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def found(search, tmp_path_factory):
