@@ -25,6 +25,8 @@ from scenarios.studies.base import run_study
 from tests.reports.report_parts import numbers_on_page_1
 from tests.run_tables import rows_of
 
+pytestmark = pytest.mark.slow
+
 FEW_RESERVES = (0.0, 0.015, 0.2, 0.4, 0.6)
 """Of the reserves at which a run prices a guarantee: each takes a search of a tenth of a second."""
 

@@ -12,6 +12,8 @@ from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 
+pytestmark = pytest.mark.slow
+
 LAW = f"guidance.law={Path(__file__).parent}/law_past_the_ship.py:PastTheShip"
 STANDOFF = (
     "following.margin_law=cascade",

@@ -7,6 +7,8 @@ from study_runs import AT_THE_SHIP, assert_flown_as_the_issue_asks, flown_once, 
 
 from scenarios.errors import InputError
 
+pytestmark = pytest.mark.slow
+
 # One of the issue's three speed ratios, for the suite's three minutes. All three were flown by all,
 # the c172x and the c310, too; a flight of the 737 took up to 13 s and is left to the command line;
 # its design is checked in tests/verification.
