@@ -143,3 +143,12 @@ def test_a_look_ahead_too_short_for_its_epsilon_is_refused(radius):
     ) as refusal:
         look_ahead(0.005, radius)
     assert f"R is {radius:g} m" in str(refusal.value)
+
+
+@pytest.mark.parametrize("epsilon", [0.0, -0.005, math.nan, math.inf])
+def test_a_look_ahead_that_does_not_grow_is_refused(epsilon):
+    with pytest.raises(
+        InfeasibleError, match=r"look-ahead epsilon is .* 1/m; it must be finite and above 0"
+    ) as refusal:
+        look_ahead(epsilon, 60.0)
+    assert f"epsilon is {epsilon:g} 1/m" in str(refusal.value)
