@@ -269,6 +269,7 @@ def test_at_120_hertz_a_small_doublet_is_flown_as_predicted_but_for_the_step(tri
     assert fine < max(0.3 * coarse, 0.03)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["T37"])
 def test_small_doublets_of_a_stock_aircraft_are_flown_as_its_linear_model_predicts(designs, name):
     errors = {(v["input"], v["output"]): v["error"] for v in designs(name).record["verification"]}

@@ -9,6 +9,8 @@ import pytest
 
 from tests.extensions.added_package import AddedPackage
 
+pytestmark = pytest.mark.slow
+
 KEYS = '''
 from typing import Annotated
 

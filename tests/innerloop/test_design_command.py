@@ -9,6 +9,8 @@ from reports.run.run_data import read_run
 from tests.in_process import run_command
 from tests.run_tables import manifest_of
 
+pytestmark = pytest.mark.slow
+
 HEIGHT = ("--altitude", 60.0)
 """That of the designs that other tests have too."""
 

@@ -8,6 +8,8 @@ from aircraft.fdm import Fdm
 from aircraft.fleet.find import find_spec
 from aircraft.state import RigidBodyState, body_velocity
 
+pytestmark = pytest.mark.slow
+
 # m/s, each somewhere in its flight manual's range.
 AIRSPEEDS = {"c172x": 55.0, "c310": 75.0, "T37": 80.0, "737": 150.0}
 

@@ -15,6 +15,8 @@ from tests.in_process import assert_refused, run_command
 from tests.run_tables import manifest_of, rows_of
 from tests.scenarios.plugin_files import LAW
 
+pytestmark = pytest.mark.slow
+
 QUICK = (
     "fidelity=kinematic", "guidance.rate_hz=5", "flight.log_rate_hz=5",
     "flights=2", "flight.duration_max_s=60", "arena.window_s=30", "arena.tuning_duration_s=30",

@@ -14,6 +14,8 @@ from extensions.arena.report import (
 from reports.run.run_data import read_run
 from tests.reports.report_parts import built, flown, numbers_on_page_1
 
+pytestmark = pytest.mark.slow
+
 QUICK = (
     "fidelity=kinematic", "guidance.rate_hz=5", "flight.log_rate_hz=5",
     "flights=2", "flight.duration_max_s=60", "arena.window_s=30", "arena.tuning_duration_s=30",

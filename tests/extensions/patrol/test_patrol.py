@@ -19,6 +19,8 @@ from scenarios.world.world import mean_wind, vessel_of
 from tests.in_process import assert_refused, run_command
 from tests.run_tables import rows_of
 
+pytestmark = pytest.mark.slow
+
 QUICK = (
     "fidelity=kinematic",
     "guidance.rate_hz=5",

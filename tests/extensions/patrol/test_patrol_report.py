@@ -14,6 +14,8 @@ from reports.document.blocks import CARDS_MAX
 from reports.run.run_data import read_run
 from tests.reports.report_parts import flown, numbers_on_page_1
 
+pytestmark = pytest.mark.slow
+
 QUICK = (
     "fidelity=kinematic", "guidance.rate_hz=5", "flight.log_rate_hz=5", "flights=1", "patrol.ships=2", "patrol.area_m=9000",
     "patrol.endurance_s=330", "patrol.separation_m=2000",

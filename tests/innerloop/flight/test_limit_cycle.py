@@ -7,6 +7,8 @@ import pytest
 
 from innerloop.flight.limit_cycle import limit_cycle
 
+pytestmark = pytest.mark.slow
+
 TIME = np.arange(14_400) / 120.0
 
 

@@ -24,6 +24,8 @@ from innerloop.flight.turn_reversal import (
 )
 from innerloop.jsbsim.system import HEADING_RATE
 
+pytestmark = pytest.mark.slow
+
 REVERSALS = 12
 
 

@@ -13,6 +13,8 @@ from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.jsbsim.script import columns, demonstration, write_script
 from innerloop.jsbsim.system import write_root
 
+pytestmark = pytest.mark.slow
+
 MIDDLE = 2
 STEPS_PER_SECOND = 120
 
