@@ -1,6 +1,6 @@
-"""Names and signatures that scripts rely on.
+"""Names that scripts rely on.
 
-Where one of these tests fails, scripts of users break: change docs/reference/api.md with it.
+Where the first of these tests fails, scripts of users break: change docs/reference/api.md with it.
 """
 
 import subprocess

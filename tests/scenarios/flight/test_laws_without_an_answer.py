@@ -33,16 +33,6 @@ class NotANumber(Answers):
 
 
 @dataclass(frozen=True)
-class Nothing(Answers):
-    answer: object = None
-
-
-@dataclass(frozen=True)
-class Word(Answers):
-    answer: object = "0.3"
-
-
-@dataclass(frozen=True)
 class ArrayOfOne(Answers):
     answer: object = (0.1,)
 
@@ -51,34 +41,9 @@ class ArrayOfOne(Answers):
 
 
 @dataclass(frozen=True)
-class ArrayOfTwo(ArrayOfOne):
-    answer: object = ((0.1,), (0.2,))
-
-
-@dataclass(frozen=True)
-class ComplexNumber(Answers):
-    answer: object = np.complex128(0.1)
-
-
-@dataclass(frozen=True)
-class TooFew:
-    def heading_rate(self, _):
-        return 0.0
-
-
-@dataclass(frozen=True)
 class Wrong:
     def heading_rate(self, *_):
         return 1.0 + "one"
-
-
-@dataclass(frozen=True)
-class Frozen:
-    last: float = 0.0
-
-    def heading_rate(self, *_):
-        self.last = 1.0
-        return 0.0
 
 
 @pytest.mark.parametrize("mission", ["track", "follow", "standoff"])
@@ -86,15 +51,9 @@ class Frozen:
     ("law", "words"),
     [
         (NotANumber, "returned nan; it has to be a number, the heading rate [rad/s]"),
-        (Nothing, "returned None; it has to be a number"),
-        (Word, "returned '0.3'; it has to be a number"),
         (ArrayOfOne, "returned array([0.1]); it has to be a number"),
-        (ArrayOfTwo, "returned array([[0.1], [0.2]]); it has to be a number"),
-        (ComplexNumber, "(0.1+0j)"),
-        (TooFew, "takes 2 positional arguments but 4 were given"),
         # An error inside the law is told where it is.
         (Wrong, "failed: TypeError: "),
-        (Frozen, "failed: FrozenInstanceError: "),
     ],
 )
 def test_a_law_without_an_answer_ends_its_flight_with_a_reason_that_names_it(mission, law, words):
@@ -108,4 +67,4 @@ def test_a_law_without_an_answer_ends_its_flight_with_a_reason_that_names_it(mis
     message = flown.row["message"]
     assert message.startswith(f"steering law '{law.__name__}': heading_rate() ")
     assert words in message
-    assert ("(test_laws_without_an_answer.py:" in message) == (law in (Wrong, Frozen))
+    assert ("(test_laws_without_an_answer.py:" in message) == (law is Wrong)
