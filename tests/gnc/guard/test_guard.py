@@ -153,6 +153,18 @@ def test_commands_pass_far_away(bearing, farther, course, command, turn, nu):
     assert guard.status is FREE
 
 
+@examples(200)
+@given(
+    side=st.sampled_from([-1.0, 1.0]),
+    clear=st.floats(0.05, 200.0),
+    command=st.floats(0.0, HEADING_RATE_MAX),
+)
+def test_commands_away_from_a_disc_abeam_pass(side, clear, command):
+    # Northbound, farther from the disc than the resolution of the prediction.
+    state = (0.0, side * (RADIUS + clear), 0.0, 0.0)
+    assert DiscGuard().limit(side * command, state) == side * command
+
+
 @LAGS
 @examples(150)
 @given(
@@ -170,6 +182,26 @@ def test_a_command_within_omega_max_stays_within(
     answer = DiscGuard(lag=lag, delay=delay).limit(command, state, (nu * SPEED, 0.0))
     # A mixture of two commands rounds.
     assert abs(answer) <= HEADING_RATE_MAX * (1.0 + 1e-15)
+
+
+@LAGS
+def test_mirrored_situations_get_mirrored_commands(lag, delay):
+    generator = np.random.default_rng(3)
+    changed = 0
+    for _ in range(150):
+        # Random, since a situation that equals its mirror image has two answers.
+        x, y = generator.uniform(-350.0, 350.0, 2)
+        course = generator.uniform(-math.pi, math.pi)
+        turn = generator.uniform(-HEADING_RATE_MAX, HEADING_RATE_MAX)
+        north, east = random_velocity(generator, 8.0)
+        command = generator.uniform(-HEADING_RATE_MAX, HEADING_RATE_MAX)
+        one, other = DiscGuard(lag=lag, delay=delay), DiscGuard(lag=lag, delay=delay)
+        answer = one.limit(command, (x, y, course, turn), (north, east))
+        mirrored = other.limit(-command, (x, -y, -course, -turn), (north, -east))
+        assert mirrored == pytest.approx(-answer, abs=1e-12)
+        assert one.status == other.status
+        changed += answer != command
+    assert 10 < changed < 140
 
 
 def test_nan_is_not_passed_on_near_the_disc():
