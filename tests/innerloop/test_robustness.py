@@ -17,7 +17,7 @@ from aircraft.trim import trim
 from innerloop import designer, robustness
 from innerloop.designer import design_autopilot, phase_loss
 from innerloop.law import ControlLaw, linear_controller
-from innerloop.margins import NOMINAL, Loops
+from innerloop.margins import NOMINAL, Check, Loops, Margin
 from innerloop.robustness import (
     CASES,
     check_design,
@@ -202,6 +202,41 @@ def test_between_grid_points_interpolated_margins_are_those_of_the_aircraft_line
             # 0.026 rad. What is required leaves far more.
             assert found.phase_deg == pytest.approx(expected.phase_deg, abs=1.5), found.loop
             assert found.gain_db == pytest.approx(expected.gain_db, abs=0.4, rel=0.03), found.loop
+
+
+def test_a_check_knows_what_it_lacks():
+    def margin(loop, gain, phase):
+        return Margin(
+            loop=loop,
+            gain_db=gain,
+            phase_deg=phase,
+            crossover=1.0,
+            disk_gain_db=gain,
+            disk_phase_deg=phase,
+        )
+
+    loops = (
+        margin("elevator", 7.0, 44.0),
+        margin("aileron", 5.0, 60.0),
+        margin("throttle", math.inf, 90.0),
+    )
+    nominal = Check(
+        case=NOMINAL, airspeed=20.0, bank=0.1, between=False, stable=True, margins=loops
+    )
+    assert not nominal.met
+    assert nominal.short_loops == ("elevator", "aileron")
+    assert (nominal.worst_gain.loop, nominal.worst_phase.loop) == ("aileron", "elevator")
+    assert nominal.shortfall == pytest.approx(5.0 / 6.0)
+    assert (
+        "5.0 dB (aileron) and 44.0 deg (elevator) at 20.0 m/s and 6 deg of bank"
+        in nominal.describe()
+    )
+    # Of a changed aircraft 4 dB and 30 degrees are required.
+    assert dataclasses.replace(nominal, case="mass +20 %").met
+    unstable = dataclasses.replace(nominal, case="mass +20 %", stable=False)
+    assert unstable.short_loops == ("elevator", "aileron", "throttle")
+    assert unstable.shortfall < 0.0
+    assert "unstable" in unstable.describe()
 
 
 @pytest.fixture
