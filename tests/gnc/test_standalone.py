@@ -4,6 +4,8 @@ import pytest
 
 from tests.standing_alone import StandingAlone
 
+pytestmark = pytest.mark.slow
+
 GNC = StandingAlone("gnc", allowed={"common", "numpy", "scipy"})
 
 

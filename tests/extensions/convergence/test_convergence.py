@@ -22,6 +22,8 @@ from gnc.paper import look_ahead
 from scenarios.engine.processes import InProcessExecutor, LocalExecutor
 from scenarios.engine.task import Limits, Task
 
+pytestmark = pytest.mark.slow
+
 # The paper's vehicle (reference/paper-notes.md) and the guidance of the catalogue's scenarios.
 SPEED, HEADING_RATE_MAX, BAND = 19.42, 0.503, 5.0
 LOOK_AHEAD = look_ahead(0.005, 60.0)

@@ -14,6 +14,8 @@ from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 from tests.run_tables import manifest_of
 
+pytestmark = pytest.mark.slow
+
 FEW = ["ensemble.trajectories=12", "ensemble.distance_max_m=100", "ensemble.samples=2"]
 
 

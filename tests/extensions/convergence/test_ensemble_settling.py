@@ -18,6 +18,8 @@ from extensions.convergence.ensemble import Outcome
 from extensions.convergence.motion import Steering
 from extensions.convergence.references import averaged_settling_time
 
+pytestmark = pytest.mark.slow
+
 
 def test_a_circle_that_spends_almost_all_of_omega_max_is_never_reached_under_cut_commands():
     # Where the proof ends: it takes phi's rate to be -h(phi), and here the command is cut for 0.9

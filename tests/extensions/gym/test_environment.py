@@ -20,6 +20,8 @@ from extensions.gym.reward import VIOLATION, CrossingReward
 from scenarios import fly
 from scenarios.errors import InputError
 
+pytestmark = pytest.mark.slow
+
 PROJECT = Path(__file__).parents[3]
 SHORT = {"sweep.nu": [0.3, 0.6], "flight.crossings": 4}
 KINEMATIC = SHORT | {"fidelity": "kinematic"}

@@ -590,6 +590,7 @@ def failures(closing):
     return [until + after for after in (-6.0, -4.0, -2.0, -1.0, 0.0, 1.0, 2.0)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("closing", [5.0, 13.0])
 def test_a_vehicle_that_slows_down_to_the_slowest_keeps_out_whenever_it_begins_to(closing):
     for fails in failures(closing):
@@ -598,6 +599,7 @@ def test_a_vehicle_that_slows_down_to_the_slowest_keeps_out_whenever_it_begins_t
         assert LOST not in statuses
 
 
+@pytest.mark.slow
 def test_a_guard_that_takes_a_vehicle_without_thrust_to_keep_its_airspeed_lets_it_in():
     closest = [fly_without_thrust(fails, 13.0, math.inf)[0] for fails in failures(13.0)]
     assert min(closest) < RADIUS

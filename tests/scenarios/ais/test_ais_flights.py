@@ -9,6 +9,8 @@ from gnc.errors import InfeasibleError
 from scenarios.scenario.files import CATALOG
 from scenarios.world.ais.reports import read_ais
 
+pytestmark = pytest.mark.slow
+
 DANISH = {"track": str(CATALOG / "ais" / "synthetic_danish.csv"), "mmsi": 219999001}
 DECLARED = {"vessel_acceleration_mps2": 0.1, "vessel_speed_max_mps": 8.0, "speed_error_mps": 0.5}
 LONG = {"crossings": 0, "duration_max_s": 2760.0}

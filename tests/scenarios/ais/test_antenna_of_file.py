@@ -12,6 +12,8 @@ from scenarios.world.ais.synthetic import SYNTHETIC
 from scenarios.world.ais.track import ais_vessel
 from scenarios.world.vessel import largest_inconsistency
 
+pytestmark = pytest.mark.slow
+
 DANISH, MARINE = "synthetic_danish.csv", "synthetic_marine_cadastre.csv"
 HOUR = 3600.0
 DECLARED = {"vessel_acceleration_mps2": 0.15, "vessel_speed_max_mps": 8.0, "speed_error_mps": 0.5}

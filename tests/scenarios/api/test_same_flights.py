@@ -12,6 +12,8 @@ from scenarios.api.scenario import load
 from scenarios.errors import InputError
 from tests.in_process import run_command
 
+pytestmark = pytest.mark.slow
+
 SHORT = """
 title = "Two short flights"
 fidelity = "kinematic"

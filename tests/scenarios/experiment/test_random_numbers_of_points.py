@@ -7,6 +7,8 @@ from scenarios.scenario.files import load_study
 from scenarios.studies.base import study_of
 from scenarios.world.noise import PAYLOAD, own_generator
 
+pytestmark = pytest.mark.slow
+
 WINDS = "sweep.wind.from_deg=[0, 120, 240]"
 
 

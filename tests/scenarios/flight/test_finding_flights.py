@@ -14,6 +14,8 @@ from scenarios.planning.spreads import PredictedSpreads
 from scenarios.scenario.files import load_study
 from tests.run_tables import history_in
 
+pytestmark = pytest.mark.slow
+
 QUICK = (
     "fidelity=kinematic",
     "reports.interval_s=[0,0]",

@@ -12,6 +12,8 @@ from scenarios.planning.spreads import PredictedSpreads
 from scenarios.scenario.files import load_study
 from tests.run_tables import history_in
 
+pytestmark = pytest.mark.slow
+
 # Astern of a ship on a straight course, where the kinematic vehicle settles within a minute or two.
 QUICK = (
     "fidelity=kinematic",

@@ -15,6 +15,8 @@ from scenarios.planning.scaling import scaled
 from scenarios.planning.spreads import SPREAD_RATIOS, predicted_spreads
 from scenarios.vehicles.vehicle_setup import aircraft_setup
 
+pytestmark = pytest.mark.slow
+
 LEVELS = ("none", "light", "moderate")
 
 

@@ -15,6 +15,8 @@ from scenarios.search.method import (
     search_in_turns,
 )
 
+pytestmark = pytest.mark.slow
+
 METHODS = ("corners", "differential_evolution", "local", "cma")
 
 POPULATION, TURNS = 32, 60

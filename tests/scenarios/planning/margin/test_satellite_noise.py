@@ -20,6 +20,8 @@ from scenarios.scenario.files import load_study, with_values
 from scenarios.vehicles.sensors import NAVIGATION_TIME
 from scenarios.vehicles.vehicle_setup import KINEMATIC_BANDWIDTH, kinematic_setup
 
+pytestmark = pytest.mark.slow
+
 KINEMATIC = {"fidelity": "kinematic", "kinematic.heading_rate_lag_s": 0.4}
 MINUTES = 40.0
 
