@@ -202,6 +202,7 @@ def test_the_linear_description_has_the_flown_feedback(x8_schedule, x8_root, nam
     assert_the_feedback_is_flown(x8_schedule, x8_root, name)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SIZES)
 def test_the_linear_description_has_the_flown_feedback_with_a_rudder_too(aerosonde, name):
     assert_the_feedback_is_flown(*aerosonde, name)

@@ -29,6 +29,8 @@ from innerloop.robustness import (
 from innerloop.store import DesignError
 from innerloop.synthesis import quasi_static
 
+pytestmark = pytest.mark.slow
+
 BANKS = {"level": 0.0, "right turn": 0.6}
 
 

@@ -72,6 +72,7 @@ runpy.run_module("scenarios.run", run_name="__main__")
 """
 
 
+@pytest.mark.slow
 def test_no_home_and_a_terminal_with_ascii_alone_are_enough(folder):
     (folder / "é.toml").write_text(TRIAL, encoding="utf-8")
     homes = ("HOME", "XDG_CACHE_HOME", "XDG_CONFIG_HOME", "MPLCONFIGDIR")

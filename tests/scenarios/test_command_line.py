@@ -187,6 +187,7 @@ def test_flights_that_miss_a_criterion_or_cannot_be_flown_are_exit_status_1(tmp_
     assert (counts.outcomes["infeasible"], counts.unknown, counts.passed) == (1, 1, 0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("number", "end"),
     # What a terminal does at Ctrl-C, and what a scheduler does of jobs.

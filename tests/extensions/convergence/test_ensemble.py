@@ -36,6 +36,8 @@ from extensions.convergence.motion import MOTIONS, Steering
 from gnc.numeric import wrap
 from gnc.paper import cascade_law, lyapunov_law, relative_velocity, state_rates, v_2
 
+pytestmark = pytest.mark.slow
+
 LAWS = pytest.mark.parametrize("law", list(Steering))
 offsets = st.floats(-3000.0, 3000.0)
 
