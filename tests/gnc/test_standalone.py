@@ -23,4 +23,4 @@ def test_every_module_imports_and_every_test_is_collected_with_numpy_scipy_and_c
     options = ["--collect-only", "--assert=plain", "-p", "no:cacheprovider", "tests/gnc"]
     outcome = GNC.run(f"{imports}import pytest; sys.exit(pytest.main({options}))")
     assert outcome.returncode == 0, outcome.stdout + outcome.stderr
-    assert "test_cascade.py::test_equation_35_is_23_whatever_the_state" in outcome.stdout
+    assert "test_cascade.py::test_under_law_30_the_system_21_is_the_cascade_31" in outcome.stdout
