@@ -9,13 +9,17 @@ PYTHON ?= $(or $(SYSTEM_PYTHON),python3)
 BIN := .venv/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt
 
-.PHONY: sweep_nu test fast check docs bench package lock clean
+.PHONY: sweep_nu test test-quick fast check docs bench package lock clean
 
 sweep_nu: .venv
 	@$(BIN)/python -m scenarios.run sweep_nu
 
 test: .venv/.developer
-	@$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
+	@$(BIN)/python -m pytest -n 2 --dist worksteal
+
+# Without what is marked slow: long flights, studies, stock aircraft, the browser, tutorials.
+test-quick: .venv/.developer
+	@$(BIN)/python -m pytest -n 2 --dist worksteal -m 'not slow'
 
 # Compiles guidance and closed loop; needs a C compiler. Flights with them are compared with those of the sources, to
 # the last bit.

@@ -48,24 +48,6 @@ if settings is not None:
     settings.load_profile("reproducible")
 
 
-LONGEST = (
-    "test_aircraft_directory.py", "test_flights.py", "test_replay_in_browser.py", "test_stock_designs.py",
-    "test_every_key_acts.py", "test_corners.py", "test_paper.py", "test_subset_study.py", "test_scripts.py",
-    "test_reports.py", "test_stock_flights.py", "test_local_executor.py", "test_margins.py", "test_patrol.py",
-    "test_convergence_report.py", "test_fuzz.py", "test_command_line.py", "test_guard_against_hunters.py",
-    "test_corners_of_air.py", "test_falsify_study.py", "test_arena.py", "test_fastest_flights.py", "test_convergence.py",
-    "test_environment.py", "test_aerosonde.py", "test_comparison_report.py", "test_measured_flights.py",
-    "test_subset_simulation.py", "test_ensemble.py", "test_survival.py", "test_bad_input.py", "test_design_report.py",
-    "test_keepout_margin.py", "test_arena_report.py", "test_tutorials.py", "test_experiments.py", "test_results.py",
-    "test_ensemble_settling.py", "test_falsify_resumed.py", "test_extension_points.py", "test_recomputed_figures.py",
-    "test_estimate_uncertainty.py", "test_monte_carlo_study.py", "test_robustness.py", "test_guard.py",
-    "test_methods.py",
-)  # fmt: skip
-"""Files of tests that take longest, in this order: each is run by one process, and none may begin
-one when the others are done.
-"""
-
-
 SWEPT_ALTITUDE = 60.0
 """Altitude of the catalog's flights, at which designs are made for all tests [m]."""
 
@@ -101,12 +83,6 @@ def pytest_collection_finish() -> None:
     gc.freeze()
     gc.set_threshold(7_000, 20, 50)
     gc.enable()
-
-
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Begin with the files that take longest."""
-    place = {name: number for number, name in enumerate(LONGEST)}
-    items.sort(key=lambda item: place.get(item.path.name, len(LONGEST)))
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -28,6 +28,8 @@ from scenarios.studies.base import study_of
 from tests.in_process import run_command
 from tests.scenarios.short_trial import short_trial
 
+pytestmark = pytest.mark.slow
+
 DEPTH = int(os.environ.get("FUZZ_DEPTH", "1"))
 TIME_MAX = 60
 """Longest example [s]."""

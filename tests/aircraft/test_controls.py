@@ -91,20 +91,6 @@ def test_the_effect_of_a_nonlinear_elevator_becomes_linear(twin):
     assert np.ptp(found) < 0.12 * abs(found.mean())
 
 
-def test_the_new_command_runs_from_nought_at_the_old_and_over_two_from_stop_to_stop(twin):
-    _, _, spec = twin
-    for name in AXES:
-        control_input = spec.input(name)
-        assert control_input.command(0.0) == pytest.approx(0.0, abs=1e-12)
-        assert control_input.upper - control_input.lower == pytest.approx(2.0)
-        assert (
-            -1.0
-            <= control_input.command(control_input.lower)
-            < control_input.command(control_input.upper)
-            <= 1.0
-        )
-
-
 @pytest.mark.parametrize(("lower", "upper"), [(-0.5, 0.5), (-0.75, 0.25)])
 def test_a_surface_is_commanded_within_the_range_that_its_spec_states(twin, lower, upper):
     fdm, level, whole = twin
@@ -127,19 +113,6 @@ def test_a_surface_is_commanded_within_the_range_that_its_spec_states(twin, lowe
     assert np.ptp(ratio) < 0.02 * ratio.mean()
 
 
-def test_linear_surfaces_and_the_throttle_are_left_as_they_are():
-    fdm = Fdm(X8)
-    level = first_trim(fdm, ALTITUDE)
-    assert with_linearised_controls(fdm, level) == X8
-
-
-def test_controls_that_are_linearised_already_are_left_as_they_are(twin):
-    _, _, spec = twin
-    fdm = Fdm(spec)
-    again = with_linearised_controls(fdm, first_trim(fdm, ALTITUDE))
-    assert again.input("elevator") == spec.input("elevator")
-
-
 @pytest.mark.parametrize(
     ("effect", "command"),
     # Past the ends as before them.
@@ -147,10 +120,6 @@ def test_controls_that_are_linearised_already_are_left_as_they_are(twin):
 )
 def test_an_effect_is_named_by_the_command_that_has_it(effect, command):
     assert KINKED.command(effect) == pytest.approx(command)
-
-
-def test_without_a_shape_the_value_is_the_command():
-    assert replace(KINKED, effectiveness=()).command(0.37) == 0.37
 
 
 @pytest.fixture(scope="module")
@@ -176,9 +145,3 @@ def test_an_electric_propeller_brakes_most_while_it_still_turns(cruise):
     assert at_idle > deceleration(fdm, level, idle - 0.05)
     assert at_idle > deceleration(fdm, level, idle + 0.05)
     assert at_idle > 1.8 * deceleration(fdm, level, 0.0)
-
-
-def test_an_aircraft_that_idles_keeps_the_rest_of_its_throttle(cruise):
-    idling = with_flight_idle(*cruise)
-    assert 0.0 < idling.input("throttle").lower < idling.input("throttle").upper == 1.0
-    assert idling.input("elevator") == X8.input("elevator")

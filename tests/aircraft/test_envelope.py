@@ -8,9 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from aircraft.envelope import bank_by_class, find_envelope, first_trim, with_reserve_note
+from aircraft.envelope import find_envelope, first_trim, with_reserve_note
 from aircraft.fdm import Fdm
-from aircraft.fleet.aerosonde import AEROSONDE
 from aircraft.fleet.find import find_spec
 from aircraft.fleet.x8 import X8
 from aircraft.spec import BANK_RESERVE, MODELS, AircraftError
@@ -32,11 +31,6 @@ def envelope(jet):
     return find_envelope(jet, ALTITUDE)
 
 
-@pytest.mark.parametrize("spec", [X8, AEROSONDE], ids=lambda spec: spec.name)
-def test_an_envelope_that_the_spec_states_is_taken_as_it_is(spec):
-    assert find_envelope(Fdm(spec), ALTITUDE) is spec.envelope
-
-
 def test_a_stated_envelope_has_a_note_where_an_equilibrium_lacks_a_reserve_and_none_elsewhere():
     fdm = Fdm(X8)
     slow = [
@@ -53,18 +47,6 @@ def test_a_stated_envelope_has_a_note_where_an_equilibrium_lacks_a_reserve_and_n
     elevator = slow[1].inputs["elevator"]
     assert "no control reserve at 1 of 2 equilibria" in note
     assert f"11 m/s and 55 deg of bank take {elevator:.2f} of elevator; -0.9 to 0.9" in note
-
-
-def test_an_equilibrium_beyond_the_angle_of_attack_up_to_which_the_model_is_right_is_noted():
-    # At 5,000 m the density is 0.6 of that at the sea, and so is the lift at an airspeed.
-    steep = search_trim(Fdm(X8), airspeed=15.0, altitude=5000.0, bank=math.radians(-55.0))
-    assert steep.outcome is TrimOutcome.CONVERGED
-    assert steep.alpha == pytest.approx(0.2022, abs=1e-4)
-    (note,) = with_reserve_note(X8.envelope, [steep], X8).notes
-    assert "15 m/s and -55 deg of bank take 11.6 deg of angle of attack" in note
-    assert "up to 11.5 deg" in note
-    # Of a model that states none nothing is known.
-    assert with_reserve_note(X8.envelope, [steep], replace(X8, alpha_max=math.nan)) is X8.envelope
 
 
 @pytest.mark.parametrize(
@@ -89,24 +71,6 @@ def test_a_model_without_weight_or_wing_area_is_refused_in_a_line(
     with pytest.raises(AircraftError, match=found) as caught:
         first_trim(Fdm(spec), ALTITUDE)
     assert str(caught.value).endswith(f"it must be above 0: correct {key} in the model")
-
-
-@pytest.mark.parametrize(
-    ("mass", "bank_deg"),
-    # Small unmanned aircraft turn steeply; up to 12,500 lb (5670 kg), CS-23's limit, as light
-    # aeroplanes do; above as airliners.
-    [
-        (3.4, 45.0),
-        (150.0, 45.0),
-        (151.0, 30.0),
-        (1100.0, 30.0),
-        (5670.0, 30.0),
-        (5671.0, 25.0),
-        (60_000.0, 25.0),
-    ],
-)
-def test_the_bank_goes_with_the_class(mass, bank_deg):
-    assert math.degrees(bank_by_class(mass)) == pytest.approx(bank_deg)
 
 
 def test_the_stall_is_where_the_largest_lift_just_carries_the_weight(jet, envelope):

@@ -1,15 +1,11 @@
 """Faults of several aircraft, flown without an autopilot; with one: tests/innerloop."""
 
-from dataclasses import replace
-
 import pytest
 
-from aircraft.faults import ENGINE, Faults, failable_root, fault_names
+from aircraft.faults import ENGINE, Faults, failable_root
 from aircraft.fdm import Fdm
 from aircraft.fleet.find import find_spec
-from aircraft.fleet.x8 import X8
 from aircraft.model import copy_model
-from aircraft.spec import Actuator, AircraftError
 from aircraft.state import RigidBodyState
 
 
@@ -93,21 +89,3 @@ def test_a_lost_engine_of_any_kind_gives_no_thrust_until_it_is_repaired(failable
         round(fdm.spec.settle_time / fdm.time_step),
     )
     assert all(fdm.read(engine) > 0.1 for engine in thrust)
-
-
-def test_the_names_are_those_of_what_each_aircraft_has():
-    assert fault_names(X8) == ("engine", "left_elevon", "right_elevon", "throttle")
-    assert fault_names(find_spec("c172x")) == (
-        "engine",
-        "elevator",
-        "aileron",
-        "throttle",
-        "rudder",
-    )
-
-
-def test_an_actuator_that_nothing_reads_is_refused(tmp_path):
-    copy_model(X8.files, tmp_path / "own")
-    odd = replace(X8, own_actuators=(Actuator(name="flap", commands=("fcs/flap-cmd-rad",)),))
-    with pytest.raises(AircraftError, match="no <actuator> of its model reads 'fcs/flap-cmd-rad'"):
-        failable_root(odd, tmp_path / "own", tmp_path / "failable")

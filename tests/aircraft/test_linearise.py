@@ -1,9 +1,6 @@
 """The linear model against derivatives of published equations, and against flights of JSBSim."""
 
 import math
-import re
-import shutil
-from dataclasses import replace
 
 import control
 import numpy as np
@@ -11,12 +8,9 @@ import pytest
 import x8_published as x8
 
 from aircraft.fdm import TIME_STEP, Fdm
-from aircraft.fleet.find import find_spec
 from aircraft.fleet.x8 import X8
-from aircraft.linearise import BODY_STATES, EXTRA_OUTPUTS, linearise
-from aircraft.spec import MODELS, AircraftError, DrivenState, propeller_speed
+from aircraft.linearise import EXTRA_OUTPUTS, linearise
 from aircraft.trim import trim
-from innerloop.synthesis import state_lag
 
 DRIVEN = ("elevator_position", "aileron_position", "propeller_speed")
 BANKS = {"level": 0.0, "right turn": 0.6, "left turn": -0.6}
@@ -75,28 +69,6 @@ def published_derivatives(found):
         x8.state_rates(state, throttle + 1e-4) - x8.state_rates(state, throttle - 1e-4)
     ) / 2e-4
     return np.column_stack([*columns, by_throttle])
-
-
-def test_states_inputs_and_outputs_are_named(models):
-    model = models["level"]
-    assert tuple(model.state_labels) == (
-        "airspeed",
-        "alpha",
-        "beta",
-        "p",
-        "q",
-        "r",
-        "roll",
-        "pitch",
-        "altitude",
-        *DRIVEN,
-    )
-    assert tuple(model.state_labels[:9]) == BODY_STATES
-    assert tuple(model.input_labels) == ("elevator", "aileron", "throttle")
-    assert tuple(model.output_labels) == (*model.state_labels, "heading_rate", "climb_rate")
-    # Every state is an output as it is.
-    np.testing.assert_array_equal(model.C[:12], np.eye(12))
-    np.testing.assert_array_equal(model.D[:12], np.zeros((12, 3)))
 
 
 @pytest.mark.parametrize("name", BANKS)
@@ -169,28 +141,11 @@ def test_the_classic_derivatives_are_formulas_in_the_published_coefficients(trim
         assert found == pytest.approx(expected, rel=1e-3), (rate, source)
 
 
-def test_the_other_sign_of_the_product_of_inertia_would_show_in_the_yaw_derivatives(trims, models):
-    force = 0.5 * x8.standard_density(100.0) * 20.0**2 * x8.WING_AREA
-    determinant = x8.JX * x8.JZ - x8.JXZ**2
-    mirrored = (-x8.JXZ * x8.CR_DA + x8.JX * x8.CN_DA) * force * x8.SPAN / determinant
-    # Its very sign would change.
-    assert entry(models["level"], "r", "aileron_position") * mirrored < 0.0
-
-
 def test_servo_poles_are_those_of_the_model_file(models):
     # 40 rad/s. JSBSim's trapezoidal lag leaves (2 - a)/(2 + a) a step with a = 40/120: 40.38 rad/s
     # in continuous time, 1 % more.
     for name in ("elevator_position", "aileron_position"):
         assert entry(models["level"], name, name) == pytest.approx(-40.0, rel=0.02)
-
-
-def test_servos_settle_at_full_deflection_times_command(models):
-    for name in ("elevator", "aileron"):
-        gain = -entry(models["level"], f"{name}_position", name) / entry(
-            models["level"], f"{name}_position", f"{name}_position"
-        )
-        # Linear in the model; settled to 1e-8.
-        assert gain == pytest.approx(x8.ELEVON_FULL, rel=1e-7)
 
 
 @pytest.mark.parametrize("name", BANKS)
@@ -314,66 +269,7 @@ def test_at_120_hertz_a_small_doublet_is_flown_as_predicted_but_for_the_step(tri
     assert fine < max(0.3 * coarse, 0.03)
 
 
-# The X8's elevons without their lag of 40 rad/s, and with lags of whose way JSBSim's filter goes
-# too far in a step: 400 rad/s is more than two of 1/120 s.
-@pytest.mark.parametrize("lag", ["", "<lag>400</lag>", "<lag>1e9</lag>"])
-def test_a_servo_that_follows_at_once_is_no_state(trims, tmp_path, lag):
-    root = shutil.copytree(MODELS, tmp_path / "models")
-    file = root / "aircraft" / "x8" / "x8.xml"
-    text, count = re.subn("<lag>.*?</lag>", lag, file.read_text(encoding="utf-8"))
-    assert count == 2
-    file.write_text(text, encoding="utf-8")
-    why = (
-        "'fcs/elevator-pos-rad' follows input 'elevator' within a time step of 0.008333 s.*;"
-        " leave 'elevator_position' out of"
-    )
-    with pytest.raises(AircraftError, match=why) as caught:
-        linearise(Fdm(replace(X8, root=root)), trims["level"])
-    assert "\n" not in str(caught.value)
-    assert np.isfinite(
-        linearise(Fdm(replace(X8, root=root, driven_states=(propeller_speed(),))), trims["level"]).A
-    ).all()
-
-
-def test_an_input_that_drives_nothing_is_named(trims):
-    stuck = DrivenState(name="rudder_position", position="fcs/rudder-pos-rad", input="elevator")
-    spec = replace(X8, driven_states=(stuck, *X8.driven_states[1:]))
-    with pytest.raises(
-        AircraftError, match="'fcs/rudder-pos-rad' does not follow input 'elevator'"
-    ) as caught:
-        linearise(Fdm(spec), trims["level"])
-    assert "\n" not in str(caught.value)
-
-
-def test_an_unnamed_servo_is_found_by_measuring_what_its_input_does(x8_fdm):
-    level = trim(x8_fdm, airspeed=20.0, altitude=100.0)
-    named = linearise(x8_fdm, level)
-    # A spec that names neither servos nor propeller, as of a stock aircraft, whose model file says
-    # nothing that could be relied on.
-    blind = linearise(Fdm(replace(X8, driven_states=())), level)
-    assert tuple(blind.state_labels[9:]) == ("elevator_effect", "aileron_effect", "throttle_effect")
-    # The servos: 40 rad/s in the model file, which JSBSim's trapezoidal lag makes 40.38 (above),
-    # and half a step more, for it takes the mean of the old and the new input over a step. Within
-    # 0.002 of a step's answer is not waited for: 1 % with the rest.
-    for name in ("elevator", "aileron"):
-        time_constant = -1.0 / entry(blind, f"{name}_effect", f"{name}_effect")
-        assert time_constant == pytest.approx(1.0 / 40.38 + 0.5 * TIME_STEP, rel=0.02)
-    # Settled, controls do what they do with the servos as states.
-    for rate, name in (("q", "elevator"), ("p", "aileron"), ("r", "aileron")):
-        whole = entry(named, rate, f"{name}_position") * x8.ELEVON_FULL
-        assert entry(blind, rate, f"{name}_effect") == pytest.approx(whole, rel=1e-3)
-
-
-def test_no_lag_is_found_where_there_is_none():
-    # JSBSim's T-37 moves its surfaces at once; only its engines spool.
-    jet = Fdm(find_spec("T37"))
-    model = linearise(jet, trim(jet, airspeed=80.0, altitude=1000.0))
-    assert tuple(model.state_labels[9:]) == ("throttle_effect", "throttle_effect_rate")
-    # A twentieth of throttle is spooled to at the turbine's steady rate, in more than ten steps and
-    # less than two seconds; how well that serves is what the doublets below say.
-    assert 10.0 * TIME_STEP < state_lag(model, "throttle") < 2.0
-
-
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["T37"])
 def test_small_doublets_of_a_stock_aircraft_are_flown_as_its_linear_model_predicts(designs, name):
     errors = {(v["input"], v["output"]): v["error"] for v in designs(name).record["verification"]}

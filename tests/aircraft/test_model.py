@@ -3,18 +3,16 @@
 import hashlib
 import shutil
 import xml.etree.ElementTree as ET
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from aircraft.fdm import Fdm
 from aircraft.fleet.find import find_spec
-from aircraft.model import copy_model, has_play, read_xml, remove_ground_contacts
-from aircraft.spec import MODELS, AircraftError, ModelFiles
+from aircraft.model import copy_model, read_xml, remove_ground_contacts
+from aircraft.spec import ModelFiles
 from aircraft.state import RigidBodyState
 
-ROOT = find_spec("c172x").root
 FLIGHT = """<fdm_config name="probe" version="2.0">
   <input port="1139"/>
   <output name="localhost" type="SOCKET" port="1138" rate="20"/>
@@ -38,16 +36,6 @@ FLIGHT = """<fdm_config name="probe" version="2.0">
     </actuator></channel>
   </flight_control>
 </fdm_config>"""
-
-UNREADABLE = [
-    b"<system>",
-    b'<?xml version="1.0" encoding="none-such"?><system/>',
-    b'<?xml version="1.0" encoding="utf-7"?><system/>',
-    b'<?xml version="1.0" encoding="punycode"?><system/>',
-]
-"""Not closed, and in encodings that Python does not know, that it knows and its parser of XML does
-not, and that fits no file.
-"""
 
 
 @pytest.fixture
@@ -89,39 +77,6 @@ def test_the_original_on_disk_is_the_same_after_its_copy_has_flown(name):
     assert [digest(folder) for folder in folders] == before
 
 
-def test_outputs_inputs_and_autopilots_are_left_out_and_other_systems_stay(probe, tmp_path):
-    config = copied(probe, "probe", tmp_path / "copy")
-    assert config.find("output") is None
-    assert config.find("input") is None
-    assert config.find("autopilot") is None
-    # "map" has "ap" in it and is no autopilot; nor is a system of utilities.
-    names = [system.get("name") for system in config.findall("system")]
-    assert names == ["GNCUtilities", "map of flaps", "The model's own autopilot, off"]
-
-
-def test_the_autopilots_properties_stay_at_rest_before_the_flight_controls_that_read_them(
-    probe, tmp_path
-):
-    config = copied(probe, "probe", tmp_path / "copy")
-    rest = config.findall("system")[-1]
-    values = {p.text: float(p.get("value")) for p in rest}
-    # Declared ones, written ones, and components by the name that JSBSim gives them, from the model
-    # and from files.
-    assert values == dict.fromkeys(
-        (
-            "ap/heading_hold",
-            "ap/wing-leveler",
-            "ap/aileron_cmd",
-            "ap/named/already",
-            "ap/thrust_hold",
-            "ap/from-file",
-        ),
-        0.0,
-    )
-    order = [element.tag for element in config]
-    assert order.index("flight_control") == list(config).index(rest) + 1
-
-
 @pytest.mark.parametrize(
     ("play", "parts"), [(True, ["hysteresis_width", "deadband_width"]), (False, [])]
 )
@@ -131,79 +86,6 @@ def test_servos_keep_their_play_only_if_asked_to(probe, tmp_path, play, parts):
     assert [e.tag for e in actuator if e.tag.endswith("_width")] == parts
     # What a linear model can have stays.
     assert actuator.find("lag").text == "10"
-
-
-@pytest.mark.parametrize("name", ["c172x", "x8"])
-def test_whether_servos_have_play_is_known_of_a_root(tmp_path, name):
-    spec = find_spec(name)
-    copy_model(spec.files, tmp_path / "with")
-    copy_model(spec.files, tmp_path / "without", play=False)
-    assert has_play(tmp_path / "with") is (name == "c172x")
-    assert not has_play(tmp_path / "without")
-
-
-def test_play_is_taken_out_of_the_systems_files_too(probe, tmp_path):
-    play = "<hysteresis_width>0.1</hysteresis_width>"
-    actuator = f'<actuator name="fcs/a"><input>fcs/b</input>{play}</actuator>'
-    text = f'<system name="servo"><channel name="c">{actuator}</channel></system>'
-    file = probe / "aircraft" / "probe" / "Systems" / "servo.xml"
-    file.write_text(text, encoding="utf-8")
-    copy_model(files(probe, "probe"), tmp_path / "copy", play=False)
-    assert "hysteresis" not in (
-        tmp_path / "copy" / "aircraft" / "probe" / "Systems" / "servo.xml"
-    ).read_text(encoding="utf-8")
-    assert file.read_text(encoding="utf-8") == text
-
-
-@pytest.mark.parametrize("content", UNREADABLE)
-def test_a_file_beside_the_model_that_no_parser_reads_is_left_as_it_is(probe, tmp_path, content):
-    # Nothing names it, so that JSBSim does not read it either.
-    (probe / "aircraft" / "probe" / "notes.xml").write_bytes(content)
-    copy_model(files(probe, "probe"), tmp_path / "copy", play=False)
-    assert (tmp_path / "copy" / "aircraft" / "probe" / "notes.xml").read_bytes() == content
-
-
-@pytest.mark.parametrize("content", UNREADABLE)
-def test_a_file_that_the_model_names_and_no_parser_reads_is_refused_in_a_line(
-    probe, tmp_path, content
-):
-    (probe / "aircraft" / "probe" / "Systems" / "Autopilot.xml").write_bytes(content)
-    with pytest.raises(
-        AircraftError, match=r"^\S*Systems/Autopilot\.xml: not valid XML: .*; correct it$"
-    ):
-        copy_model(files(probe, "probe"), tmp_path / "copy")
-
-
-def test_a_file_that_cannot_be_copied_is_named_in_a_line(probe, tmp_path):
-    taken = tmp_path / "copy" / "aircraft" / "probe" / "Systems"
-    taken.parent.mkdir(parents=True)
-    taken.write_text("no folder", encoding="utf-8")
-    with pytest.raises(
-        AircraftError, match=r"probe cannot be copied: \[Errno \d+\] .*Systems'; check that file$"
-    ) as caught:
-        copy_model(files(probe, "probe"), tmp_path / "copy")
-    assert "\n" not in str(caught.value)
-
-
-def test_engines_propellers_and_systems_of_the_common_folders_come_along(tmp_path):
-    copy_model(files(ROOT, "c310"), tmp_path)
-    model = ET.parse(tmp_path / "aircraft" / "c310" / "c310.xml").getroot()
-    for element in model.iterfind("propulsion/engine"):
-        for part in (element, element.find("thruster")):
-            assert (tmp_path / "engine" / f"{part.get('file')}.xml").is_file()
-    # And nothing else: JSBSim has more than a hundred engine files.
-    assert len(list((tmp_path / "engine").iterdir())) < 5
-
-
-@pytest.mark.parametrize("name", ["c310", "c172x"])
-def test_a_stock_aircrafts_own_autopilot_is_off(name):
-    fdm = Fdm(find_spec(name))
-    fdm.place(RigidBodyState(altitude=1000.0, roll=0.3, pitch=0.1, velocity_body=(60.0, 0.0, 0.0)))
-    # Switched on, it would level the wings and hold its altitude at once.
-    for mode in ("attitude_hold", "heading_hold", "altitude_hold"):
-        fdm.write(f"ap/{mode}", 1.0)
-    fdm.step(30)
-    assert (fdm.read("ap/elevator_cmd"), fdm.read("ap/aileron_cmd")) == (0.0, 0.0)
 
 
 def test_a_copy_flies_under_the_stick_alone_as_the_original_does(tmp_path):
@@ -230,35 +112,6 @@ def test_a_copy_flies_under_the_stick_alone_as_the_original_does(tmp_path):
             ]
         )
     assert flights[0] == flights[1]
-
-
-def test_an_original_with_an_output_into_a_file_leaves_none(tmp_path, monkeypatch):
-    spec = find_spec("c172x")
-    assert 'type="CSV"' in spec.files.file.read_text(encoding="utf-8")
-    copy_model(spec.files, tmp_path)
-    monkeypatch.chdir(tmp_path)
-    before = sorted(tmp_path.rglob("*"))
-    # JSBSim opens an output as soon as the aircraft is placed, in the root that it flies from.
-    fdm = Fdm(spec, tmp_path)
-    fdm.place(RigidBodyState(altitude=1000.0, roll=0.0, pitch=0.0, velocity_body=(55.0, 0.0, 0.0)))
-    fdm.step(60)
-    assert sorted(tmp_path.rglob("*")) == before
-
-
-def test_the_projects_own_models_are_copied_as_they_are(tmp_path):
-    config = copied(MODELS, "x8", tmp_path)
-    original = ET.parse(MODELS / "aircraft" / "x8" / "x8.xml").getroot()
-    assert [ET.tostring(e) for e in config] == [ET.tostring(e) for e in original]
-
-
-def test_a_model_that_is_missing_or_no_xml_is_refused_in_a_line(tmp_path):
-    spec = replace(find_spec("T37"), root=tmp_path)
-    with pytest.raises(AircraftError, match=r"no model file .*T37\.xml; check the JSBSim root"):
-        Fdm(spec)
-    (tmp_path / "aircraft" / "T37").mkdir(parents=True)
-    (tmp_path / "aircraft" / "T37" / "T37.xml").write_text("<fdm_config>", encoding="utf-8")
-    with pytest.raises(AircraftError, match=r"T37\.xml: not valid XML: .*; correct it"):
-        Fdm(spec)
 
 
 SPEC = find_spec("c172p")
@@ -319,12 +172,3 @@ def test_a_model_that_reads_a_property_of_its_contacts_keeps_them(root, name, en
     )
     remove_ground_contacts(SPEC, root)
     assert len(contacts(root)) == 7
-
-
-def test_a_spec_that_sets_a_property_of_contacts_keeps_them(root):
-    remove_ground_contacts(replace(SPEC, configuration=(("gear/unit[0]/solid", 1.0),)), root)
-    assert len(contacts(root)) == 7
-
-
-def test_an_aircraft_that_is_trimmed_has_none():
-    assert Fdm(SPEC).read("gear/num-units") == 0.0

@@ -1,26 +1,22 @@
 """Kinematics of the rigid body, by identities and differentiation, and the local frame."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
 import x8_published as x8
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.spatial.transform import Rotation
 
 from aircraft.fdm import TIME_STEP, Fdm
 from aircraft.fleet.x8 import X8
 from aircraft.state import (
     EquatorFrame,
-    RigidBodyState,
     body_velocity,
     course_rate,
     euler_rates,
     level,
     turn_rates,
-    with_wind,
 )
 from aircraft.trim import trim
 from common.geodesy import LocalFrame
@@ -36,29 +32,6 @@ ROUNDING = 1e-12  # a few dozen operations on numbers up to 100
 def test_level_is_the_rotation_back_from_body_to_ahead_right_down(vector, roll, pitch):
     expected = x8.body_from_ned(roll, pitch).T @ np.array(vector)
     np.testing.assert_allclose(level(vector, roll, pitch), expected, atol=ROUNDING)
-
-
-@given(vector=vectors, roll=rolls, pitch=pitches)
-def test_level_keeps_lengths(vector, roll, pitch):
-    assert math.hypot(*level(vector, roll, pitch)) == pytest.approx(
-        math.hypot(*vector), abs=ROUNDING
-    )
-
-
-def test_level_follows_the_frames_definition():
-    # Nose up: ahead points above the horizon, down is positive.
-    assert level((1.0, 0.0, 0.0), 0.0, 0.1)[2] < 0.0
-    assert level((0.0, 1.0, 0.0), 0.1, 0.0)[2] > 0.0  # right wing down
-
-
-@given(airspeed=st.floats(0.1, 100.0), alpha=st.floats(-1.5, 1.5), beta=st.floats(-1.5, 1.5))
-def test_airspeed_and_its_angles_come_back_from_the_body_velocity(airspeed, alpha, beta):
-    u, v, w = body_velocity(airspeed, alpha, beta)
-    # Definitions: V = |v|, tan(alpha) = w/u, sin(beta) = v/V. An arcsine near 1.5 rad loses a digit
-    # or two.
-    assert math.hypot(u, v, w) == pytest.approx(airspeed, rel=1e-14)
-    assert math.atan2(w, u) == pytest.approx(alpha, abs=1e-12)
-    assert math.asin(v / airspeed) == pytest.approx(beta, abs=1e-12)
 
 
 @given(yaw_rate=st.floats(-3.0, 3.0), roll=rolls, pitch=pitches)
@@ -156,33 +129,6 @@ def test_course_rate_is_the_derivative_of_the_course_along_a_banking_turning_pat
     assert found == pytest.approx(expected, abs=1e-8)
 
 
-def test_while_the_bank_changes_the_course_rate_is_not_the_rate_of_yaw_and_sideslip():
-    # The note of course_rate: at 45 degrees of bank and alpha = 0.08 rad, course and psi + beta
-    # differ by about alpha sin(bank) = 0.06 rad. Tolerance: its one digit.
-    bank, velocity = math.radians(45.0), body_velocity(20.0, 0.08, 0.0)
-    ahead, right, _ = level(velocity, bank, 0.06)
-    assert abs(math.atan2(right, ahead)) == pytest.approx(0.06, abs=0.005)
-    # Rolling about its own axis, nose level, at 0.7 rad/s: yaw and sideslip stay, and the course
-    # turns by alpha cos(bank) of that.
-    rates = (0.7, 0.0, 0.0)
-    assert euler_rates(rates, bank, 0.0)[2] == 0.0
-    turned = course_rate(velocity, tuple(float(a) for a in np.cross(rates, velocity)), bank, 0.0)
-    assert turned == pytest.approx(-0.7 * 0.08 * math.cos(bank), rel=0.01)
-
-
-def test_with_wind_adds_the_wind_whatever_the_attitude():
-    state = RigidBodyState(
-        altitude=60.0, roll=0.4, pitch=-0.2, yaw=2.1, velocity_body=(19.0, 1.0, -2.0)
-    )
-    # Scipy's intrinsic z-y'-x'' rotation takes body vectors to north, east, down. Roundings.
-    to_ned = Rotation.from_euler("ZYX", [state.yaw, state.pitch, state.roll])
-    over_ground = with_wind(state, (-7.0, 4.0))
-    assert to_ned.apply(over_ground.velocity_body) == pytest.approx(
-        to_ned.apply(state.velocity_body) + np.array([-7.0, 4.0, 0.0]), abs=1e-12
-    )
-    assert replace(over_ground, velocity_body=state.velocity_body) == state
-
-
 METRES_PER_FOOT = 0.3048
 
 
@@ -206,25 +152,6 @@ def test_it_is_the_azimuthal_equidistant_frame_at_the_origin(distance, error):
         assert EquatorFrame(60.0).to_local(latitude, longitude) == pytest.approx(
             (north, east), abs=error
         )
-
-
-def test_a_degree_has_its_surveyed_length():
-    # WGS 84: near the equator a degree of latitude is 110 574 m, one of longitude 111 319 m (tables
-    # after NIMA TR8350.2, in whole metres). Tolerance: that rounding, and a length against a radius
-    # of curvature.
-    frame, degree = EquatorFrame(), math.radians(1.0)
-    assert frame.north_scale * degree == pytest.approx(110574.0, abs=1.0)
-    assert frame.east_scale * degree == pytest.approx(111319.0, abs=1.0)
-
-
-def test_higher_up_a_degree_is_longer():
-    # By the ratio of radii: 1000 m in about 6378 km.
-    assert EquatorFrame(1000.0).east_scale - EquatorFrame().east_scale == pytest.approx(
-        1000.0, abs=1e-6
-    )
-    assert EquatorFrame(1000.0).north_scale - EquatorFrame().north_scale == pytest.approx(
-        1000.0, abs=1e-6
-    )
 
 
 FLIGHTS = {

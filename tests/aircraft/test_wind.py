@@ -9,7 +9,7 @@ from aircraft.fdm import Fdm
 from aircraft.fleet.x8 import X8
 from aircraft.spec import AircraftError
 from aircraft.trim import trim
-from aircraft.weather import Gust, Weather, begin_weather
+from aircraft.weather import Gust, Weather
 from aircraft.wind import CALM, WindField, constant_wind, over_the_sea
 
 CHANGING = WindField(
@@ -79,23 +79,6 @@ def test_it_is_the_table_at_its_points_and_linear_between_them():
 
 
 @pytest.mark.parametrize(
-    ("time", "height"),
-    [(0.0, 5.0), (99.0, 30.0), (350.0, 2000.0), (1e6, 1e-9), (100.0, 0.0), (100.0, -3.0)],
-)
-def test_beyond_the_table_it_is_that_of_the_nearest_point(time, height):
-    nearest = CHANGING.now(min(max(time, 100.0), 500.0), min(max(height, 10.0), 100.0))
-    assert CHANGING.now(time, height) == nearest
-
-
-def test_arrays_say_the_same_as_single_looks():
-    times, heights = np.linspace(0.0, 700.0, 41)[:, None], np.geomspace(1.0, 1000.0, 17)
-    north, east = CHANGING.at(times, heights)
-    assert north.shape == (41, 17)
-    looks = np.array([[CHANGING.now(time, height) for height in heights] for time in times[:, 0]])
-    np.testing.assert_allclose(np.stack([north, east], axis=-1), looks, rtol=0.0, atol=1e-12)
-
-
-@pytest.mark.parametrize(
     "wind",
     [
         CHANGING,
@@ -139,14 +122,6 @@ def test_over_the_sea_it_follows_the_logarithm_of_height():
     assert wind.now(0.0, 1e-4) == pytest.approx((0.0, 0.0), abs=1e-12)
 
 
-@pytest.mark.parametrize("roughness", [1e-10, 10.0, math.nan])
-def test_a_roughness_that_has_no_profile_is_refused(roughness):
-    # Below 1e-9 m heights are not told apart: at 10 m the wind of 1e-10 m was 0.98 of the one that
-    # is given there.
-    with pytest.raises(AircraftError, match="roughness length is"):
-        over_the_sea(np.array([[5.0, 0.0]]), [0.0], roughness=roughness, height=10.0)
-
-
 @pytest.mark.parametrize(
     ("values", "message"),
     [
@@ -161,10 +136,6 @@ def test_a_roughness_that_has_no_profile_is_refused(roughness):
 def test_what_is_no_wind_is_refused(values, message):
     with pytest.raises(AircraftError, match=message):
         WindField(**values)
-
-
-def test_a_constant_wind_costs_nothing_in_flight(x8_fdm):
-    assert begin_weather(x8_fdm, Weather(wind=constant_wind(3.0, 4.0))) is x8_fdm.run
 
 
 @pytest.fixture(scope="module")

@@ -87,35 +87,6 @@ def test_density_is_that_of_the_standard_atmosphere(x8_fdm):
         assert density == pytest.approx(x8.standard_density(altitude), rel=2e-5)
 
 
-def test_the_standard_atmosphere_of_this_test_has_its_tabulated_density():
-    # U.S. Standard Atmosphere 1976, table I: 1.2250 at sea level, 1.1117 kg/m^3 at 1000 m;
-    # tolerance: half the last digit.
-    assert x8.standard_density(0.0) == pytest.approx(1.2250, abs=5e-5)
-    assert x8.standard_density(1000.0) == pytest.approx(1.1117, abs=5e-5)
-
-
-def test_mass_is_the_published_one(x8_fdm):
-    # 3.364 kg: ICUAS 2018. JSBSim's kilogram is good to eight digits.
-    assert x8_fdm.read("inertia/mass-slugs") * 14.593902937 == pytest.approx(3.364, rel=1e-7)
-
-
-def test_gravity_at_the_equator_is_that_of_wgs_84(x8_fdm):
-    # A body without aerodynamics to speak of, level and at rest in the air, falls with gravity
-    # alone.
-    with x8_fdm.frozen():
-        x8_fdm.command({"elevator": 0.0, "aileron": 0.0, "throttle": 0.0})
-        x8_fdm.place(
-            RigidBodyState(altitude=100.0, roll=0.0, pitch=0.0, velocity_body=(0.01, 0.0, 0.0))
-        )
-        x8_fdm.step(2)
-        down = x8_fdm.acceleration_body()[2]
-    # Normal gravity of WGS 84, 9.7803253 m/s^2, less 3.09e-6 a metre. JSBSim keeps the oblateness
-    # term alone: 1e-5 of it.
-    assert down == pytest.approx(x8.equatorial_gravity(100.0), rel=2e-5)
-
-
-KG_M2_PER_SLUG_FT2 = 1.3558179483314
-
 # JSBSim takes 1 lbf ft s^2 as 1.35594 kg m^2 where it is 1.35582: inertia is 9e-5 low and angular
 # acceleration as much too high.
 JSBSIM_INERTIA_ERROR = 2e-4
@@ -185,12 +156,3 @@ def test_aileron_alone_rolls_and_yaws_as_coefficients_and_inertia_say(x8_fdm):
         with_aileron - without, expected, rtol=JSBSIM_INERTIA_ERROR, atol=1e-5
     )
     assert expected[2] < 0.0
-
-
-def test_moments_of_inertia_are_those_of_the_model_file(x8_fdm):
-    x8_fdm.place(
-        RigidBodyState(altitude=100.0, roll=0.0, pitch=0.0, velocity_body=(20.0, 0.0, 0.0))
-    )
-    for name, published in (("ixx", x8.JX), ("iyy", x8.JY), ("izz", x8.JZ)):
-        moment = x8_fdm.read(f"inertia/{name}-slugs_ft2") * KG_M2_PER_SLUG_FT2
-        assert moment == pytest.approx(published, rel=JSBSIM_INERTIA_ERROR)

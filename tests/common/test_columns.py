@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from common.columns import Column, column_of, described, from_json, to_json, unit_of, without_unit
+from common.columns import Column, described, from_json, to_json
 
 WORDS = st.text(st.characters(categories=("L", "N")), min_size=1, max_size=12)
 COLUMNS = st.builds(
@@ -27,33 +27,6 @@ COLUMNS = st.builds(
 def test_tables_come_back_from_their_file_as_they_were_declared(tables):
     declared = {name: described(columns) for name, columns in tables.items()}
     assert from_json(json.loads(json.dumps(to_json(declared)))) == declared
-
-
-def test_the_longest_end_of_a_name_says_its_unit():
-    units = {
-        "rate_rad_s": "rad/s",
-        "dose_ppm_s": "ppm s",
-        "gain_per_m_s": "1/(m s)",
-        "time_s": "s",
-        "plume_s_per_minute": "s/min",
-        "crossings_per_minute": "1/min",
-        "share": "1",
-    }
-    assert {name: unit_of(name) for name in units} == units
-    assert without_unit("rate_rad_s") == "rate"
-
-
-def test_names_alone_and_meanings_alone_declare_columns():
-    assert described(("so2_peak_ppb",))["so2_peak_ppb"] == Column(title="So2 peak", unit="ppb")
-    assert described({"bank_deg": "largest bank"})["bank_deg"].meaning == "largest bank"
-    assert column_of({}, "summary.csv", "wind.speed_mps").label == "Speed [m/s]"
-
-
-def test_a_value_is_shown_in_its_unit_and_digits():
-    error = described({"x": Column(title="Off", unit="%", scale=100.0, digits=1)})["x"]
-    assert (error.text(-0.0123), error.text(None), error.text(float("nan"))) == ("−1.2", "–", "–")
-    count = described({"n": Column(title="Turns", digits=0)})["n"]
-    assert (count.head, count.label, error.head) == ("Turns", "Turns [-]", "Off [%]")
 
 
 @pytest.mark.parametrize(

@@ -1,9 +1,7 @@
 """What every command line does with its output."""
 
-import re
 import subprocess
 import sys
-from pathlib import Path
 from typing import Annotated
 
 import pytest
@@ -38,24 +36,6 @@ def test_a_command_whose_reader_is_gone_ends_without_a_word(stream, other, long)
     assert said == b""
     # As a shell says of a program that SIGPIPE ended: 128 + 13.
     assert running.returncode == 141
-
-
-def test_help_has_no_types_beside_arguments_and_flags(monkeypatch, capsys):
-    def command(
-        paths: Annotated[list[Path], typer.Argument(metavar="RUN_DIR")],
-        out: Annotated[Path | None, typer.Option()] = None,
-        fast: Annotated[bool, typer.Option("--fast")] = False,
-    ) -> None:
-        raise AssertionError((paths, out, fast))
-
-    monkeypatch.setattr(sys, "argv", ["program", "one", "--help"])
-    with pytest.raises(SystemExit) as ended:
-        run_command({"one": command, "other": command}, "program", version="1")
-    told = capsys.readouterr().out
-    assert ended.value.code == 0
-    # A path is to be given after --out alone.
-    assert all(word in told for word in ("RUN_DIR", "--out", "--fast", "--help"))
-    assert re.findall(r"<.*?>", told) == ["<path>"]
 
 
 @pytest.mark.parametrize(

@@ -25,27 +25,6 @@ def test_sigterm_interrupts_within_the_context_alone():
     assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
 
 
-def test_a_program_that_ignores_sigterm_goes_on():
-    signal.signal(signal.SIGTERM, signal.SIG_IGN)
-    with terminated_like_interrupted():
-        signal.raise_signal(signal.SIGTERM)
-    assert signal.getsignal(signal.SIGTERM) is signal.SIG_IGN
-
-
-def test_a_thread_that_has_no_signals_runs_without_them():
-    found = []
-
-    def run():
-        with terminated_like_interrupted():
-            found.append(signal.getsignal(signal.SIGTERM))
-
-    before = signal.getsignal(signal.SIGTERM)
-    thread = threading.Thread(target=run)
-    thread.start()
-    thread.join()
-    assert found == [before]
-
-
 def _follow(ready):
     follow_parent()
     ready.set()

@@ -7,10 +7,8 @@ import pytest
 from scipy.stats import binom
 
 from common.intervals import (
-    Interval,
     clopper_pearson,
     quantile_interval,
-    shared_interval,
     upper_bound,
 )
 
@@ -38,58 +36,12 @@ def test_at_each_end_what_was_seen_or_worse_has_half_of_what_confidence_leaves(e
     assert binom.sf(events - 1, trials, interval.low) == pytest.approx(0.05, rel=1e-9)
 
 
-def test_an_interval_ends_at_0_or_1_where_nothing_or_all_happened_and_without_trials_says_nothing():
-    assert clopper_pearson(0, 20, 0.95).low == 0.0
-    assert clopper_pearson(20, 20, 0.95).high == 1.0
-    assert clopper_pearson(0, 0, 0.95) == Interval(0.0, 1.0)
-
-
-def test_trials_that_share_their_sample_count_as_one():
-    # As often as one likes the same four: 4 of 4 is 39.8 % to 100 % (0.025^(1/4)).
-    alone = shared_interval(np.ones(4, dtype=bool), np.arange(4), 0.95)
-    shared = shared_interval(np.ones(20, dtype=bool), np.tile(np.arange(4), 5), 0.95)
-    assert (alone.low, alone.high) == pytest.approx((0.025**0.25, 1.0), abs=1e-9)
-    assert shared == alone
-    # Two and a half of four samples: from the low end of two to the high end of three.
-    halves = shared_interval(np.array([1, 1, 1, 0, 0], dtype=bool), np.array([7, 8, 9, 9, 5]), 0.95)
-    assert halves == Interval(clopper_pearson(2, 4, 0.95).low, clopper_pearson(3, 4, 0.95).high)
-
-
-def test_the_median_of_ten_lies_between_the_second_and_the_ninth():
-    # David and Nagaraja, section 7.1: P(2 <= B <= 8) of B(10, 1/2) is 1 - 22/1024, 0.9785; P(3 <= B
-    # <= 7) is 0.8906.
-    values = np.random.default_rng(1).permutation(np.arange(1.0, 11.0))
-    assert quantile_interval(values, 0.5, 0.95) == Interval(2.0, 9.0)
-    assert quantile_interval(values, 0.5, 0.89) == Interval(3.0, 8.0)
-
-
 def test_the_largest_of_59_bounds_the_95th_percentile_and_the_largest_of_58_does_not():
     # S. S. Wilks, Annals of Mathematical Statistics 12 (1941): 59 values for 95 % of the population
     # at 95 %. Two-sided 90 % has that confidence on each side.
     assert quantile_interval(np.arange(59.0), 0.95, 0.9).high == 58.0
     assert math.isnan(quantile_interval(np.arange(58.0), 0.95, 0.9).high)
     assert math.isnan(quantile_interval(np.arange(58.0), 0.95, 0.9).width)
-
-
-def test_an_interval_of_nothing_is_open_on_both_sides():
-    interval = quantile_interval(np.array([]), 0.5, 0.95)
-    assert math.isnan(interval.low)
-    assert math.isnan(interval.high)
-
-
-def test_quantiles_of_a_skewed_distribution_are_held_as_often_as_stated():
-    generator = np.random.default_rng(20261121)
-    samples = 2000
-    true = math.log(1.0 / 0.95)  # the 5th percentile of the exponential distribution
-    held = 0
-    for values in generator.exponential(size=(samples, 200)):
-        interval = quantile_interval(values, 0.05, 0.9)
-        held += interval.low <= true <= interval.high
-    # Order statistics come in steps, so that the interval holds for more than 0.9: P(5 <= B <= 15)
-    # of B(200, 0.05), 0.93. Three standard deviations of a share of 2000.
-    assert held / samples == pytest.approx(
-        binom.cdf(15, 200, 0.05) - binom.cdf(4, 200, 0.05), abs=3 * math.sqrt(0.07 / samples)
-    )
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from common import physics
-from common.physics import bank_for_heading_rate, heading_rate_for_bank, wind_towards, wind_velocity
+from common.physics import bank_for_heading_rate, heading_rate_for_bank
 
 # International foot and pound: agreement of 1959, exact; standard gravity: CGPM 1901, exact.
 POUND = 0.45359237
@@ -39,16 +39,6 @@ POUND = 0.45359237
 def test_units_are_those_of_their_definitions(value, expected, tolerance):
     # Without another tolerance: rounding of a product.
     assert value == pytest.approx(expected, rel=0.0, abs=tolerance)
-
-
-@pytest.mark.parametrize(
-    ("from_deg", "velocity"),
-    [(0.0, (-5.0, 0.0)), (90.0, (0.0, -5.0)), (225.0, (5.0 / math.sqrt(2.0),) * 2)],
-)
-def test_wind_blows_away_from_where_it_comes_from(from_deg, velocity):
-    # Sines of multiples of pi are off by 1e-16 of a circle.
-    assert wind_velocity(5.0, from_deg) == pytest.approx(velocity, abs=1e-14)
-    assert math.cos(wind_towards(from_deg)) * 5.0 == pytest.approx(velocity[0], abs=1e-14)
 
 
 def test_a_coordinated_turn_balances_gravity():

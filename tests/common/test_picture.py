@@ -5,7 +5,7 @@ import io
 import pytest
 from PIL import Image
 
-from common.picture import BYTES_MAX, PictureError, read_picture
+from common.picture import PictureError, read_picture
 
 SVG = (
     b'<svg xmlns="http://www.w3.org/2000/svg" width="4" height="2">'
@@ -40,18 +40,13 @@ def test_the_content_says_what_kind_of_picture_a_file_is_and_its_name_does_not(
     ("content", "said"),
     [
         (b"", "is not a picture; give a whole PNG"),
-        (b"no picture", "is not a picture"),
         (drawn("PNG")[:60], "is not a picture"),
-        (drawn("GIF"), "is not a picture"),
         (b"<html/>", "is not a picture"),
-        (b"<svg/>", "is not a picture"),
         (b'<?xml version="1.0" encoding="none-such"?>' + SVG, "is not a picture"),
-        (SVG.replace(b'width="4" height="2"><', b'width="0" height="0"><'), "is not a picture"),
         (
             SVG.replace(b"<rect", b'<image href="https://example.org/a.png"/><rect'),
             "is not a picture",
         ),
-        (SVG + b" " * BYTES_MAX, "has 1.0 MB; at most 1 MB: give a smaller picture"),
     ],
 )
 def test_what_is_no_picture_is_refused_in_one_line_that_names_the_file_alone(
@@ -64,11 +59,3 @@ def test_what_is_no_picture_is_refused_in_one_line_that_names_the_file_alone(
     assert str(refused.value).startswith("'logo.png' ")
     assert said in str(refused.value)
     assert "\n" not in str(refused.value)
-
-
-def test_a_file_that_is_gone_is_refused(tmp_path):
-    with pytest.raises(
-        PictureError,
-        match=r"'gone\.png' cannot be read \(No such file or directory\); give a PNG, JPEG or SVG",
-    ):
-        read_picture(tmp_path / "gone.png")

@@ -4,7 +4,6 @@ import sys
 
 import pytest
 
-from common.errors import PluginError
 from common.registry import Registry
 
 
@@ -48,10 +47,3 @@ def test_a_part_that_is_registered_temporarily_is_not_installed(tmp_path, monkey
     finally:
         for name in [name for name in sys.modules if name.partition(".")[0] == package.name]:
             del sys.modules[name]
-
-
-@pytest.mark.parametrize("name", ["mine.py", "mine.py:"])
-def test_a_file_without_the_name_of_a_part_is_told_to_be_named(name):
-    with pytest.raises(PluginError) as refused:
-        Registry("part", folder="scenarios.search").get(name)
-    assert str(refused.value) == f"part '{name}' names a file, and no part in it; give mine.py:NAME"

@@ -15,7 +15,6 @@ from common.tables import (
     read_table,
     table_format,
     unit_factor,
-    unit_in,
 )
 
 PLAIN = [("0.5", "108.2", "543"), ("1.5", "110.9", "541.5"), ("2.5", "", "545")]
@@ -54,68 +53,6 @@ def test_separator_decimal_and_encoding_are_found(tmp_path, separator, decimal, 
     assert table.format.separator == separator
 
 
-def test_letters_of_latin_1_and_blanks_around_names_and_cells_are_read(tmp_path):
-    text = " Länge ; Höhe [m] \n 1,5 ; 2,5 \n 2,5 ; 3,5 \n"
-    table = read_table(written(tmp_path, text, "latin-1"))
-    assert table.names == ["Länge", "Höhe [m]"]
-    assert table.numbers("Höhe [m]") == pytest.approx([2.5, 3.5])
-    assert table.units == {"Höhe [m]": "m"}
-
-
-def test_blanks_separate_columns_where_nothing_else_does(tmp_path):
-    table = read_table(written(tmp_path, "t  so2\n0.5   1.5\n 1.5  2.5\n"))
-    assert table.numbers("so2") == pytest.approx([1.5, 2.5])
-
-
-def test_lines_above_the_head_comments_and_blank_lines_are_no_rows(tmp_path):
-    text = "UAV 3; flight 7\noperator: N. N.\n\n" + rows(";").replace("\n", "\n# note; a\n\n", 1)
-    table = read_table(written(tmp_path, text))
-    same(table)
-    assert table.head_line == 4
-    # A head, a comment and an empty line are above the first row.
-    assert table.lines == [7, 8, 9]
-    assert "head in line 4" in table.described()
-
-
-def test_a_head_may_be_a_comment(tmp_path):
-    table = read_table(written(tmp_path, "# " + rows(",")))
-    same(table)
-
-
-def test_a_row_of_units_says_the_units(tmp_path):
-    head, rest = rows(";", ",").split("\n", 1)
-    table = read_table(written(tmp_path, f"{head}\ns;[ppb];ppm\n{rest}"))
-    same(table)
-    assert table.units == {"t": "s", "so2": "ppb", "co2": "ppm"}
-
-
-def test_quoted_cells_keep_their_commas(tmp_path):
-    table = read_table(written(tmp_path, 't,so2\n"0,5","1,25"\n"1,5","2,25"\n'))
-    assert table.numbers("so2") == pytest.approx([1.25, 2.25])
-
-
-def test_points_of_thousands_beside_decimal_commas_are_none(tmp_path):
-    table = read_table(written(tmp_path, "t;p\n0,5;1.013,25\n1,5;998,5\n"))
-    assert table.numbers("p") == pytest.approx([1013.25, 998.5])
-
-
-def test_a_comma_that_may_be_of_thousands_is_asked_for(tmp_path):
-    path = written(tmp_path, "t;p\n1;1,013\n2;1,014\n")
-    with pytest.raises(
-        TableError, match=r"'1,013' may be a decimal or thousands; give table.decimal"
-    ):
-        read_table(path)
-    table = read_table(path, TableFormat(decimal=","))
-    assert table.numbers("p") == pytest.approx([1.013, 1.014])
-
-
-def test_only_the_lines_asked_for_are_read(tmp_path):
-    path = written(tmp_path, "t,mmsi\n" + "".join(f"{i},{219 + i % 3}\n" for i in range(300)))
-    table = read_table(path, keep=lambda line: "220" in line)
-    assert len(table) == 100
-    assert table.lines[:2] == [3, 6]
-
-
 # Times
 
 
@@ -149,26 +86,6 @@ def test_times_are_read_in_utc(tmp_path, cells, given):
     found = seconds(tmp_path, cells, **given)
     assert found.dated
     assert found.seconds == pytest.approx([NOON, NOON + 1.5], abs=1e-6)
-
-
-def test_small_numbers_are_seconds_of_the_table_itself_or_of_a_unit_that_is_given(tmp_path):
-    assert seconds(tmp_path, ["0", "1.5"]).seconds == pytest.approx([0.0, 1.5])
-    found = seconds(tmp_path, ["0", "1500"], time_unit="ms")
-    assert (found.dated, found.seconds.tolist()) == (False, [0.0, 1.5])
-
-
-def test_a_clock_goes_on_over_midnight(tmp_path):
-    found = seconds(tmp_path, ["23:59:59", "00:00:01"])
-    assert (found.dated, found.seconds.tolist()) == (False, [86399.0, 86401.0])
-
-
-def test_a_leap_second_is_no_time(tmp_path):
-    found = seconds(
-        tmp_path, ["2016-12-31T23:59:59Z", "2016-12-31T23:59:60Z", "2017-01-01T00:00:00Z"]
-    )
-    assert found.leap == 1
-    assert np.isnan(found.seconds).tolist() == [False, True, False]
-    assert found.seconds[2] - found.seconds[0] == 1.0
 
 
 @pytest.mark.parametrize(
@@ -209,38 +126,10 @@ def test_units_are_converted(unit, to, factor):
     assert unit_factor(unit, to) == pytest.approx(factor, rel=1e-9)
 
 
-@pytest.mark.parametrize("unit", ["ug/m3", "µg/m³", "ug m-3"])
-def test_a_mass_per_volume_of_sulphur_dioxide_is_a_mole_fraction_at_its_temperature(unit):
-    # 2.66 ug/m3 per ppb at 20 deg C and 1013 hPa: Directive 2008/50/EC works with it.
-    assert 1.0 / unit_factor(unit, "ppb", gas="so2") == pytest.approx(2.663, rel=1e-3)
-    # The molar volume of an ideal gas at 0 deg C, 22.414 l: 64.064/22.414.
-    cold = unit_factor(unit, "ppb", gas="so2", temperature_c=0.0)
-    assert 1.0 / cold == pytest.approx(64.064 / 22.414, rel=1e-4)
-
-
 @pytest.mark.parametrize(("unit", "words"), [("foo", "no unit that is known"), ("m", "no unit of")])
 def test_what_is_no_unit_of_the_quantity_is_refused(unit, words):
     with pytest.raises(TableError, match=words):
         unit_factor(unit, "ppb", gas="so2")
-
-
-@pytest.mark.parametrize(
-    ("name", "unit"),
-    [
-        ("SO2 [ppb]", "ppb"),
-        ("SO2 (µg/m³)", "µg/m³"),
-        ("so2_ppb", "ppb"),
-        ("SO2", ""),
-        ("time_s", ""),
-    ],
-)
-def test_names_may_say_their_unit(name, unit):
-    assert unit_in(name) == unit
-
-
-def test_longitudes_of_both_kinds_are_one():
-    given = np.array([-180.0, -91.0, 0.0, 179.9, 180.0, 269.0, 360.0])
-    assert longitude_within(given).tolist() == [-180.0, -91.0, 0.0, 179.9, -180.0, -91.0, 0.0]
 
 
 # What is refused
@@ -402,16 +291,3 @@ def test_a_hard_file_is_read_right_or_refused_in_a_line(tmp_path, data, expected
     for name, values in expected.items():
         # Times of today have a microsecond's worth of digits.
         assert found[name] == pytest.approx(values, abs=1e-6, nan_ok=True)
-
-
-@pytest.mark.parametrize("encoding", ["utf-16", "punycode", "undefined", "ascii"])
-def test_a_table_in_another_encoding_than_is_given_is_refused(tmp_path, encoding):
-    path = tmp_path / "log.csv"
-    path.write_bytes("t,x,ö\n1:0,2,3\n".encode())
-    with pytest.raises(TableError, match=f"not text in {encoding}"):
-        read_table(path, table_format({"encoding": encoding}))
-
-
-def test_a_codec_that_is_none_of_text_is_no_encoding():
-    with pytest.raises(TableError, match="Python knows none"):
-        table_format({"encoding": "hex"})

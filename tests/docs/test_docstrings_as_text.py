@@ -6,63 +6,6 @@ from pathlib import Path
 
 from docstrings import as_text
 
-from gnc.reference.reference import Reference
-
-
-def test_entries_are_terms_with_their_descriptions_and_units():
-    """As ``Reference`` has them."""
-    text = as_text(inspect.getdoc(Reference).splitlines())
-    start = text.index(":Attributes:")
-    assert text[start : start + 7] == [
-        ":Attributes:",
-        "",
-        "   ``north``, ``east``",
-        "      position [m]",
-        "",
-        "   ``course``",
-        "      chi_r [rad]",
-    ]
-
-
-def test_a_description_that_goes_on_stays_with_its_entry():
-    docstring = [
-        "Parameters",
-        "----------",
-        "lag : behind the command [s]; above",
-        "    0 it counts",
-    ]
-    text = as_text(docstring)
-    first = text.index("   ``lag``")
-    assert text[first + 1 : first + 3] == [
-        "      behind the command [s]; above",
-        "      0 it counts",
-    ]
-
-
-def test_a_section_ends_at_an_empty_line():
-    text = as_text(["Returns", "-------", "row : of the flight", "", "Afterwards."])
-    assert text == ["", ":Returns:", "", "   ``row``", "      of the flight", "", "", "Afterwards."]
-
-
-def test_a_section_without_entries_is_text():
-    assert as_text(["Notes", "-----", "As published."])[1:3] == [":Notes:", "   As published."]
-
-
-def test_characters_of_markup_are_escaped_but_in_literals_and_bullets():
-    assert as_text(["* x_ is |a|*b, and ``x_*`` is code"]) == [
-        r"* x\_ is \|a\|\*b, and ``x_*`` is code"
-    ]
-
-
-def test_code_after_two_colons_is_left_as_it_is():
-    lines = ["A law::", "", "    gain * off", "", "    a_ | b", "", "2 * 3"]
-    assert as_text(lines) == [*lines[:-1], r"2 \* 3"]
-
-
-def test_names_with_underscores_are_left_as_they_are():
-    assert as_text(["omega_0 of heading_rate"]) == ["omega_0 of heading_rate"]
-
-
 ROOMS = ("aircraft", "common", "gnc", "innerloop", "measurement", "reports", "scenarios")
 
 

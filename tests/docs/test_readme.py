@@ -47,11 +47,6 @@ def _commands(word: str, pages: Iterable[str] = PAGES) -> list[list[str]]:
     return [words[2:] for words in called if words[0].endswith("plume-flight") and words[1] == word]
 
 
-def test_lines_of_the_pages_are_short():
-    for page in PAGES:
-        assert max(map(len, (ROOT / page).read_text("utf-8").splitlines())) <= 120
-
-
 @pytest.mark.parametrize("page", PAGES)
 def test_every_make_target_exists(page):
     targets = {words.split()[1] for words in _lines(page) if words.startswith("make ")}
@@ -91,14 +86,6 @@ def test_every_scenario_and_key_of_the_documentation_is_taken():
     for arguments in flown:
         overrides = [word for flag, word in pairwise(arguments) if flag == "--set"]
         assert load_study(arguments[0], overrides).title
-
-
-def test_the_pages_write_commands_in_one_form():
-    """``python -m`` is named beside ``plume-flight`` where the table of both is."""
-    both = re.compile(r"python -m (scenarios\.run|innerloop\.design|reports\.)")
-    assert [page for page in DOCS if both.search((ROOT / page).read_text("utf-8"))] == [
-        "docs/reference/api.md"
-    ]
 
 
 @pytest.mark.parametrize("word", sorted(commands()))

@@ -9,6 +9,8 @@ import pytest
 
 from tests.standing_alone import ROOT
 
+pytestmark = pytest.mark.slow
+
 CORE = ("aircraft", "common", "gnc", "innerloop", "measurement", "reports", "scenarios")
 
 # Fast ones.

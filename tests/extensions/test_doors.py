@@ -9,6 +9,8 @@ import pytest
 
 from tests.extensions.added_package import AddedPackage
 
+pytestmark = pytest.mark.slow
+
 KEYS = '''
 from typing import Annotated
 
@@ -151,11 +153,8 @@ def test_its_keys_are_described_and_stand_in_templates(package):
             ["sweep_nu", "--set", "weaving.width_m=3"],
             "it is used by flights that weave: set study to 'weaving'",
         ),
-        (["weaving_about", "--set", "histories=2"], "flights that weave keep none"),
         (["weaving_about", "--set", "weaving.width_m=-3"], "weaving.width_m is -3"),
-        (["weaving_about", "--set", "sweep.nu=[0.4]"], "it weaves at one point"),
         (["weaving_about", "--set", "weaving.wdth_m=3"], "weaving.width_m"),
-        (["weaving_abot"], "did you mean 'weaving_about'"),
     ],
 )
 def test_what_is_wrong_with_its_keys_is_one_line(package, arguments, words):

@@ -75,16 +75,3 @@ def test_once_a_source_is_edited_the_sources_are_run(packages, edited):
     # Its time says nothing: a copy or an archive may bring an older one.
     os.utime(path, (times.st_atime, times.st_mtime))
     assert not is_compiled(packages)
-
-
-def test_a_part_of_what_was_compiled_is_not_run(packages):
-    (folder,) = (packages / "build").iterdir()
-    (folder / "health.py").unlink()
-    assert not is_compiled(packages)
-
-
-@pytest.mark.parametrize("left", ["", "{}", "[]"])
-def test_what_has_a_damaged_index_is_not_run(packages, left):
-    (folder,) = (packages / "build").iterdir()
-    (folder / "index.json").write_text(left, encoding="utf-8")
-    assert not is_compiled(packages)

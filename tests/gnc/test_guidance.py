@@ -1,7 +1,6 @@
 """The outer loop: its parts, chosen by parameters, and the commands that they make."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -27,26 +26,20 @@ from gnc.estimation.error_budget import ErrorBudget, Growth
 from gnc.estimation.health import Fault, HealthParameters
 from gnc.estimation.navigation import (
     EngineReadings,
-    EstimatedNavigation,
     NavigationParameters,
-    TrueNavigation,
 )
 from gnc.estimation.thrust import ThrustParameters
 from gnc.estimation.vessel import (
     FilterParameters,
-    ReportedTarget,
-    SteadyTarget,
-    Tube,
     VesselLimits,
     VesselReport,
 )
-from gnc.guard.guard import Guarded, GuardParameters, GuardStatus
+from gnc.guard.guard import GuardParameters, GuardStatus
 from gnc.guidance import Guidance, GuidanceParameters, ReportedVessel
 from gnc.laws import CascadeLaw, LineOfSightLaw, LyapunovLaw
 from gnc.mission.axis import AxisHeight, Climb, PredictedPlume
-from gnc.mission.follow import FollowingParameters, PlumeFollowing
+from gnc.mission.follow import FollowingParameters
 from gnc.mission.mission import LOST, Mode, Order
-from gnc.mission.track import DirectTracking
 from gnc.mission.way import ApproachParameters
 from gnc.paper import PlumeAxis, distance_by_paper, half_widths
 from gnc.reference.moving_centre import CentreParameters
@@ -63,24 +56,6 @@ QUICK_GUARD = GuardParameters(
     slow_lag=0.0,
     time_step=TIME_STEP,
 )
-
-
-class RecordingGuard:
-    """Records what it has to filter, and returns the same commands at each step."""
-
-    def __init__(self, guarded):
-        self.guarded = guarded
-        self.demands, self.motions, self.vessels, self.replaced = [], [], [], []
-
-    def filter(self, demand, own, vessels, _others=()):
-        self.demands.append(demand)
-        place = (own.ground_north, own.ground_east, own.course, own.heading_rate, own.speed)
-        self.motions.append((*place, own.wind_north, own.wind_east))
-        self.vessels.append(vessels)
-        return self.guarded
-
-    def replace(self, heading_rate, pace=None):
-        self.replaced.append((heading_rate, pace))
 
 
 class RecordingFilter:
@@ -113,17 +88,6 @@ class OnTheWay:
     def plan(self, _time, _own, _vessel, **_):
         self.flown.append(self.tracker.heading_rate_command)
         return Order(0.1, self._airspeed, 60.0, Mode.APPROACH)
-
-
-@pytest.fixture
-def guarded_by(monkeypatch):
-    """Return a function that makes the paper's guidance with another guard."""
-
-    def guarded_by(guard, **how):
-        monkeypatch.setattr("gnc.guidance.KeepoutGuard", lambda *_: guard)
-        return make_guidance(make_reference(paper_oscillation(0.5)), guard=QUICK_GUARD, **how)
-
-    return guarded_by
 
 
 @pytest.fixture
@@ -201,39 +165,6 @@ def test_the_airspeed_is_trimmed_by_the_along_track_error_within_its_limit(
     assert guidance.airspeed_command == pytest.approx(expected, abs=1e-12)
 
 
-@pytest.mark.parametrize("answer", [0.2, -0.3, 0.0])
-def test_the_guards_heading_rate_is_commanded(guarded_by, answer):
-    guidance = guarded_by(RecordingGuard(Guarded(answer, SPEED, True, GuardStatus.INTERVENING)))
-    guidance.step(0.0, motion(-300.0, 0.0, 0.0))
-    assert guidance.heading_rate_command == answer
-    assert guidance.guarding
-    # The tracker's preview goes on from it.
-    assert guidance.mission.tracker.heading_rate_command == answer
-
-
-@pytest.mark.parametrize("lag", [0.0, 0.4])
-def test_the_guard_gets_the_motion_now_and_a_disc_without_width(guarded_by, lag):
-    guard = RecordingGuard(Guarded(0.0, SPEED, False, GuardStatus.FREE))
-    guidance = guarded_by(guard, lag=lag, vessel=(3.0, -2.0))
-    guidance.step(5.0, motion(-300.0, 20.0, 0.7, SPEED + 0.5, 0.1))
-    (demand,), (now,) = guard.demands, guard.motions
-    assert (demand.time, demand.pace, demand.leaving) == (5.0, SPEED, False)
-    # Course and speed come back from the velocities: roundings.
-    assert now == pytest.approx((-300.0, 20.0, 0.7, 0.1, SPEED + 0.5, 0.0, 0.0), rel=1e-14)
-    # From the origin at time 0, and known exactly for good.
-    assert guard.vessels == [(Tube(0.0, 0.0, 0.0, 3.0, -2.0, 0.0, 0.0, 0.0),)]
-
-
-def test_the_guard_takes_note_of_commands_that_are_flown_in_place_of_its_own(guarded_by):
-    guard = RecordingGuard(Guarded(2.0 * HEADING_RATE_MAX, SPEED, False, GuardStatus.FREE))
-    guidance = guarded_by(guard)
-    guidance.step(0.0, motion(-300.0, 20.0, 0.7))
-    # More than omega_max is not flown.
-    assert guidance.heading_rate_command == HEADING_RATE_MAX
-    guidance.overruled(0.1, SPEED + 3.0)
-    assert guard.replaced == [(HEADING_RATE_MAX, None), (0.1, SPEED + 3.0)]
-
-
 def test_a_turn_away_has_to_keep_off_at_v_r_and_at_the_airspeed_now(filtered_by):
     # Trimmed to less than V_r, the vehicle is back at V_r in a turn away. While a disc closes in
     # the slower vehicle may come nearer.
@@ -242,17 +173,6 @@ def test_a_turn_away_has_to_keep_off_at_v_r_and_at_the_airspeed_now(filtered_by)
     guidance.step(0.0, motion(-300.0, 20.0, 0.7, SPEED - 1.0, 0.1))
     assert heading_rates.fastest == [SPEED]
     assert heading_rates.slowest == pytest.approx([SPEED - 1.0], rel=1e-14)
-
-
-def test_a_turn_away_has_to_keep_off_at_an_airspeed_that_is_flown_in_place_of_the_commanded_one(
-    filtered_by,
-):
-    heading_rates = RecordingFilter()
-    guidance = filtered_by(heading_rates)
-    guidance.step(0.0, motion(-300.0, 20.0, 0.7))
-    guidance.overruled(0.1, SPEED + 3.0)
-    guidance.step(TIME_STEP, motion(-300.0, 20.0, 0.7))
-    assert heading_rates.fastest[-1] == SPEED + 3.0
 
 
 @pytest.mark.parametrize("allowed", [True, False])
@@ -293,35 +213,6 @@ def test_it_catches_up_only_where_the_guard_allows_that_and_does_not_intervene(
     assert guidance.guarding == (status is not GuardStatus.FREE)
 
 
-def test_it_catches_up_once_the_guard_has_been_free_for_a_quarter_of_a_turn(filtered_by):
-    heading_rates = RecordingFilter()
-    guidance = filtered_by(heading_rates, airspeed_gain=0.15)
-    guidance.step(0.0, motion(-300.0, 0.0, 0.0))
-    heading_rates.status = GuardStatus.FREE
-    commanded = []
-    for step in range(1, 100):
-        guidance.step(step * TIME_STEP, motion(*behind(guidance.mission.tracker.reference)))
-        commanded.append(guidance.airspeed_command)
-    waiting = math.ceil(0.5 * math.pi / HEADING_RATE_MAX / TIME_STEP) - 1
-    assert commanded == [SPEED] * waiting + [SPEED + 1.0] * (99 - waiting)
-
-
-@pytest.mark.parametrize("nu", [0.1, 0.5, 0.8])
-def test_from_ahead_of_the_vessel_only_the_guard_keeps_the_vehicle_out(nu):
-    # Nothing in the paper's law avoids the keep-out area, and from ahead of the vessel the way
-    # leads through it.
-    unguarded, guarded = (
-        np.min(
-            fly(about_a_vessel(nu, guard=guard), (600.0, 30.0, math.pi), duration=400.0).to_vessel
-        )
-        for guard in (None, QUICK_GUARD)
-    )
-    # Straight through: measured, 2 to 14 m.
-    assert unguarded < 50.0
-    # The guard's radius.
-    assert guarded >= 200.75
-
-
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("nu", [0.0, 0.1, 0.5])
 def test_from_astern_a_guarded_vehicle_settles_and_keeps_out(nu, seed):
@@ -340,15 +231,6 @@ def test_from_astern_a_guarded_vehicle_settles_and_keeps_out(nu, seed):
     assert np.min(flight.to_vessel) >= 200.75
     # Settled within the half metre that holding commands leaves; see test_tracker.py.
     assert np.max(flight.distance[-600:]) < 0.5
-
-
-def test_an_order_follows_what_was_flown_and_not_what_the_law_demands_meanwhile():
-    guidance = make_guidance(make_reference(paper_oscillation(0.5)), lag=0.4)
-    guidance.mission = OnTheWay(guidance.mission, SPEED)
-    for step in range(3):
-        guidance.step(step * TIME_STEP, motion(-300.0, 0.0, 2.0))
-    assert abs(guidance.mission.tracker.heading_rate_demand - 0.1) > 0.1
-    assert guidance.mission.flown == [0.0, 0.1, 0.1]
 
 
 GUARD = GuardParameters(
@@ -475,38 +357,6 @@ def readings(north, east, *, course=0.0, airspeed=SPEED, servo_error=0.0):
     )
 
 
-def test_the_papers_guidance_has_no_parts_that_have_nothing_to_do():
-    guidance = Guidance(paper())
-    assert guidance.monitor is None
-    assert guidance.guard is None
-    assert (type(guidance.own), type(guidance.target), type(guidance.mission)) == (
-        TrueNavigation,
-        SteadyTarget,
-        DirectTracking,
-    )
-
-
-def test_a_guidance_that_follows_a_plume_has_every_part():
-    guidance = Guidance(following())
-    assert (type(guidance.own), type(guidance.target), type(guidance.mission)) == (
-        EstimatedNavigation,
-        ReportedTarget,
-        PlumeFollowing,
-    )
-    assert guidance.monitor is not None
-    assert guidance.guard is not None
-
-
-@pytest.mark.parametrize("part", ["guard", "health"])
-def test_a_guidance_that_follows_a_plume_can_do_without(part):
-    guidance = reported(replace(following(), **{part: None}))
-    assert getattr(guidance, {"guard": "guard", "health": "monitor"}[part]) is None
-    for step in range(50):
-        guidance.step(step * TIME_STEP, readings(-300.0 + SPEED * step * TIME_STEP, 20.0))
-        assert abs(guidance.heading_rate_command) <= HEADING_RATE_MAX
-    assert guidance.guarding is False
-
-
 def test_no_command_exceeds_its_bound_in_gusts_from_behind():
     # A gust between two looks at the wind takes a fifth of the airspeed: the same acceleration
     # turns the airframe the faster.
@@ -522,52 +372,6 @@ def test_no_command_exceeds_its_bound_in_gusts_from_behind():
         guidance.mission.tracker.heading_rate_command
         == guidance.heading_rate_command * guidance.own.air_ratio
     )
-
-
-def test_flights_share_nothing():
-    parameters = paper(guard=GUARD)
-    one = fly(Guidance(parameters), (-300.0, 40.0, 0.5), duration=20.0)
-    other = fly(Guidance(parameters), (-300.0, 40.0, 0.5), duration=20.0)
-    # Neither the reference's place nor the guard's memory: the same to the last bit.
-    np.testing.assert_array_equal(one.command, other.command)
-    first, second = Guidance(parameters), Guidance(parameters)
-    first.step(0.0, motion(-202.0, 0.0, 0.0))
-    assert (first.guarding, second.guarding) == (True, False)
-
-
-def test_the_mission_plans_every_few_steps_and_the_papers_once(monkeypatch):
-    planned = []
-    for mission in (PlumeFollowing, DirectTracking):
-        plan = mission.plan
-
-        def noted(self, time, *args, renew, plan=plan, **how):
-            if renew:
-                planned.append(time)
-            return plan(self, time, *args, renew=renew, **how)
-
-        monkeypatch.setattr(mission, "plan", noted)
-    for guidance, plans in ((reported(following()), 3), (Guidance(paper()), 1)):
-        planned.clear()
-        measurement = readings(-300.0, 0.0) if plans > 1 else motion(-300.0, 0.0, 0.0)
-        for step in range(3 * PLAN_INTERVAL):
-            guidance.step(step * TIME_STEP, measurement)
-        assert planned == pytest.approx([i * PLAN_INTERVAL * TIME_STEP for i in range(plans)])
-
-
-def test_the_altitude_commanded_rises_with_the_centres_distance_where_the_plume_rises():
-    climb = math.tan(math.radians(10.0))
-    guidance, level = reported(following(climb=climb)), reported(following())
-    altitudes = []
-    for step in range(6 * PLAN_INTERVAL + 1):
-        for made in (guidance, level):
-            made.step(step * TIME_STEP, readings(-900.0, 0.0))
-        altitudes.append(guidance.altitude_command)
-    # From the stack's 60 m towards the axis at the centre of oscillation, 36 m higher at least, no
-    # steeper than 5 %.
-    assert guidance.mission.centre.distance > 203.0
-    planned = np.array([60.0, *altitudes[::PLAN_INTERVAL]])
-    assert np.diff(planned) == pytest.approx(0.05 * SPEED * PLAN_INTERVAL * TIME_STEP, rel=1e-12)
-    assert level.altitude_command == 60.0
 
 
 def test_a_vehicle_with_a_fault_leaves_and_sinks():
@@ -633,21 +437,6 @@ def test_a_vehicle_without_thrust_holds_its_height_and_goes_on_when_thrust_is_th
     assert not set(vehicle.modes) & set(LOST)
     assert set(vehicle.altitudes) == {60.0}
     assert vehicle.guidance.monitor.fault is Fault.NONE
-
-
-def test_a_vehicle_without_thrust_glides_to_the_sea_when_its_speed_has_fallen_to_that_of_a_glide():
-    vehicle = Powered()
-    vehicle.fly(5.0, thrust=LEVEL)
-    vehicle.fly(5.0, thrust=0.0)
-    modes, speeds = vehicle.modes, vehicle.speeds
-    retreat, glide = modes.index(Mode.RETREATING), modes.index(Mode.GLIDING)
-    assert retreat < glide
-    assert speeds[glide] < 17.0 <= speeds[glide - 1]
-    assert set(modes[retreat:glide]) == {Mode.RETREATING}
-    assert set(modes[glide:]) == {Mode.GLIDING}
-    assert set(vehicle.altitudes[:glide]) == {60.0}
-    assert vehicle.altitudes[-1] < -500.0
-    assert vehicle.guidance.airspeed_command == 17.0
 
 
 def test_a_turn_away_is_flown_in_full_in_gusts_from_ahead():

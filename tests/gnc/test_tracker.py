@@ -114,29 +114,6 @@ def test_preview_makes_up_for_a_vehicle_that_answers_late(nu, law, delay):
     assert with_preview < 0.3
 
 
-@LAWS
-@pytest.mark.parametrize("delay", [0.0, 0.3])
-def test_mirrored_flights_are_commanded_mirrored(law, delay):
-    # Without a guard: along the edge of the keep-out area its choices hang on roundings. The
-    # guard's mirror symmetry is tested in guard/test_guard.py.
-    oscillation = paper_oscillation(0.5, reserve=0.1)
-    flights = []
-    # The mirror image of the course eta cos(omega_0 t + phi_0) is that with phi_0 + pi.
-    for side, phase in ((1.0, 0.4), (-1.0, 0.4 + math.pi)):
-        reference = make_reference(
-            oscillation, phase=phase, centre=(-214.0, side * 10.0), vessel_course=side * 0.2
-        )
-        guidance = make_guidance(reference, law=law, lag=delay, airspeed_gain=0.15)
-        flights.append(fly(guidance, (350.0, side * 60.0, side * 3.0), duration=90.0, delay=delay))
-    one, other = flights
-    # Roundings of 1e-13 m at first, which the loop, being stable, does not amplify much.
-    np.testing.assert_allclose(other.command, -one.command, rtol=0.0, atol=1e-9)
-    np.testing.assert_allclose(other.north, one.north, rtol=0.0, atol=1e-7)
-    np.testing.assert_allclose(other.east, -one.east, rtol=0.0, atol=1e-7)
-    # And there was something to mirror.
-    assert np.ptp(one.command) > 0.1
-
-
 @pytest.mark.parametrize("nu", [0.0, 0.5, 0.8])
 @pytest.mark.parametrize("law", [CascadeLaw(), LyapunovLaw()], ids=["cascade", "lyapunov"])
 def test_a_kinematic_vehicle_settles_on_the_reference_at_20_hertz(nu, law):
@@ -148,22 +125,3 @@ def test_a_kinematic_vehicle_settles_on_the_reference_at_20_hertz(nu, law):
     # nu = 0.8 under the Lyapunov law.
     assert np.max(flight.distance[-1000:]) < 0.8
     assert flight.distance[0] > 100.0
-
-
-@pytest.mark.parametrize("lag", [0.0, 0.4])
-def test_the_reference_shown_is_the_one_now_also_with_preview(lag):
-    alone = make_reference(
-        paper_oscillation(0.3), phase=0.7, centre=(-214.0, 5.0), vessel_course=0.3
-    )
-    tracker = Tracker(tracking_parameters(lag=lag), copy.copy(alone))
-    for _ in range(100):
-        shown = tracker.reference
-        # The same arithmetic.
-        assert (shown.north, shown.east, shown.course, shown.heading_rate) == (
-            alone.north,
-            alone.east,
-            alone.course,
-            alone.heading_rate,
-        )
-        tracker.step(0.0, 0.0, 0.0, SPEED, 0.0)
-        alone.step()

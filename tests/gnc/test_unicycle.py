@@ -1,6 +1,5 @@
 import math
 
-import numpy as np
 import pytest
 from gnc_cases import courses, examples
 from hypothesis import given
@@ -12,7 +11,6 @@ from gnc.unicycle import lagged_move, unicycle_move
 
 speeds = st.floats(1.0, 40.0)
 heading_rates = st.floats(-1.0, 1.0)
-durations = st.floats(0.0, 60.0)
 
 
 @examples(100)
@@ -26,12 +24,6 @@ def test_the_vehicle_moves_along_its_course_at_its_speed(speed, course, heading_
     assert math.hypot(north_rate, east_rate) == pytest.approx(speed, rel=1e-14)
     assert north_rate * math.cos(course) + east_rate * math.sin(course) > 0.0
     assert course_rate == heading_rate
-
-
-def test_courses_are_clockwise_from_north():
-    # gnc's frame: east is course pi/2. The cosine of pi/2 in floating point is 6e-17.
-    assert unicycle_rates(10.0, 0.0, 0.0) == (10.0, 0.0, 0.0)
-    assert unicycle_rates(10.0, 0.5 * math.pi, 0.0) == pytest.approx((0.0, 10.0, 0.0), abs=1e-14)
 
 
 @pytest.mark.parametrize("heading_rate", [-0.9, -0.1, 0.0, 1e-9, 0.503])
@@ -48,35 +40,6 @@ def test_a_move_equals_the_integral_of_the_rates(heading_rate):
     assert unicycle_move(5.0, -7.0, course, speed, heading_rate, duration) == pytest.approx(
         solution.y[:, -1], rel=0.0, abs=1e-5
     )
-
-
-@examples(200)
-@given(course=courses, speed=speeds, heading_rate=heading_rates, first=durations, second=durations)
-def test_two_moves_make_one(course, speed, heading_rate, first, second):
-    halfway = unicycle_move(0.0, 0.0, course, speed, heading_rate, first)
-    end = unicycle_move(*halfway, speed, heading_rate, second)
-    # The straight-line limit below 1e-6 rad errs by 1e-12/6 of at most 4,800 m; roundings are
-    # smaller.
-    assert end == pytest.approx(
-        unicycle_move(0.0, 0.0, course, speed, heading_rate, first + second), rel=0.0, abs=1e-8
-    )
-
-
-def test_half_a_turn_ends_a_diameter_away_on_the_side_of_the_turn():
-    # Radius v/omega, from equation (1) with constant omega: 20/0.25 = 80 m; to the right, east of a
-    # northbound vehicle.
-    assert unicycle_move(0.0, 0.0, 0.0, 20.0, 0.25, math.pi / 0.25) == pytest.approx(
-        (0.0, 160.0, math.pi), abs=1e-12
-    )
-
-
-def test_the_straight_line_is_the_limit_of_the_arc():
-    # On either side of the switch to the straight chord, half_turn = 1e-6: sin(a)/a is 1 - 1.7e-13
-    # there.
-    arc = unicycle_move(0.0, 0.0, 0.3, 20.0, 2.0002e-6, 1.0)
-    line = unicycle_move(0.0, 0.0, 0.3, 20.0, 1.9998e-6, 1.0)
-    # The courses differ by 2e-10 rad over 20 m.
-    assert np.subtract(arc, line) == pytest.approx([0.0, 0.0, 0.0], abs=5e-9)
 
 
 @pytest.mark.parametrize("step", [0.05, 1.0])

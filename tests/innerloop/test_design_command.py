@@ -9,6 +9,8 @@ from reports.run.run_data import read_run
 from tests.in_process import run_command
 from tests.run_tables import manifest_of
 
+pytestmark = pytest.mark.slow
+
 HEIGHT = ("--altitude", 60.0)
 """That of the designs that other tests have too."""
 
@@ -53,14 +55,6 @@ def test_a_number_of_reversals_that_cannot_be_flown_is_refused(tmp_path, reversa
     assert not (tmp_path / "x8").exists()
 
 
-def test_the_command_does_not_write_over_flights(tmp_path):
-    (tmp_path / "manifest.json").write_text('{"study": "flights"}', encoding="utf-8")
-    refused = run_command("innerloop.design", "x8", "--out", tmp_path)
-    assert refused.status == 2
-    assert "holds another run; choose another --out" in refused.errors
-    assert [p.name for p in tmp_path.iterdir()] == ["manifest.json"]
-
-
 def test_a_design_made_anew_leaves_no_report_of_the_older_one(tmp_path, designs):
     designs("x8")
     out = tmp_path / "x8"
@@ -76,58 +70,3 @@ def test_a_design_made_anew_leaves_no_report_of_the_older_one(tmp_path, designs)
         "model",
         "notes.txt",
     }
-
-
-def test_a_design_made_anew_leaves_no_model_of_the_older_one(tmp_path, designs):
-    designs("x8")
-    out = tmp_path / "out"
-    for _ in range(2):
-        assert (
-            run_command("innerloop.design", "x8", *HEIGHT, "--out", out, "--no-report").status == 0
-        )
-        files = {path.name for path in (out / "model").rglob("*")}
-        assert {"x8.xml", "x8_autopilot.xml"} <= files
-        assert "aerosonde_autopilot.xml" not in files
-        (out / "model" / "systems" / "aerosonde_autopilot.xml").touch()
-
-
-def test_a_logo_that_is_no_picture_is_refused_before_anything_is_designed(tmp_path):
-    ended = run_command(
-        "innerloop.design", "x8", "--out", tmp_path / "x8", "--set", "report.logo=gone.png"
-    )
-    assert ended.status == 2
-    assert ended.errors.startswith("error: report.logo: 'gone.png' cannot be read")
-    assert not (tmp_path / "x8").exists()
-
-
-def test_a_list_of_a_directory_has_of_each_aircraft_the_reason_alone(tmp_path):
-    (tmp_path / "wing").mkdir()
-    (tmp_path / "wing" / "wing.xml").write_text(
-        '<fdm_config name="wing"><propulsion/></fdm_config>', encoding="utf-8"
-    )
-    listed = run_command("innerloop.design", "--aircraft-dir", tmp_path, "--list")
-    assert listed.out.split(maxsplit=2) == ["-", str(tmp_path / "wing"), "it has no engine\n"]
-
-
-def test_a_list_is_not_that_of_one_aircraft():
-    refused = run_command("innerloop.design", "x8", "--list")
-    assert (refused.status, refused.out) == (2, "")
-    assert refused.errors.startswith("error: aircraft 'x8' is given with --list")
-    assert refused.errors.count("\n") == 1
-
-
-def test_a_file_that_cannot_be_read_is_not_one_that_cannot_be_written(tmp_path):
-    long = "a" * 300
-    read = run_command("innerloop.design", f"{long}/wing")
-    assert read.errors.endswith(
-        f"{long}/wing' cannot be read: File name too long; check the path and its permissions\n"
-    )
-    written = run_command("innerloop.design", "x8", "--out", tmp_path / long)
-    assert (
-        f"{long}/manifest.json' cannot be written: File name too long; choose another --out"
-        in written.errors
-    )
-    (tmp_path / "file").touch()
-    below = run_command("innerloop.design", "x8", "--out", tmp_path / "file" / "a" / "b")
-    assert "cannot be written: Not a directory; choose another --out" in below.errors
-    assert (read.status, written.status, below.status) == (2, 2, 2)

@@ -14,6 +14,8 @@ from aircraft.trim import trim
 from innerloop.law import ControlLaw, linear_controller
 from innerloop.margins import REQUIRED, Loops
 
+pytestmark = pytest.mark.slow
+
 PRINTED = {"ixx": 1.229, "iyy": 0.1702, "izz": 0.8808, "ixz": 0.9343}
 """Of the authors' parameter file, "based on very rough initial tests" [kg m^2]."""
 

@@ -2,16 +2,15 @@
 
 import itertools
 import math
-from dataclasses import astuple, fields, replace
+from dataclasses import astuple, replace
 
 import numpy as np
 import pytest
 from scipy.linalg import solve_continuous_are
 
 from aircraft.linearise import LinearModel
-from common.physics import STANDARD_GRAVITY
 from innerloop import synthesis
-from innerloop.schedule import GAIN_BANKS, LATERAL, LEVEL_GAINS, LONGITUDINAL, LoopBandwidths
+from innerloop.schedule import GAIN_BANKS, LATERAL, LEVEL_GAINS, LONGITUDINAL
 from innerloop.synthesis import (
     control_weights,
     design_gains,
@@ -120,66 +119,6 @@ def test_airspeed_is_as_fast_as_the_engine_and_slower_than_altitude():
     assert reachable_bandwidths([simple(z_alpha=-1.2)], BANK).airspeed == pytest.approx(
         0.27 * 0.9, rel=1e-12
     )
-
-
-def test_the_slowest_of_all_airspeeds_decides_each_axis_by_itself():
-    slow_turn, slow_climb = simple(aileron=2.0, roll_damping=-0.1), simple(z_alpha=-1.2)
-    both = reachable_bandwidths([slow_turn, slow_climb], BANK)
-    assert both.lateral == reachable_bandwidths([slow_turn], BANK).lateral
-    assert both.longitudinal == reachable_bandwidths([slow_climb], BANK).longitudinal
-
-
-def test_the_controls_may_do_what_moves_their_axis_at_its_frequency_against_its_damping():
-    bandwidths = LoopBandwidths(lateral=3.0, longitudinal=2.0, airspeed=0.5)
-    weights = design_weights(bandwidths, 20.0)
-    found = control_weights(simple(), bandwidths, weights)
-    # w hypot(w, damping) times the acceptable angle, over authority: by hand, 0.3 rad of pitch and
-    # 0.1 rad of roll.
-    assert found.elevator == pytest.approx(0.3 * 2.0 * math.hypot(2.0, 5.0) / 20.0, rel=1e-12)
-    assert found.aileron == pytest.approx(0.1 * 3.0 * math.hypot(3.0, 4.0) / 30.0, rel=1e-12)
-    assert found.throttle == pytest.approx(weights.airspeed * 0.5 / 6.0, rel=1e-12)
-    # The rudder: 0.05 rad of sideslip, at w hypot(w, 1.5) or, if that is less, against the
-    # weathercock's own 8 1/s^2.
-    assert found.rudder == pytest.approx(0.05 * 8.0 / 5.0, rel=1e-12)
-    stiff = control_weights(simple(yaw_stiffness=50.0), bandwidths, weights)
-    assert stiff.rudder == pytest.approx(0.05 * 3.0 * math.hypot(3.0, 1.5) / 5.0, rel=1e-12)
-
-
-def test_an_aircraft_without_a_rudder_has_no_weight_for_it(x8_design):
-    schedule = x8_design.schedule
-    assert math.isnan(
-        control_weights(
-            schedule.models[2][LEVEL_GAINS], x8_design.bandwidths, schedule.weights
-        ).rudder
-    )
-
-
-def test_deviations_are_those_that_a_pitch_of_three_tenths_makes_in_a_unit_of_time():
-    found = design_weights(LoopBandwidths(lateral=4.0, longitudinal=2.0, airspeed=0.5), 20.0)
-    # Half a second of a climb at 0.3 rad and 20 m/s is 3 m, of which half; g times 0.3 rad in it is
-    # 1.47 m/s, twice.
-    assert found.altitude == pytest.approx(0.5 * 20.0 * 0.3 * 0.5)
-    assert found.airspeed == pytest.approx(2.0 * STANDARD_GRAVITY * 0.3 * 0.5)
-    assert (found.pitch, found.roll, found.sideslip) == (0.3, 0.1, 0.05)
-    assert (found.model_frequency, found.model_damping) == (4.0, 0.9)
-
-
-def test_with_half_the_speed_everything_takes_twice_as_long():
-    quick = design_weights(LoopBandwidths(lateral=4.0, longitudinal=2.0, airspeed=0.5), 20.0)
-    slow = design_weights(LoopBandwidths(lateral=2.0, longitudinal=1.0, airspeed=0.25), 20.0)
-    # At the same V and g: lengths V/w and airspeeds g/w double, their integrals quadruple, angles
-    # stay, and rates halve.
-    exponents = dict.fromkeys((field.name for field in fields(quick)), 0)
-    exponents |= dict.fromkeys(("airspeed", "altitude", "heading_integral", "sideslip_integral"), 1)
-    exponents |= dict.fromkeys(("altitude_error_max", "airspeed_error_max"), 1)
-    exponents |= dict.fromkeys(("airspeed_integral", "altitude_integral"), 2)
-    exponents |= dict.fromkeys(("pitch_rate", "roll_rate", "model_frequency"), -1)
-    exponents |= {"anti_windup_rate": -1}
-    ratios = {
-        field.name: getattr(slow, field.name) / getattr(quick, field.name)
-        for field in fields(quick)
-    }
-    assert ratios == pytest.approx({name: 2.0**exponent for name, exponent in exponents.items()})
 
 
 SCALES = {
@@ -409,61 +348,3 @@ def test_gains_oppose_the_deviations_they_answer(designs, name):
         against = np.sign(effect(plant, "p", "aileron")) * gains.lateral[0]
         assert min(against[LATERAL.index("p")], against[LATERAL.index("roll")]) > 0.0
         assert gains.heading_integral > 0.0
-
-
-@pytest.mark.parametrize("name", WITH_RUDDER)
-def test_the_rudder_turns_the_nose_into_the_wind_and_damps_yaw(designs, name):
-    for gains, plant in level_gains(designs(name).design.schedule):
-        yaw_by_rudder = effect(plant, "r", "rudder")
-        # Yaw acceleration per deviation.
-        by = dict(zip(LATERAL, -gains.lateral[1] * yaw_by_rudder, strict=True))
-        # Sideslip is positive with air from the right, and turning right removes it; so does its
-        # integral. A yaw rate is opposed.
-        assert by["beta"] > 0.0
-        assert gains.sideslip_integral * yaw_by_rudder > 0.0
-        assert by["r"] < 0.0
-
-
-@pytest.mark.parametrize("name", WITH_RUDDER)
-def test_rolling_under_the_feedforward_the_nose_goes_round_with_the_turn(designs, name):
-    schedule = designs(name).design.schedule
-    rate, acceleration = 0.2, 0.5
-    for i, (gains, plant) in enumerate(level_gains(schedule)):
-        a, b, _, _ = plant.pick(("p", "r"), ("aileron", "rudder"), ("p",))
-        controls = (
-            gains.roll_rate_feedforward * rate + gains.roll_acceleration_feedforward * acceleration
-        )
-        # Demanded: p_dot = acceleration; and r grows as the turn does in a roll about the velocity,
-        # omega = g tan(bank)/V, whose part cos(bank) is r: r_dot = g/V p at wings level, to 1e-7 at
-        # half a milliradian.
-        expected = [acceleration, STANDARD_GRAVITY / schedule.level(i).airspeed * rate]
-        np.testing.assert_allclose(a[:, 0] * rate + b @ controls, expected, atol=1e-6)
-
-
-def test_without_a_rudder_roll_feedforward_is_the_inverse_of_the_roll_equation(x8_schedule):
-    full = 0.5236  # rad of deflection for a command of 1 (model file)
-    for models, row_of_gains in zip(x8_schedule.models, x8_schedule.gains, strict=True):
-        model, gains = models[LEVEL_GAINS], row_of_gains[LEVEL_GAINS]
-        row, aileron = model.state_labels.index("p"), model.state_labels.index("aileron_position")
-        by_aileron, by_rate = model.A[row, aileron] * full, model.A[row, row]
-        # p_dot = L_p p + L_da da solved for the aileron. Propeller speed does not depend on roll
-        # rate, so nothing else enters.
-        assert gains.roll_acceleration_feedforward[0] == pytest.approx(1.0 / by_aileron, rel=1e-6)
-        assert gains.roll_rate_feedforward[0] == pytest.approx(-by_rate / by_aileron, rel=1e-6)
-
-
-def test_gains_change_little_from_one_bank_to_the_same_on_the_other_side(designs):
-    schedule = designs("T37").design.schedule
-    # The model is the same to both sides: it trims level without bank or aileron (to 1e-15), so
-    # nothing turns one way.
-    for i, row in enumerate(schedule.gains):
-        banks = np.array([schedule.gain_trim(i, j).roll for j in range(len(row))])
-        np.testing.assert_allclose(banks, -banks[::-1], rtol=0.0, atol=2e-3)
-        for left, right in zip(row, reversed(row), strict=True):
-            np.testing.assert_allclose(
-                left.longitudinal,
-                right.longitudinal,
-                rtol=0.05,
-                atol=0.02 * np.abs(right.longitudinal).max(),
-            )
-    assert math.degrees(schedule.gain_trim(0, 0).roll) == pytest.approx(-0.82 * 1.1 * 35.0, abs=0.1)

@@ -4,6 +4,8 @@ import pytest
 
 from tests.standing_alone import StandingAlone
 
+pytestmark = pytest.mark.slow
+
 MEASUREMENT = StandingAlone(
     "measurement",
     allowed={"common", "numpy", "pandas", "rich", "scipy", "typer"},

@@ -5,6 +5,8 @@ import math
 import pytest
 from study_runs import assert_flown_as_the_issue_asks, fly_study
 
+pytestmark = pytest.mark.slow
+
 NUS = (0.3, 0.7)
 CROSSINGS = 15
 """Half of the study's, which the X8 flies (test_flights)."""

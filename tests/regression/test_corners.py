@@ -8,6 +8,8 @@ and steep banks got the X8 in.
 import pytest
 from study_runs import AT_THE_SHIP, flown, flown_once
 
+pytestmark = pytest.mark.slow
+
 SILENT_BRAKING = [
     "sea_faults", "draws=[]", "flights=2", "fault.kind=vessel_data", "fault.at_s=[200,200]", "flight.duration_max_s=250",
     "vessel.speed_mps=12", "vessel.manoeuvres=[{at_s=200,speed_mps=2,acceleration_mps2=0.25}]",

@@ -8,6 +8,8 @@ little after they did.
 import pytest
 import study_runs
 
+pytestmark = pytest.mark.slow
+
 NOWHERE = ["draws=[]", "flight.crossings=0", "fidelity=kinematic"]
 REVERSED = """time_utc,speed_mps,from_deg
 2026-06-01T11:00:00Z,8,0

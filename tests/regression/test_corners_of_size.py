@@ -5,6 +5,8 @@ had come within r_min.
 import pytest
 import study_runs
 
+pytestmark = pytest.mark.slow
+
 
 def flown(tmp_path, *overrides):
     """Return the rows of flights of ``sea_wind`` whose law flies at the ship."""

@@ -4,6 +4,8 @@ import pytest
 
 from tests.regression.study_runs import assert_flown_as_the_issue_asks, fly_study
 
+pytestmark = pytest.mark.slow
+
 FASTEST = "reference.shape=fastest"
 
 

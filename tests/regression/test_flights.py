@@ -12,6 +12,8 @@ from scenarios.scenario.files import load_study
 from scenarios.studies.base import FlightStudy
 from tests.run_tables import history_in
 
+pytestmark = pytest.mark.slow
+
 SPEED = 19.42
 
 

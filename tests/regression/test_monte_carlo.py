@@ -11,6 +11,8 @@ from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 
+pytestmark = pytest.mark.slow
+
 FLIGHTS = 6
 
 

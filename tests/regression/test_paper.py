@@ -25,6 +25,8 @@ from scenarios.studies.base import run_study
 from tests.reports.report_parts import numbers_on_page_1
 from tests.run_tables import rows_of
 
+pytestmark = pytest.mark.slow
+
 FEW_RESERVES = (0.0, 0.015, 0.2, 0.4, 0.6)
 """Of the reserves at which a run prices a guarantee: each takes a search of a tenth of a second."""
 
@@ -285,58 +287,3 @@ def test_the_kinematic_half_flies_alone(tmp_path, few_bounds):
     assert numbers_on_page_1(tmp_path / "run", tmp_path) <= expected_numbers(tmp_path / "run")
     write_html(content(read_run(tmp_path / "run")), tmp_path / "report.html")
     assert "kinematic vehicle" in (tmp_path / "report.html").read_text(encoding="utf-8")
-
-
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        # So weak a gain that the line of sight does not exceed omega_max.
-        (
-            ["keepout.radius_m=300", "guidance.gain_per_s=0.1"],
-            ["distance from the vessel there (", "the line of sight saturates ("],
-        ),
-        (
-            ["sweep.nu=[0.3]"],
-            ["smoke plume measurements every (", "distance from the vessel there ("],
-        ),
-        (["reference.radius_m=30"], [" of 9 statements could not be tested"]),
-    ],
-)
-def test_what_is_not_the_papers_is_not_called_reproduced(changes, words, tmp_path, few_bounds):
-    # An override has its way in every case, also where the case sets that key; report and exit
-    # status then agree.
-    scenario = load_study(
-        "paper", ["fidelity=kinematic", "guidance.rate_hz=10", "flight.crossings=10", *changes]
-    )
-    result = run_study(scenario, "paper", tmp_path / "run", executor_factory=InProcessExecutor)
-    assert not result.all_met
-    report = content(read_run(tmp_path / "run"))
-    assert all(of in report.verdict.headline for of in words)
-    assert not (report.verdict.complete and report.verdict.holds)
-    # Nothing in its tables is "not a number".
-    cells = [
-        cell
-        for section in report.sections
-        for block in section.blocks
-        if isinstance(block, Table)
-        for row in block.rows
-        for cell in row
-    ]
-    assert not [cell for cell in cells if "nan" in cell]
-
-
-def test_a_study_of_cases_with_a_sniffer_has_its_sulphur_statistics(tmp_path, few_bounds):
-    overrides = ["study=paper", 'cases=[{name="one"}]', "fidelity=kinematic"]
-    short = ["flight.after_settling_s=1", "flight.duration_max_s=3"]
-    run_study(
-        load_study("sulphur", [*overrides, *short]),
-        "sulphur",
-        tmp_path / "run",
-        executor_factory=InProcessExecutor,
-    )
-    # Too short for a result: its tables are empty, but they are there, and so are the bounds.
-    assert (
-        json.loads((tmp_path / "run" / "sulphur.json").read_text(encoding="utf-8"))["accuracy"]
-        == []
-    )
-    assert (tmp_path / "run" / "bounds.json").is_file()

@@ -7,9 +7,12 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from scenarios import fly
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
+
+pytestmark = pytest.mark.slow
 
 LAW = f"guidance.law={Path(__file__).parent}/law_past_the_ship.py:PastTheShip"
 STANDOFF = (
@@ -83,18 +86,13 @@ def test_a_flight_in_turbulence_keeps_out(tmp_path, keys):
     assert row.guard_lost_s == 0.0
 
 
-def test_an_ordinary_flight_without_satellites_in_moderate_turbulence_keeps_out(tmp_path):
+def test_an_ordinary_flight_without_satellites_in_moderate_turbulence_keeps_out():
     # Flight 8 of the study came 51 m within: the wind was wrong by 2.9 m/s at the loss.
-    overrides = (
-        "flights=8",
-        "fault.kind=satellite_navigation",
-        "fault.satellite_navigation_s=60",
-    )
-    study = load_study("sea_turbulence_moderate", overrides)
-    run_study(study, "sea_turbulence_moderate", tmp_path, executor_factory=InProcessExecutor)
-    rows = pd.read_csv(tmp_path / "summary.csv")
-    assert set(rows.outcome) == {"completed"}
-    assert (rows.min_distance_m >= rows.keepout_radius_m).all()
+    keys = {"fault.kind": "satellite_navigation", "fault.satellite_navigation_s": 60}
+    name = "sea_turbulence_moderate"
+    row = fly(name, flight_id=f"{name}_00007", flights=8, **keys).row
+    assert row["outcome"] == "completed"
+    assert row["min_distance_m"] >= row["keepout_radius_m"]
 
 
 def test_in_steady_wind_every_premise_holds(tmp_path):

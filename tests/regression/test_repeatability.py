@@ -1,10 +1,13 @@
 """The same flights, flown twice: every file of results is the same to the last byte."""
 
 import pandas as pd
+import pytest
 
 from scenarios.engine.runner import ExecutorFactory
 from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
+
+pytestmark = pytest.mark.slow
 
 LISTED = """
 study = "trials"

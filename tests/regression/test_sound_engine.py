@@ -1,9 +1,13 @@
 """A sound aircraft keeps its mission when it is ordered to speed up from a slow pace."""
 
+import pytest
+
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 from tests.run_tables import rows_of
+
+pytestmark = pytest.mark.slow
 
 # Of the issue: in light turbulence a c172p is ordered from its slowest airspeed to 1.35 times that,
 # beside a ship that turns. After 61 s its mean airspeed was so far below the order, and was still

@@ -5,12 +5,9 @@ import math
 import pytest
 from study_runs import AT_THE_SHIP, assert_flown_as_the_issue_asks, flown_once, fly_study
 
-from reports.document.blocks import Table
-from reports.document.chart import Chart
-from reports.registry import content
-from reports.render.html import write_html
-from reports.run.run_data import read_run
 from scenarios.errors import InputError
+
+pytestmark = pytest.mark.slow
 
 # One of the issue's three speed ratios, for the suite's three minutes. All three were flown by all,
 # the c172x and the c310, too; a flight of the 737 took up to 13 s and is left to the command line;
@@ -76,48 +73,3 @@ def test_an_aircraft_that_pushes_over_to_a_glide_in_its_turn_away_keeps_out(desi
     row = flown_once(tmp_path / "run", "sea_wind", keys, *AT_THE_SHIP)
     assert row["guard_time_s"] > 1.0
     assert row["min_distance_m"] > row["keepout_radius_m"]
-
-
-@pytest.fixture(scope="module")
-def report(t37):
-    return content(read_run(t37.path))
-
-
-def test_the_report_of_its_run_names_it_and_shows_it_to_its_own_scale(report, tmp_path):
-    write_html(report, tmp_path / "report.html")
-    html = (tmp_path / "report.html").read_text(encoding="utf-8")
-    assert "of the T37 in six degrees of freedom" in html
-    blocks = [block for section in report.sections for block in section.blocks]
-    charts = {block.name: block for block in blocks if isinstance(block, Chart)}
-    # Half of what a comparison's panel could show is there to be seen, after settling and within
-    # the settling band.
-    for line in charts["trial1-comparison"].panels[0].lines:
-        (_, last), (_, top) = (
-            charts["trial1-comparison"].panels[0].x_range,
-            charts["trial1-comparison"].panels[0].y_range,
-        )
-        assert line.x[-1] > 0.9 * last
-        assert (line.y <= top).all()
-    # Beside a vessel at 38 m/s, until it has settled and for 9 crossings every 65 s: forty
-    # kilometres.
-    tracks = report.picture
-    assert tracks.panels[0].x_label == "Right of the plume's axis [km]"
-    assert tracks.panels[-1].x_label == "Along the ship's way [km]"
-    (way,) = (line for line in tracks.panels[-1].lines if line.label == "ship's track")
-    assert way.x.max() == pytest.approx(41.0, abs=5.0)
-    # Fitted limits have three digits.
-    assert {card.name: card.limit for card in report.verdict.figures}[
-        "Tracking error, rms after settling"
-    ] == ("≤ 40.1 m, scaled to the aircraft")
-    assert not [block for block in blocks if isinstance(block, Table) and not block.rows]
-
-
-def test_the_report_of_its_run_does_not_speak_of_the_x8(report):
-    said = [report.verdict.headline, report.verdict.detail]
-    said += [
-        block.caption
-        for section in report.sections
-        for block in section.blocks
-        if isinstance(block, Chart)
-    ]
-    assert not [text for text in said if "X8" in text or "propeller" in text]

@@ -24,6 +24,8 @@ from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 
+pytestmark = pytest.mark.slow
+
 METER = """
 import numpy as np
 from common.columns import Column

@@ -18,6 +18,8 @@ from tests.in_process import assert_refused, run_command
 from tests.run_tables import change_manifest, manifest_of, write_manifest
 from tests.scenarios.short_trial import short_trial
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):

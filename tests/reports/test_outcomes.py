@@ -18,6 +18,8 @@ from scenarios.api.results import Run
 from scenarios.engine.processes import InProcessExecutor
 from tests.in_process import run_command
 
+pytestmark = pytest.mark.slow
+
 SCENARIO = """
 extends = "operational"
 study = "flights"

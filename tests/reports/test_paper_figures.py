@@ -12,6 +12,8 @@ from reports.paper.charts import sim_3_charts
 from reports.run.run_data import read_run
 from reports.run.time_history import keepout_distance
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def sim_3(tmp_path_factory):

@@ -33,6 +33,8 @@ from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 from tests.run_tables import change_manifest, manifest_of, write_manifest
 
+pytestmark = pytest.mark.slow
+
 # Three crossings are too few for the study's own criteria.
 CRITERIA = ["criteria.tracking_error_rms_m=5.0", "criteria.crossing_interval_error=0.1"]
 OVERRIDES = ["sweep.nu=[0.5, 0.9, 1.0]", "flight.crossings=3", "comparison.nu=[0.5]", *CRITERIA]

@@ -4,22 +4,17 @@ one, which has imported all.
 
 import multiprocessing
 import os
-import shlex
 import signal
 import subprocess
 import sys
 import time
-from dataclasses import replace
 from pathlib import Path
 
 import pandas as pd
 import pytest
 
-from common.verdict import RunVerdict, read_verdict
-from extensions.telemetry.flightgear import FlightGear
-from scenarios.engine.runner import RunResult
+from common.verdict import read_verdict
 from scenarios.run import main
-from tests import in_process
 from tests.run_tables import manifest_of
 
 ROOT = Path(__file__).parents[2]
@@ -105,53 +100,16 @@ def test_what_is_not_needed_is_not_imported():
     assert found.returncode == 0
 
 
-def test_help_and_list_answer():
-    command = [sys.executable, "-m", "scenarios.run", "--help"]
-    assert (
-        "--resume"
-        in subprocess.run(
-            command, cwd=ROOT, capture_output=True, text=True, check=True, timeout=120
-        ).stdout
-    )
-    assert "sweep_nu" in in_process.run_command("scenarios.run", "--list").out
-
-
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        ([], ["no scenario given", "sweep_nu"]),
         (["sweep_mu"], ["unknown scenario 'sweep_mu'"]),
         (["sweep_nu", "--set", "keepout.radius=5"], ["unknown key 'keepout.radius'"]),
-        (
-            ["sweep_nu", "--set", "keepout.radius_m=-1"],
-            ["keepout.radius_m is -1; input should be greater than or equal to 10"],
-        ),
-        (["sweep_nu", "--set", "guidance.airspeed_mps=nan"], ["guidance.airspeed_mps", "nan"]),
         (
             ["sweep_nu", "--set", "guidance.airspeed_mps=60"],
             ["guidance.airspeed_mps is 60", "Skywalker X8 flies 15.0 to 25.0 m/s"],
         ),
-        (
-            ["sweep_nu", "--set", "aircraft=zeppelin"],
-            ["unknown aircraft 'zeppelin'", "plume-flight design --list"],
-        ),
         (["sweep_nu", "--set", "aircraft=t37"], ["unknown aircraft 't37'", "did you mean 'T37'"]),
-        (
-            ["sweep_nu", "--set", "aircraft=SGS"],
-            ["aircraft 'SGS' cannot be flown", "it has no engine"],
-        ),
-        (
-            ["sweep_nu", "--set", "aircraft=J246"],
-            ["aircraft 'J246' cannot be flown", "rocket engines"],
-        ),
-        (
-            ["sweep_nu", "--set", "guidance.bank_deg=60"],
-            ["60.0 deg of bank", "stops at 50", "lower guidance.bank_deg"],
-        ),
-        (
-            ["sea_wind", "--set", 'draws=[{key="guidance.bank_deg", uniform=[55, 60]}]'],
-            ["60.0 deg of bank", "stops at 50"],
-        ),
         (
             ["sweep_nu", "--set", "start.distance_m=[100, 150]"],
             ["begins at 100 m", "must exceed keepout.radius_m, 200 m"],
@@ -164,52 +122,10 @@ def test_help_and_list_answer():
                 "relative to the current directory",
             ],
         ),
-        (
-            ["sweep_nu", "--set", "payload.instruments=['sniffer']"],
-            ["payload.instruments has a sniffer, and there is no exhaust: set emission.ship"],
-        ),
-        (
-            ["sweep_nu", "--set", "emission.ship=container"],
-            [
-                "emission.ship is 'container', and plume.model 'straight' has no smoke: set plume.model to 'fluctuating'"
-            ],
-        ),
-        (
-            [
-                "plume_search",
-                *(f"--set=flight.altitude_{key}" for key in ("m=102", "min_m=100", "max_m=105")),
-            ],
-            [
-                "flight.altitude_min_m and altitude_max_m are 100 and 105 m",
-                "give them 16 m or more between them",
-            ],
-        ),
-        (
-            ["sweep_nu", "--set", "vessel.manoeuvres=[{at_s=100, turn_deg=90}]"],
-            [
-                "the vessel accelerates by",
-                "following.vessel_acceleration_mps2 = 0, on which the keep-out guard relies: declare more",
-            ],
-        ),
-        (
-            ["sea_faults", "--set", "fault.declared=['engin']"],
-            ["fault.declared has 'engin'; did you mean 'engine'? what can fail is "],
-        ),
-        (["sweep_mu.toml"], ["no scenario file 'sweep_mu.toml'"]),
         (["sweep_nu", "--resume"], ["--resume needs --out"]),
-        (["sweep_nu", "--jobs", "0"], ["--jobs", "greater than or equal to 1"]),
-        (["sweep_nu", "--sed", "5"], ["--sed", "--help"]),
         (
             ["sweep_nu", "--scheduler", "tcp://127.0.0.1:1"],
             ["--scheduler is tcp://127.0.0.1:1", "add --executor dask"],
-        ),
-        (
-            ["sea_trial", "--set", "trials=['sea_nowhere']"],
-            ["unknown scenario 'sea_nowhere'", "sea_wind"],
-        ),
-        (
-            ["sweep_nu", "--scheduler", "tcp://host:1"],
-            ["--scheduler is tcp://host:1 with --executor local", "--executor dask"],
         ),
         (["sweep_nu", "--executor", "slurm"], ["--executor", "'slurm'", "'local', 'dask'"]),
     ],
@@ -218,17 +134,6 @@ def test_bad_input_is_one_line_and_exit_status_2(arguments, words, tmp_path, run
     monkeypatch.chdir(tmp_path)
     assert_refused(run_here(*arguments), *words)
     assert list(tmp_path.iterdir()) == []
-
-
-def test_a_directory_that_holds_another_run_is_left_alone(tmp_path, run_here):
-    (tmp_path / "manifest.json").write_text(
-        '{"config_hash": "other", "fingerprint": {}}', encoding="utf-8"
-    )
-    assert_refused(run_here("sweep_nu", "--out", tmp_path, *SHORT), "holds another run", "--resume")
-    assert_refused(
-        run_here("sweep_nu", "--out", tmp_path, "--resume", *SHORT), "another configuration"
-    )
-    assert [path.name for path in tmp_path.iterdir()] == ["manifest.json"]
 
 
 def test_a_run_that_is_resumed_with_other_keys_says_which_with_both_values(tmp_path, run_here):
@@ -262,17 +167,6 @@ def test_a_run_that_is_resumed_with_other_keys_says_which_with_both_values(tmp_p
     assert_refused(many, "; and 2 more; resume it")
 
 
-def test_a_run_is_no_scenario_and_its_flights_are_replayed_by_name(tmp_path, run_here, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "a").mkdir()
-    (tmp_path / "a" / "manifest.json").write_text("{}", encoding="utf-8")
-    for name in ("a", "a/flights"):
-        assert_refused(
-            run_here(name),
-            "'a' is a run, not a scenario; to replay one of its flights, give a/flights/ID",
-        )
-
-
 def test_flights_that_miss_a_criterion_or_cannot_be_flown_are_exit_status_1(tmp_path, run_here):
     out = tmp_path / "run"
     result = run_here(
@@ -293,6 +187,7 @@ def test_flights_that_miss_a_criterion_or_cannot_be_flown_are_exit_status_1(tmp_
     assert (counts.outcomes["infeasible"], counts.unknown, counts.passed) == (1, 1, 0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("number", "end"),
     # What a terminal does at Ctrl-C, and what a scheduler does of jobs.
@@ -349,112 +244,3 @@ def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(
         check_exact=True,
     )
     assert (broken / "crossings.csv").read_bytes() == (whole / "crossings.csv").read_bytes()
-
-
-def interrupted_run(directory, *, planned, done, comparisons_left=0):
-    verdict = replace(
-        RunVerdict.of_items("flights", planned=planned, done=done, met=done),
-        comparisons_left=comparisons_left,
-        interrupted=True,
-    )
-    return RunResult(directory=directory, verdict=verdict, lines=[])
-
-
-def test_an_interrupted_replay_is_resumed_by_the_command_that_is_printed(
-    tmp_path, run_here, monkeypatch
-):
-    out, flight = tmp_path / "a run", tmp_path / "before" / "flights" / "nu_0.30"
-    flight.parent.mkdir(parents=True)
-    (flight.parents[1] / "manifest.json").touch()
-    calls = []
-
-    def interrupted(study, directory, *, resume, **_):
-        calls.append((study, directory, resume))
-        return interrupted_run(directory, planned=1, done=0)
-
-    monkeypatch.setattr("scenarios.engine.runner.fly_study", interrupted)
-    monkeypatch.setattr(
-        "scenarios.studies.replay.Replay", lambda name, viewer, **given: (name, viewer, given)
-    )
-    typed = [
-        flight,
-        "--aircraft-dir",
-        "my fleet",
-        "--flightgear",
-        "localhost:5550",
-        "--out",
-        out,
-        "--no-report",
-        "--jobs",
-        "1",
-    ]
-    ended = run_here(*typed)
-    assert ended.returncode == 130
-    program, command, *arguments = shlex.split(ended.stderr.rpartition("Continue with: ")[2])
-    assert (program, command, arguments) == ("plume-flight", "run", [*map(str, typed), "--resume"])
-    assert (
-        shlex.split(run_here(*arguments).stderr.rpartition("Continue with: ")[2])[2:] == arguments
-    )
-    assert len(calls) == 2
-    (study, directory, _), (again, there, resume) = calls
-    viewer = FlightGear("localhost:5550")
-    assert study == again == (str(flight), viewer, {"aircraft_dir": Path("my fleet")})
-    assert (there, resume) == (directory, True)
-
-
-def test_an_interrupted_run_is_resumed_by_what_was_typed_with_its_directory(run_here, monkeypatch):
-    def interrupted(_study, _stem, directory, **_):
-        return interrupted_run(directory, planned=9, done=2, comparisons_left=3)
-
-    monkeypatch.setattr("scenarios.studies.base.run_study", interrupted)
-    typed = [
-        "sweep_nu",
-        "--jobs",
-        "3",
-        "--seed",
-        "7",
-        "--set",
-        "flight.crossings=3",
-        "--time-limit",
-        "90",
-        "--memory-limit=2.5",
-    ]
-    told, _, again = run_here(*typed).stderr.rpartition("Continue with: ")
-    assert told.endswith(
-        "interrupted; 2 of 9 flights are done and kept, 7 are left to fly; of the comparisons 3 are left to fly. "
-    )
-    *words, out, directory, resume = shlex.split(again)
-    assert words == ["plume-flight", "run", *typed]
-    assert (out, resume) == ("--out", "--resume")
-    assert directory.startswith("runs/sweep_nu-")
-
-
-def test_a_list_of_trials_takes_its_own_keys_and_hands_on_those_of_the_trials(tmp_path, run_here):
-    # 0.005 of 200 flights, with the seed and the duration that the trials are told; too short to
-    # settle.
-    keys = [
-        "trials=['sea_wind']",
-        "share=0.005",
-        "fidelity=kinematic",
-        "flight.duration_max_s=10",
-        "start.spread_deg=0",
-    ]
-    settings = [word for key in keys for word in ("--set", key)]
-    result = run_here(
-        "sea_trial",
-        *settings,
-        "--seed",
-        "7",
-        "--no-report",
-        "--jobs",
-        "1",
-        "--out",
-        tmp_path / "run",
-    )
-    assert result.returncode == 1, result.stderr
-    assert "flights: 1 planned, 1 flown" in result.stdout
-    manifest = manifest_of(tmp_path / "run")
-    assert manifest["trials"]["sea_wind"]["seed"] == 7
-    summary = pd.read_csv(tmp_path / "run" / "summary.csv")
-    assert list(summary["outcome"]) == ["not_settled"]
-    assert summary["duration_s"][0] == 10.0

@@ -1,13 +1,9 @@
 """One flight as a task: whatever becomes of it is a row."""
 
-import re
-from datetime import UTC, datetime
-
 import pytest
-from flight_cases import ASTERN, SPEED, fly, work
+from flight_cases import ASTERN, fly
 
-from scenarios.engine.task import Task
-from scenarios.measures.columns import INPUT_COLUMNS, SUMMARY_COLUMNS
+from scenarios.measures.columns import SUMMARY_COLUMNS
 
 
 @pytest.mark.parametrize(
@@ -54,28 +50,6 @@ def test_what_cannot_be_flown_is_an_infeasible_row_with_one_clear_line(changes, 
 
 
 @pytest.mark.parametrize(
-    ("duration", "outcome", "words"),
-    [
-        (
-            20.0,
-            "not_settled",
-            r"did not settle within 20 s: fly longer \(flight\.duration_max_s\) or start closer, though neither may be enough",
-        ),
-        # 400 m astern it settles within a minute and a half; 40 crossings take six.
-        (
-            120.0,
-            "incomplete",
-            r"flew [1-9]\d? of 40 crossings after settling within 120 s: allow more time \(flight\.duration_max_s\)",
-        ),
-    ],
-)
-def test_a_flight_that_has_not_all_its_crossings_in_time_says_so(duration, outcome, words):
-    row = fly(start=ASTERN, flight={"crossings": 40, "duration_max_s": duration}).row
-    assert (row["outcome"], row["criteria_met"], row["kept_out"]) == (outcome, False, True)
-    assert re.search(words, row["message"])
-
-
-@pytest.mark.parametrize(
     ("changed", "outcome", "words"),
     [
         ({}, "completed", ""),
@@ -106,82 +80,6 @@ def test_a_flight_for_a_while_completes_if_it_settles_and_crosses(changed, outco
     assert row["mode_at_end"] == ("holding off" if "fault" in changed else "tracking")
 
 
-def test_manoeuvres_that_begin_after_the_end_of_the_flight_are_counted():
-    vessel = {
-        "speed_mps": 8.0,
-        "manoeuvres": [{"at_s": 60.0, "turn_deg": 10.0}, {"at_s": 90.0, "turn_deg": 10.0}],
-    }
-    declared = {"vessel_acceleration_mps2": 0.1}
-    row = fly(
-        start=ASTERN,
-        vessel=vessel,
-        following=declared,
-        flight={"crossings": 0, "duration_max_s": 90.0},
-    ).row
-    assert row["manoeuvres_unflown"] == 1
-    assert (
-        "manoeuvres_unflown"
-        not in fly(start=ASTERN, flight={"crossings": 0, "duration_max_s": 20.0}).row
-    )
-
-
-def test_a_flight_whose_vessel_has_manoeuvres_that_overlap_is_not_flown():
-    # Each turns by 0.5 deg/s: together they would turn by 1 deg/s, from 80 s on.
-    vessel = {
-        "speed_mps": 8.0,
-        "manoeuvres": [{"at_s": 60.0, "turn_deg": 10.0}, {"at_s": 70.0, "turn_deg": 10.0}],
-    }
-    row = fly(start=ASTERN, vessel=vessel).row
-    assert row["outcome"] == "infeasible"
-    assert row["message"].startswith(
-        "vessel.manoeuvres.1 begins at 70 s, before an earlier one has ended, at 80 s; let it begin later"
-    )
-
-
-@pytest.fixture
-def broken(monkeypatch):
-    """Return a function that lets every flight end in an error."""
-
-    def broken(error):
-        def fly(*_, **__):
-            raise error
-
-        monkeypatch.setattr("scenarios.flight_runner.fly", fly)
-
-    return broken
-
-
-def test_an_error_that_nobody_thought_of_is_a_row_too(broken):
-    broken(ZeroDivisionError("division by zero"))
-    result = fly(start=ASTERN)
-    assert (result.row["outcome"], result.row["criteria_met"]) == ("failed", False)
-    # What it was, and where it was raised.
-    assert result.row["message"].startswith("ZeroDivisionError: division by zero (test_flight.py:")
-    # What is known by then is in the tables: the flight that was sampled, and its plan.
-    assert result.row["nu"] == pytest.approx(8.0 / SPEED)
-    (inputs,) = result.tables["draws.csv"]
-    assert inputs == dict(
-        zip(INPUT_COLUMNS, ("trial_00000", "trial", "study", result.row["nu"]), strict=True)
-    )
-    assert set(result.row) <= set(SUMMARY_COLUMNS)
-    assert result.history is None
-
-
-def test_a_lack_of_memory_is_no_row_but_ends_the_process(broken):
-    # The executor tries the flight once more, in a process of its own.
-    broken(MemoryError())
-    with pytest.raises(MemoryError):
-        fly(start=ASTERN)
-
-
-def test_a_flight_whose_process_was_lost_is_a_row():
-    result = work().lost(Task(number=0), "why")
-    assert result.lost
-    (row,) = result.tables["summary.csv"]
-    named = {"flight_id": "trial_00000", "trial": "trial", "variant": "study"}
-    assert row == named | {"outcome": "failed", "message": "why", "criteria_met": False}
-
-
 @pytest.mark.parametrize("mission", ["track", "follow"])
 def test_beside_a_plume_that_rises_steeply_a_cylinder_is_kept_out_of_horizontally(mission):
     steep = {
@@ -210,11 +108,3 @@ def test_beside_a_plume_that_rises_steeply_a_cylinder_is_kept_out_of_horizontall
         assert sphere["horizontal_distance_min_m"] < 130.0
     # A steered reference keeps off horizontally whatever the shape: outside of either.
     assert sphere["horizontal_distance_min_m"] <= sphere["min_distance_m"]
-
-
-def test_a_sampled_time_of_the_start_is_a_time_in_the_table_of_what_varies():
-    at = datetime(2026, 6, 1, 12, tzinfo=UTC)
-    drawn = [{"key": "place.utc", "choice": [at]}]
-    flown = fly(draws=drawn, start=ASTERN, flight={"crossings": 0, "duration_max_s": 5.0})
-    assert flown.row["outcome"] != "failed", flown.row["message"]
-    assert flown.tables["draws.csv"][0]["place.utc"] == "2026-06-01T12:00:00+00:00"

@@ -4,16 +4,9 @@ flights.
 
 import hashlib
 
-import pandas as pd
 import pytest
 from PIL import Image
 
-from common.run_layout import REPORT_SETTINGS
-from scenarios import fly
-from scenarios.errors import InputError
-from scenarios.scenario.files import load_study
-from scenarios.scenario.sections.report import ReportConfig
-from scenarios.studies.base import study_of
 from tests.in_process import run_command
 from tests.run_tables import manifest_of
 
@@ -46,14 +39,6 @@ def scenario(tmp_path):
     return path
 
 
-def hash_of(path, *overrides):
-    return study_of(load_study(str(path), overrides), "short").config_hash
-
-
-def test_the_keys_are_those_that_reports_read():
-    assert tuple(ReportConfig.model_fields) == REPORT_SETTINGS
-
-
 def test_a_run_keeps_what_its_reports_say_of_themselves_without_a_path_of_the_machine(
     scenario, tmp_path
 ):
@@ -76,62 +61,3 @@ def test_a_run_keeps_what_its_reports_say_of_themselves_without_a_path_of_the_ma
     assert "<h1>Survey of the strait</h1>" in page
     assert "A. Author, Agency" in page
     assert '<img src="data:image/png;base64,' in page
-
-
-def test_neither_the_hash_nor_a_flight_depends_on_the_report(scenario, tmp_path):
-    plain = tmp_path / "plain.toml"
-    plain.write_text(SHORT, encoding="utf-8")
-    assert hash_of(scenario) == hash_of(plain) == hash_of(plain, "report.title=2026")
-    assert hash_of(plain) != hash_of(plain, "seed=4")
-    assert fly(plain, report={"title": "2026", "author": "A. Author"}).history.equals(
-        fly(plain).history
-    )
-
-
-def test_a_complete_run_that_is_resumed_with_another_report_flies_nothing_and_is_reported_anew(
-    scenario, tmp_path
-):
-    out = tmp_path / "run"
-    run_command("scenarios.run", scenario, "--out", out, "--no-report")
-    before, flown = manifest_of(out), pd.read_csv(out / "summary.csv")
-    ended = run_command(
-        "scenarios.run", scenario, "--out", out, "--resume", "--set", "report.title=Another"
-    )
-    assert ended.status == 0, ended.errors
-    assert manifest_of(out) == before | {"report": before["report"] | {"title": "Another"}}
-    pd.testing.assert_frame_equal(pd.read_csv(out / "summary.csv"), flown)
-    assert "<h1>Another</h1>" in (out / "report.html").read_text(encoding="utf-8")
-
-
-@pytest.mark.parametrize("given", ["file", "override"])
-def test_a_logo_that_is_no_picture_is_refused_before_anything_is_flown(given, scenario, tmp_path):
-    (tmp_path / "pictures" / "text.png").write_text("no picture", encoding="utf-8")
-    override = ["--set", f"report.logo={tmp_path / 'pictures' / 'text.png'}"]
-    if given == "file":
-        scenario.write_text(
-            scenario.read_text(encoding="utf-8").replace("logo.png", "text.png"), encoding="utf-8"
-        )
-        override = []
-    ended = run_command("scenarios.run", scenario, "--out", tmp_path / "run", *override)
-    assert ended.status == 2
-    assert (
-        ended.errors
-        == "error: report.logo: 'text.png' is not a picture; give a whole PNG, JPEG or SVG file\n"
-    )
-    assert not (tmp_path / "run").exists()
-
-
-def test_a_report_of_trials_is_set_for_their_list():
-    trials = load_study("sea_trial", ["report.title=Mine", "share=0.01"])
-    assert (trials.report.title, trials.set) == ("Mine", ())
-
-
-@pytest.mark.parametrize(
-    "override", ['sweep.report.title=["a","b"]', 'draws=[{key="report.title",choice=["a","b"]}]']
-)
-def test_a_report_that_varies_from_flight_to_flight_is_refused(override, scenario):
-    with pytest.raises(
-        InputError,
-        match=r"'report\.title' varies from flight to flight; a report is of all flights",
-    ):
-        study_of(load_study(str(scenario), [override]), "short")

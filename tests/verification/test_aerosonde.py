@@ -19,6 +19,8 @@ from aircraft.fleet.aerosonde import AEROSONDE
 from aircraft.spec import MODELS
 from aircraft.trim import trim
 
+pytestmark = pytest.mark.slow
+
 AIRSPEED, ALTITUDE = 25.0, 100.0  # m/s, m: where the authors start their simulations
 WORLD = bm.World(standard_density, equatorial_gravity(ALTITUDE))
 LAGS = bm.Lags()

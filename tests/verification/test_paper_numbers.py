@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from common.physics import STANDARD_GRAVITY, heading_rate_for_bank
@@ -17,9 +16,7 @@ from gnc.paper import (
     distance_by_paper,
     distance_exact,
     eta_for_speed_ratio,
-    f_x,
     half_widths,
-    mean_speed_ratio,
     offset,
 )
 
@@ -82,47 +79,6 @@ def test_the_two_numbers_of_sim_3_give_the_speed_and_heading_rate_that_the_paper
     assert speed == pytest.approx(19.4, abs=0.1)
     assert math.degrees(math.atan(0.503 * 19.4 / STANDARD_GRAVITY)) == pytest.approx(45.0, abs=0.5)
     assert heading_rate_for_bank(math.radians(45.0), 19.4) == pytest.approx(0.503, abs=0.003)
-
-
-def test_the_first_zero_of_j_0():
-    # Section III.C: 2.4048; the notes, care 6: 2.404825557695773. Half of the last digit, and
-    # rounding.
-    assert eta_for_speed_ratio(0.0) == pytest.approx(2.4048, abs=5e-5)
-    assert eta_for_speed_ratio(0.0) == pytest.approx(2.404825557695773, abs=1e-14)
-    assert mean_speed_ratio(2.404825557695773) == pytest.approx(0.0, abs=1e-15)
-
-
-@pytest.mark.parametrize("nu", [0.0, 0.1, 0.3, 0.5, 0.7, 0.9])
-def test_the_quarter_period_advance_is_exactly_that_of_the_vessel(nu):
-    oscillation = oscillation_at(nu)
-    quarter = 0.25 * oscillation.period
-    advance, _ = quad(
-        lambda t: SPEED * math.cos(oscillation.eta * math.cos(oscillation.omega_0 * t)),
-        0.0,
-        quarter,
-        epsabs=1e-12,
-    )
-    # The notes: exactly nu V_r T/4, by the Bessel integral. Tolerances of quadrature and rounding.
-    assert advance == pytest.approx(nu * SPEED * quarter, abs=1e-10)
-    assert SPEED * float(f_x(oscillation, quarter)) == pytest.approx(
-        nu * SPEED * quarter, abs=1e-11
-    )
-
-
-@pytest.mark.parametrize("nu", [0.1, 0.5, 0.9])
-def test_the_half_widths_are_reached_at_the_times_of_equation_12(nu):
-    oscillation = oscillation_at(nu)
-    t_x = math.acos(math.acos(nu) / oscillation.eta) / oscillation.omega_0
-    t_y = 0.5 * math.pi / oscillation.omega_0
-    d_x, d_y = half_widths(oscillation)
-    # Below equation (12). Rounding.
-    assert abs(float(offset(oscillation, t_x)[0])) == pytest.approx(d_x, rel=1e-13)
-    assert abs(float(offset(oscillation, t_y)[1])) == pytest.approx(d_y, rel=1e-13)
-    # And there the reference moves as the vessel does along, or along only: cos[chi_r] = nu and
-    # sin[chi_r] = 0.
-    course = [oscillation.eta * math.cos(oscillation.omega_0 * t) for t in (t_x, t_y)]
-    assert math.cos(course[0]) == pytest.approx(nu, abs=1e-14)
-    assert math.sin(course[1]) == pytest.approx(0.0, abs=1e-15)
 
 
 def slack(nu, heading_deg):

@@ -17,6 +17,8 @@ from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 
+pytestmark = pytest.mark.slow
+
 # Issue: to 1 mm and 1e-5 s.
 METRES, SECONDS = 1e-3, 1e-5
 

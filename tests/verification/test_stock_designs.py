@@ -12,6 +12,8 @@ from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.responses import flown_step, measure_lag, model_step
 from innerloop.jsbsim.system import write_root
 
+pytestmark = pytest.mark.slow
+
 STOCK = ("T37", "737", "c172p")
 ALTITUDE = 60.0  # m, of the designs that tests share
 TURN = 0.5

@@ -14,6 +14,8 @@ from gnc.numeric import limited, wrap
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.jsbsim.system import HEADING_RATE, write_root
 
+pytestmark = pytest.mark.slow
+
 STEP, RUNS = 0.1, 12
 
 # Disc: radius over the turn radius, speed over V_r, course; where it begins: distance over the turn

@@ -12,6 +12,8 @@ from aircraft.fleet.find import folder_spec
 from aircraft.model import stock_root
 from aircraft.spec import AircraftError
 
+pytestmark = pytest.mark.slow
+
 ELEMENTS = ("wingarea", "wingspan", "chord", "ixx", "iyy", "izz", "emptywt")
 
 DAMAGES = {

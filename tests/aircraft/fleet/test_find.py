@@ -9,7 +9,6 @@ import jsbsim
 import pytest
 
 from aircraft.fdm import Fdm
-from aircraft.fleet.aerosonde import AEROSONDE
 from aircraft.fleet.find import aircraft_names, find_spec, stock_names
 from aircraft.fleet.x8 import X8
 from aircraft.spec import AircraftError
@@ -23,21 +22,6 @@ def reason(name):
         find_spec(name)
     assert "\n" not in str(caught.value)
     return str(caught.value)
-
-
-def test_the_projects_own_aircraft_are_found_first():
-    assert find_spec("x8") is X8
-    assert find_spec("aerosonde") is AEROSONDE
-    assert aircraft_names()[:2] == ["aerosonde", "x8"]
-    assert len(set(aircraft_names())) == len(aircraft_names())
-
-
-def test_every_aircraft_that_jsbsim_brings_has_a_name_here():
-    # A directory with a model file of its name, as JSBSim loads it.
-    expected = {path.parent.name for path in STOCK.glob("*/*.xml") if path.stem == path.parent.name}
-    assert set(stock_names()) == expected
-    assert len(expected) > 40
-    assert expected <= set(aircraft_names())
 
 
 @pytest.mark.parametrize("name", stock_names())
@@ -62,17 +46,6 @@ def test_every_aircraft_of_jsbsim_is_found_or_refused_with_a_reason(name):
 @pytest.mark.parametrize("name", ["c172x", "c310", "T37", "737", "J3Cub"])
 def test_aeroplanes_with_engines_are_found(name):
     assert find_spec(name).envelope is None  # which is found by trimming it
-
-
-def test_a_spec_has_a_throttle_and_a_running_flag_for_each_engine_that_must_be_started():
-    twin = find_spec("c310")
-    assert twin.input("throttle").commands == ("fcs/throttle-cmd-norm", "fcs/throttle-cmd-norm[1]")
-    assert twin.engine_flags == (
-        "propulsion/engine/set-running",
-        "propulsion/engine[1]/set-running",
-    )
-    # An electric motor turns when it gets current.
-    assert X8.engine_flags == ()
 
 
 # Each is what its name says; the reason names what it is or has not.
@@ -100,16 +73,6 @@ def test_an_unknown_name_is_refused_with_its_nearest_neighbour_and_where_names_a
     assert "did you mean 'x8'?" in reason("X8")
     assert "plume-flight design --list" in reason("zeppelin NT")
     assert "did you mean" not in reason("zzz")
-
-
-@pytest.mark.parametrize("name", ["", "..", "."])
-def test_what_is_no_name_is_unknown(name):
-    assert "unknown aircraft" in reason(name)
-
-
-@pytest.mark.parametrize("name", ["../aircraft/c172x", "c172x/", "none/c172x"])
-def test_a_path_is_that_of_a_folder_and_no_name_of_jsbsims_own(name):
-    assert f"aircraft '{name}': there is no such directory" in reason(name)
 
 
 SOURCE = """
@@ -165,10 +128,6 @@ def test_an_aircraft_of_an_installed_package_is_listed_found_and_trims():
     assert_it_trims_as_the_x8_does(find_spec("trainer"))
     with pytest.raises(AircraftError, match=r"did you mean 'trainer'\?"):
         find_spec("trayner")
-
-
-def test_a_package_is_known_only_while_it_is_installed():
-    assert "trainer" not in aircraft_names()
 
 
 @pytest.mark.usefixtures("installed")

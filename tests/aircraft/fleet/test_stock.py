@@ -8,6 +8,8 @@ from aircraft.fdm import Fdm
 from aircraft.fleet.find import find_spec
 from aircraft.state import RigidBodyState, body_velocity
 
+pytestmark = pytest.mark.slow
+
 # m/s, each somewhere in its flight manual's range.
 AIRSPEEDS = {"c172x": 55.0, "c310": 75.0, "T37": 80.0, "737": 150.0}
 
@@ -36,11 +38,6 @@ def test_every_engine_runs_after_the_first_placing_and_pulls(placed):
         assert fdm.read(flag) == 1.0
         # 0.7 of throttle at these airspeeds: no propeller wind-mills and no turbine idles.
         assert fdm.read(flag.replace("set-running", "thrust-lbs")) > 100.0
-
-
-def test_engines_that_jsbsim_starts_at_once_are_not_cranked(placed):
-    _, fdm, _ = placed
-    assert not fdm.cranked
 
 
 def test_an_engine_that_jsbsim_does_not_start_at_once_is_started_by_its_starter():
@@ -88,12 +85,3 @@ def test_engines_come_to_rest_and_the_same_place_gives_the_same_accelerations(pl
             fdm.command({"throttle": 0.7})
     # Settled to 1e-9 a step, behind engines as slow as a second or two (120 to 240 steps).
     assert found[0] == pytest.approx(found[1], abs=2e-6)
-
-
-def test_a_command_reaches_every_engine():
-    fdm = Fdm(find_spec("c310"))
-    fdm.command({"throttle": 0.37})
-    assert [fdm.read(name) for name in ("fcs/throttle-cmd-norm", "fcs/throttle-cmd-norm[1]")] == [
-        0.37,
-        0.37,
-    ]

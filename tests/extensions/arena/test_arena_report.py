@@ -2,39 +2,19 @@
 
 import json
 import math
-import re
 from dataclasses import replace
 
-import pandas as pd
 import pytest
-from judged_runs import changed
 
-from extensions.arena.entrants import Entrant
 from extensions.arena.paired_bootstrap import Estimate
-from extensions.arena.record import CROSSINGS, ERROR, PLUME_TIME, SULPHUR, Figure, read_arena
+from extensions.arena.record import ERROR, read_arena
 from extensions.arena.report import (
-    _cards,
     _headline,
-    _interval,
-    arena_content,
-    by_condition_table,
-    clusters,
-    condition_table,
-    crossing_chart,
-    effort_charts,
-    plume_table,
-    track_charts,
-    tracking_table,
-    worth_chart,
 )
-from extensions.arena.results import estimates
-from extensions.arena.window import WINDOW_COLUMNS
-from reports.document.blocks import CARDS_MAX, Table
-from reports.document.chart import Chart
-from reports.registry import content
 from reports.run.run_data import read_run
-from scenarios.scenario.files import load_study
-from tests.reports.report_parts import blocks_of, built, flown, numbers_on_page_1
+from tests.reports.report_parts import built, flown, numbers_on_page_1
+
+pytestmark = pytest.mark.slow
 
 QUICK = (
     "fidelity=kinematic", "guidance.rate_hz=5", "flight.log_rate_hz=5",
@@ -65,109 +45,6 @@ def test_both_reports_are_built_with_a_place_for_each_part(path):
     for anchor in ("tracking", "standoff", "plume", "tuning"):
         assert f'id="{anchor}"' in text
     assert "<b>" in text.partition('id="tracking"')[2]
-
-
-def test_the_best_mean_of_each_figure_is_bold_and_first_where_it_ranks(arena):
-    table = tracking_table(arena, tracking=True)
-    # NPFG feeds the curvature forward; pure pursuit knows nothing of it (guidance-laws.md, section
-    # 8: 37 m and more).
-    assert [row[1] for row in table.rows] == ["npfg", "pure pursuit"]
-    assert (0, 2) in table.bold
-    assert (1, 2) not in table.bold
-    assert re.fullmatch(r"\d+\.\d\d \(\d+\.\d\d–\d+\.\d\d\)", table.rows[0][2])
-
-
-def test_there_is_one_mark_a_law_numbered_as_in_the_tables(arena):
-    together, each = effort_charts(arena)
-    (panel,) = together.panels
-    assert sum(len(line.x) for line in panel.lines) == 2
-    assert {note.text for note in panel.notes} == {"1", "2"}
-    # Page 1 has the first one: the section does not show it once more.
-    assert [chart.name for chart in blocks_of(content(arena.run), Chart, "tracking")] == [
-        "tracks1",
-        "efforts",
-    ]
-    assert len(each.panels) == 2
-    # The ordinate is logarithmic: its marks are powers of ten.
-    error = arena.of(ERROR, arena.entrants[0], "all").mean
-    assert any(math.isclose(float(y), math.log10(error)) for line in panel.lines for y in line.y)
-
-
-def test_a_law_that_does_not_say_what_it_makes_use_of_is_not_said_to_leave_the_turn_out(arena):
-    first, *others = arena.entrants
-    unsaid = replace(
-        arena, entrants=[replace(first, inputs="its class does not say (inputs)"), *others]
-    )
-    (panel,) = effort_charts(unsaid)[0].panels
-    labels = {line.label: len(line.x) for line in panel.lines}
-    assert labels["it does not say what it makes use of"] == 1
-    assert sum(labels.values()) == 2
-
-
-def test_the_limit_of_any_path_is_drawn_and_listed_where_it_is_known(arena):
-    chart = crossing_chart(arena)
-    limits = [
-        line for panel in chart.panels for line in panel.lines if line.label == "limit of any path"
-    ]
-    # 5 + 4 nu at nu = 0.5 in calm air.
-    assert limits[0].x == pytest.approx([7.0, 7.0], abs=1e-3)
-    table = by_condition_table(arena, CROSSINGS)
-    assert table.rows[-1][1:3] == ["limit of any path", "7.00"]
-
-
-def test_what_a_minute_is_worth_to_the_measurement_is_drawn_and_listed(arena):
-    sulphur, inside, crossings = worth_chart(arena).panels
-    assert [panel.x_label for panel in (sulphur, inside, crossings)] == [
-        "Sulphur error of a minute [% m/m]", "In the plume [s/min]", "Crossings [1/min]"
-    ]  # fmt: skip
-    assert {len(panel.y_names) for panel in (sulphur, inside, crossings)} == {3}
-    table = plume_table(arena)
-    column = table.head.index("Sulphur error of a minute [% m/m]")
-    for row in table.rows:
-        mean, low, high = re.fullmatch(
-            r"([\d.]+|∞) \(([\d.]+|∞)–([\d.]+|∞)\)", row[column]
-        ).groups()
-        # Flights of 40 s about the vessel may not meet the plume at all, and then leave it unknown.
-        assert (
-            float(low.replace("∞", "inf"))
-            <= float(mean.replace("∞", "inf"))
-            <= float(high.replace("∞", "inf"))
-        )
-    # Information adds up: what is shown is the inverse root of the mean, and less of it is better.
-    shown = {entrant.name: arena.of(SULPHUR, entrant, "all") for entrant in arena.entrants}
-    best = min(shown.values(), key=lambda estimate: estimate.mean)
-    assert best.best
-    assert not math.isnan(arena.of(PLUME_TIME, arena.entrants[0], "wind").mean)
-
-
-def test_tracks_are_shown_of_each_law_from_the_same_start(arena):
-    assert [
-        [len(chart.panels) for chart in track_charts(arena, tracking=tracking)]
-        for tracking in (True, False)
-    ] == [[2], [1]]
-
-
-def test_numbers_that_would_hide_each_other_are_written_together():
-    # A number is as wide as a tenth of the panel: 3 touches 2, and 2 touches 1; 4 is far off, and 5
-    # has no place.
-    places = {1: (0.5, 0.5), 2: (0.55, 0.52), 3: (0.62, 0.55), 4: (0.1, 0.9), 5: (math.nan, 0.1)}
-    found = {tuple(numbers): place for numbers, place in clusters(places, (0.1, 0.1))}
-    assert set(found) == {(1, 2, 3), (4,)}
-    assert found[1, 2, 3][0] == 0.62
-
-
-def test_what_each_law_was_given_and_what_it_cannot_do_is_said(run):
-    report = content(run)
-    given, refused = blocks_of(report, Table, "tuning")
-    assert "tangent and curvature" in given.rows[0][2]
-    assert "npfg_period_s 10 → " in given.rows[0][3]
-    assert refused.rows[0][:2] == ["circle the vessel", "pure pursuit"]
-
-
-def test_what_the_conditions_set_is_said_in_words(arena):
-    rows = {row[0]: row[1:] for row in condition_table(arena).rows}
-    assert rows["calm"][1] == "none"
-    assert rows["wind"][1].startswith("wind.speed_mps = ")
 
 
 def with_errors(arena, *errors):
@@ -210,115 +87,6 @@ def test_the_headline_says_which_laws_cannot_be_told_from_the_best(arena, errors
         _headline(found)
         == f"Tracking: {words}; Circling: only npfg (circle) is compared, 3.00 m rms"
     )
-
-
-def test_of_one_flight_in_each_condition_no_law_is_called_best(run, monkeypatch):
-    once = replace(read_arena(run), flights=1)
-    monkeypatch.setattr("extensions.arena.report.read_arena", lambda _: once)
-    found = arena_content(run)
-    assert ", each flown once in each of " in found.flown
-    assert " cannot be told apart, " in found.verdict.headline
-    assert "no law can be told from the others" in found.verdict.detail
-
-
-def test_tiles_are_six_at_most_and_name_how_many_laws_are_alike(arena):
-    alike = with_errors(arena, (1.0, 0.1, True), (1.1, 0.1, True), (3.0, 0.1, True))
-    cards = _cards(alike)
-    assert len(cards) <= CARDS_MAX
-    assert cards[0][:3] == (
-        "Tracking error, best mean: npfg, and 1 alike",
-        "1.00 m",
-        "95 %: 0.90 to 1.10",
-    )
-
-
-def test_a_mean_of_single_flights_stands_without_an_interval():
-    error = Figure(column=WINDOW_COLUMNS[ERROR], greater_first=False, shown=float)
-    assert _interval(Estimate(mean=0.12, flights=2), error) == "0.12"
-    assert (
-        _interval(Estimate(mean=0.12, low=0.1, high=0.15, flights=4), error)
-        == "0.12 (0.10\N{EN DASH}0.15)"
-    )
-
-
-def test_a_mean_without_an_interval_is_on_its_panel(arena, monkeypatch):
-    monkeypatch.setattr(type(arena), "of", lambda *_: Estimate(mean=6.56, flights=1))
-    for panel in (*worth_chart(arena).panels, *crossing_chart(arena).panels):
-        assert panel.x_range[1] > 6.56
-
-
-def of_a_few_flights(run, path, missing):
-    """Return the report of a copy of an arena of which the flights that are named by what they
-    contain could not be flown.
-    """
-    rows, record = (
-        run.summary.copy(),
-        json.loads((run.path / "arena.json").read_text(encoding="utf-8")),
-    )
-    gone = rows["flight_id"].str.contains(missing)
-    rows["keepout_violations"] = rows["keepout_violations"].astype(float)
-    figures = ["duration_s", "min_distance_m", "keepout_violations"]
-    rows.loc[gone, [*figures, "criteria_met", "kept_out"]] = [
-        math.nan,
-        math.nan,
-        math.nan,
-        False,
-        False,
-    ]
-    rows.loc[gone, ["outcome", "message"]] = ["infeasible", "too near"]
-    windows = pd.read_csv(run.path / "window.csv").set_index("flight_id")
-    figures = {
-        name: [
-            {} if gone[i] else windows.loc[row["flight_id"]].dropna().to_dict()
-            for i, row in of.iterrows()
-        ]
-        for name, of in rows.groupby("trial")
-    }
-    named = ("name", "law", "task", "inputs", "defaults")
-    entrants = [Entrant(**{key: entry[key] for key in named}) for entry in record["entrants"]]
-    record["estimates"] = estimates(entrants, figures, load_study("arena", QUICK).arena, 1)
-    (path / "arena.json").write_text(json.dumps(record), encoding="utf-8")
-    return arena_content(changed(run, path=path, summary=rows))
-
-
-def test_a_law_that_lacks_flights_is_named_and_not_called_best(run, tmp_path):
-    found = of_a_few_flights(run, tmp_path, "wind_npfg_kinematic_00001")
-    assert "Tracking: only pure pursuit is compared, " in found.verdict.headline
-    assert found.verdict.tone == "warn"
-    assert found.verdict.failures == [
-        "npfg: 1 of 4 flights could not be flown, and it is not compared: infeasible: too near"
-    ]
-    table = tracking_table(read_arena(replace(run, path=tmp_path)), tracking=True)
-    # Its mean is by far the better one, of the flights that it has.
-    assert [row[1] for row in table.rows] == ["pure pursuit", "npfg"]
-    assert [row[2].endswith(", 3 of 4") for row in table.rows] == [False, True]
-    assert {row for row, _ in table.bold} == {0}
-    each = by_condition_table(read_arena(replace(run, path=tmp_path)), ERROR, tracking=True)
-    assert [" of " in cell for cell in each.rows[1][2:]] == [False, True, True]
-
-
-def test_an_arena_of_which_nothing_was_flown_is_red(run, tmp_path):
-    verdict = of_a_few_flights(run, tmp_path, "kinematic").verdict
-    assert verdict.headline.endswith(". Nothing was flown")
-    assert verdict.tone == "bad"
-    assert "npfg: 4 of 4 flights could not be flown: infeasible: too near" in verdict.failures
-    assert not any("best" in card.name.lower() for card in verdict.figures)
-    assert {card.name: card.met for card in verdict.figures}["Keep-out violations"] is False
-
-
-def test_where_each_law_lacks_another_flight_none_is_called_best(run, tmp_path):
-    headline = of_a_few_flights(
-        run, tmp_path, "calm_npfg_kinematic_00000|wind_pure_pursuit_kinematic_00001"
-    ).verdict.headline
-    assert "Tracking: no law is compared, as each lacks flights; Circling: only npfg" in headline
-
-
-def test_an_arena_that_was_not_evaluated_is_reported_as_flights(path, run):
-    (path / "arena.json").rename(path / "gone")
-    try:
-        assert "plume" not in {section.anchor for section in arena_content(run).sections}
-    finally:
-        (path / "gone").rename(path / "arena.json")
 
 
 def test_every_number_on_page_1_is_that_of_the_evaluation(path, tmp_path):

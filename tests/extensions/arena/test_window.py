@@ -27,12 +27,6 @@ def test_information_is_that_of_a_minute_and_adds_up():
     assert measured_figures(longer, window=300.0) == pytest.approx(found)
 
 
-def test_a_flight_that_is_shorter_than_the_window_was_in_the_air_for_as_long_as_it_was():
-    assert measured_figures(MEASURED | {"duration_s": 75.0}, window=150.0) == measured_figures(
-        MEASURED, window=75.0
-    )
-
-
 @pytest.mark.parametrize(
     "row",
     [
@@ -43,15 +37,3 @@ def test_a_flight_that_is_shorter_than_the_window_was_in_the_air_for_as_long_as_
 )
 def test_a_result_that_is_not_admitted_or_lost_with_the_aircraft_is_no_information(row):
     assert measured_figures(MEASURED | row, window=150.0)["sulphur_information_per_minute"] == 0.0
-
-
-def test_a_flight_without_a_sniffer_has_neither():
-    assert measured_figures({}, window=150.0) == {}
-
-
-def test_what_a_sniffer_without_noise_is_worth_has_no_number():
-    assert math.isnan(
-        measured_figures(MEASURED | {"fsc_noise_percent": 0.0}, window=150.0)[
-            "sulphur_information_per_minute"
-        ]
-    )

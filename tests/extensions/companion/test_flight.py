@@ -15,6 +15,8 @@ from extensions.companion.plane import PlaneMode
 from tests.extensions.companion.served import HOME, companion, served
 from tests.in_process import assert_refused, run_command
 
+pytestmark = pytest.mark.slow
+
 STEADY = ("comparison.nu=[]", "sweep.nu=[0.5]", "flight.crossings=8")
 KINEMATIC = (*STEADY, "fidelity=kinematic")
 

@@ -66,6 +66,7 @@ def test_readings_have_the_time_at_which_they_were_true(tmp_path):
         sender.close()
 
 
+@pytest.mark.slow
 def test_readings_of_a_vehicle_reach_estimate_and_verdict(tmp_path):
     settings = ("fidelity=kinematic", "reports.interval_s=[2,2]", "flight.after_settling_s=120",
                 "guidance.rate_hz=10", "flight.until=verdict")  # fmt: skip

@@ -1,11 +1,8 @@
 """A convergence study from its file to its run directory, with few trajectories from near by."""
 
-import shutil
-
 import pandas as pd
 import pytest
 
-from extensions.convergence import study as convergence_study
 from extensions.convergence.ensemble import DISTANCE_CONVERGED, PHI_CONVERGED
 from extensions.convergence.scenario import ConvergenceScenario
 from reports.output import write_report
@@ -16,6 +13,8 @@ from scenarios.errors import InputError
 from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 from tests.run_tables import manifest_of
+
+pytestmark = pytest.mark.slow
 
 FEW = ["ensemble.trajectories=12", "ensemble.distance_max_m=100", "ensemble.samples=2"]
 
@@ -53,37 +52,10 @@ def test_every_trajectory_is_a_row_and_those_that_did_not_converge_are_in_a_file
     assert len(list((directory / "trajectories").glob("*.parquet"))) == 4
 
 
-def test_both_laws_start_from_the_same_states(directory):
-    summary = pd.read_csv(directory / "summary.csv")
-    starts = summary[summary["law"] == "lyapunov"], summary[summary["law"] == "cascade"]
-    for name in ("start_north_m", "start_east_m", "start_course_rad", "reference_terms"):
-        assert list(starts[0][name]) == list(starts[1][name])
-
-
-def page_of(run_directory, path):
-    """Return the report of a run."""
-    write_report(read_run(run_directory), path)
-    return path.read_text(encoding="utf-8")
-
-
 def test_its_report_says_what_happened(directory, tmp_path):
-    assert "All 24 trajectories converged" in page_of(directory, tmp_path / "report.html")
-
-
-def test_those_that_do_not_converge_are_kept_with_their_time_histories(tmp_path):
-    # Circles at more than 99 % of omega_max hold a vehicle with cut commands off; here it is given
-    # no time: one second, and no patience, is too short for anything.
-    scenario = study("ensemble.time_max_s=1.0", 'guidance.laws=["cascade"]', "ensemble.samples=0")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(convergence_study, "TIME_FACTOR", 1e-6)
-        result = run(scenario, tmp_path / "run")
-    failed = pd.read_csv(tmp_path / "run" / "counterexamples.csv")
-    assert not result.all_met
-    assert len(failed) == 12
-    assert failed["message"].str.contains("m from the reference after 1 s").all()
-    assert len(list((tmp_path / "run" / "trajectories").glob("cascade_*.parquet"))) == 12
-    manifest = manifest_of(tmp_path / "run")
-    assert manifest["outcomes"]["time_up"] == 12
+    write_report(read_run(directory), tmp_path / "report.html")
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "All 24 trajectories converged" in page
 
 
 def test_an_interrupted_study_resumes_to_the_same_rows(directory, tmp_path):
@@ -136,55 +108,15 @@ def test_a_study_goes_on_with_the_blocks_that_are_left(tmp_path):
     assert [report for report in told if report[0] == "flying"] == [("flying", 12, 12)]
 
 
-def test_a_study_of_cut_commands_alone_is_no_verdict_on_the_theory(tmp_path):
-    # Every circle but those at the very limit converges; none of these 3 references, from near by,
-    # is one of them.
-    run(
-        study('guidance.laws=["cascade_cut"]', "ensemble.trajectories=3", "ensemble.samples=1"),
-        tmp_path / "run",
-    )
-    page = page_of(tmp_path / "run", tmp_path / "report.html")
-    assert "with commands cut at ω_max, of which the theory says nothing" in page
-
-
-@pytest.mark.parametrize("jobs", [1, 2])
-def test_a_study_that_is_done_can_be_resumed_all_the_same(jobs, directory, tmp_path):
-    copy = shutil.copytree(directory, tmp_path / "copy")
-    assert run(study(), copy, resume=True, factory=ExecutorFactory(jobs=jobs)).all_met
-
-
-def test_an_interrupt_while_time_histories_are_kept_leaves_a_run_that_can_be_resumed(
-    tmp_path, monkeypatch
-):
-    few = study("ensemble.trajectories=3", "ensemble.distance_max_m=60")
-
-    def interrupt(*_, **__):
-        raise KeyboardInterrupt
-
-    with monkeypatch.context() as patch:
-        patch.setattr("extensions.convergence.study.trajectory_of", interrupt)
-        first = run(few, tmp_path / "run")
-    assert first.verdict.interrupted
-    assert first.verdict.counts.done == first.verdict.counts.planned
-    assert manifest_of(tmp_path / "run")["state"] == "interrupted"
-    assert run(few, tmp_path / "run", resume=True).all_met
-
-
 @pytest.mark.parametrize(
     ("override", "words"),
     [
         ('guidance.laws=["cascade", "cascade"]', ["laws is ['cascade', 'cascade']", "once"]),
-        ("guidance.laws=cascade", ["guidance.laws", "'cascade'", "valid tuple"]),
         ('guidance.laws=["magic"]', ["guidance.laws.0", "'magic'", "lyapunov"]),
-        (
-            "ensemble.trajectories=0",
-            ["ensemble.trajectories is 0; input should be greater than or equal to 1"],
-        ),
         (
             "guidance.heading_rate_max_rad_s=0.4",
             ["heading_rate_max_rad_s", "0.4", "greater than 0.5 [rad/s]"],
         ),
-        ("fidelity=six_dof", ["fidelity", "'six_dof'", "kinematic"]),
         ("keepout.radius_m=200", ["unknown key 'keepout'"]),
     ],
 )
@@ -193,9 +125,3 @@ def test_bad_values_are_refused_in_one_line(override, words):
         study(override)
     for word in words:
         assert word in str(refusal.value)
-
-
-def test_a_look_ahead_that_cannot_work_is_refused_before_anything_is_written(tmp_path):
-    with pytest.raises(InputError, match=r"must exceed 1/\(4 epsilon\)"):
-        run(study("guidance.look_ahead_m=40"), tmp_path / "run")
-    assert not (tmp_path / "run").exists()

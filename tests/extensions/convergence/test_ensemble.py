@@ -36,6 +36,8 @@ from extensions.convergence.motion import MOTIONS, Steering
 from gnc.numeric import wrap
 from gnc.paper import cascade_law, lyapunov_law, relative_velocity, state_rates, v_2
 
+pytestmark = pytest.mark.slow
+
 LAWS = pytest.mark.parametrize("law", list(Steering))
 offsets = st.floats(-3000.0, 3000.0)
 
@@ -202,21 +204,6 @@ def test_the_cut_command_never_exceeds_its_bound(north, east, course, rate):
         Steering.CASCADE_CUT, references(rate=[rate]), [[north], [east]], [course], time_max=60.0
     )
     assert result.heading_rate_max[0] <= HEADING_RATE_MAX
-
-
-@pytest.mark.parametrize("gap", [1e-2, 1e-5, 1e-8])
-def test_next_to_phi_of_pi_law_24_commands_without_bound_and_converges(gap):
-    # Law (24): k_1 rho V tan(phi/2), tan being 2/gap next to pi.
-    to_reference = (100.0, 0.0)
-    result, _, _, phis, commands = history(
-        Steering.LYAPUNOV, references(rate=[0.2]), to_reference, math.pi - gap
-    )
-    rho = 100.0 + LOOK_AHEAD.epsilon * 100.0**2 + LOOK_AHEAD.radius
-    # omega_rho is below 1 rad/s here; pi - gap is rounded by 1e-16, 1e-8 of the smallest gap.
-    assert abs(commands[0]) == pytest.approx(K_1 * rho * SPEED * 2.0 / gap, rel=1e-3, abs=1.0)
-    assert result.outcome == (Outcome.CONVERGED,)
-    # phi leaves pi at once and falls towards 0 for good.
-    assert np.all(np.diff(phis) <= 0.0)
 
 
 def test_the_number_of_places_and_the_company_do_not_change_a_trajectory():

@@ -20,6 +20,8 @@ from extensions.gym.reward import VIOLATION, CrossingReward
 from scenarios import fly
 from scenarios.errors import InputError
 
+pytestmark = pytest.mark.slow
+
 PROJECT = Path(__file__).parents[3]
 SHORT = {"sweep.nu": [0.3, 0.6], "flight.crossings": 4}
 KINEMATIC = SHORT | {"fidelity": "kinematic"}
@@ -140,25 +142,6 @@ def test_a_seed_gives_the_same_episodes_and_another_seed_others(kinematic):
     assert not np.array_equal(once[1], once[2])
 
 
-def test_an_observation_is_what_the_flight_is_in_the_frame_of_the_plume(kinematic):
-    observed, _ = kinematic.reset(options={"flight_id": "nu_0.30"})
-    seen = dict(zip(MEANINGS, observed, strict=True))
-    plan = kinematic.unwrapped._episode.loop.plan
-    # The vessel starts at the origin, and her plume trails to the south: astern of a ship that
-    # sails north.
-    assert seen["along_m"] == pytest.approx(-plan.start.north)
-    assert seen["across_m"] == pytest.approx(-plan.start.east)
-    assert seen["clearance_m"] == pytest.approx(
-        math.hypot(plan.start.north, plan.start.east) - 200.0
-    )
-    # nu = 0.3 of 19.42 m/s, to the north.
-    assert seen["vessel_along_mps"] == pytest.approx(-0.3 * 19.42)
-    assert math.hypot(seen["velocity_along_mps"], seen["velocity_across_mps"]) == pytest.approx(
-        19.42, abs=1e-9
-    )
-    assert math.hypot(seen["reference_cos"], seen["reference_sin"]) == pytest.approx(1.0)
-
-
 def test_flying_at_the_vessel_ends_in_the_keepout_area_with_its_reward(kinematic):
     observed, _ = kinematic.reset(options={"flight_id": "nu_0.30"})
     names, limit = list(MEANINGS), kinematic.action_space.high[0]
@@ -211,76 +194,6 @@ def test_actions_outside_the_space_are_cut_and_the_guidance_knows_what_was_flown
     assert loop.vehicle.motion()[4] == 0.5 * high[0]
 
 
-def test_flights_with_other_limits_are_flown_within_their_own():
-    # The first flight turns at most at half the rate of the second one: its limit is none of the
-    # others'.
-    keys = {
-        "fidelity": "kinematic",
-        "sweep": {"guidance.bank_deg": [25.0, 45.0]},
-        "vessel.speed_ratio": 0.4,
-        "flight.crossings": 2,
-    }
-    env = make(**keys)
-    own = [9.81 * math.tan(math.radians(bank)) / 19.42 for bank in (25.0, 45.0)]
-    assert env.action_space.high[0] == -env.action_space.low[0] == pytest.approx(own[1], rel=1e-3)
-    for flight_id, limit in zip(env.unwrapped.flight_ids, own, strict=True):
-        _, info, terminated = followed(env, flight_id)
-        assert terminated
-        assert info["crossings"] >= 2
-        assert np.array_equal(
-            column(env, "east_m"),
-            fly("sweep_nu", flight_id=flight_id, **keys).history["east_m"].to_numpy(),
-        )
-        env.reset(options={"flight_id": flight_id})
-        env.step(env.action_space.high)
-        assert env.unwrapped._episode.loop.vehicle.motion()[4] == pytest.approx(limit, rel=1e-3)
-
-
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        (
-            {"flightid": "nu_0.30"},
-            "unknown option 'flightid' of reset; the only one is 'flight_id'",
-        ),
-        ({"flight_id": "nu_0.5"}, r"no flight 'nu_0\.5'; its flights are nu_0\.30, nu_0\.60"),
-    ],
-)
-def test_an_unknown_option_and_an_unknown_flight_are_refused_with_the_known_ones(
-    kinematic, options, words
-):
-    with pytest.raises(InputError, match=words):
-        kinematic.reset(options=options)
-
-
-def test_the_space_holds_the_limits_that_flights_at_random_may_have():
-    draws = [
-        {"key": "guidance.bank_deg", "uniform": [20.0, 40.0]},
-        {"key": "vessel.speed_mps", "uniform": [5.0, 8.0]},
-    ]
-    keys = {"fidelity": "kinematic", "flights": 3, "draws": draws, "comparison.variants": []}
-    env = gymnasium.make(ENVIRONMENT, scenario="plume_search", keys=keys)
-    assert env.action_space.high[0] == pytest.approx(
-        9.81 * math.tan(math.radians(40.0)) / 19.42, rel=1e-3
-    )
-
-
-def test_a_flight_whose_time_is_up_is_truncated_and_not_terminated_even_where_it_completes():
-    # Without a number of crossings a flight that has crossed completes when its time is up.
-    env = make(
-        **{
-            "fidelity": "kinematic",
-            "sweep.nu": [0.3],
-            "flight.crossings": 0,
-            "flight.duration_max_s": 90.0,
-        }
-    )
-    _, info, terminated = followed(env, "nu_0.30")
-    assert env.unwrapped.record.outcome.name == "COMPLETED"
-    assert info["crossings"] > 0
-    assert not terminated
-
-
 @pytest.mark.parametrize(
     ("keys", "words"),
     [
@@ -302,23 +215,6 @@ def test_what_cannot_be_an_environment_is_refused_in_a_line(keys, words):
     assert "\n" not in str(caught.value)
 
 
-def test_flights_without_a_solution_are_passed_over_at_random_and_refused_by_name(monkeypatch):
-    # Against a wind of 5 m/s a vessel at nu = 0.9 of 19.42 m/s has an apparent wind that is faster
-    # than the UAV.
-    env = make(**KINEMATIC | {"sweep.nu": [0.3, 0.9], "wind.speed_mps": 5.0, "flight.crossings": 1})
-    assert {env.reset(seed=seed)[1]["flight_id"] for seed in range(8)} == {"nu_0.30"}
-    with pytest.raises(InputError, match="nu") as caught:
-        env.reset(options={"flight_id": "nu_0.90"})
-    assert "\n" not in str(caught.value)
-    with pytest.raises(InputError, match="nu"):
-        make(**KINEMATIC | {"sweep.nu": [0.9], "wind.speed_mps": 5.0})
-    # Of this seed the first flight is the one that has none.
-    assert np.random.default_rng(0).integers(2) == 1
-    monkeypatch.setattr("extensions.gym.environment._TRIES", 1)
-    with pytest.raises(InputError, match=r"^1 flights at random had no solution; the last one: "):
-        env.reset(seed=0)
-
-
 @pytest.mark.usefixtures("x8_design")
 def test_the_example_of_the_page_runs_as_it_stands(capsys):
     page = (PROJECT / "extensions" / "gym" / "page.md").read_text(encoding="utf-8")
@@ -327,19 +223,3 @@ def test_the_example_of_the_page_runs_as_it_stands(capsys):
     printed = capsys.readouterr().out
     assert "crossings in" in printed
     assert "COMPLETED" in printed
-
-
-def test_every_entry_of_the_observation_is_documented_with_its_unit():
-    page = (PROJECT / "extensions" / "gym" / "page.md").read_text(encoding="utf-8")
-    for name, (meaning, unit, _) in MEANINGS.items():
-        assert f"| `{name}` | {unit} | {meaning} |" in page
-
-
-def test_without_its_extra_the_package_names_it_in_a_line():
-    code = "import sys; sys.modules['gymnasium'] = None; import extensions.gym"
-    ended = subprocess.run(
-        [sys.executable, "-c", code], cwd=PROJECT, capture_output=True, text=True, check=False
-    )
-    needed = "extensions.gym needs gymnasium; install the extra: in the clone, pip install -c constraints.txt -e '.[gym]'"
-    assert ended.stderr.splitlines()[-1] == f"ImportError: {needed}"
-    assert "During handling" not in ended.stderr

@@ -17,13 +17,11 @@ from extensions.patrol.order import (
 )
 from extensions.patrol.route import (
     Air,
-    Leg,
     Mover,
     keeps_clear,
     nearest_on,
     route,
     straight_leg,
-    time_to_reach,
 )
 
 V_R = 20.0
@@ -88,23 +86,6 @@ def test_no_course_reaches_the_ship_sooner(air):
         assert np.min(np.abs((V_R * courses + air.wind) * before - ship.at(before))) > RADIUS
 
 
-def test_times_of_known_chases():
-    # Head on at 20 + 10 m/s over 3,000 m; from astern at 20 - 10 m/s over 1,000 m; abeam, a right
-    # triangle 3-4-5.
-    assert time_to_reach(3000 + 0j, -10 + 0j, 20.0) == pytest.approx(100.0, rel=1e-12)
-    assert time_to_reach(1000 + 0j, 10 + 0j, 20.0) == pytest.approx(100.0, rel=1e-12)
-    assert time_to_reach(400 + 0j, 12j, 20.0) == pytest.approx(25.0, rel=1e-12)
-    assert time_to_reach(3000 + 0j, -10 + 0j, 20.0, 600.0) == pytest.approx(80.0, rel=1e-12)
-    assert time_to_reach(100j, 3 + 0j, 20.0, 200.0) == 0.0
-    # A ship as fast as the pursuer is met if she comes, and never if she goes; a faster one
-    # likewise.
-    assert time_to_reach(4000 + 0j, -20 + 0j, 20.0) == pytest.approx(100.0, rel=1e-12)
-    assert time_to_reach(4000 + 0j, 20 + 0j, 20.0) == math.inf
-    assert time_to_reach(4500 + 0j, -25 + 0j, 20.0) == pytest.approx(100.0, rel=1e-12)
-    assert time_to_reach(4500 + 0j, 25 + 0j, 20.0) == math.inf
-    assert time_to_reach(4500 + 0j, 25j, 20.0) == math.inf
-
-
 def test_a_way_past_ships_keeps_clear_of_all_of_them_and_costs_little():
     tried = 0
     for seed, air in enumerate(airs(12)):
@@ -136,16 +117,6 @@ def test_a_way_past_ships_keeps_clear_of_all_of_them_and_costs_little():
         # her, 3 (pi/2 - 1) 2 x 541 m, at the UAV's advance over the ships of 0.1 V_R at least.
         assert straight.ends < legs[-1].ends < straight.ends + 3.0 * 0.571 * 1082.0 / (0.1 * V_R)
     assert tried > 6
-
-
-def test_a_way_from_beside_a_ship_leads_away_from_her():
-    air = Air(4 + 3j, V_R)
-    beside, goal = Mover(0j, 6 + 0j), Mover(-9000 + 0j, 5j)
-    # On her other side as seen from the goal, nearer than is kept.
-    legs = route(400 + 0j, 0.0, goal, RADIUS, air=air, ships=[beside, goal], clearance=CLEARANCE)
-    assert len(legs) > 1
-    assert min(leg.distance(beside) for leg in legs) > 400.0 - 1e-3
-    assert min(leg.distance(beside) for leg in legs[1:]) > CLEARANCE - 1e-3
 
 
 def test_a_mirrored_way_is_the_mirror_image():
@@ -204,16 +175,6 @@ def test_exact_is_the_best_of_orders_tried_one_by_one():
     assert served.score_of(best) == pytest.approx(max(values), rel=1e-12)
 
 
-def test_a_mirrored_patrol_has_the_same_order():
-    air = Air(6 - 2j, V_R)
-    of = ships(4, 6, air=air)
-    mirrored = [Mover(ship.place.conjugate(), ship.velocity.conjugate()) for ship in of]
-    order = inserted_order(prospect(of, air), 0j, 0.0, range(6))
-    image = inserted_order(prospect(mirrored, Air(air.wind.conjugate(), V_R)), 0j, 0.0, range(6))
-    assert order.ships == image.ships
-    assert order.ends == pytest.approx(image.ends, rel=1e-12)
-
-
 def test_ships_ahead_on_a_line_are_served_as_they_come_and_those_out_of_reach_are_left_out():
     air = Air(0j, V_R)
     of = [Mover(complex(place), 0j) for place in (9000, 3000, 6000, 500_000)]
@@ -224,14 +185,6 @@ def test_ships_ahead_on_a_line_are_served_as_they_come_and_those_out_of_reach_ar
     ends = ends_of(prospect(of, air), 0j, 0.0, (1, 2, 0))
     assert ends == pytest.approx(
         [2200.0 / V_R + 165.0, 4400.0 / V_R + 330.0, 6600.0 / V_R + 495.0], rel=1e-12
-    )
-
-
-def test_without_time_for_any_ship_the_order_is_empty():
-    air = Air(0j, V_R)
-    served = prospect([Mover(9000 + 0j, 0j)], air, endurance=100.0)
-    assert (
-        inserted_order(served, 0j, 0.0, [0]).ships == exact_order(served, 0j, 0.0, [0]).ships == ()
     )
 
 
@@ -253,9 +206,3 @@ def test_of_few_ships_every_order_is_tried_and_of_many_some(monkeypatch):
         lambda *_: pytest.fail("every order of many is tried"),
     )
     assert best_order(many, 0j, 0.0, range(EXACT_MAX + 1)) == expected
-
-
-def test_a_leg_without_a_length_stays_where_it_is():
-    leg = straight_leg(100 + 0j, 5.0, Mover(0j, 3 + 0j), RADIUS, Air(4 + 0j, V_R))
-    assert leg == Leg(5.0, 5.0, 100 + 0j, 100 + 0j)
-    assert leg.velocity == 0j

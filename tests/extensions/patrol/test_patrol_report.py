@@ -3,25 +3,18 @@ one that cannot be.
 """
 
 import math
-from dataclasses import replace
 
-import numpy as np
 import pandas as pd
 import pytest
 
 from extensions.patrol.report import (
-    _matters,
-    counts_of,
-    oracle_table,
-    patrol_chart,
     patrol_content,
-    read_patrols,
-    ship_table,
-    time_lines,
 )
 from reports.document.blocks import CARDS_MAX
 from reports.run.run_data import read_run
 from tests.reports.report_parts import flown, numbers_on_page_1
+
+pytestmark = pytest.mark.slow
 
 QUICK = (
     "fidelity=kinematic", "guidance.rate_hz=5", "flight.log_rate_hz=5", "flights=1", "patrol.ships=2", "patrol.area_m=9000",
@@ -45,145 +38,6 @@ def test_the_verdict_compares_with_the_oracle(run):
     assert found.holds
     assert right.met == (row["correct"] >= 0.8 * row["oracle_verdicts"])
     assert 4 <= len(found.figures) <= CARDS_MAX
-
-
-def test_keys_that_are_sampled_say_how_and_not_what_they_are_where_nothing_samples_them(run):
-    (fold,) = (s.blocks[-1] for s in patrol_content(run).sections if s.anchor == "parameters")
-    (table,) = fold.blocks
-    values = {row[0]: row[1] for row in table.rows}
-    # As in the catalog.
-    assert values["wind.speed_mps"] == "uniform from 3 to 12"
-    assert values["emission.sulphur_percent"].startswith("67 % 0.1; ")
-
-
-def of_row(run, **values):
-    """Return the verdict on a run whose only row has other values."""
-    return patrol_content(replace(run, summary=run.summary.assign(**values))).verdict
-
-
-@pytest.mark.parametrize("oracle", [0, 2])
-def test_patrols_that_served_no_ship_are_red_and_claim_no_share(run, oracle):
-    none = dict.fromkeys(
-        ("served", "verdicts", "correct", "wrong", "open", "keepout_violations"), 0
-    )
-    found = of_row(run, **none, oracle_verdicts=oracle, kept_out=True, criteria_met=True)
-    words = f"No ship was served; an oracle reaches {oracle} right verdicts"
-    assert (found.headline, found.tone) == (words, "bad")
-    figures = {card.name: card.met for card in found.figures}
-    assert figures["Ships served per hour"] is False
-    assert figures["Keep-out violations"] is False
-    assert figures["Right verdicts"] is (False if oracle else None)
-    assert figures["Wrong verdicts"] is None
-
-
-def test_verdicts_without_any_of_an_oracle_show_nothing(run):
-    found = of_row(run, correct=0, wrong=1, verdicts=1, open=0, oracle_verdicts=0)
-    assert found.headline.endswith("0 right, 1 wrong, 0 open, of the 0 that an oracle reaches")
-    # Without a wrong one, too, nothing was shown.
-    assert of_row(run, correct=0, wrong=0, verdicts=0, open=1, oracle_verdicts=0).tone != "good"
-
-
-def test_a_violation_and_a_lost_aircraft_stand_on_page_1(run):
-    found = of_row(run, keepout_violations=2, aircraft_lost=True, criteria_met=False)
-    assert found.headline.startswith("2 keep-out violations. ")
-    assert found.tone == "bad"
-    assert {card.name: card.value for card in found.cards}["Aircraft lost"] == "1"
-
-
-def test_the_patrol_that_is_drawn_is_the_one_with_a_wrong_verdict(run):
-    rows = run.summary.to_dict("records")
-    patrols = [
-        replace(patrol, number=i, row=pd.Series(rows[0] | {"wrong": wrong}))
-        for i, wrong in enumerate((0, 1))
-        for patrol in read_patrols(run)
-    ]
-    assert [patrol.number for patrol in sorted(patrols, key=_matters)] == [1, 0]
-
-
-@pytest.mark.parametrize(
-    ("name", "figure"),
-    [
-        ("Closest approach to a ship that was served", "min_distance_m"),
-        ("Closest approach to any other ship", "others_distance_min_m"),
-    ],
-)
-def test_the_closest_approach_to_each_ship_is_judged_by_the_keep_out_radius(run, name, figure):
-    for distance, value, met in ((199.99, "199.9 m", False), (200.0, "200.0 m", True)):
-        (card,) = [card for card in of_row(run, **{figure: distance}).figures if card.name == name]
-        assert (card.value, card.limit, card.met) == (value, "≥ 200 m", met)
-
-
-def test_names_that_a_spreadsheet_would_compute_are_found_in_every_table(run, tmp_path):
-    for name in ("ships.csv", "phases.csv"):
-        table = pd.read_csv(run.path / name)
-        named = table.assign(patrol="'=p_00000", flight_id="'=p_00000_" + table["ship"].astype(str))
-        named.to_csv(tmp_path / name, index=False)
-    renamed = replace(run, path=tmp_path, summary=run.summary.assign(flight_id="=p_00000"))
-    (patrol,) = read_patrols(renamed)
-    assert (len(patrol.ships), len(patrol.phases)) == (2, len(pd.read_csv(run.path / "phases.csv")))
-
-
-def test_bars_are_as_long_as_the_stretches_and_stand_in_the_ships_rows(run):
-    patrols = read_patrols(run)
-    (patrol,) = patrols
-    _, times = patrol_chart(patrol).panels
-    for line in (line for line in times.lines if line.style == "broad"):
-        own = patrol.phases[patrol.phases["phase"] == line.label]
-        lasts = np.nansum(np.diff(line.x.reshape(-1, 3)[:, :2], axis=1))
-        # Minutes in the figure, seconds in the table.
-        assert lasts == pytest.approx((own["ends_s"] - own["begins_s"]).sum() / 60.0, rel=1e-9), (
-            line.label
-        )
-        assert set(line.y[np.isfinite(line.y)]) == set(2.0 - own["ship"])
-    assert {line.label for line in time_lines(patrols).panels[0].lines} == set(
-        patrol.phases["phase"]
-    ) | {"leaving", "measuring"}
-
-
-def test_the_map_has_every_ship_and_marks_those_that_are_not_served(run):
-    (patrol,) = read_patrols(run)
-    shown, _ = patrol_chart(patrol).panels
-    assert sum(line.label == "ship" for line in shown.lines) == 2
-    assert (
-        sum(line.label == "not served" for line in shown.lines)
-        == patrol.ships["position"].isna().sum()
-        == 1
-    )
-    assert {note.text for note in shown.notes} >= {"0", "1", "N"}
-    served = ship_table(patrol).rows[int(patrol.ships["position"].notna().to_numpy().argmax())]
-    assert "right" in served[6] or "open" in served[6]
-    # Ship and turn are those of ships.csv, both from 0: of one served ship the turn is 0.
-    assert (served[0], served[11]) == (
-        str(patrol.ships["ship"][patrol.ships["position"] == 0].item()),
-        "0",
-    )
-
-
-def test_a_patrol_that_failed_is_a_row_of_dashes_with_its_reason(run):
-    failed = pd.DataFrame(
-        [
-            {
-                "flight_id": "patrol_00001",
-                "criteria_met": False,
-                "outcome": "failed",
-                "message": "no room",
-            }
-        ]
-    )
-    both = replace(run, summary=pd.concat([run.summary, failed], ignore_index=True))
-    assert oracle_table(read_patrols(both)).rows[1][1:] == ["–"] * 13
-    found = patrol_content(both)
-    assert found.verdict.failures == ["patrol_00001: no room"]
-    assert not found.verdict.complete
-
-
-def test_the_report_is_judged_as_the_study_is(run):
-    found = of_row(run, correct=1, wrong=0, verdicts=1, oracle_verdicts=1)
-    assert "verdicts: 1 right, 0 wrong" in found.headline
-    assert found.complete
-    # The study's exit status is of the same sums: a patrol that did not come through fails both.
-    fallen = replace(run, summary=run.summary.assign(criteria_met=False))
-    assert (patrol_content(fallen).verdict.holds, counts_of(fallen).met) == (False, False)
 
 
 def test_every_number_on_page_1_is_that_of_the_tables(run, tmp_path):

@@ -1,20 +1,14 @@
 """Exports for Tacview, Cesium and Foxglove, read back by programs of others where there are any."""
 
 import json
-import sys
 
 import numpy as np
 import pytest
-from convergence_runs import write_convergence_run
 
-from reports.build import export_run
-from reports.errors import ReportError
 from tests.reports.export.placed_flight import (
-    READ,
     TOLERANCE,
     exported,
     off,
-    read,
     track,
 )
 
@@ -88,36 +82,3 @@ def test_mcap_is_read_by_its_own_reader(run_path, truth):
         "foxglove.GeoJSON",
     }
     assert {encoding for _, encoding in schemas} == {"jsonschema"}
-
-
-def test_czml_has_readings_as_properties_of_the_uav_over_time(sniffed):
-    packets = {
-        packet["id"]: packet
-        for packet in json.loads(exported(sniffed, "czml").read_text(encoding="utf-8"))
-    }
-    properties = packets["uav"]["properties"]
-    assert set(properties) == set(READ)
-    for name, sampled in properties.items():
-        assert sampled["epoch"] == packets["uav"]["position"]["epoch"] == "2026-06-01T10:00:00.000Z"
-        samples = np.array(sampled["number"]).reshape(-1, 2)
-        known = np.isfinite(read()[name])
-        np.testing.assert_allclose(samples[:, 0], track()["time_s"][known], atol=1e-9)
-        np.testing.assert_allclose(samples[:, 1], read()[name][known], atol=1e-3)
-    assert "properties" not in packets["vessel"]
-
-
-def test_flights_without_a_sniffer_have_no_word_of_readings(run_path):
-    assert "reading" not in exported(run_path, "czml").read_text(encoding="utf-8")
-
-
-def test_trajectories_of_a_study_of_convergence_are_no_flights_to_export(tmp_path):
-    write_convergence_run(tmp_path / "run", 4)
-    with pytest.raises(ReportError, match="has no time histories of flights"):
-        export_run(tmp_path / "run", "czml")
-
-
-def test_a_package_that_is_missing_is_one_line_with_the_extra(run_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "mcap", None)
-    with pytest.raises(ReportError, match="mcap needs the package mcap; install the extra"):
-        export_run(run_path, "mcap")
-    assert not (run_path / "export").exists()

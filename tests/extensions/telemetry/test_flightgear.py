@@ -7,7 +7,6 @@ import pytest
 
 from aircraft.fdm import Fdm, RigidBodyState
 from aircraft.fleet.x8 import X8
-from common.provenance import command_line
 from extensions.telemetry.flightgear import FlightGear
 from scenarios.errors import InputError
 
@@ -40,12 +39,6 @@ def test_flightgears_packets_say_where_the_aircraft_is():
     # foot of its climb.
     assert (latitude, longitude) == pytest.approx((0.01, -0.02), abs=1e-6)
     assert altitude == pytest.approx(120.0, abs=1.0)
-
-
-def test_the_host_is_not_in_the_command_line_of_a_run():
-    typed = ["plume-flight", "run", "runs/a/flights/b", "--flightgear", "host:5550"]
-    shown = "plume-flight run runs/a/flights/b --flightgear HOST:PORT"
-    assert command_line("scenarios.run", typed) == shown
 
 
 @pytest.mark.parametrize("address", ["localhost", "local host:5550", "localhost:99999", "", ":5"])

@@ -12,6 +12,8 @@ import pytest
 from tests.reports.export.placed_flight import exported, track
 from tests.run_tables import write_manifest
 
+pytestmark = pytest.mark.slow
+
 GEOID = 36.25
 """Mean sea level above the ellipsoid [m]; EGM2008 has some 36 m in the Kattegat."""
 

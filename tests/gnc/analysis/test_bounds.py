@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from gnc.analysis.bounds import factors, factors_at_most, heading_rate_bound
 from gnc.analysis.worst_case_search import heading_rates
 from gnc.errors import InfeasibleError
-from gnc.paper import delta_length, look_ahead, lyapunov_law, relative_state, relative_velocity
+from gnc.paper import delta_length, relative_state, relative_velocity
 
 
 @examples(200)
@@ -147,29 +147,6 @@ def test_no_command_exceeds_the_bound_also_at_unequal_speeds(
     assert abs(omega) <= bound
 
 
-@examples(50)
-@given(parameters=look_aheads(), turn=turns, steering_max=steering, scale=st.floats(0.1, 10.0))
-def test_lengths_of_another_unit_have_the_same_bound(parameters, turn, steering_max, scale):
-    scaled = look_ahead(parameters.epsilon / scale, parameters.radius * scale)
-    kept = {"reference_heading_rate_max": turn, "steering_max": steering_max, "tolerance": 0.01}
-    bound = heading_rate_bound(parameters, speed=SPEED, **kept)
-    # Both lie within their tolerance of the same value, by the same cells; a rounding may add or
-    # drop one of those.
-    assert heading_rate_bound(scaled, speed=scale * SPEED, **kept) == pytest.approx(bound, rel=0.01)
-
-
-@examples(30)
-@given(parameters=look_aheads(), turn=turns)
-def test_the_tolerance_is_kept(parameters, turn):
-    kept = {"speed": SPEED, "reference_heading_rate_max": turn, "steering_max": 1e-9}
-    coarse, fine = (
-        heading_rate_bound(parameters, **kept, tolerance=tolerance) for tolerance in (0.05, 0.002)
-    )
-    # Both are bounds of one number, 0.05 and 0.002 high at most.
-    assert coarse <= 1.05 * fine
-    assert fine <= 1.002 * coarse
-
-
 @examples(200)
 @given(parameters=look_aheads(), turn=turns, gain=st.floats(0.1, 5.0), steering_max=steering)
 def test_the_least_bound_is_a_command_that_is_met_and_no_larger_one_is_met_head_on(
@@ -214,54 +191,6 @@ def test_the_least_bound_is_a_command_that_is_met_and_no_larger_one_is_met_head_
     assert least <= bound
 
 
-@examples(60)
-@given(parameters=look_aheads(), turn=turns)
-def test_states_head_on_come_close_to_the_worst_of_all(parameters, turn):
-    worst = heading_rate_bound(
-        parameters, speed=SPEED, reference_heading_rate_max=turn, steering_max=1e-9, tolerance=1e-3
-    )
-    least = largest_head_on(
-        parameters, speed=SPEED, reference_heading_rate_max=turn, gain=1.5, steering_max=1e-9
-    )
-    # docs, "In short": 0.75 % over sigma and omega_r R/V, measured; and 0.1 % by which the bound
-    # may lie high.
-    assert worst <= 1.0085 * least
-
-
-@examples(200)
-@given(parameters=look_aheads(), turn=turns, steering_max=steering)
-def test_on_the_reference_itself_the_command_takes_the_references_turn_and_what_the_look_ahead_adds(
-    parameters, turn, steering_max
-):
-    # docs, "What is necessary": d = 0 makes rho = delta = R. So a reference that spends omega_max
-    # leaves no bound within it.
-    on_it = turn + SPEED / parameters.radius + min(steering_max, 0.75 * math.pi)
-    assert command(parameters, 0.0, 0.0, -0.5 * math.pi, turn, 1.5, steering_max) == pytest.approx(
-        on_it, rel=1e-12
-    )
-    least = largest_head_on(
-        parameters,
-        speed=SPEED,
-        reference_heading_rate_max=turn,
-        gain=1.5,
-        steering_max=steering_max,
-    )
-    assert on_it <= least * (1.0 + 1e-12)
-
-
-def test_law_24_has_no_bound():
-    far = [relative_state(LOOK_AHEAD, distance, 0.0, 0.0, 1.0) for distance in (1e2, 1e3, 1e4)]
-    # k_1 rho V tan(phi/2): rho grows as epsilon d^2.
-    commands = [abs(lyapunov_law(state, SPEED, 0.0, 0.001)) for state in far]
-    assert commands[2] > 50.0 * commands[1] > 50.0 * 5.0 * commands[0]
-    turned = [
-        relative_state(LOOK_AHEAD, 0.0, 0.0, 0.0, math.pi - angle) for angle in (1e-1, 1e-3, 1e-5)
-    ]
-    commands = [abs(lyapunov_law(state, SPEED, 0.0, 0.001)) for state in turned]
-    # tan(pi/2 - angle/2) is 2/angle.
-    assert commands[2] > 90.0 * commands[1] > 90.0 * 90.0 * commands[0]
-
-
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
@@ -279,18 +208,3 @@ def test_bounds_of_what_cannot_be_are_refused(changes, message):
     arguments = {"speed": SPEED, "reference_heading_rate_max": 0.3, "steering_max": 0.4} | changes
     with pytest.raises(InfeasibleError, match=message):
         heading_rate_bound(LOOK_AHEAD, **arguments)
-
-
-@pytest.mark.parametrize("radius", [50.0, 50.0 * (1.0 + 1e-12)])
-def test_a_look_ahead_at_the_edge_of_the_singularity_is_refused(radius):
-    # R = 1/(4 epsilon) = 50 m, exactly and but for rounding.
-    with pytest.raises(
-        InfeasibleError,
-        match=r"look-ahead R is 50 m.* 1/\(4 epsilon\) = 50 m.*: raise R or epsilon",
-    ):
-        heading_rate_bound(
-            LOOK_AHEAD._replace(radius=radius),
-            speed=SPEED,
-            reference_heading_rate_max=0.3,
-            steering_max=0.4,
-        )

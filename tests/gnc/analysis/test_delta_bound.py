@@ -9,11 +9,9 @@ import pytest
 from cascade_cases import LAW_30_FLIGHTS, cartesian_v_1_rate, fly_law_30, gains, rates_max
 from gnc_cases import (
     LOOK_AHEAD,
-    OSCILLATION,
     SPEED,
     courses,
     examples,
-    oscillating,
     relative,
     tracking_starts,
 )
@@ -39,14 +37,6 @@ def test_the_excursion_time_is_the_integral_of_one_minus_cos_phi_along_31b(phi, 
     )
     # Quadrature's tolerance.
     assert excursion_time(phi, gain, rate_max) == pytest.approx(expected, rel=1e-9, abs=1e-10)
-
-
-def test_the_excursion_time_of_a_held_half_turn_and_of_a_small_angle():
-    # Held all the way at 0.5 rad/s, pi - sin(pi) over it; a small angle of a proportional law,
-    # phi^2/(4 gain) to phi^2/24.
-    assert excursion_time(math.pi, 1e9, 0.5) == pytest.approx(2.0 * math.pi, rel=1e-8)
-    assert excursion_time(0.01, 2.0, 1.0) == pytest.approx(0.01**2 / 8.0, rel=1e-5)
-    assert excursion_time(0.0, 2.0, 1.0) == 0.0
 
 
 @examples(200)
@@ -104,20 +94,3 @@ def test_along_flights_under_law_30_delta_stays_below_its_bound(
     # And the bound itself never rises along a flight, as it grows in delta and phi just as fast as
     # they may.
     assert np.all(np.diff(left) <= 1e-6 * left[:-1])
-
-
-def test_a_flight_from_the_reference_on_the_opposite_course_and_its_bound():
-    # phi = pi is as far as phi goes, and I, the integral of 1 - cos phi, is Cin(0.2667)/1.5 + (pi -
-    # 0.2667 + sin 0.2667)/0.4 = 0.0118 + 7.8462 s. Exponent: 2 * 0.005/m * 19.42 m/s * (1 + 1/(2
-    # sqrt(0.3))) * I = 0.37147/s * 7.858 s = 2.919; exp is 18.52.
-    start = [0.0, 0.0, OSCILLATION.eta, 0.0, 0.0, OSCILLATION.eta + 3.1]
-    _, states, _ = fly_law_30(
-        start, oscillating, gain=1.5, rate_max=0.4, duration=60.0, interval=0.25
-    )
-    opposite = states[0]._replace(phi=math.pi)
-    assert delta_bound(LOOK_AHEAD, opposite, SPEED, 1.5, 0.4) == pytest.approx(
-        60.0 * 18.52, rel=1e-3
-    )
-    # The flight itself: d rises from 0 to 127 m, delta from 60 m to 141 m; measured once, to the
-    # metre.
-    assert max(state.delta for state in states) == pytest.approx(141.0, abs=1.0)

@@ -120,48 +120,6 @@ def test_equation_20_follows_from_21_by_the_law_of_cosines_and_keeps_delta_what_
 
 
 @examples(100)
-@ANY_MOTION
-def test_equation_21_is_as_printed(
-    north, east, reference_course, course, reference_heading_rate, heading_rate
-):
-    state = relative([north, east, reference_course, 0.0, 0.0, course])
-    delta, rho, phi_r, phi = state
-    c = math.cos(phi)
-    c_r = math.cos(phi_r)
-    s = math.sin(phi)
-    s_r = math.sin(phi_r)
-    c_both = math.cos(phi - phi_r)
-    epsilon = LOOK_AHEAD.epsilon
-    both = rho * (c - c_r) + delta * (1.0 - c_both)
-    turn = -(
-        SPEED * s_r - SPEED * s + delta * reference_heading_rate * c_r
-    ) / rho + 2.0 * epsilon * SPEED * s_r * (c - c_r + delta / rho * (1.0 - c_both))
-    printed = (
-        -2.0 * epsilon * SPEED * both,
-        SPEED * (c_r - c)
-        - delta * reference_heading_rate * s_r
-        - 2.0 * epsilon * SPEED * c_r * both,
-        reference_heading_rate + turn,
-        heading_rate + turn,
-    )
-    # Roundings of up to 1e3 m/s, over no less than 10 m.
-    assert state_rates(
-        LOOK_AHEAD, state, SPEED, reference_heading_rate, heading_rate
-    ) == pytest.approx(printed, rel=0.0, abs=1e-10)
-
-
-@examples(100)
-@given(reference_heading_rate=heading_rates)
-def test_on_the_reference_and_with_its_heading_rate_nothing_changes(reference_heading_rate):
-    # Section IV.C: x_d = [R, R, 0, 0]. Rounding of R omega_r/R.
-    rates = state_rates(
-        LOOK_AHEAD, equilibrium(LOOK_AHEAD), SPEED, reference_heading_rate, reference_heading_rate
-    )
-    assert rates == pytest.approx((0.0, 0.0, 0.0, 0.0), abs=1e-15)
-    assert equilibrium(LOOK_AHEAD) == (60.0, 60.0, 0.0, 0.0)
-
-
-@examples(100)
 @given(north=offsets, east=offsets, reference_course=courses, course=courses)
 def test_v_1_is_half_the_squared_distance(north, east, reference_course, course):
     state = relative([north, east, reference_course, 0.0, 0.0, course])

@@ -56,18 +56,6 @@ def paper_oscillation(nu, **changes):
     )
 
 
-def assert_a_copy_goes_on(reference, copied):
-    """A copy goes on as its original would, and leaves that where it is."""
-    other, place = copied(reference), (reference.north, reference.east)
-    for _ in range(200):
-        other.step()
-    assert (reference.north, reference.east) == place
-    for _ in range(200):
-        reference.step()
-    names = ("north", "east", "course", "heading_rate", "speed", "turn_rate_fraction")
-    assert [getattr(other, name) for name in names] == [getattr(reference, name) for name in names]
-
-
 OSCILLATION = paper_oscillation(0.5)
 
 

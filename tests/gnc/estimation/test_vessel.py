@@ -18,13 +18,10 @@ from gnc.estimation.vessel import (
     ReachableSet,
     ReportedTarget,
     SteadyTarget,
-    Tube,
     VesselFilter,
     VesselReport,
     singer_noise,
-    singer_response,
     tube,
-    tube_by_speed,
 )
 
 TIME_STEP = 0.05
@@ -77,12 +74,6 @@ def test_its_process_noise_is_singers(time):
     )
 
 
-@pytest.mark.parametrize("time", [0.5, 12.0, 60.0])
-def test_it_extrapolates_an_acceleration_that_fades(time):
-    # Rounding.
-    assert singer_response(MEMORY, time) == pytest.approx(singer(time)[0][:, 2], rel=1e-10)
-
-
 def test_it_is_a_plain_matrix_kalman_filter():
     rng = np.random.default_rng(3)
     vessel = make()
@@ -119,28 +110,6 @@ def test_it_is_a_plain_matrix_kalman_filter():
         )
 
 
-def test_it_starts_from_the_first_report():
-    vessel = make()
-    assert vessel.time == -math.inf
-    vessel.report(FIRST)
-    motion = vessel.at(0.0)
-    assert (motion.north, motion.east, motion.velocity_north, motion.velocity_east) == FIRST[1:]
-    assert motion.sigma == POSITION
-    # A straight line until something else is reported.
-    assert (vessel.at(10.0).north, vessel.at(10.0).east) == pytest.approx((150.0, -20.0), abs=1e-12)
-
-
-def test_a_report_that_is_older_than_the_newest_changes_nothing():
-    vessel = make()
-    vessel.report(FIRST)
-    vessel.report(VesselReport(8.0, 140.0, -24.0, 5.0, 2.0))
-    before = vessel.at(10.0)
-    vessel.report(VesselReport(5.0, 1e4, 1e4, 50.0, 50.0))
-    vessel.report(VesselReport(8.0, 1e4, 1e4, 50.0, 50.0))
-    assert vessel.at(10.0) == before
-    assert vessel.time == 8.0
-
-
 def test_a_late_report_counts_for_when_it_was_true():
     # What matters is the time in the report, not when it is handed over: here after a look at a
     # later time.
@@ -152,30 +121,6 @@ def test_a_late_report_counts_for_when_it_was_true():
     looked.report(late)
     silent.report(late)
     assert looked.at(9.0) == silent.at(9.0)
-
-
-def test_exact_reports_give_exact_states_and_find_the_acceleration():
-    vessel = make(position_sigma=0.0, velocity_sigma=0.0)
-    # 6 m/s, speeding up northward by 0.1 m/s^2, reported every half a second, as with exact
-    # knowledge.
-    for step in range(200):
-        time = 0.5 * step
-        vessel.report(VesselReport(time, 6.0 * time + 0.05 * time**2, 0.0, 6.0 + 0.1 * time, 0.0))
-        motion = vessel.at(time)
-        # Rounding of 1,100 m.
-        assert motion.north == pytest.approx(6.0 * time + 0.05 * time**2, rel=0.0, abs=1e-9)
-        assert motion.velocity_north == pytest.approx(6.0 + 0.1 * time, rel=0.0, abs=1e-9)
-        assert motion.sigma == pytest.approx(0.0, abs=1e-6)
-    # It reckons with accelerations that fade with 40 s, so it sees 0.1 within the half second's
-    # share of that, 1.3 %.
-    assert motion.acceleration_north == pytest.approx(0.1, rel=0.02)
-
-
-def test_its_covariance_stays_positive_over_a_thousand_reports():
-    vessel = make()
-    for step in range(1000):
-        vessel.report(VesselReport(2.0 * step, 10.0 * step, 0.0, 5.0, 0.0))
-    assert np.linalg.eigvalsh(matrix(vessel.covariance))[0] > 0.0
 
 
 def test_it_knows_how_wrong_it_is_about_the_manoeuvres_that_it_reckons_with():
@@ -269,49 +214,6 @@ def test_the_vessel_is_in_every_disc_at_every_time(manoeuvre, velocity, reported
         )
 
 
-def test_the_disc_is_no_larger_than_what_the_vessel_can_do():
-    # A vessel that does the most it can, with the largest error, is on the edge of its disc: at
-    # rest, and reported 20 s ago.
-    limits = replace(LIMITS, speed_max=math.inf)
-    vessel, age = Vessel(limits=limits), 20.0
-    # The split of the error that is worst at that age: the gradient of 5 cos + 0.15 * 20 sin.
-    report = report_of(vessel, 0.0, split=math.atan2(0.15 * age, 5.0), place=math.pi, drift=math.pi)
-    vessel.accelerate(limits.acceleration, 0.0, age)
-    assert beyond(tube(report, limits, age), vessel, age) == pytest.approx(0.0, abs=ROUNDING)
-
-
-def test_the_disc_by_speed_is_reached_at_the_largest_speed():
-    vessel, age = Vessel(velocity_north=15.0), 150.0
-    report = report_of(vessel, 0.0, place=math.pi)
-    vessel.accelerate(0.0, 0.0, age)
-    disc = tube_by_speed(report, LIMITS, age)
-    # 25 m of reported error and 15 m/s; the other disc has 0.25 m/s^2 150^2/2 alone, 2.8 km.
-    assert disc.radius == pytest.approx(25.0 + 15.0 * age, rel=1e-12)
-    assert beyond(disc, vessel, age) == pytest.approx(0.0, abs=ROUNDING)
-
-
-def test_the_disc_by_speed_of_a_new_report_begins_as_the_other_one():
-    report = VesselReport(0.0, 3.0, -4.0, 8.0, 0.0)
-    disc = tube_by_speed(report, LIMITS, 20.0)
-    # By hand: 5 hypot(5, 0.15 * 20) and 0.25 * 20^2/2 about 160 m farther north; from then on
-    # anywhere at 15 m/s.
-    assert disc == pytest.approx(
-        (20.0, 163.0, -4.0, 0.0, 0.0, 5.0 * math.hypot(5.0, 3.0) + 50.0, 15.0, 0.0), rel=1e-12
-    )
-
-
-def test_a_disc_by_speed_is_there_as_soon_as_the_edge_of_the_other_may_be_faster_than_the_vessel():
-    reach = ReachableSet(LIMITS)
-    reach.report(VesselReport(0.0, 0.0, 0.0, 8.0, 0.0))
-    # 8 m/s, and 0.25 m/s^2 until 9 s ahead: 15 m/s for reports that are 19 s old; their errors make
-    # that less than a second sooner.
-    by_speed = [
-        bool([disc for disc in reach.tubes(time) if disc.velocity_north == 0.0])
-        for time in (0.0, 17.0, 19.1, 60.0)
-    ]
-    assert by_speed == [False, False, True, True]
-
-
 @examples(100)
 @given(
     age=st.floats(0.0, 100.0),
@@ -328,36 +230,6 @@ def test_a_report_that_gets_older_never_widens_its_disc_beyond_what_it_was_said_
     then, now = tube(report, limits, age), tube(report, limits, age + later)
     assert now.reach(ahead) <= then.reach(later + ahead) * (1.0 + 1e-12)
     assert (now.north, now.velocity_north) == pytest.approx((then.north + 8.0 * later, 8.0))
-
-
-def test_reports_are_kept_by_when_they_were_true_and_not_by_when_they_came():
-    reach = ReachableSet(replace(LIMITS, speed_max=math.inf))
-    for time in (0.0, 30.0, 10.0, 20.0, 5.0):
-        reach.report(VesselReport(time, 1000.0 * time, 0.0, 0.0, 0.0))
-    # The newest three, the newest first: one that comes late is put where it belongs, or dropped.
-    assert [disc.north for disc in reach.tubes(40.0)] == [30e3, 20e3, 10e3]
-
-
-def test_a_vessel_that_is_known_exactly_is_a_disc_without_width():
-    exact = replace(LIMITS, acceleration=0.0, position_sigma=0.0, velocity_sigma=0.0)
-    reach = ReachableSet(exact)
-    reach.report(VesselReport(1.0, 10.0, -4.0, 6.0, 2.0))
-    # A vessel that cannot accelerate cannot reach another speed: no second disc; and no number is
-    # none.
-    assert reach.tubes(3.0) == [Tube(3.0, 22.0, 0.0, 6.0, 2.0)]
-
-
-def test_without_a_position_error_the_disc_of_a_new_report_grows_by_its_velocity_error():
-    limits = replace(LIMITS, acceleration=0.0, position_sigma=0.0)
-    disc = tube(VesselReport(0.0, 0.0, 0.0, 0.0, 0.0), limits, 0.0)
-    assert (disc.radius, disc.growth) == pytest.approx((0.0, 5.0 * 0.15), rel=1e-12)
-
-
-def test_a_place_that_is_next_to_exact_makes_a_disc_that_is_next_to_that_of_an_exact_one():
-    exact, nearly = (replace(LIMITS, position_sigma=sigma) for sigma in (0.0, 1e-110))
-    report = VesselReport(0.0, 3.0, -4.0, 8.0, 0.0)
-    for age in (0.0, 20.0):
-        assert tube(report, nearly, age) == pytest.approx(tube(report, exact, age), rel=1e-12)
 
 
 def test_normal_errors_are_outside_of_a_disc_as_rarely_as_its_deviations_say():
@@ -402,14 +274,6 @@ def reported(*reports):
     return target
 
 
-def test_a_reported_target_is_where_the_filter_has_it_when_the_mission_plans():
-    target = reported((0.0, 100.0, -40.0, 6.0, 2.0), (5.0, 130.0, -30.0, 6.5, 2.0))
-    target.update(7.0, True)
-    seen = target.vessel.at(7.0)
-    assert fields(target) == (seen.north, seen.east, seen.velocity_north, seen.velocity_east)
-    assert target.age(7.0) == 2.0
-
-
 def test_the_scatter_of_reports_is_left_out_of_the_acceleration():
     # 0.5 m/s within 5 s: more than a steady vessel's reports scatter by within the filter, in one
     # direction only.
@@ -432,61 +296,3 @@ def test_the_scatter_of_reports_is_left_out_of_the_acceleration():
     steady.update(7.0, True)
     assert steady.vessel.at(7.0).acceleration_north > 0.0
     assert (steady.acceleration_north, steady.acceleration_east) == (0.0, 0.0)
-
-
-def test_the_acceleration_of_a_vessel_without_errors_is_taken_as_it_is():
-    known = VesselFilter(
-        FilterParameters(position_sigma=0.0, velocity_sigma=0.0, acceleration=0.02, memory=40.0)
-    )
-    target = ReportedTarget(known, ReachableSet(LIMITS), TIME_STEP)
-    for report in ((0.0, 0.0, 0.0, 6.0, 2.0), (5.0, 30.125, 10.0, 6.05, 2.0)):
-        target.report(VesselReport(*report))
-    target.update(7.0, True)
-    seen = known.at(7.0)
-    assert (target.acceleration_north, target.acceleration_east) == (
-        seen.acceleration_north,
-        seen.acceleration_east,
-    )
-    assert 0.0 < target.acceleration_north < REPORTED_SCATTER
-
-
-def test_between_plans_it_goes_on_at_its_acceleration():
-    target = reported((0.0, 100.0, -40.0, 6.0, 2.0), (5.0, 130.0, -30.0, 6.5, 2.0))
-    target.update(7.0, True)
-    for step in range(1, 10):
-        target.update(7.0 + step * TIME_STEP, False)
-    seen = target.vessel.at(7.0 + 9 * TIME_STEP)
-    # 0.45 s at an acceleration that decays over 40 s, of 0.02 m/s^2 or so: 1 % of 9 mm/s; and half
-    # of it, as sums run, of 0.2 mm.
-    assert fields(target) == pytest.approx(
-        (seen.north, seen.east, seen.velocity_north, seen.velocity_east), abs=1e-3
-    )
-    # A report that comes meanwhile is used at the next plan.
-    target.report(VesselReport(7.4, 0.0, 0.0, 0.0, 0.0))
-    before = fields(target)
-    target.update(7.5, False)
-    assert fields(target) == pytest.approx(before, abs=1.0)
-    tubes = target.tubes
-    target.update(7.55, True)
-    assert target.north < before[0] - 20.0
-    assert (tubes[0].time, target.tubes[0].time) == (7.0, 7.55)
-    # The newest report's disc is about where it says, 0.15 s on.
-    assert (target.tubes[0].north, target.tubes[0].east) == (0.0, 0.0)
-
-
-def test_a_steady_target_is_one_disc_without_width():
-    target = SteadyTarget(6.0, -2.5)
-    target.update(12.0, True)
-    assert target.tubes == (Tube(0.0, 0.0, 0.0, 6.0, -2.5),)
-    assert target.tubes[0].reach(100.0) == 0.0
-
-
-def test_a_target_that_was_reported_has_a_disc_for_each_report():
-    target = reported((0.0, 100.0, -40.0, 6.0, 2.0), (5.0, 130.0, -30.0, 6.5, 2.0))
-    assert target.tubes == ()
-    target.update(7.0, True)
-    # The newest first.
-    assert [(tube.velocity_north, tube.velocity_east) for tube in target.tubes] == [
-        (6.5, 2.0),
-        (6.0, 2.0),
-    ]

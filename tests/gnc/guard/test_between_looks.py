@@ -242,20 +242,6 @@ def test_commands_are_skipped_until_time_or_course_is_used_up(side):
         assert not budget_after_a_look(side=side).may_skip(command * side, fastest, slowest)
 
 
-def test_a_look_that_finds_no_turn_leaves_nothing_to_skip():
-    budget = budget_after_a_look()
-    budget.reset(None, 0.0, command=0.5, recent=(0.5, 0.5), slowest=19.0, fastest=21.0)
-    assert skips(budget, 0.5) == 0
-
-
-def test_a_refunded_command_passes_once_more():
-    budget = budget_after_a_look()
-    budget.refund(0.3)
-    assert (budget.steps, budget.course_left) == (10, pytest.approx(0.21 + 0.5 * 0.1 - 0.3 * 0.1))
-    assert budget.may_skip(0.3, 20.0, 20.0)
-    assert (budget.steps, budget.course_left) == (9, pytest.approx(0.21))
-
-
 def test_what_is_flown_in_place_of_a_skipped_command_is_charged():
     budget = budget_after_a_look()
     budget.charge(0.5, 0.3)
@@ -290,32 +276,6 @@ def test_asking_first_leaves_the_same_budget(bearing, command):
     assert math.isfinite(course_left)
     assert consulted.filter.budget.course_left == pytest.approx(course_left, abs=1e-12)
     assert consulted.filter.budget.steps == guard.filter.budget.steps
-
-
-def test_a_command_that_is_not_allowed_leaves_no_budget():
-    guard = DiscGuard(deviation=3.1)
-    state = (-250.0, 0.0, math.radians(10.0), 0.0)
-    assert guard.limit(0.0, state) == 0.0
-    assert guard.filter.budget.steps > 0
-    assert not guard.allows(-HEADING_RATE_MAX, state, speed=2.5 * PAPER_SPEED)
-    # At that speed it has to turn at once, to the other side.
-    assert guard.limit(-HEADING_RATE_MAX, state, speed=2.5 * PAPER_SPEED) == HEADING_RATE_MAX
-    assert guard.status is not GuardStatus.FREE
-
-
-def test_a_fast_vehicle_is_remembered_to_turn_no_faster_than_it_can():
-    guard = DiscGuard(turn_speed=PAPER_SPEED)
-    far = (1000.0, 0.0, 0.0, 0.0)
-    for speed in (PAPER_SPEED, 1.5 * PAPER_SPEED):
-        # At the largest bank; the command itself is passed on unchanged.
-        assert guard.limit(HEADING_RATE_MAX, far, speed=speed) == HEADING_RATE_MAX
-        assert guard.filter.history.newest == HEADING_RATE_MAX * PAPER_SPEED / speed
-    # One that may become faster, but is not, turns in full: remembered as a slow turn it flew 9 m
-    # into a disc of 10.
-    own = known_motion(far, speed=PAPER_SPEED)
-    discs = (AT_REST,)
-    guard.filter.limit(HEADING_RATE_MAX, 0.1, own, discs, 1.5 * PAPER_SPEED, PAPER_SPEED)
-    assert guard.filter.history.newest == HEADING_RATE_MAX
 
 
 @pytest.mark.parametrize("speed", [PAPER_SPEED, 1.5 * PAPER_SPEED])

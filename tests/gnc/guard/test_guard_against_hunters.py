@@ -32,6 +32,8 @@ from hunt_cases import (
 from gnc.estimation.vessel import Tube
 from gnc.guard.guard import GuardStatus, HeadingRateFilter
 
+pytestmark = pytest.mark.slow
+
 HUNTED = pytest.mark.parametrize("hunter", HUNTERS, ids=lambda hunter: hunter.__name__)
 
 

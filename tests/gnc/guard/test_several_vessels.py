@@ -13,6 +13,8 @@ from gnc.guard.common_turn import remaining
 from gnc.guard.guard import GuardStatus, HeadingRateFilter
 from gnc.numeric import limited, wrap
 
+pytestmark = pytest.mark.slow
+
 KNOWN = VesselLimits(
     acceleration=0.0,
     speed_max=math.inf,

@@ -36,17 +36,6 @@ def test_a_slow_pace_adds_the_overshoot_of_the_return_and_is_forgotten():
     assert surpluses[-1] == pytest.approx(0.13 * (SPEED - 15.0) * math.exp(-0.5 * 6.0 * BANDWIDTH))
 
 
-def test_after_a_fast_pace_the_vehicle_rises_no_further():
-    speeds = speed_range()
-    for pace in [25.0] * 400:
-        speeds.note(pace)
-    assert speeds.fastest(25.0) == pytest.approx(25.0, abs=1e-3)
-    assert speeds.fastest(SPEED) == speeds.fastest(25.0)
-    speeds.note(SPEED)
-    assert speeds.fastest(SPEED) < 25.0
-    assert speeds.slowest(SPEED) == pytest.approx(SPEED - 0.13 * (25.0 - SPEED), rel=1e-2)
-
-
 @pytest.mark.parametrize("damping", [1.0, 0.55])
 def test_a_pace_counts_for_as_long_as_the_vehicle_may_be_as_fast_or_slow(damping):
     # A second-order airspeed, commanded up and down at random and to V_r in the end, stays within
@@ -81,17 +70,3 @@ def second_order(value, rate, command, damping, frequency, pieces):
         )
         value += TIME_STEP / pieces * rate
     return value, rate
-
-
-def test_a_vehicle_that_follows_at_once_has_no_memory_but_its_pace():
-    speeds = speed_range(bandwidth=math.inf)
-    for pace in (25.0, 15.0, 20.0):
-        speeds.note(pace)
-        assert (speeds.highest, speeds.lowest) == (max(pace, SPEED), pace)
-
-
-def test_a_pace_that_is_flown_in_place_of_the_commanded_one_is_included():
-    speeds = speed_range()
-    speeds.include(24.0)
-    speeds.include(17.0)
-    assert (speeds.highest, speeds.lowest) == (24.0, 17.0)

@@ -180,16 +180,6 @@ def test_a_vehicle_too_fast_for_omega_max_is_predicted_to_turn_more_slowly():
         assert found == pytest.approx(flown, abs=1e-3 * 1.5**2 * TURN_RADIUS)
 
 
-def test_a_command_leads_no_farther_than_the_vehicle_can_turn_at_its_speed():
-    prediction = predictor(time_step=0.2, turn_speed=SPEED)
-    state = (300.0, 0.0, math.pi, 0.0)
-    for speed, rate in ((SPEED, HEADING_RATE_MAX), (1.5 * SPEED, HEADING_RATE_MAX / 1.5)):
-        found = prediction.after(HEADING_RATE_MAX, relative_motion(state, fastest=speed))
-        flown = moved(state, rate, 0.25, 0.2, speed)
-        assert (found.x, found.y) == pytest.approx(flown[:2], abs=1e-3)
-        assert (found.course, found.heading_rate) == pytest.approx(flown[2:], abs=1e-12)
-
-
 @pytest.mark.parametrize("lag", [0.0, 0.25])
 def test_a_command_leads_where_the_vehicle_flies_in_small_steps(lag):
     # At any heading rate, beside a disc that moves; at the slowest while it flies away from it.
@@ -310,22 +300,6 @@ def turns_at_many_speeds(side, start, velocity, later, first, piece=0.02):
         yield float(np.hypot(north, east)[:end].min())
 
 
-def test_a_turn_round_a_disc_comes_the_nearer_the_slower_it_is_flown():
-    # The circle at the fastest is about the disc's centre, 0.2 turn radii outside; at the slowest
-    # it leads through the disc.
-    guard = HeadingRateFilter(parameters_of(lag=0.0, radius=TURN_RADIUS))
-    start = (0.0, -1.2 * TURN_RADIUS, 0.0, HEADING_RATE_MAX)
-    for slowest, expected in (
-        (1.2 * SPEED, 0.2),
-        # From 1.2 to the right a circle of 0.95: its far side is 0.7 from the disc's centre.
-        (0.95 * SPEED, 0.7 - 1.0),
-    ):
-        motion = relative_motion(start, fastest=1.2 * SPEED, slowest=slowest, radius=TURN_RADIUS)
-        motions = guard.motions_when_acting(motion)
-        turn = guard.turn_after(1.0, HEADING_RATE_MAX, motions, 0.2, -math.inf)
-        assert turn.slack == pytest.approx(expected * TURN_RADIUS, abs=0.1)
-
-
 def away(side=1.0, *, turn=0.0, course=0.0, closing=0.0, pending=0.0, change=0.0, deviation=0.0):
     """Return the slack [m] of a turn away that begins 250 m due south of the centre of a disc of
     200 m.
@@ -351,29 +325,6 @@ def test_the_deviation_counts_by_the_larger_of_the_roll_ahead_and_the_recent_cha
         for change in (0.2, 0.7):
             kept = away(turn=turn, change=change) - away(turn=turn, change=change, deviation=8.0)
             assert kept == pytest.approx(8.0 * max(ahead, change), abs=1e-9)
-
-
-@pytest.mark.parametrize("side", [1.0, -1.0])
-@pytest.mark.parametrize("beyond", [0.0, 0.05, 0.1])
-def test_a_turn_that_begins_just_beyond_straight_away_is_over(side, beyond):
-    # The disc gains on the vehicle by 0.1 m/s, and by as much as the course is off. Once round it
-    # would gain 250 m.
-    assert away(side, course=math.pi + side * beyond, closing=-SPEED - 0.1) > 0.0
-
-
-@pytest.mark.parametrize("aspect_deg", [60.0, 90.0, 120.0])
-def test_a_disc_that_closes_in_a_little_faster_than_the_vehicle_flies_is_a_little_worse(aspect_deg):
-    # A flight of a search violated r_min because it seemed to be 267 m worse: the prediction flew
-    # on, once round.
-    guard = DiscGuard(lag=0.25, delay=0.25)
-    state = (0.0, -300.0, math.radians(aspect_deg - 90.0), 0.1)
-    closings = SPEED * np.linspace(0.9, 1.1, 41)
-    found = np.array([guard.clearance(state, (0.0, -closing)) for closing in closings])
-    # By 0.5 % of the speed for as long as a turn and the flight after it are predicted,
-    # 2.5 pi/omega_max: 1.5 m. Straight away is met to an eighth of a radian: as much again.
-    longest = 2.5 * math.pi / HEADING_RATE_MAX
-    assert np.all(np.diff(found) <= 0.0)
-    assert np.all(np.diff(found) >= -3.0 * np.diff(closings) * longest)
 
 
 def closest_by(values, starts, velocities, lag):
@@ -466,21 +417,6 @@ def test_a_turn_from_straight_away_off_a_disc_at_rest_is_once_round_by_its_overs
         found = prediction.time_until_once_round(side, start, motion)
         # Rounding of courses of up to 20 rad.
         assert found == pytest.approx(prediction.overshoot / HEADING_RATE_MAX, rel=1e-12)
-
-
-def test_the_farther_a_vehicle_has_to_turn_the_more_of_its_speed_may_cross_the_line_to_the_disc():
-    # Beyond a right angle it passes abeam on the way, where all of its speed crosses. Close to the
-    # disc its radius is the shortest line.
-    prediction, crossing = predictor(), []
-    for left in np.linspace(0.0, math.pi - 0.01, 40):
-        start = polar(RADIUS + 1.0, 1.0, 1.0 - left)
-        time = prediction.time_until_once_round(1.0, start, relative_motion(start, (3.0, 0.0)))
-        crossing.append((left + prediction.overshoot) / time - HEADING_RATE_MAX)
-    # Rounding of rates of 0.6 rad/s.
-    assert np.all(np.diff(crossing) >= -1e-12)
-    # At straight away the disc alone crosses, beyond a right angle both at full speed.
-    assert crossing[0] * RADIUS == pytest.approx(3.0, rel=1e-9)
-    assert crossing[-1] * RADIUS == pytest.approx(SPEED + 3.0, rel=1e-9)
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])

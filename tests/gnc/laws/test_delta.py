@@ -1,15 +1,13 @@
 import math
 
 import pytest
-from gnc_cases import LOOK_AHEAD, SPEED, courses, examples, moved, relative, tracking_motion
+from gnc_cases import LOOK_AHEAD, courses, examples, moved, relative, tracking_motion
 from hypothesis import example, given
 from hypothesis import strategies as st
 
 from gnc.errors import InfeasibleError
 from gnc.numeric import wrap
 from gnc.paper import (
-    LookAhead,
-    RelativeState,
     delta_length,
     distance_squared,
     distance_squared_rate,
@@ -55,17 +53,6 @@ def test_the_relative_state_holds_the_geometry_of_figure_2(north, east, referenc
 
 
 @examples(200)
-@given(state=cartesian_states())
-def test_the_law_of_cosines_gives_the_cartesian_distance(state):
-    there = relative(state)
-    # Between equations (19) and (20). The squares of rho and delta, up to 6.7e6 m^2 each, cancel
-    # but for their rounding.
-    assert distance_squared(there) == pytest.approx(
-        state[3] ** 2 + state[4] ** 2, rel=0.0, abs=1e-14 * there.delta**2
-    )
-
-
-@examples(200)
 @given(
     state=cartesian_states(),
     reference_speed=speeds,
@@ -107,39 +94,6 @@ def test_relative_rates_are_those_of_the_cartesian_motion_also_at_unequal_speeds
     assert omega_rho == pytest.approx(numerical_omega, rel=0.0, abs=2e-5)
 
 
-@examples(200)
-@given(state=cartesian_states(), reference_heading_rate=heading_rates)
-def test_at_equal_speeds_the_rates_are_the_papers(state, reference_heading_rate):
-    there = relative(state)
-    delta, rho, phi_r, phi = there
-    # Equation (20), as printed.
-    printed = (
-        -2.0
-        * SPEED
-        * (rho * (math.cos(phi) - math.cos(phi_r)) + delta * (1.0 - math.cos(phi_r - phi)))
-    )
-    # Roundings of products of up to 2 * 19 m/s * 2.6 km.
-    assert distance_squared_rate(there, SPEED, SPEED) == pytest.approx(printed, rel=0.0, abs=1e-9)
-    # Equation (18), as printed.
-    delta_rate = LOOK_AHEAD.epsilon * printed
-    swing = delta * reference_heading_rate
-    along = (
-        SPEED * math.cos(phi_r)
-        - SPEED * math.cos(phi)
-        - swing * math.sin(phi_r)
-        + delta_rate * math.cos(phi_r)
-    )
-    across = (
-        SPEED * math.sin(phi_r)
-        - SPEED * math.sin(phi)
-        + swing * math.cos(phi_r)
-        + delta_rate * math.sin(phi_r)
-    )
-    rho_rate, omega_rho = relative_velocity(LOOK_AHEAD, there, SPEED, SPEED, reference_heading_rate)
-    assert rho_rate == pytest.approx(along, rel=0.0, abs=1e-10)
-    assert omega_rho * rho == pytest.approx(across, rel=0.0, abs=1e-10)
-
-
 @examples(500)
 @given(
     epsilon=st.floats(1e-4, 1.0),
@@ -179,50 +133,6 @@ def test_the_shortest_z_is_met_by_a_vehicle_right_ahead_of_the_reference(
     # Rounding of delta, up to a thousand times rho along z; across it the angle's, 5e-16 of d,
     # which rho hardly feels.
     assert rho == pytest.approx(parameters.radius - 0.25 / epsilon, rel=1e-12)
-
-
-def test_the_look_ahead_grows_with_the_square_of_distance():
-    # Equation (15): 0.005 * 100^2 + 60.
-    assert delta_length(LOOK_AHEAD, 0.0) == 60.0
-    assert delta_length(LOOK_AHEAD, 100.0**2) == pytest.approx(110.0, rel=1e-15)
-
-
-@examples(50)
-@given(
-    reference_course=courses,
-    course_error=st.floats(-1.0, 1.0),
-    reference_heading_rate=heading_rates,
-)
-def test_on_the_reference_z_points_along_its_course_and_turns_with_it(
-    reference_course, course_error, reference_heading_rate
-):
-    state = relative_state(LOOK_AHEAD, 0.0, 0.0, reference_course, reference_course + course_error)
-    # Section IV.B: on top of the reference, chi_rho becomes chi_r; there is no singularity.
-    # Roundings.
-    assert state == pytest.approx(RelativeState(60.0, 60.0, 0.0, course_error), abs=1e-13)
-    on_course = RelativeState(60.0, 60.0, 0.0, 0.0)
-    assert relative_velocity(
-        LOOK_AHEAD, on_course, SPEED, SPEED, reference_heading_rate
-    ) == pytest.approx((0.0, reference_heading_rate), abs=1e-15)
-
-
-@examples(100)
-@given(state=cartesian_states(), reference_heading_rate=heading_rates)
-def test_mirrored_geometry_has_mirrored_angles(state, reference_heading_rate):
-    there = relative(state)
-    mirrored = relative([state[0], -state[1], -state[2], state[3], -state[4], -state[5]])
-    # Exact but for angles of half a turn, which are their own mirror.
-    assert (mirrored.delta, mirrored.rho) == pytest.approx((there.delta, there.rho), rel=1e-14)
-    assert wrap(mirrored.phi_r + there.phi_r) == pytest.approx(0.0, abs=1e-13)
-    assert wrap(mirrored.phi + there.phi) == pytest.approx(0.0, abs=1e-13)
-    here = relative_velocity(LOOK_AHEAD, there, SPEED, 17.0, reference_heading_rate)
-    other = relative_velocity(LOOK_AHEAD, mirrored, SPEED, 17.0, -reference_heading_rate)
-    # Roundings of up to 2 km/s.
-    assert other == pytest.approx((here[0], -here[1]), rel=1e-12, abs=1e-11)
-
-
-def test_the_look_ahead_keeps_its_parameters():
-    assert look_ahead(0.005, 60.0) == LookAhead(epsilon=0.005, radius=60.0)
 
 
 @pytest.mark.parametrize("radius", [50.0, 49.9, 0.0, -60.0, math.nan, math.inf])

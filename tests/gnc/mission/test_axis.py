@@ -5,13 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from exhaust_cases import PRIOR, SENSOR, MadePlume, estimated
+from exhaust_cases import PRIOR, SENSOR, MadePlume
 from hypothesis import given
 from hypothesis import strategies as st
 
 from gnc.estimation.navigation import AirMotion
-from gnc.estimation.plume.estimator import HIT, PlumeEstimator, PlumeState
-from gnc.estimation.plume.passes import SensorState
+from gnc.estimation.plume.estimator import PlumeEstimator
 from gnc.estimation.plume.prior import Expectation
 from gnc.estimation.vessel import SteadyTarget
 from gnc.mission.axis import (
@@ -19,8 +18,6 @@ from gnc.mission.axis import (
     AxisInputs,
     Climb,
     HeightSearch,
-    LadderSearch,
-    PredictedPlume,
     SearchedPlume,
     trail,
 )
@@ -77,20 +74,6 @@ def test_it_is_that_of_the_worked_example(speed, distance, height):
     assert EXHAUST.at(distance, speed) == pytest.approx(height, abs=0.5)
 
 
-def test_without_heat_it_is_a_straight_line():
-    assert AxisHeight(source=60.0).at(1234.0, 0.1) == 60.0
-    assert AxisHeight(source=60.0, climb=0.25).at(200.0, 12.0) == 110.0
-
-
-def test_it_stays_within_what_is_flown():
-    assert AxisHeight(source=35.0, buoyancy_flux=50.0, highest=60.0).at(500.0, 5.0) == 60.0
-    assert AxisHeight(source=12.0, lowest=20.0).at(100.0, 5.0) == 20.0
-
-
-def test_a_calm_does_not_send_the_aircraft_to_the_sky():
-    assert EXHAUST.at(300.0, 0.0) == EXHAUST.at(300.0, 1.0) < 400.0
-
-
 altitudes = st.floats(20.0, 120.0)
 
 
@@ -114,50 +97,10 @@ def test_the_command_stays_within_reach_of_the_altitude_that_is_flown(altitude, 
     assert abs(following - flown) <= 1.2 + 1e-9
 
 
-def test_a_vehicle_that_has_fallen_behind_is_led_back_up():
-    climb, altitude, flown = Climb(time=4.0, gradient=0.08, reach=1.2), 80.0, 40.0
-    for _ in range(200):
-        altitude = climb.step(altitude, 80.0, SPEED, PLAN_TIME, flown=flown)
-        # It closes half of its distance from the command in a plan.
-        flown += 0.5 * (altitude - flown)
-    assert flown == pytest.approx(80.0, abs=0.1)
-
-
-def test_a_plume_is_where_it_is_predicted_until_the_true_axis_is_set():
-    axis = PredictedPlume(height=RISING, altitude=60.0, climb=CLIMB).begin()
-    around = situation(wind=(0.0, 3.0))
-    axis.plan(0.0, around, tracking=False)
-    assert axis.demanded == RISING.at(around.centre.distance, math.hypot(8.0, 3.0))
-    assert (axis.bearing, axis.mode) == (0.0, Mode.TRACKING)
-    axis.set_true_axis(52.5, trail(around.own, around.vessel) + 0.1)
-    axis.plan(0.5, around, tracking=True)
-    assert axis.demanded == 52.5
-    assert axis.bearing == pytest.approx(0.1, abs=1e-12)
-
-
-@pytest.mark.parametrize(("given", "flown"), [(300.0, 117.0), (3.0, 23.0)])
-def test_the_true_height_is_flown_within_the_limits_alone(given, flown):
-    axis = PredictedPlume(height=RISING, altitude=60.0, climb=CLIMB).begin()
-    axis.set_true_axis(given, math.pi)
-    axis.plan(0.0, situation(), tracking=True)
-    assert axis.demanded == flown
-
-
 def test_the_plume_trails_behind_the_vessels_motion_through_the_air():
     around = situation(wind=(0.0, 8.0), vessel=(8.0, 0.0))
     # A wind to the east as fast as the ship sails north carries its smoke to the south-east.
     assert trail(around.own, around.vessel) == pytest.approx(math.radians(135.0), abs=1e-12)
-
-
-def test_a_bearing_turns_the_centre_to_the_right_of_where_the_plume_would_trail():
-    around = situation()
-    for _ in range(400):
-        around.centre.move(
-            PLAN_TIME, around.own, around.vessel, additional_range=0.0, bearing=math.radians(10.0)
-        )
-    # Astern is 180 degrees; to the right of it, seen along the plume, is west. It comes there
-    # asymptotically.
-    assert math.degrees(around.centre.axis) % 360.0 == pytest.approx(190.0, abs=0.1)
 
 
 LOW, HIGH = 20.0, 120.0
@@ -167,18 +110,6 @@ PASS_TIME = 9.0
 
 def _search(climb_rate: float = 1.5, lowest: float = LOW, highest: float = HIGH) -> HeightSearch:
     return HeightSearch(lowest=lowest, highest=highest, climb_rate=climb_rate)
-
-
-def test_a_search_begins_where_the_plume_is_most_likely() -> None:
-    altitude = _search().next_altitude(PlumeEstimator(PRIOR), 65.0, PASS_TIME)
-    # The heights that are weighed are 6 m apart, and the plume's spread is 9 m.
-    assert altitude == pytest.approx(65.0, abs=9.0)
-
-
-def test_a_search_leaves_a_height_at_which_nothing_was_detected() -> None:
-    estimator = PlumeEstimator(PRIOR)
-    MadePlume(height=65.0, peak=0.0).fly(estimator, [65.0] * 4)
-    assert abs(_search().next_altitude(estimator, 65.0, PASS_TIME) - 65.0) > 8.0
 
 
 def test_the_demanded_height_has_the_least_expected_time_to_find() -> None:
@@ -199,76 +130,6 @@ def test_the_demanded_height_has_the_least_expected_time_to_find() -> None:
 
     best = min(heights.tolist(), key=still_searching)
     assert _search().next_altitude(estimator, 62.0, PASS_TIME) == pytest.approx(best)
-
-
-@pytest.mark.parametrize(("lowest", "highest"), [(20.0, 120.0), (80.0, 90.0), (20.0, 45.0)])
-def test_demands_keep_within_the_limits(lowest: float, highest: float) -> None:
-    estimator = PlumeEstimator(PRIOR)
-    for search in (_search(1.5, lowest, highest), LadderSearch(lowest=lowest, highest=highest)):
-        altitude = 0.5 * (lowest + highest)
-        for _ in range(12):
-            altitude = search.next_altitude(estimator, altitude, PASS_TIME)
-            assert lowest <= altitude <= highest
-    found = estimated(MadePlume(height=65.0), [65.0, 72.0])
-    assert lowest <= _search(1.5, lowest, highest).next_altitude(found, 65.0, PASS_TIME) <= highest
-
-
-def test_an_uncertain_height_is_probed_and_a_known_one_flown() -> None:
-    vague = estimated(MadePlume(height=65.0), [65.0])
-    assert vague.state is PlumeState.FOUND
-    probing = _search().next_altitude(vague, 65.0, PASS_TIME)
-    spread = math.hypot(vague.sigma_z, PRIOR.meander_z)
-    assert vague.height_deviation > 0.5 * spread
-    # One pass leaves open on which side the axis is: beside the estimate, but not where the plume
-    # is missed.
-    assert 0.1 * spread < abs(probing - vague.height) <= 1.5 * spread
-    sure = estimated(MadePlume(height=65.0), [65.0, 74.0, 56.0, 65.0, 74.0, 56.0, 65.0, 72.0])
-    # Between known and vague there is little to be gained off the estimate, and none where the
-    # deviation is small.
-    assert abs(_search().next_altitude(sure, 65.0, PASS_TIME) - sure.height) < 0.3 * spread
-    sure.height_deviation = 0.1 * spread
-    assert _search().next_altitude(sure, 65.0, PASS_TIME) == pytest.approx(sure.height)
-
-
-def test_the_height_that_is_flown_has_the_most_hits_in_it_and_in_what_it_says() -> None:
-    """Against the definition: hits now, and three at the deviation that is expected after it."""
-    estimator = estimated(MadePlume(height=75.0), [65.0, 65.0])
-    demanded = _search().next_altitude(estimator, 65.0, PASS_TIME)
-    around = estimator.height + estimator.height_deviation * np.linspace(-1.6, 1.6, 9)
-    reach = estimator.sigma_z * math.sqrt(-2.0 * math.log(HIT))
-
-    def worth(altitude: float) -> float:
-        at = np.array([altitude])
-        off = math.hypot(float(estimator.expected_deviation(at)[0]), PRIOR.meander_z)
-        return float(estimator.hits(at)[0]) + 3.0 * math.erf(reach / off / math.sqrt(2.0))
-
-    assert demanded == pytest.approx(max(around.tolist(), key=worth))
-
-
-def test_hits_are_those_of_centres_drawn_at_random() -> None:
-    estimator = estimated(MadePlume(height=68.0), [65.0, 74.0, 56.0])
-    generator, altitudes = np.random.default_rng(4), np.array([50.0, 66.0, 80.0])
-    weights = estimator._weights.sum(axis=1)
-    axes = generator.choice(len(weights), 100_000, p=weights / weights.sum())
-    heights = estimator.grid.coarse_heights(estimator._heights)[axes]
-    # The made ways are square to the plume in its frame, and have a correlation length of a
-    # kilometre: one look.
-    centres = heights + PRIOR.meander_z * generator.standard_normal(len(axes))
-    for altitude, chance in zip(altitudes, estimator.hits(altitudes), strict=True):
-        peak = np.exp(-0.5 * ((altitude - centres) / estimator._spread[axes]) ** 2)
-        # A share of 100,000 has a deviation of at most 0.0016.
-        assert chance == pytest.approx(float(np.mean(peak > HIT)), abs=0.01)
-
-
-def test_a_ladder_goes_up_and_down_between_its_ends() -> None:
-    search = LadderSearch(lowest=20.0, highest=120.0)
-    estimator = PlumeEstimator(PRIOR)
-    altitude = 65.0
-    steps = []
-    for _ in range(10):
-        altitude = search.next_altitude(estimator, altitude, PASS_TIME)
-        steps.append(altitude)
-    assert steps == [80.0, 95.0, 110.0, 95.0, 80.0, 65.0, 50.0, 35.0, 50.0, 65.0]
 
 
 FAST = replace(SENSOR, saturated=20000.0)
@@ -338,15 +199,6 @@ def noisy(time, ppm):
     return ppm + FAST.noise * math.sqrt(2.0) * math.sin(37.7 * time)
 
 
-def test_on_the_way_it_flies_at_the_height_that_is_predicted_and_believes_nothing():
-    axis, around = SEARCHED.begin(), situation()
-    axis.take_readings(0.0, [(0.0, 420.0)])
-    axis.plan(0.0, around, tracking=False)
-    assert axis.demanded == RISING.at(around.centre.distance, 8.0)
-    assert math.isnan(axis.estimate.height)
-    assert math.isnan(axis.measurable())
-
-
 @pytest.mark.parametrize("distance", [130.0, 220.0, 300.0])
 def test_the_bearing_is_that_from_the_funnel_wherever_the_plume_is_crossed(distance):
     axis = SEARCHED.begin()
@@ -366,27 +218,6 @@ def test_a_plume_is_searched_for_found_and_followed(ladder):
     # To about its own spread: strength and height off the axis look alike.
     assert abs(axis.estimate.height - 75.0) < WIDTH
     assert axis.estimate.height_deviation < WIDTH
-
-
-def test_a_plume_above_the_limits_is_searched_for_within_them_and_found_to_be_out_of_reach():
-    low = replace(SEARCHED, expected=replace(EXPECTED, highest=50.0), altitude=45.0)
-    axis, fresh = low.begin(), low.begin()
-    assert flown(axis, height=110.0, duration=120.0, sensor=noisy) == [Mode.SEARCHING]
-    assert EXPECTED.lowest <= axis.demanded <= 50.0
-    fresh.plan(0.0, situation(), tracking=True)
-    assert axis.measurable() < 0.5 * fresh.measurable()
-    assert axis.estimate.height > 60.0
-
-
-@pytest.mark.parametrize(
-    ("sensor", "state"),
-    [(lambda *_: 420.0, SensorState.STUCK), (lambda *_: 20000.0, SensorState.SATURATED)],
-)
-def test_a_sensor_that_fails_is_recognised_and_adds_no_evidence(sensor, state):
-    axis = SEARCHED.begin()
-    modes = flown(axis, height=75.0, duration=40.0, sensor=sensor)
-    assert modes[-1] is Mode.SENSOR_FAILED
-    assert axis.sensor is state
 
 
 def test_a_reading_counts_for_the_place_at_which_it_was_read():

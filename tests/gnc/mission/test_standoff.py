@@ -83,23 +83,6 @@ def test_the_papers_law_circles_a_moving_vessel_at_the_radius():
     assert max(abs(distance - RADIUS) for distance in flight.distances[-1000:]) < 0.2
 
 
-def test_the_circle_is_joined_outside_of_its_place():
-    circling = Flown(CascadeLaw(), 1.0).mission
-    # Twice what counts as tracked, until the vehicle is near it.
-    assert circling.tracker.radius == RADIUS + 24.0
-    assert circling.orbit == ((0.0, 0.0, math.hypot(6.0, 3.0) / SPEED), 24.0, False)
-
-
-def test_a_vessel_that_outruns_the_vehicle_is_followed():
-    flight = Flown(CascadeLaw(), 60.0, vessel=(1.1 * SPEED, 0.0))
-    assert flight.mode is Mode.OUTRUN
-    # Behind the vessel, somewhat to the side after its turn: it gains a tenth of the speed.
-    gained = flight.distances[-1] - flight.distances[-201]
-    assert gained / (200 * TIME_STEP) == pytest.approx(0.1 * SPEED, rel=0.03)
-    # On the vessel's course, north.
-    assert flight.mission.tracker.heading_rate_demand == pytest.approx(0.0, abs=1e-6)
-
-
 def test_a_circle_rises_to_the_height_of_the_plume_at_its_radius():
     rising = AxisHeight(source=35.0, momentum_flux=124.0, buoyancy_flux=49.6)
     own, target, circling = TrueNavigation(), SteadyTarget(10.0, 0.0), mission(CascadeLaw(), rising)
@@ -133,18 +116,3 @@ def test_a_vehicle_with_a_fault_flies_straight_out_and_sinks(fault, mode, speed)
     assert (order.airspeed, order.mode) == (15.0, mode)
     # So far below the sea that the autopilot holds its airspeed by pitch.
     assert order.altitude < -500.0
-
-
-def test_a_vehicle_without_thrust_holds_its_height_and_circles_on_when_thrust_is_there_again():
-    own, target, circling = TrueNavigation(), SteadyTarget(0.0, 0.0), mission(CascadeLaw())
-    own.update((-RADIUS, 0.0, -SPEED, 0.0, 0.0))
-
-    def ordered():
-        order = circling.plan(0.0, own, target, renew=True, guarding=False)
-        return order.mode, order.airspeed, order.altitude
-
-    tracking = ordered()
-    circling.react(Fault.THRUST_LOST)
-    assert ordered() == (Mode.RETREATING, SPEED, tracking[2])
-    circling.react(Fault.NONE)
-    assert ordered() == tracking

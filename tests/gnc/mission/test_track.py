@@ -13,7 +13,6 @@ from gnc_cases import (
     tracking_parameters,
 )
 
-from gnc.estimation.health import Fault
 from gnc.estimation.navigation import TrueNavigation
 from gnc.estimation.vessel import SteadyTarget
 from gnc.guard.guard import GuardParameters
@@ -84,13 +83,6 @@ def test_without_a_way_it_tracks_from_the_first_step_on_and_overrides_nothing(mi
     assert all(math.isnan(value) for value in centre)
 
 
-def test_it_knows_no_way_out(mission):
-    with pytest.raises(
-        ValueError, match="the vehicle has a fault, thrust lost, and its mission has no departure"
-    ):
-        mission.react(Fault.THRUST_LOST)
-
-
 @pytest.mark.parametrize(("nu", "bearing"), [(0.1, 0.0), (0.1, -2.0), (0.5, 0.3), (0.5, -2.0)])
 def test_from_ahead_it_goes_round_the_vessel_and_settles_where_law_and_guard_alone_take_longer(
     nu, bearing
@@ -108,36 +100,3 @@ def test_from_ahead_it_goes_round_the_vessel_and_settles_where_law_and_guard_alo
     # Law and guard undo each other's work: measured, 181 to 392 s, and half of them not within 400
     # s.
     assert settles(straight) > 2.0 * settles(round_the_vessel)
-
-
-def test_the_orbit_is_joined_outside_of_its_place_and_closes_in_once_it_is_tracked(monkeypatch):
-    seen = []
-    plan = DirectTracking.plan
-
-    def noted(mission, *args, renew, guarding):
-        order = plan(mission, *args, renew=renew, guarding=guarding)
-        if renew:
-            seen.append((order.mode, mission.orbit.in_place, mission.orbit.error))
-        return order
-
-    monkeypatch.setattr(DirectTracking, "plan", noted)
-    made = guidance()
-    # As it begins: on the way, two times 12 m outside.
-    assert made.mission.orbit[1:] == (24.0, False)
-    fly(made, (-600.0, 40.0, 0.0), duration=120.0)
-    modes, in_place, errors = zip(*seen, strict=True)
-    joined = modes.index(Mode.TRACKING)
-    assert joined > 0
-    assert set(modes[:joined]) == {Mode.APPROACH}
-    assert set(modes[joined:]) == {Mode.TRACKING}
-    # It never moves out again, and is in its place from when on nothing is left; 24 m at 0.2 V_r
-    # take 6.2 s, 13 plans.
-    assert np.all(np.diff(errors) <= 0.0)
-    assert errors[joined] == 24.0
-    there = in_place.index(True)
-    assert there - joined >= 13
-    assert (
-        [error == 0.0 for error in errors]
-        == list(in_place)
-        == [False] * there + [True] * (len(seen) - there)
-    )

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from gnc.estimation.navigation import AirMotion, TrueNavigation
 from gnc.estimation.vessel import SteadyTarget
-from gnc.mission.way import Approach, ApproachParameters, Egress, Transit, course_ahead
+from gnc.mission.way import Approach, ApproachParameters, Egress, Transit
 from gnc.unicycle import unicycle_move
 
 BLOCKED, ROUND = 203.0, 234.0
@@ -124,49 +124,6 @@ def test_mirrored_geometry_gives_the_mirrored_course(
     assert math.remainder(found + mirrored, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-9)
 
 
-@pytest.mark.parametrize("sign", [1, -1])
-def test_it_passes_on_the_shorter_side(sign):
-    # Ahead of the disc, north of it, and 30 degrees to one side; the target is south. Straight
-    # there is through the disc.
-    transit = Transit(TURN_RADIUS)
-    bearing = sign * math.radians(30.0)
-    found = course_of(
-        transit, polar(600.0, bearing), (-TARGET_DISTANCE, 0.0), course=bearing + math.pi
-    )
-    # On the east side clockwise as seen from above, on the west side the other way; either way the
-    # tangent of the round circle.
-    assert transit.side == sign
-    expected = bearing + math.pi - sign * math.asin(ROUND / 600.0)
-    assert math.remainder(found - expected, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-12)
-
-
-@pytest.mark.parametrize("sign", [1, -1])
-def test_of_two_ways_nearly_as_long_it_takes_the_one_that_it_need_not_turn_to(sign):
-    # From 0.02 rad to the other side, so that the way round on this one is 0.04 rad of the round
-    # circle longer; it heads there.
-    transit, bearing = Transit(TURN_RADIUS), -sign * 0.02
-    lean = math.asin(ROUND / 600.0)
-    course_of(
-        transit,
-        polar(600.0, bearing),
-        (-TARGET_DISTANCE, 0.0),
-        course=bearing + math.pi - sign * lean,
-    )
-    assert transit.side == sign
-
-
-def test_it_keeps_the_side_that_it_has_chosen_until_the_way_is_clear():
-    transit = Transit(TURN_RADIUS)
-    target = (-TARGET_DISTANCE, 0.0)
-    course_of(transit, polar(600.0, 0.1), target, course=math.pi)
-    assert transit.side == 1
-    # Now a little on the other side, where a fresh look would choose the other way.
-    course_of(transit, polar(600.0, -0.1), target, course=math.pi)
-    assert transit.side == 1
-    course_of(transit, polar(600.0, 3.0), target, course=math.pi)
-    assert transit.side == 0
-
-
 @pytest.mark.parametrize("bearing", [0.0, 0.7, 2.0, -1.3])
 @pytest.mark.parametrize("speed_ratio", [0.0, 0.5, 0.9])
 def test_following_it_leads_round_a_moving_disc_to_the_target_and_never_inside(
@@ -188,26 +145,6 @@ def test_following_it_leads_round_a_moving_disc_to_the_target_and_never_inside(
     # Euler steps of up to 3.7 m along a tangent only lead outwards; the straight way in at the end
     # is checked by its whole length.
     assert closest >= BLOCKED - 1e-6
-
-
-@pytest.mark.parametrize(
-    ("distance", "outwards"),
-    # Of the relative velocity, sin 0.6 leads outwards until a turn radius is left to the circle,
-    # then proportionally less.
-    [
-        (10.0, 0.5646),
-        (100.0, 0.5646),
-        (ROUND - TURN_RADIUS, 0.5646),
-        (ROUND - 0.5 * TURN_RADIUS, 0.2955),
-        (ROUND - 1e-6, 0.0),
-    ],
-)
-def test_inside_the_circle_it_leads_outwards(distance, outwards):
-    place = polar(distance, 0.4)
-    way = relative(course_of(Transit(TURN_RADIUS), place, (-TARGET_DISTANCE, 0.0)), (0.0, 0.0))
-    assert (place[0] * way[0] + place[1] * way[1]) / (distance * SPEED) == pytest.approx(
-        outwards, abs=1e-4
-    )
 
 
 PARAMETERS = ApproachParameters(
@@ -259,19 +196,6 @@ def test_tracking_begins_nearer_to_the_centre_than_it_ends(place, from_afar, onc
     assert Way(place).should_track(tracking=True) is once_tracking
 
 
-@pytest.mark.parametrize(
-    ("aspect", "from_afar", "once_tracking"),
-    [(1.15, True, True), (1.25, False, True), (1.85, False, True), (1.95, False, False)],
-)
-def test_tracking_begins_nearer_to_the_plumes_axis_than_it_ends(aspect, from_afar, once_tracking):
-    # 1.2 and 1.9 rad off the axis; near enough to the vessel that a centre 100 m astern of it is
-    # within 150 m at any aspect.
-    way = Way((-20.0 * math.cos(aspect), 20.0 * math.sin(aspect)))
-    centre = (-100.0, 0.0)
-    assert way.should_track(centre, tracking=False) is from_afar
-    assert way.should_track(centre, tracking=True) is once_tracking
-
-
 @pytest.mark.parametrize(("error", "tracked_on"), [(35.0, True), (37.0, False)])
 def test_the_guard_holds_off_who_joins_and_who_has_lost_the_reference(error, tracked_on):
     place = (-300.0, 0.0)
@@ -289,21 +213,6 @@ def test_the_command_turns_to_the_centre_and_within_omega_max():
     for course in (-3.0, -1.0, 1.0, 3.0):
         found = Way((-600.0, 0.0), course).command()
         assert found == math.copysign(HEADING_RATE_MAX, -course)
-
-
-def test_it_leads_round_the_vessel_from_ahead():
-    # Straight astern from 600 m ahead lies the vessel.
-    towards = Way((600.0, 10.0), math.pi)
-    assert abs(towards.command()) > 0.1
-    # The farther the larger the area that it has to go round.
-    assert abs(towards.command(additional_range=60.0)) > abs(towards.command())
-
-
-def test_it_turns_from_the_course_that_it_will_have_when_the_command_acts():
-    late = Way((-600.0, 0.0), 0.1, lag=0.4, heading_rate=0.2)
-    # Linear from 0.2 to 0.1 rad/s in 0.4 s: 0.06 rad.
-    assert course_ahead(late.own, 0.1, 0.4) == pytest.approx(0.16, abs=1e-12)
-    assert late.command(0.1) == pytest.approx(-2.0 * HEADING_RATE_MAX * 0.16, rel=1e-9)
 
 
 def held(found, duration):
@@ -327,34 +236,6 @@ def test_held_by_the_guard_on_a_course_beside_the_vessel_it_flies_abeam(east, si
     assert held(slow, 1.1 * quarter_turn) == pytest.approx(
         -side * 2.0 * HEADING_RATE_MAX * 0.05, rel=1e-9
     )
-
-
-def test_it_flies_abeam_no_farther_than_it_goes_round_the_vessel():
-    # 232 m; and not where the way does not lead through the course to the vessel.
-    quarter_turn = 0.5 * math.pi / HEADING_RATE_MAX
-    assert held(Way((-205.0, -112.0), 0.0), 2.0 * quarter_turn) == HEADING_RATE_MAX
-    assert held(Way((-180.0, -100.0), math.pi), 2.0 * quarter_turn) == -HEADING_RATE_MAX
-
-
-def test_tracking_does_not_begin_while_it_flies_abeam():
-    beside = Way((-180.0, -100.0), 0.0)
-    assert beside.should_track()
-    held(beside, math.pi / HEADING_RATE_MAX)
-    assert not beside.should_track()
-
-
-def test_whom_the_guard_threw_back_joins_from_half_as_far_but_not_from_nearer_than_counts_as_lost():
-    found, reached = Way((-390.0 + 1.0, 0.0)), []
-    for _ in range(4):
-        reached.append([off for off in (149.0, 74.0, 37.0, 35.0) if joins_from(found, off)])
-        found.approach.halve_join_distance()
-    # 150, 75, 37.5 and 36 m: three times 12.
-    assert reached == [[149.0, 74.0, 37.0, 35.0], [74.0, 37.0, 35.0], [37.0, 35.0], [35.0]]
-
-
-def joins_from(found, off):
-    # The vehicle is 389 m astern.
-    return found.should_track((-389.0 + off, 0.0))
 
 
 def fly_out(x, y, course, heading_rate=0.0, duration=30.0):
@@ -392,16 +273,3 @@ def test_from_a_course_towards_the_vessel_it_keeps_to_the_turn_that_it_has_begun
     assert turns[0] == math.copysign(HEADING_RATE_MAX, turning)
     first = round(4.0 / TIME_STEP)
     assert all(math.copysign(1.0, turn) == math.copysign(1.0, turning) for turn in turns[:first])
-
-
-@pytest.mark.parametrize("side", [1.0, -1.0])
-def test_where_one_turn_is_shorter_it_is_taken_from_any_turn(side):
-    # 120 degrees to go: to the right for a vehicle east of north by that.
-    own = AirMotion(
-        ground_north=400.0,
-        ground_east=0.0,
-        course=-side * math.radians(120.0),
-        heading_rate=-side * 0.4,
-    )
-    egress = Egress(tracking_parameters(), SPEED, 15.0)
-    assert egress.command(own, VESSEL, 0.0) == side * HEADING_RATE_MAX

@@ -64,29 +64,6 @@ def test_neither_heading_rate_nor_roll_rate_ever_exceed_their_limits(
     assert abs(banks[1] - banks[0]) <= roll_rate * step * (1.0 + 1e-9)
 
 
-@given(eta=etas, phase=st.floats(-3.1, 3.1), roll_rate=roll_rates)
-@examples(60)
-def test_the_slopes_are_those_of_the_course(eta, phase, roll_rate):
-    swing, step = courses(roll_rate=roll_rate), 1e-6
-    by_eta, by_phase = swing.slopes(eta, phase)
-    over_eta = (swing.course(eta + step, phase) - swing.course(eta - step, phase)) / (2.0 * step)
-    over_phase = (swing.course(eta, phase + step) - swing.course(eta, phase - step)) / (2.0 * step)
-    # Differences over 1e-6 with roundings of 1e-16 eta, and the roll rate that jumps within one.
-    assert by_eta == pytest.approx(over_eta, rel=0.0, abs=1e-5)
-    assert eta * by_phase == pytest.approx(over_phase, rel=0.0, abs=1e-5)
-    # The Protocol: a steered reference relies on it for its bound on the heading rate.
-    assert abs(by_eta) <= 1.0
-
-
-@given(eta=etas, phase=phases, roll_rate=st.sampled_from([0.1, ROLL_RATE, 3.0, math.inf]))
-@examples(60)
-def test_the_heading_rate_is_the_slope_over_the_phase_at_full_rates(eta, phase, roll_rate):
-    swing = courses(roll_rate=roll_rate)
-    expected = eta * math.pi / swing.half_period(eta) * swing.slopes(eta, phase)[1]
-    # Rounding of the phase, over which a small amplitude changes its bank fast.
-    assert swing.heading_rate(eta, phase) == pytest.approx(expected, rel=0.0, abs=1e-11)
-
-
 @pytest.mark.parametrize("roll_rate", [0.2, ROLL_RATE, math.inf])
 @pytest.mark.parametrize("eta", [0.05, 0.4, 1.7, 3.0, 3.9])
 def test_the_mean_speed_is_the_mean_of_the_cosine_of_the_course(eta, roll_rate):
@@ -109,43 +86,6 @@ def test_the_mean_speed_is_the_mean_of_the_cosine_of_the_course(eta, roll_rate):
     if swing.speed_ratio(eta) > -0.19:
         # Within the table, which ends at -0.2: 1e-5 by its docstring.
         assert swing.eta(swing.speed_ratio(eta)) == pytest.approx(eta, rel=0.0, abs=1e-5)
-
-
-def test_at_an_infinite_roll_rate_the_course_is_a_triangle():
-    swing = courses(roll_rate=math.inf)
-    for eta in (0.001, 0.5, 2.0):
-        assert swing.half_period(eta) == pytest.approx(2.0 * eta / HEADING_RATE, rel=1e-14)
-        # A triangle's mean of the cosine is sin(A)/A (the limit).
-        assert swing.speed_ratio(eta) == pytest.approx(math.sin(eta) / eta, rel=1e-12)
-        assert swing.course(eta, 0.3 * math.pi) == pytest.approx(0.4 * eta, rel=1e-13)
-
-
-def test_a_small_amplitude_is_rolled_through_without_reaching_the_largest_bank():
-    # While rolling to 45 degrees the course turns by g/(V p) ln(sqrt(2)) = 0.2507 rad: integral of
-    # g/V tan(p t).
-    turned = HEADING_RATE / ROLL_RATE * math.log(math.sqrt(2.0))
-    assert not COURSES.holds_bank(0.999 * turned)
-    assert COURSES.holds_bank(1.001 * turned)
-    assert COURSES.largest_heading_rate(0.5 * turned) < HEADING_RATE
-    assert COURSES.largest_heading_rate(2.0 * turned) == pytest.approx(HEADING_RATE, rel=1e-14)
-    # At the border both say the same: rolling to 45 degrees and back at 40 deg/s takes 2.25 s.
-    assert [
-        COURSES.half_period(part * turned) for part in (1.0 - 1e-9, 1.0 + 1e-9)
-    ] == pytest.approx([2.25, 2.25], rel=1e-8)
-
-
-@given(eta=st.floats(0.001, 3.0), heading_rate=heading_rates, roll_rate=roll_rates)
-@examples(60)
-def test_half_a_period_grows_with_the_amplitude_and_falls_with_the_limits(
-    eta, heading_rate, roll_rate
-):
-    half = courses(heading_rate=heading_rate, roll_rate=roll_rate).half_period(eta)
-    assert courses(heading_rate=heading_rate, roll_rate=roll_rate).half_period(1.01 * eta) > half
-    # A limit that is not reached has no say.
-    assert courses(heading_rate=1.1 * heading_rate, roll_rate=roll_rate).half_period(
-        eta
-    ) <= half * (1.0 + 1e-12)
-    assert courses(heading_rate=heading_rate, roll_rate=1.1 * roll_rate).half_period(eta) < half
 
 
 @given(
@@ -206,26 +146,3 @@ def test_the_orbit_is_that_of_its_fourier_series_and_of_its_path(eta):
     assert float(
         np.sum(np.abs(fourier_coefficients(functools.partial(COURSES.course, eta))) ** 2)
     ) == pytest.approx(1.0, rel=1e-12)
-
-
-def test_the_frequency_spends_what_is_left_of_the_heading_rate():
-    for eta in (0.1, 0.5, 2.0):
-        for left in (0.2 * HEADING_RATE, 0.8 * HEADING_RATE, HEADING_RATE):
-            frequency = COURSES.frequency(eta, left)
-            largest = max(
-                abs(eta * frequency * COURSES.slopes(eta, phase)[1])
-                for phase in np.linspace(0.0, math.pi, 101)
-            )
-            # Rounding.
-            assert largest <= left * (1.0 + 1e-12)
-        assert COURSES.frequency(eta, HEADING_RATE) == pytest.approx(
-            math.pi / COURSES.half_period(max(eta, 0.2)), rel=1e-14
-        )
-
-
-def test_a_straight_course_has_no_shape_and_raises_nothing():
-    assert COURSES.speed_ratio(0.0) == 1.0
-    assert COURSES.course(0.0, 1.0) == 0.0
-    assert COURSES.slopes(0.0, 0.0) == (1.0, 0.0)
-    # A smoothed amplitude may pass 0 by a little.
-    assert COURSES.course(-1e-6, 0.0) == -1e-6

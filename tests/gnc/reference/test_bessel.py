@@ -9,7 +9,6 @@ from scipy.integrate import quad
 from gnc.errors import InfeasibleError
 from gnc.paper import eta_for_speed_ratio, mean_speed_ratio
 
-ratios = st.floats(0.0, 1.0)
 # First zero of J_0, eta of a vessel at rest by (6): Abramowitz and Stegun, table 9.5.
 ETA_MAX = 2.404825557695773
 
@@ -41,41 +40,12 @@ def test_the_reference_makes_no_way_across_the_vessels_course(nu):
 
 
 @examples(300)
-@given(nu=ratios)
-def test_eta_gives_back_the_speed_ratio(nu):
-    # brentq stops at 1e-14 of eta, and |J_0'| = |J_1| <= 0.582.
-    assert mean_speed_ratio(eta_for_speed_ratio(nu)) == pytest.approx(nu, rel=0.0, abs=1e-13)
-
-
-@examples(300)
 @given(eta=st.floats(1e-3, ETA_MAX))
 def test_the_speed_ratio_gives_back_eta(eta):
     # nu rounds by 1e-16, and d eta/d nu = 1/J_1(eta) <= 2000 for eta >= 0.001.
     assert eta_for_speed_ratio(max(0.0, mean_speed_ratio(eta))) == pytest.approx(
         eta, rel=0.0, abs=1e-12
     )
-
-
-@examples(300)
-@given(one=ratios, other=ratios)
-def test_a_faster_vessel_needs_a_smaller_oscillation(one, other):
-    slow, fast = min(one, other), max(one, other)
-    # eta resolves 1e-13 of nu; see above.
-    if fast - slow > 1e-12:
-        assert eta_for_speed_ratio(slow) > eta_for_speed_ratio(fast)
-    else:
-        assert eta_for_speed_ratio(slow) >= eta_for_speed_ratio(fast) - 1e-5
-
-
-def test_a_vessel_as_fast_as_the_uav_needs_no_oscillation():
-    # J_0(0) = 1.
-    assert eta_for_speed_ratio(1.0) == 0.0
-    assert mean_speed_ratio(0.0) == 1.0
-
-
-def test_near_equal_speeds_eta_follows_the_series_of_j_0():
-    # J_0(eta) = 1 - eta^2/4 + eta^4/64: eta = 2 sqrt(1 - nu) to a relative (1 - nu)/8.
-    assert eta_for_speed_ratio(1.0 - 1e-6) == pytest.approx(2e-3, rel=2e-7)
 
 
 @pytest.mark.parametrize("nu", [-0.01, 1.01, math.nan, math.inf, -math.inf])

@@ -9,11 +9,9 @@ from orbit_cases import assert_a_point_that_turns_so_flies
 from scipy.optimize import brentq
 
 from common.physics import STANDARD_GRAVITY
-from gnc.errors import InfeasibleError
 from gnc.paper import PlumeAxis, distance_exact
 from gnc.reference.oscillating import JoinedOrbit
-from gnc.reference.reference import REFERENCE_SHAPES
-from gnc.reference.shapes import Fastest, Sinusoid
+from gnc.reference.shapes import Fastest
 
 LIMITS = {
     "speed": SPEED,
@@ -66,19 +64,6 @@ def test_the_interval_is_that_of_the_trapezoid_integrated_step_by_step(nu):
     assert design(nu).crossing_interval == pytest.approx(interval_by_integration(nu), rel=1e-6)
 
 
-@pytest.mark.parametrize(("nu", "flown"), [(0.1, 11.57), (0.5, 7.90), (0.8, 5.03)])
-def test_the_interval_is_the_one_that_was_flown_before_it_was_derived(nu, flown):
-    # The issue's table, trapezoid at 40 deg/s: rounded to 0.01 s, and measured to 0.1 % of it.
-    assert design(nu).crossing_interval == pytest.approx(flown, abs=0.015)
-
-
-@pytest.mark.parametrize("nu", [0.0, 0.2, 0.4, 0.5, 0.6, 0.8])
-def test_it_is_shorter_than_the_sinusoids_by_at_least_an_eighth(nu):
-    # The issue: by 12 % at every nu up to 0.8, and by 17 % at 0.5.
-    share = design(nu).crossing_interval / Sinusoid().design(nu=nu, **LIMITS).crossing_interval
-    assert share <= (0.83 if nu == 0.5 else 0.88)
-
-
 @given(
     nu=st.floats(0.0, 0.999),
     bank=st.floats(10.0, 60.0),
@@ -128,39 +113,6 @@ def test_the_exact_rule_keeps_the_whole_orbit_outside_and_no_farther_than_that(n
     assert closest == pytest.approx(200.0, abs=1e-4)
 
 
-def test_the_mirrored_reference_flies_the_mirrored_path():
-    # Mirrored in the north-south line courses change sign, which is half a period of phase.
-    orbit = design()
-    one, other = (
-        reference_on(orbit, phase=phase, vessel_course=course)
-        for phase, course in ((0.4, 0.3), (0.4 + math.pi, -0.3))
-    )
-    for _ in range(1000):
-        one.step()
-        other.step()
-        # Rounding over 1,000 steps.
-        assert (other.north, 10.0 - other.east) == pytest.approx(
-            (one.north, one.east), rel=0.0, abs=1e-8
-        )
-        assert other.heading_rate == pytest.approx(-one.heading_rate, rel=0.0, abs=1e-10)
-
-
-def test_the_reference_stays_on_its_orbit():
-    orbit = design()
-    reference = reference_on(orbit, phase=0.7, vessel_course=0.0)
-    steps = 6000
-    for _ in range(steps):
-        reference.step()
-        assert abs(reference.heading_rate) <= orbit.amplitude * (1.0 + 1e-12)
-    along, right = orbit.offset(0.7 / orbit.omega_0 + steps * TIME_STEP)
-    way = orbit.nu * SPEED * steps * TIME_STEP
-    # Simpson's rule over 150 corners of the roll rate: 1e-5 m each by its docstring, which partly
-    # cancel.
-    assert (reference.north, reference.east) == pytest.approx(
-        (-214.0 + way + float(along), 5.0 + float(right)), rel=0.0, abs=2e-3
-    )
-
-
 @pytest.mark.parametrize("share", [FRACTION, 0.5])
 def test_a_reference_that_is_slowed_down_has_a_larger_orbit_about_the_same_centre(share):
     orbit = design()
@@ -193,31 +145,3 @@ def test_a_reference_that_is_slowed_down_has_a_larger_orbit_about_the_same_centr
     east = np.mean(places, axis=0)[1]
     # A period of 316 steps and a bit: half a step of 55 m over a period.
     assert east == pytest.approx(5.0, abs=0.2)
-
-
-def test_a_vehicle_on_its_way_joins_a_reference_that_leaves_it_some_of_the_heading_rate():
-    orbit = design(0.1)
-    for shape, share in ((Fastest(), FRACTION), (Sinusoid(), 1.0)):
-        joined = JoinedOrbit(shape=shape, orbit=orbit, vessel_course=0.0, time_step=TIME_STEP)
-        nearest = joined.nearest(-214.0, 5.0, north=-300.0, east=80.0, course=0.5, turn_radius=40.0)
-        assert nearest.turn_rate_fraction == share
-
-
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ({"nu": 1.0}, "speed ratio nu is 1; it must be below 1"),
-        ({"nu": -0.1}, "speed ratio nu is -0.1; it must lie within 0 and 1"),
-        ({"nu": math.nan}, "speed ratio nu is nan; it must lie within 0 and 1"),
-        (
-            {"vessel_heading_rate": 0.6},
-            "vessel heading rate is 0.6 rad/s; with a reserve of 0.015 it must stay below",
-        ),
-        ({"roll_rate_max": 0.0}, "roll_rate_max is 0 rad/s; it must be above 0"),
-        ({"reserve": 1.0}, "reserve is 1 of omega_max"),
-    ],
-)
-def test_what_cannot_be_flown_is_refused_as_of_the_sinusoid(changes, words):
-    for shape in ("sinusoid", "fastest"):
-        with pytest.raises(InfeasibleError, match=words):
-            REFERENCE_SHAPES.get(shape)().design(**({"nu": 0.5} | LIMITS | changes))

@@ -84,13 +84,6 @@ def test_a_point_that_turns_so_flies_the_orbit_and_meets_the_plume_every_half_tu
     assert np.hypot(many[0] - distance, many[1]).min() == pytest.approx(200.0, abs=1e-4)
 
 
-def test_beside_a_vessel_at_rest_it_is_a_circle():
-    orbit = design(0.0)
-    along, right = orbit.offset(np.linspace(0.0, orbit.period, 50))
-    # R = V/omega; the path's spline is good to 1e-7 of that.
-    assert np.hypot(along, right) == pytest.approx(np.full(50, SPEED / HEADING_RATE), rel=1e-6)
-
-
 @pytest.mark.parametrize("share", [0.8, 0.5])
 def test_the_slower_one_meets_it_at_phase_0_and_becomes_it_there(share):
     orbit = design(0.2)
@@ -113,19 +106,6 @@ def test_the_slower_one_meets_it_at_phase_0_and_becomes_it_there(share):
     assert (slow.north, slow.east) == pytest.approx((way + float(along), float(right)), abs=0.02)
 
 
-def test_at_an_infinite_roll_rate_it_flies_straight_on_and_turns_at_once():
-    orbit = design(0.3, roll_rate=math.inf)
-    straight = orbit.omega_0 * orbit.straight
-    phases = (0.0, 0.99 * straight, 1.01 * straight, -0.99 * straight, -1.01 * straight)
-    assert [orbit.heading_rate(phase) for phase in phases] == [
-        0.0,
-        0.0,
-        orbit.amplitude,
-        0.0,
-        orbit.amplitude,
-    ]
-
-
 @pytest.mark.parametrize(("nu", "roll_rate"), [(0.54, ROLL_RATE), (0.499, math.inf)])
 def test_up_to_about_half_the_speed_it_crosses_the_plume_and_beside_faster_vessels_it_is_refused(
     nu, roll_rate
@@ -144,24 +124,3 @@ def test_up_to_about_half_the_speed_it_crosses_the_plume_and_beside_faster_vesse
             match=r"stays on one side of the plume.*: set reference\.shape to 'fastest'",
         ):
             design(faster, roll_rate=roll_rate)
-
-
-@pytest.mark.parametrize("nu", [0.05, 0.1, 0.4])
-def test_a_vehicle_that_turns_by_half_a_turn_while_it_rolls_is_refused(nu):
-    # At 1 deg/s g/(V 0.0175 rad/s) log(1/cos 45 deg) is 10 rad from level flight; at 5 deg/s 2.0
-    # rad.
-    with pytest.raises(
-        InfeasibleError,
-        match=r"while the vehicle rolls to its bank at 1 deg/s; that must stay below 180 deg",
-    ):
-        design(nu, roll_rate=math.radians(1.0))
-    orbit = design(nu, roll_rate=math.radians(5.0))
-    assert orbit.course(math.pi) == pytest.approx(math.pi, rel=1e-12)
-
-
-def test_it_cannot_be_steered():
-    with pytest.raises(
-        InfeasibleError,
-        match=r"'loiter', which cannot be steered.*set reference\.shape to 'fastest'",
-    ):
-        LoiterShape().swing(speed=SPEED, heading_rate=HEADING_RATE, roll_rate_max=ROLL_RATE)

@@ -73,52 +73,6 @@ def test_behind_a_steady_vessel_it_is_where_equations_9_to_11_put_it(nu):
     assert centre.in_place
 
 
-@pytest.mark.parametrize("heading_deg", [90.0, -90.0, 135.0])
-def test_with_a_given_plume_the_distance_knows_its_heading(heading_deg):
-    heading = math.radians(heading_deg)
-    centre = make(plume_heading=heading)
-    move(centre, (0.5 * SPEED, 0.0), time_step=0.0)
-    # Equation (11): the orbit reaches sideways of the vessel's course by d_y, 68 m at nu = 0.5,
-    # along it by 14 m only. As above.
-    assert centre.distance == pytest.approx(paper_distance(0.5, heading), abs=0.05)
-
-
-def test_a_given_plume_keeps_its_bearing_from_the_bow():
-    centre = make(plume_heading=math.radians(150.0))
-    move(centre, (0.0, 8.0), wind=(5.0, -5.0), time_step=0.0)
-    # Course east, plume 150 degrees to the right of the bow; the wind does not matter. Rounding.
-    assert math.remainder(centre.axis - math.radians(240.0), 2.0 * math.pi) == pytest.approx(
-        0.0, abs=1e-12
-    )
-    assert centre.plume_known
-
-
-@pytest.mark.parametrize("velocity", [(0.0, 0.0), (0.2, 0.1)])
-def test_beside_a_vessel_too_slow_to_have_a_course_a_given_plume_is_where_the_bow_says(velocity):
-    centre = make(plume_heading=math.pi, vessel_course=math.radians(90.0))
-    for _ in range(20):
-        # Bow east, plume astern; the little that it drifts does not matter, nor does a wind.
-        move(centre, velocity, wind=(5.0, -5.0))
-        assert math.remainder(centre.axis - math.radians(270.0), 2.0 * math.pi) == pytest.approx(
-            0.0, abs=1e-12
-        )
-    # Under way it has a course: north-east.
-    for _ in range(400):
-        move(centre, (4.0, 4.0))
-    assert math.remainder(centre.axis - math.radians(225.0), 2.0 * math.pi) == pytest.approx(
-        0.0, abs=1e-3
-    )
-
-
-def test_the_plume_trails_behind_the_motion_through_the_air():
-    centre = make()
-    # A vessel at rest in a wind to the south-east: smoke blows to the south-east, 135 degrees.
-    move(centre, (0.0, 0.0), wind=(-5.0, 5.0), time_step=0.0)
-    assert centre.axis == pytest.approx(math.radians(135.0), abs=1e-12)
-    # Seen from the air mass, vessel and centre move to the north-west at the speed of the wind.
-    assert (centre.velocity_north, centre.velocity_east) == pytest.approx((5.0, -5.0), abs=1e-9)
-
-
 @pytest.mark.parametrize("wind", [(0.0, 0.0), (3.0, -4.0)])
 @pytest.mark.parametrize(("turn_rate", "acceleration"), [(0.02, 0.0), (-0.015, 0.05), (0.0, 0.1)])
 @pytest.mark.parametrize("plume_heading", [None, 2.6])
@@ -161,32 +115,6 @@ def test_its_velocity_is_the_rate_of_its_place(plume_heading, turn_rate, acceler
     assert np.ptp(np.hypot(*(np.array(velocities).T))) > 0.05
 
 
-def test_a_vessel_that_turns_moves_it_by_omega_cross_r():
-    # V_V plus omega_V x r_CO. Course north, turning right: the centre astern
-    # swings to the west.
-    centre = make(plume_heading=math.pi)
-    move(centre, (8.0, 0.0), acceleration=(0.0, 8.0 * 0.01), time_step=0.0)
-    # What it has along the axis besides, it spends on moving out: swung round, it takes up the
-    # orbit's width. Rounding.
-    assert centre.velocity_east == pytest.approx(-0.01 * centre.distance, abs=1e-9)
-    # To the right of an axis that points south.
-    assert centre.swing == pytest.approx(0.01 * centre.distance, abs=1e-9)
-    assert centre.velocity_north < 8.0
-
-
-def test_an_apparent_wind_too_faint_leaves_the_axis_where_it_was():
-    centre = make()
-    move(centre, (6.0, 0.0), time_step=0.0)
-    before = centre.axis
-    for _ in range(100):
-        move(centre, (0.6, 0.6), wind=(0.0, 0.0))
-        assert not centre.plume_known
-    assert centre.axis == before
-    # 1 m/s is enough.
-    move(centre, (0.0, 1.01))
-    assert centre.plume_known
-
-
 def test_an_apparent_wind_that_reverses_turns_the_axis_no_faster_than_it_can_be_followed():
     centre = make()
     move(centre, (6.0, 0.0), wind=(4.0, 0.0), time_step=0.0)
@@ -203,16 +131,3 @@ def test_an_apparent_wind_that_reverses_turns_the_axis_no_faster_than_it_can_be_
     assert math.remainder(centre.axis - math.atan2(0.1, 2.0), 2.0 * math.pi) == pytest.approx(
         0.0, abs=1e-3
     )
-
-
-def test_it_goes_where_it_has_to_be_when_it_must_stay_further_off():
-    centre = make()
-    move(centre, (8.0, 0.0), time_step=0.0)
-    near = centre.distance
-    for _ in range(300):
-        move(centre, (8.0, 0.0), additional_range=100.0)
-    # 150 s at 0.06/s: e^-9 of 100 m.
-    assert centre.distance == pytest.approx(near + 100.0, abs=0.05)
-    assert centre.in_place
-    move(centre, (8.0, 0.0))
-    assert not centre.in_place

@@ -7,9 +7,6 @@ from hypothesis import strategies as st
 
 from common.physics import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
-from gnc.paper import design_oscillation
-
-ROLL_RATE_MAX = math.radians(40.0)
 
 
 @pytest.mark.parametrize("nu", [0.0, 0.1, 0.5, 0.9])
@@ -52,23 +49,6 @@ def test_the_oscillation_is_the_fastest_within_heading_rate_and_roll_rate(
     assert (oscillation.limit == "heading rate") == (heading_rate_use >= roll_rate_use)
 
 
-def test_without_a_roll_rate_the_bound_of_equation_8_grows_without_limit():
-    # By (6) near nu = 1, eta = 2 sqrt(1 - nu), so omega_0 = omega_max/(2 sqrt(1 - nu)), to a
-    # relative (1 - nu)/8.
-    assert paper_oscillation(1.0 - 1e-8).omega_0 == pytest.approx(HEADING_RATE_MAX / 2e-4, rel=1e-7)
-
-
-def test_the_roll_rate_takes_over_for_fast_vessels():
-    # The bounds are equal where omega_max^2/eta = g/V times the roll rate: eta = 0.718, nu = 0.88.
-    assert paper_oscillation(0.86, roll_rate_max=ROLL_RATE_MAX).limit == "heading rate"
-    fast = paper_oscillation(0.9, roll_rate_max=ROLL_RATE_MAX)
-    assert fast.limit == "roll rate"
-    # Roundings of the square root.
-    assert fast.omega_0**2 * fast.eta == pytest.approx(
-        STANDARD_GRAVITY * ROLL_RATE_MAX / SPEED, rel=1e-14
-    )
-
-
 @pytest.mark.parametrize(
     ("ratios", "words"),
     [
@@ -102,26 +82,3 @@ def test_a_vessel_that_turns_as_fast_as_the_uav_can_is_refused(vessel_heading_ra
     message = str(refusal.value)
     assert f"is {vessel_heading_rate:g} rad/s" in message
     assert f"below {limit} rad/s" in message
-
-
-@pytest.mark.parametrize("reserve", [-0.1, 1.0, 1.5, math.nan, math.inf])
-def test_a_reserve_that_is_no_fraction_is_refused(reserve):
-    with pytest.raises(
-        InfeasibleError, match=r"reserve is .* of omega_max; it must be at least 0 and below 1"
-    ) as refusal:
-        paper_oscillation(0.5, reserve=reserve)
-    assert f"reserve is {reserve:g}" in str(refusal.value)
-
-
-@pytest.mark.parametrize("value", [0.0, -3.0, math.nan])
-@pytest.mark.parametrize("name", ["speed", "heading_rate_max", "roll_rate_max"])
-def test_rates_and_speeds_that_are_not_above_zero_are_refused(name, value):
-    with pytest.raises(InfeasibleError, match=f"{name} is .*must be above 0") as refusal:
-        paper_oscillation(0.5, **{name: value})
-    assert f"{name} is {value:g}" in str(refusal.value)
-
-
-def test_the_design_takes_its_inputs_by_name():
-    # House style 5: keyword-only, so that a speed is not taken for a rate.
-    with pytest.raises(TypeError):
-        design_oscillation(0.5, SPEED, HEADING_RATE_MAX)

@@ -1,6 +1,5 @@
 """The paper's reference over time, and where its orbit is joined."""
 
-import copy
 import math
 
 import numpy as np
@@ -9,7 +8,6 @@ from gnc_cases import (
     HEADING_RATE_MAX,
     SPEED,
     TIME_STEP,
-    assert_a_copy_goes_on,
     courses,
     examples,
     make_reference,
@@ -19,11 +17,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from gnc.paper import design_oscillation, half_widths, offset
+from gnc.paper import offset
 from gnc.reference.oscillating import ClosingReference, JoinedOrbit
-from gnc.reference.reference import REFERENCE_SHAPES, CirclingReference
 from gnc.reference.shapes import Sinusoid
-from gnc.unicycle import unicycle_move
 
 CENTRE = (-214.0, 35.0)
 COURSE = 0.7
@@ -100,79 +96,6 @@ def test_the_reference_starts_on_the_course_of_equation_7(phase):
     )
 
 
-@pytest.mark.parametrize("phase", [0.0, 0.5, -2.0])
-def test_the_course_is_that_of_equation_3_about_the_vessels(phase):
-    oscillation, reference = make(0.3, phase=phase)
-    for step in range(1, 2001):
-        reference.step()
-        # Equation (3) with the start of (7). Rounding of angles of 30 rad; time comes from the step
-        # count, so it does not grow.
-        expected = COURSE + oscillation.eta * math.cos(
-            oscillation.omega_0 * step * TIME_STEP + phase
-        )
-        assert reference.course == pytest.approx(expected, abs=1e-13)
-
-
-def test_the_reference_is_a_unicycle_of_constant_speed():
-    _, reference = make(0.5, time_step=1e-3)
-    for _ in range(200):
-        north, east = reference.north, reference.east
-        reference.step()
-        # Equation (4): the speed is V_r throughout. The chord is shorter than the arc by (omega
-        # h)^2/24 of it, 1e-8.
-        assert math.hypot(reference.north - north, reference.east - east) == pytest.approx(
-            SPEED * 1e-3, rel=2e-8
-        )
-
-
-def test_the_reference_starts_on_the_centre_with_phase_zero_only():
-    # Section III.B has it start on the CO, which centres the orbit there for phi_0 = 0 only.
-    oscillation = paper_oscillation(0.5)
-    on, off = (
-        make_reference(oscillation, phase=phase, centre=CENTRE, vessel_course=COURSE)
-        for phase in (0.0, 0.5 * math.pi)
-    )
-    assert (on.north, on.east) == pytest.approx(CENTRE, abs=1e-12)
-    # A quarter period on it is d_y = 68.395 m to the vessel's right by (12), rounded to
-    # 1 cm.
-    right = -(off.north - CENTRE[0]) * math.sin(COURSE) + (off.east - CENTRE[1]) * math.cos(COURSE)
-    along = (off.north - CENTRE[0]) * math.cos(COURSE) + (off.east - CENTRE[1]) * math.sin(COURSE)
-    assert right == pytest.approx(68.40, abs=0.005)
-    assert along == pytest.approx(0.0, abs=1e-12)
-
-
-@pytest.mark.parametrize("heading_rate", [0.15, -0.4])
-def test_a_circling_reference_is_a_unicycle_that_turns_steadily(heading_rate):
-    reference = CirclingReference(speed=SPEED, heading_rate=heading_rate, time_step=TIME_STEP)
-    state = (0.0, 0.0, 0.0)
-    assert (reference.north, reference.east, reference.course) == state
-    for _ in range(8000):
-        reference.step()
-        state = unicycle_move(*state, SPEED, heading_rate, TIME_STEP)
-        assert (reference.heading_rate, reference.speed) == (heading_rate, SPEED)
-    # Equation (13) integrated step by step, against the closed form: 8,000 roundings of a radius up
-    # to 130 m.
-    assert (reference.north, reference.east) == pytest.approx(state[:2], rel=0.0, abs=1e-8)
-    assert reference.course == pytest.approx(state[2], rel=0.0, abs=1e-9)
-
-
-def test_the_papers_shape_is_known_by_name_and_is_the_papers_oscillation():
-    shape = REFERENCE_SHAPES.get("sinusoid")()
-    task = {"nu": 0.5, "speed": SPEED, "heading_rate_max": HEADING_RATE_MAX, "reserve": 0.1}
-    orbit = shape.design(**task, vessel_heading_rate=0.0, roll_rate_max=math.inf)
-    assert orbit == design_oscillation(**task)
-    assert orbit.half_widths() == half_widths(orbit)
-
-
-@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy])
-def test_a_copy_goes_on_as_its_original_would_and_leaves_that_where_it_is(copied):
-    _, reference = make(0.5, phase=1.1)
-    reference.set_turn_rate_fraction(0.6)
-    for _ in range(137):
-        reference.step()
-    assert_a_copy_goes_on(reference, copied)
-
-
 ORBIT = JoinedOrbit(
     shape=Sinusoid(), orbit=paper_oscillation(0.5), vessel_course=0.3, time_step=TIME_STEP
 )
@@ -223,12 +146,6 @@ def test_no_phase_costs_less_than_the_nearest(place, course, phase):
     step = math.radians(2.6)
     slack = math.hypot(SPEED / ORBIT.orbit.omega_0, 1.5 * TURN_RADIUS * ORBIT.orbit.eta) * step
     assert least <= effort(ORBIT.reference(phase, *JOINED_CENTRE), place, course) + slack
-
-
-def test_of_two_ways_through_a_place_the_one_on_the_vehicles_course_is_taken():
-    # The orbit passes near its centre twice in a period, once to the right and once to the left.
-    right, left = (nearest(JOINED_CENTRE, 0.3 + side * 1.0).course for side in (1.0, -1.0))
-    assert right > 0.3 > left
 
 
 def test_a_closing_reference_stands_off_until_it_may_close_and_then_reaches_its_place():

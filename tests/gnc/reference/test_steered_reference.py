@@ -1,14 +1,13 @@
-import copy
 import math
 
 import numpy as np
 import pytest
-from gnc_cases import HEADING_RATE_MAX, SPEED, assert_a_copy_goes_on, examples
+from gnc_cases import HEADING_RATE_MAX, SPEED, examples
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.special import j0
 
-from gnc.paper import design_oscillation, eta_for_speed_ratio, offset
+from gnc.paper import design_oscillation, offset
 from gnc.reference.oscillating import JoinedOrbit
 from gnc.reference.reference import REFERENCE_SHAPES
 from gnc.reference.shapes import SinusoidSwing
@@ -183,60 +182,3 @@ def test_the_offset_is_the_series_of_equation_12(eta, phase):
     # What _ORDERS leaves out is below 1e-4 of the width, of order 1 in these units; the table is
     # linear over 0.005 rad, 3e-6.
     assert found == pytest.approx((float(along) / unit, float(right) / unit), rel=0.0, abs=2e-5)
-
-
-def test_the_table_of_eta_is_equation_6():
-    ratios = np.concatenate([np.linspace(0.0, 1.0, 501), 1.0 - np.logspace(-12, -3, 50)])
-    # 1e-5 by its docstring.
-    assert [SINUSOID.eta(r) for r in ratios] == pytest.approx(
-        [eta_for_speed_ratio(r) for r in ratios], rel=0.0, abs=1e-5
-    )
-
-
-def test_mean_speeds_beyond_the_table_are_those_of_its_ends():
-    assert SINUSOID.eta(1.2) == 0.0
-    # Backing away: J_0 falls to -0.2 beyond its first zero; the end of the table is a step of 0.005
-    # rad away at most, whose J_0 is 0.4 times that.
-    assert j0(SINUSOID.eta(-0.2)) == pytest.approx(-0.2, abs=0.002)
-    assert SINUSOID.eta(-5.0) == pytest.approx(SINUSOID.eta(-0.2), abs=0.005)
-
-
-@shapes
-def test_it_starts_at_the_mean_speed_that_it_is_given(shape):
-    for nu in (0.0, 0.2, 0.5, 0.97):
-        # Tables of eta are good to 1e-5.
-        assert speed_ratio(steered(shape, nu=nu), shape) == pytest.approx(nu, abs=1e-5)
-
-
-@shapes
-def test_it_comes_to_the_mean_course_and_speed_that_are_demanded(shape):
-    reference = steered(shape, nu=0.5, mean_course=0.0)
-    reference.steer(2.0, 0.2)
-    for _ in range(1200):
-        reference.step()
-    # 60 s: rate 0.4/s and a gate of 0.2 to 1 make at least 1/0.08 s = 12 s the slowest time
-    # constant: e^-5 of 2 rad and more.
-    assert reference.mean_course == pytest.approx(2.0, abs=0.02)
-    assert speed_ratio(reference, shape) == pytest.approx(0.2, abs=0.01)
-
-
-def test_it_turns_the_shorter_way():
-    reference = steered(mean_course=3.0)
-    reference.steer(-3.0, 0.5)
-    for _ in range(1200):
-        reference.step()
-        assert reference.mean_course > 2.9
-    # As above.
-    assert math.remainder(reference.mean_course + 3.0, 2.0 * math.pi) == pytest.approx(
-        0.0, abs=0.01
-    )
-
-
-@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy])
-def test_a_copy_goes_on_as_its_original_would_and_leaves_that_where_it_is(copied):
-    reference = steered(mean_course=0.3, phase=1.1)
-    reference.steer(0.9, 0.4)
-    reference.set_turn_rate_fraction(0.6)
-    for _ in range(37):
-        reference.step()
-    assert_a_copy_goes_on(reference, copied)

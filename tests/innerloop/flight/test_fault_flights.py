@@ -7,7 +7,6 @@ import pytest
 import x8_published as x8
 
 from aircraft.fleet.x8 import X8
-from aircraft.spec import AircraftError
 from common.physics import STANDARD_GRAVITY
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.part_failure import measure_part_failure
@@ -56,13 +55,6 @@ def fly(aircraft, start, duration, fault="", commands=()):
 @pytest.fixture
 def failable(x8_root):
     return AutopilotedAircraft(X8, x8_root, failable=True)
-
-
-def test_an_aircraft_that_can_fail_flies_as_one_that_cannot_until_it_does(
-    x8_schedule, x8_aircraft, failable
-):
-    start = x8_schedule.level(MIDDLE)
-    np.testing.assert_array_equal(fly(failable, start, 6.0), fly(x8_aircraft, start, 6.0))
 
 
 @pytest.mark.parametrize(
@@ -127,16 +119,6 @@ def test_the_next_flight_of_an_aircraft_that_failed_is_whole(x8_schedule, x8_roo
     np.testing.assert_allclose(
         fly(failable, start, 4.0), fly(AutopilotedAircraft(X8, x8_root), start, 4.0), atol=1e-5
     )
-
-
-def test_what_cannot_fail_says_so(x8_schedule, x8_aircraft, failable):
-    with pytest.raises(
-        AircraftError,
-        match="has no 'rudder' to fail; it has engine, left_elevon, right_elevon, throttle",
-    ):
-        failable.fail("rudder")
-    with pytest.raises(AircraftError, match="'engine' cannot fail; make it with failable=True"):
-        x8_aircraft.fail("engine")
 
 
 def test_without_its_engine_the_airspeed_falls_in_a_turn_by_drag_over_mass(x8_schedule, failable):

@@ -9,7 +9,6 @@ from innerloop_flights import CHANNELS, TIME_STEP, after, fly
 
 from aircraft.fdm import Fdm
 from aircraft.fleet.x8 import X8
-from aircraft.spec import MODELS, AircraftError
 from aircraft.trim import trim
 from common.geodesy import LocalFrame
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
@@ -60,17 +59,6 @@ def test_a_second_flight_knows_nothing_of_the_first_nor_when_it_ended(
         np.testing.assert_allclose(again[name], fresh[name], atol=1e-5, err_msg=name)
 
 
-def test_two_fresh_aircraft_fly_the_same_flight(x8_schedule, x8_root):
-    commands = [(1.0, "heading_rate", 0.3), (2.0, "altitude", 101.0)]
-    first, second = (
-        fly(AutopilotedAircraft(X8, x8_root), x8_schedule.level(MIDDLE), 5.0, commands)
-        for _ in range(2)
-    )
-    for name in CHANNELS:
-        # Nothing in it is random.
-        np.testing.assert_array_equal(first[name], second[name], err_msg=name)
-
-
 @pytest.mark.parametrize("altitude", [10.0, 1000.0, 2000.0])
 def test_the_autopilot_designed_near_the_sea_flies_at_other_altitudes(x8_aircraft, altitude):
     found = trim(Fdm(X8), airspeed=20.0, altitude=altitude)
@@ -82,12 +70,6 @@ def test_the_autopilot_designed_near_the_sea_flies_at_other_altitudes(x8_aircraf
     assert np.abs(flight["altitude"] - altitude).max() < 0.5
     assert np.abs(flight["airspeed"] - 20.0).max() < 0.2
     assert np.abs(after(flight, 28.0, "altitude") - altitude).max() < 0.01
-
-
-def test_a_root_without_autopilot_is_refused_by_name_of_what_is_missing():
-    with pytest.raises(AircraftError, match="autopilot/airspeed-command-mps") as caught:
-        AutopilotedAircraft(X8, MODELS)
-    assert "\n" not in str(caught.value)
 
 
 def test_an_aircraft_released_off_its_equilibrium_is_brought_there(x8_schedule, x8_aircraft):

@@ -1,7 +1,5 @@
 """Aircraft whose mass, inertia or controls' effectiveness are not as modelled."""
 
-import xml.etree.ElementTree as ET
-
 import pytest
 
 from aircraft.fdm import Fdm
@@ -86,20 +84,3 @@ def test_sections_in_files_of_their_own_are_perturbed_as_those_of_the_model_file
             [fdm.read("inertia/weight-lbs"), *fdm.acceleration_body(), *fdm.angular_acceleration()]
         )
     assert moved[1] == moved[0]
-
-
-def test_the_deflections_of_jsbsims_short_s23_are_scaled(tmp_path):
-    copy = copy_model(find_spec("Short_S23").files, tmp_path)
-    perturb(copy, REVERSAL_PERTURBATIONS["control effectiveness +20 %"])
-    products = ET.parse(copy).getroot().find("aerodynamics").iter("product")
-    scaled = [
-        product.findtext("property").strip()
-        for product in products
-        if product.findtext("value") == "1.2"
-    ]
-    # Every <property> of a deflection that the file of its aerodynamics has, in its order; what
-    # tables are read at stays.
-    rudder, aileron, elevator = (
-        f"fcs/{name}-pos-rad" for name in ("rudder", "left-aileron", "elevator")
-    )
-    assert scaled == [rudder, aileron, rudder, rudder, elevator]

@@ -1,13 +1,10 @@
 """Flown step responses: against the linear prediction, and against what the guidance needs."""
 
-import math
-
 import numpy as np
 import pytest
 
-from aircraft.fdm import TIME_STEP
 from aircraft.fleet.x8 import X8
-from innerloop.flight.responses import CHANNELS, Response, flown_step, measure_lag, predicted_step
+from innerloop.flight.responses import flown_step, measure_lag, predicted_step
 
 MIDDLE = 2
 INSIDE = [1, 2, 3]  # design airspeeds inside the envelope: 17.5, 20 and 22.5 m/s
@@ -68,74 +65,3 @@ def test_the_flown_heading_rate_lags_its_command_by_the_lag_of_the_model(
     assert measure_lag(x8_aircraft, x8_schedule.level(index), X8.envelope.bank) == pytest.approx(
         expected, abs=0.03
     )
-
-
-def test_the_lag_of_a_slower_command_is_that_lag_too(x8_schedule, x8_aircraft):
-    # A bank of 32 degrees turns at 0.3 rad/s.
-    lag = measure_lag(x8_aircraft, x8_schedule.level(MIDDLE), math.radians(32.0))
-    weights = x8_schedule.weights
-    # As above.
-    assert lag == pytest.approx(2.0 * weights.model_damping / weights.model_frequency, abs=0.03)
-
-
-def second_order(command="airspeed", size=2.0, damping=0.4, frequency=3.0):
-    """The textbook's step response, recorded as a response."""
-    time = np.arange(0.0, 10.0, 0.001)
-    damped = frequency * math.sqrt(1.0 - damping**2)
-    share = 1.0 - np.exp(-damping * frequency * time) * (
-        np.cos(damped * time) + damping * frequency / damped * np.sin(damped * time)
-    )
-    channels = {name: np.zeros_like(time) for name in CHANNELS} | {
-        command: size * share,
-        "altitude": -0.3 * share,
-    }
-    return Response(command=command, size=size, time=time, channels=channels)
-
-
-@pytest.mark.parametrize("size", [2.0, -2.0])
-def test_overshoot_is_the_textbooks_for_a_second_order_answer(size):
-    # exp(-pi zeta/sqrt(1 - zeta^2)); tolerance: samples 1 ms apart at a flat top.
-    assert second_order(size=size).overshoot() == pytest.approx(
-        math.exp(-math.pi * 0.4 / math.sqrt(1.0 - 0.16)), abs=1e-5
-    )
-
-
-def test_rise_time_is_the_time_from_ten_to_ninety_per_cent():
-    time = np.arange(0.0, 10.0, 0.001)
-    ramp = Response(
-        command="altitude",
-        size=-4.0,
-        time=time,
-        channels={name: -4.0 * np.minimum(1.0, time / 5.0) for name in CHANNELS},
-    )
-    assert ramp.rise_time() == pytest.approx(0.8 * 5.0, abs=0.002)  # of a ramp of 5 s; two samples
-    assert ramp.overshoot() == 0.0
-
-
-def test_an_answer_that_never_gets_there_has_no_rise_time():
-    time = np.arange(0.0, 1.0, 0.1)
-    short = Response(
-        command="altitude", size=1.0, time=time, channels=dict.fromkeys(CHANNELS, 0.5 * time)
-    )
-    assert math.isnan(short.rise_time())
-
-
-def test_the_largest_deviation_counts_both_ways():
-    peak = 1.0 + second_order().overshoot()
-    # Up to 0.3 m below, and up to 2 m/s above.
-    assert second_order().largest("altitude") == pytest.approx(0.3 * peak, rel=1e-9)
-    assert second_order().largest("airspeed") == pytest.approx(2.0 * peak, rel=1e-9)
-
-
-def test_a_predicted_step_starts_at_rest_and_scales_with_its_size(x8_schedule):
-    one, three = (
-        predicted_step(x8_schedule, MIDDLE, "altitude", size, 2.0) for size in (1.0, -3.0)
-    )
-    assert len(one.time) == round(2.0 / TIME_STEP)
-    for name in CHANNELS:
-        if not name.endswith("_command"):  # a control is commanded as soon as there is an error
-            assert float(one.channels[name][0]) == pytest.approx(0.0, abs=1e-9)
-        # Linear.
-        np.testing.assert_allclose(
-            np.asarray(three.channels[name]), -3.0 * np.asarray(one.channels[name]), atol=1e-9
-        )

@@ -1,15 +1,9 @@
 """One stuck elevon of the X8: what servos report, and the other elevon with the elevator held."""
 
-from dataclasses import replace
-from types import SimpleNamespace
-from typing import cast
-
 import numpy as np
 import pytest
 
-from aircraft.fdm import Fdm
 from aircraft.fleet.x8 import X8
-from aircraft.spec import Actuator, check_spec
 from aircraft.weather import TURBULENCE, Weather
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.servo_monitor import ServoMonitor
@@ -76,19 +70,6 @@ def test_a_stuck_elevon_is_noticed_half_a_second_after_a_turn_was_asked_of_it(
     assert 0.4 <= TIME_STEP * int(np.argmax(errors > 0.1)) <= 0.6
 
 
-def test_a_stuck_throttle_is_no_stuck_surface(failable, x8_schedule):
-    watch = release(failable, x8_schedule)
-    failable.fail("throttle")
-    failable.command_airspeed(25.0)
-    errors, _ = watched(failable, watch, lambda _: 0.3, 5.0)
-    # Much more is commanded than it gives.
-    assert (
-        failable.fdm.read("autopilot/throttle-command") - failable.fdm.read("fcs/throttle-cmd-norm")
-        > 0.2
-    )
-    assert max(errors) < 0.1
-
-
 def heading_rates(aircraft, x8_schedule, fault, *, held):
     """Turn right, left once an elevon fails after 3 s; return the heading rates from then on."""
     watch = release(aircraft, x8_schedule)
@@ -109,36 +90,3 @@ def test_with_the_elevator_held_the_other_elevon_turns_the_aircraft_round(
     # slows down in the climb out of the turn it turns faster.
     assert np.mean(heading_rates(failable, x8_schedule, fault, held=True)[-40:]) < -RATE
     assert np.mean(heading_rates(failable, x8_schedule, fault, held=False)[-40:]) > -0.7 * RATE
-
-
-def test_the_elevator_is_held_where_it_was_at_the_release_until_the_next_one(
-    x8_aircraft, x8_schedule
-):
-    watch = release(x8_aircraft, x8_schedule)
-    trim = x8_aircraft.fdm.read("fcs/elevator-cmd-norm")
-    watched(x8_aircraft, watch, lambda _: RATE, 3.0)
-    assert abs(x8_aircraft.fdm.read("fcs/elevator-cmd-norm") - trim) > 0.01  # a turn takes more
-    x8_aircraft.hold_elevator()
-    watched(x8_aircraft, watch, lambda _: RATE, 1.0)
-    assert x8_aircraft.fdm.read("fcs/elevator-cmd-norm") == trim
-    watched(x8_aircraft, release(x8_aircraft, x8_schedule), lambda _: RATE, 3.0)
-    assert abs(x8_aircraft.fdm.read("fcs/elevator-cmd-norm") - trim) > 0.01
-
-
-def test_a_throttle_of_another_name_is_monitored_as_little_as_one_that_is_called_so(
-    x8_aircraft, x8_schedule
-):
-    release(x8_aircraft, x8_schedule)
-    renamed = replace(
-        X8,
-        own_actuators=(
-            *X8.own_actuators,
-            Actuator(name="motor", commands=X8.input("throttle").commands),
-        ),
-    )
-    check_spec(renamed)
-    monitor = ServoMonitor(
-        cast("Fdm", SimpleNamespace(spec=renamed, node=x8_aircraft.fdm.node)), TIME_STEP
-    )
-    # Of the elevons alone, in trim: rounding of JSBSim.
-    assert monitor.error() < 1e-6

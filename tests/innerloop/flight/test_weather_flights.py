@@ -116,17 +116,3 @@ def test_a_used_aircraft_flies_a_weather_as_a_fresh_one_does(x8_schedule, x8_roo
         # Servos and propeller come to rest from elsewhere, to a millionth
         # (tests/innerloop/flight/test_flight.py).
         np.testing.assert_allclose(fly(used, start, weather, 5.0), fresh, atol=1e-6)
-
-
-def test_another_seed_is_another_flight(x8_schedule, x8_root):
-    start = x8_schedule.level(MIDDLE)
-    one, two = (
-        fly(
-            AutopilotedAircraft(X8, x8_root),
-            start,
-            Weather(turbulence=TURBULENCE["light"], seed=seed),
-            3.0,
-        )
-        for seed in (1, 2)
-    )
-    assert np.abs(one - two)[:, AIRSPEED].max() > 0.1  # m/s, of turbulence of 0.8 m/s

@@ -1,11 +1,8 @@
 """The script that flies the autopilot in JSBSim alone, against the same flight from Python."""
 
-import math
-import shutil
 import subprocess
 import sys
 import xml.etree.ElementTree as ET
-from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -16,9 +13,10 @@ from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.jsbsim.script import columns, demonstration, write_script
 from innerloop.jsbsim.system import write_root
 
+pytestmark = pytest.mark.slow
+
 MIDDLE = 2
 STEPS_PER_SECOND = 120
-HEADING = "attitude/psi-rad"
 
 
 def run_jsbsim(*arguments, directory):
@@ -84,17 +82,6 @@ def released(alone):
     return alone[alone["Time"] > -1e-6].reset_index(drop=True)
 
 
-def at(alone, time, name):
-    """Return a column's value at a time [s]."""
-    return float(np.interp(time, alone["Time"], alone[name]))
-
-
-def turned(alone, begin, end):
-    """Return the change of heading from ``begin`` to ``end`` [s], whole turns counted [rad]."""
-    heading = np.unwrap(alone[HEADING])
-    return float(np.interp(end, alone["Time"], heading) - np.interp(begin, alone["Time"], heading))
-
-
 def test_jsbsim_alone_flies_the_trajectory_that_python_flies(flights):
     _, alone, python = flights
     alone = released(alone)
@@ -107,51 +94,6 @@ def test_jsbsim_alone_flies_the_trajectory_that_python_flies(flights):
         # To the last bit: 18 digits are printed, one more than a number has, and both set the same
         # state in the same order.
         np.testing.assert_array_equal(alone[name], same[name], err_msg=name)
-
-
-def test_the_demonstration_turns_climbs_changes_speed_and_comes_back(flights):
-    schedule, alone, _ = flights
-    start = schedule.level(MIDDLE)
-    rate, _, higher, faster, *_ = (
-        command.value for command in demonstration(schedule.envelope, start)
-    )
-    # A turn commanded for 15 s and given time to end turns by rate times 15 s, however it lags; a
-    # hundredth is let go.
-    assert turned(alone, 5.0, 25.0) == pytest.approx(15.0 * rate, rel=0.01)
-    assert turned(alone, 70.0, 95.0) == pytest.approx(-15.0 * rate, rel=0.01)
-    # Fifteen seconds after each step: within four hundredths of it; the Aerosonde's slowest
-    # closed-loop pole is 0.23 1/s.
-    assert at(alone, 40.0, "position/h-sl-meters") == pytest.approx(
-        higher, abs=0.04 * (higher - start.altitude)
-    )
-    assert at(alone, 55.0, "autopilot/airspeed-mps") == pytest.approx(
-        faster, abs=0.04 * abs(faster - start.airspeed)
-    )
-    assert at(alone, 70.0, "position/h-sl-meters") == pytest.approx(
-        start.altitude, abs=0.04 * (higher - start.altitude)
-    )
-    assert at(alone, 70.0, "autopilot/airspeed-mps") == pytest.approx(
-        start.airspeed, abs=0.04 * abs(faster - start.airspeed)
-    )
-
-
-def test_the_engine_runs_at_its_trim_when_the_aircraft_is_released(flights):
-    schedule, alone, _ = flights
-    first = released(alone).iloc[0]
-    rpm = schedule.level(MIDDLE).driven["propeller_speed"] * 30.0 / math.pi
-    # Two seconds from standstill.
-    assert first["propulsion/engine/propeller-rpm"] == pytest.approx(rpm, rel=1e-3)
-    assert first["propulsion/engine[0]/thrust-lbs"] > 0.1
-
-
-def test_a_held_body_is_released_where_it_was_meant_to_be(flights):
-    _, alone, _ = flights
-    held = alone[alone["Time"] < 1e-6]
-    # The earth turns by 15 seconds of arc a second.
-    assert held["position/long-gc-deg"].iloc[0] == pytest.approx(2.0 * 15.041 / 3600.0, rel=1e-4)
-    assert held["position/long-gc-deg"].iloc[-1] == pytest.approx(0.0, abs=1e-12)
-    assert np.ptp(held["position/h-sl-meters"]) < 1e-6  # stands still but for rounding
-    assert np.ptp(held["attitude/phi-rad"]) < 1e-9
 
 
 def test_a_stock_aircraft_is_flown_by_jsbsim_alone_as_from_python_but_for_its_engines_last_breath(
@@ -198,45 +140,3 @@ def test_a_stock_aircrafts_script_runs_its_engines_up_and_has_gear_and_fuel_as_i
     assert set(schedule.spec.configuration) <= set(start.items())
     assert again == dict(schedule.spec.configuration)
     assert [release[name] for name in INTEGRATORS] != [0.0] * 4
-
-
-def test_a_title_may_hold_what_xml_means_something_by(x8_schedule, tmp_path):
-    titled = replace(x8_schedule, spec=replace(x8_schedule.spec, title='The <"Bird"> & Co'))
-    script = ET.parse(write_script(titled, write_root(titled, tmp_path)))
-    assert script.getroot().get("name") == 'The <"Bird"> & Co under its autopilot'
-
-
-def test_run_without_options_a_script_of_a_name_with_two_dashes_writes_its_result_where_it_is_run(
-    x8_schedule, tmp_path
-):
-    own = replace(x8_schedule.spec, model="own--x8", folder=tmp_path / "own--x8")
-    shutil.copytree(x8_schedule.spec.files.folder, own.folder)
-    (own.folder / "x8.xml").rename(own.files.file)
-    schedule = replace(x8_schedule, spec=own)
-    script = write_script(schedule, write_root(schedule, tmp_path / "root"))
-    assert (
-        ET.parse(script.parents[1] / "aircraft" / "own--x8" / "own--x8_autopilot_init.xml")
-        .getroot()
-        .tag
-        == "initialize"
-    )
-    run_jsbsim(f"--script=scripts/{script.name}", directory=tmp_path / "root")
-    times = read_result(tmp_path / "root" / "own--x8_autopilot.csv")["Time"]
-    assert times.iloc[-1] == pytest.approx(95.0)
-    assert np.diff(times) == pytest.approx(0.05)
-
-
-@pytest.mark.parametrize(("index", "step"), [(1, 1.75), (2, 2.0), (3, -2.25)])
-def test_the_airspeed_step_goes_where_the_envelope_has_room(x8_schedule, index, step):
-    # 17.5, 20, 22.5 m/s in an envelope of 15 to 25 m/s: a tenth of each.
-    start = x8_schedule.level(index)
-    assert demonstration(x8_schedule.envelope, start)[3].value - start.airspeed == pytest.approx(
-        step
-    )
-
-
-def test_engines_are_started_before_the_body_is_held(x8_schedule, x8_root, tmp_path):
-    root = shutil.copytree(x8_root, tmp_path / "root")
-    first = ET.parse(write_script(x8_schedule, root)).getroot().find("run/event")
-    found = [(e.get("name"), float(e.get("value"))) for e in first.findall("set")]
-    assert found == [*START_ENGINES, *((name, 0.0) for name in INTEGRATORS)]

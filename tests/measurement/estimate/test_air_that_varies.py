@@ -14,6 +14,8 @@ from tests.measurement.simulator.log import simulate
 from tests.measurement.simulator.regimes import REGIMES
 from tests.measurement.simulator.runner import estimated
 
+pytestmark = pytest.mark.slow
+
 SEED = 2000
 SHORT_S = 300.0
 """Longest log that is estimated here: the time of an estimate grows faster than its log [s]."""

@@ -13,6 +13,8 @@ from measurement.sniffer.channel import Channel
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import sensor_preset
 
+pytestmark = pytest.mark.slow
+
 SPEC = plain_sniffer(so2_noise=2.5, co2_noise=1.0)
 READINGS = read(SPEC, crossings(0.25, duration=120.0))
 

@@ -16,6 +16,8 @@ from measurement.sniffer.lag import lag
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import sensor_preset
 
+pytestmark = pytest.mark.slow
+
 TAU = 20.0 / math.log(10.0)
 
 

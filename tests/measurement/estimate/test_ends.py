@@ -14,6 +14,8 @@ from measurement.estimate.signals import make_signals
 from measurement.sniffer.channel import Channel
 from measurement.sniffer.sniffer import Readings
 
+pytestmark = pytest.mark.slow
+
 AIR = {"interval": 30.0, "meander": 0.0, "width": 2.0}
 NOT_STATED = {"t90_sd": math.inf, "delay_sd_s": math.inf}
 

@@ -14,6 +14,8 @@ from measurement.gases import GASES
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import sensor_of, sensor_preset
 
+pytestmark = pytest.mark.slow
+
 
 def reasons(readings, spec):
     """Return the reasons of quality C, which gives no verdict; none of any other quality."""

@@ -9,6 +9,8 @@ from scipy.stats import multivariate_normal, norm
 from measurement.estimate.repeated import RepeatedVerdict
 from measurement.estimate.verdict import GUARD
 
+pytestmark = pytest.mark.slow
+
 LIMIT = 0.1
 
 LOOKS_S = np.arange(30.0, 601.0, 15.0)

@@ -19,6 +19,8 @@ from measurement.gases import GASES, fsc_factor
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import sensor_of, sensor_preset
 
+pytestmark = pytest.mark.slow
+
 REPEATS = 200
 """They give a standard deviation to 5 %; a tenth, which is asked for, is twice that, and the seeds
 are always the same.

@@ -26,6 +26,8 @@ from measurement.rules import RULES
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import sensor_preset
 
+pytestmark = pytest.mark.slow
+
 
 def test_a_verdict_is_that_of_a_guard_band():
     # JCGM 106: a guard band of 1.645 standard uncertainties for a probability of 95 %.

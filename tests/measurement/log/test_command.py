@@ -15,6 +15,8 @@ from scipy.stats import norm
 from common.provenance import provenance
 from measurement.log.command import main
 
+pytestmark = pytest.mark.slow
+
 BRIEFLY = pytest.mark.usefixtures("briefly")
 
 

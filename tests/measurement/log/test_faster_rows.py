@@ -12,6 +12,8 @@ from measurement.gases import GASES
 from measurement.log.read import new_readings, rows_per_reading
 from measurement.sniffer.sniffer import Readings
 
+pytestmark = pytest.mark.slow
+
 COLUMNS = ["so2_ppb", "co2_ppm", "no_ppb", "no2_ppb"]
 
 

@@ -13,6 +13,8 @@ from measurement.log.config import LogConfig, read_config
 from measurement.log.read import read_flight
 from measurement.log.ship import ShipTrack
 
+pytestmark = pytest.mark.slow
+
 START = 1780308000.0
 """2026-06-01T10:00:00Z (date -u -d ... +%s)."""
 

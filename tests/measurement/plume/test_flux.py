@@ -2,6 +2,8 @@ import numpy as np
 import pytest
 from plume_cases import air, straight
 
+pytestmark = pytest.mark.slow
+
 WIND, TRUE_WIND = 5.0, 7.0
 STEP = 2.0
 

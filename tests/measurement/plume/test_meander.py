@@ -4,6 +4,8 @@ from plume_cases import HEIGHT, straight
 
 from measurement.plume.fluctuating_plume import Meander
 
+pytestmark = pytest.mark.slow
+
 SCALE = 90.0
 
 

@@ -24,6 +24,8 @@ from tests.measurement.simulator.log import (
 from tests.measurement.simulator.regimes import REGIMES, Haze, OtherShip, Sine, Steps
 from tests.measurement.simulator.runner import readings_of
 
+pytestmark = pytest.mark.slow
+
 QUIET = REGIMES["quiet"]
 
 

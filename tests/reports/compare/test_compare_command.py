@@ -12,6 +12,8 @@ from scenarios.engine.task import Result, Task
 from tests.in_process import assert_refused, run_command
 from tests.run_tables import change_manifest, manifest_of, write_manifest
 
+pytestmark = pytest.mark.slow
+
 
 def compared(*arguments):
     return run_command("reports.compare.__main__", *arguments)

@@ -19,6 +19,8 @@ from reports.render import matplotlib_charts, plotly_charts
 from reports.render.pdf import write_pdf
 from reports.run.time_history import about_the_plume
 
+pytestmark = pytest.mark.slow
+
 
 def texts_of(report):
     return " ".join(block.text for block in blocks_of(report, Text))

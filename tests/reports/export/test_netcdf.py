@@ -25,6 +25,8 @@ from tests.reports.export.placed_flight import (
     track,
 )
 
+pytestmark = pytest.mark.slow
+
 FIGURES = {
     "fsc_percent": (Column("fuel sulphur content by regression"), 0.11),
     "fsc_uncertainty_percent": (Column("standard uncertainty of the fuel sulphur content"), 0.03),

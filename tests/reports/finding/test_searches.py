@@ -21,6 +21,8 @@ from reports.finding.search_view import search_view
 from reports.registry import content
 from reports.run.run_data import read_run
 
+pytestmark = pytest.mark.slow
+
 QUICK = (
     "fidelity=kinematic", "guidance.rate_hz=10",
     "reports.interval_s=[0,0]", "sensors={}", "start.place_m=[-250,-120]", "start.course_deg=-90",

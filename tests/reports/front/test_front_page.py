@@ -34,6 +34,8 @@ from reports.run.run_data import read_run
 from reports.run.trials import read_trials
 from tests.in_process import run_command
 
+pytestmark = pytest.mark.slow
+
 SHORT = """
 title = "Short"
 description = "Flights for a test."

@@ -21,6 +21,8 @@ from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 
+pytestmark = pytest.mark.slow
+
 SHORT = """
 title = "Short"
 fidelity = "kinematic"

@@ -21,6 +21,8 @@ from reports.registry import content
 from reports.run.letterhead import letterhead
 from reports.run.run_data import read_run
 
+pytestmark = pytest.mark.slow
+
 EXAMPLES = Path(__file__).parents[3] / "docs" / "examples"
 
 CONFIG = """instrument = "electrochemical"

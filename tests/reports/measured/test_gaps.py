@@ -12,6 +12,8 @@ from reports.document.blocks import Table
 from reports.registry import content
 from reports.run.run_data import read_run
 
+pytestmark = pytest.mark.slow
+
 EXAMPLE = Path(__file__).parents[3] / "docs" / "examples"
 
 

@@ -30,6 +30,8 @@ from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import read_run
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[3]
 EXAMPLE = ("docs/examples/example_flight.csv", "docs/examples/example_instrument.toml")
 

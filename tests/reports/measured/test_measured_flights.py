@@ -25,6 +25,8 @@ from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 
+pytestmark = pytest.mark.slow
+
 QUICK = (
     "fidelity=kinematic", "guidance.rate_hz=10",
     "reports.interval_s=[0,0]", "sensors={}", "following={}", "start.place_m=[-250,-120]",

@@ -16,9 +16,10 @@ from reports.render.html import write_html
 from reports.run.letterhead import Letterhead
 from reports.run.run_data import read_run
 
-pytestmark = pytest.mark.skipif(
-    PROGRAM is None, reason="no chromium is installed; .ci/run installs it"
-)
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(PROGRAM is None, reason="no chromium is installed; .ci/run installs it"),
+]
 
 WHOLE = "sweep_nu"
 """The kind whose page has all its charts. Of the others the flights stay, on one page: charts take

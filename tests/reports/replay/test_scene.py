@@ -23,6 +23,8 @@ from reports.run.run_data import read_run
 from reports.run.ship import HULLS
 from reports.run.trials import read_trials
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def trial(run_of):

@@ -33,6 +33,8 @@ from scenarios.experiment.requests import Experiment, differing_keys
 from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 
+pytestmark = pytest.mark.slow
+
 APART = """
 extends = "operational"
 study = "flights"

@@ -31,6 +31,8 @@ from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 
+pytestmark = pytest.mark.slow
+
 KINEMATIC = """
 description = "Flights for a test."
 fidelity = "kinematic"

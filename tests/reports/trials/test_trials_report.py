@@ -30,6 +30,8 @@ from scenarios.scenario.overrides import given_keys
 from scenarios.studies.manifest import parameters
 from tests.reports.run_columns import RUN_COLUMNS
 
+pytestmark = pytest.mark.slow
+
 BRIEF = pytest.mark.usefixtures("without_single_flights")
 
 

@@ -3,17 +3,16 @@
 import math
 
 import numpy as np
-import pandas as pd
 import pytest
-from flight_cases import fly, scenario
+from flight_cases import fly
 
-from scenarios.errors import InputError
 from scenarios.scenario.files import CATALOG
 from scenarios.scenario.sections.world import VesselConfig
 from scenarios.world.ais.synthetic import SYNTHETIC
-from scenarios.world.ais.track import ais_vessel, with_size_of_file
+from scenarios.world.ais.track import ais_vessel
 from scenarios.world.vessel import largest_inconsistency
-from scenarios.world.world import vessel_of
+
+pytestmark = pytest.mark.slow
 
 DANISH, MARINE = "synthetic_danish.csv", "synthetic_marine_cadastre.csv"
 HOUR = 3600.0
@@ -99,37 +98,6 @@ def sized_file(tmp_path_factory):
     return VesselConfig(track=str(path), mmsi=SYNTHETIC[DANISH])
 
 
-def test_the_size_that_a_file_says_is_used_where_none_is_given(sized_file):
-    said = with_size_of_file(sized_file)
-    assert said.hull is not None
-    assert (said.length_m, said.beam_m) == (said.hull.length, said.hull.beam)
-    # Nothing says where the funnel is: the antenna is taken for it, as without a size.
-    assert (said.hull.antenna, said.hull.antenna_distance) == ((6.0, 9.0), 0.0)
-    given = with_size_of_file(sized_file.model_copy(update={"length_m": 90.0, "beam_m": 14.0}))
-    assert (given.length_m, given.hull.antenna[0]) == (90.0, 6.0)
-    behind = with_size_of_file(sized_file.model_copy(update={"stack_from_bow_m": 96.0}))
-    assert behind.hull.antenna_offset == (90.0, 0.0)
-    assert with_size_of_file(config(MARINE)).hull is None
-
-
-def test_a_flight_beside_a_ship_whose_file_says_its_size_is_the_same_and_shows_it(sized_file):
-    short = {
-        "flight": {"crossings": 0, "duration_max_s": 200.0},
-        "following": DECLARED,
-        "wind": WIND,
-    }
-    plain, shown = (
-        fly(vessel={"track": track, "mmsi": SYNTHETIC[DANISH]}, **short)
-        for track in (str(CATALOG / "ais" / DANISH), sized_file.track)
-    )
-    pd.testing.assert_frame_equal(shown.history[list(plain.history)], plain.history)
-    assert set(shown.history) - set(plain.history) == {"vessel_heading_rad"}
-    assert (shown.row["hull_length_m"], shown.row["min_distance_m"]) == (
-        120.0,
-        plain.row["min_distance_m"],
-    )
-
-
 def test_a_ship_of_a_file_with_its_antenna_at_the_bow_is_followed_by_its_funnel(sized_file):
     vessel = {"track": sized_file.track, "mmsi": SYNTHETIC[DANISH], "stack_from_bow_m": 96.0}
     # With the turn of 90 degrees, from 1200 s on.
@@ -146,24 +114,3 @@ def test_a_ship_of_a_file_with_its_antenna_at_the_bow_is_followed_by_its_funnel(
     assert flown.row["antenna_distance_m"] == 90.0
     # It crosses the plume behind the funnel, where reports of the antenna would have it 90 m ahead.
     assert flown.row["vessel_error_rms_m"] < 8.0
-
-
-def test_a_funnel_outside_of_the_hull_that_a_file_says_is_refused_with_both(sized_file):
-    with pytest.raises(InputError, match=r"stack_from_bow_m is 500 m, outside of the hull") as told:
-        with_size_of_file(sized_file.model_copy(update={"stack_from_bow_m": 500.0}))
-    assert f"{sized_file.track} says 120 m by 18 m" in str(told.value)
-    assert "\n" not in str(told.value)
-
-
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ({"keepout": {"from": "hull"}}, r"keepout\.from 'hull' needs the size of the ship"),
-        ({"vessel": {"stack_from_bow_m": 90.0}}, r"vessel\.stack_from_bow_m needs the size"),
-    ],
-)
-def test_a_file_without_a_size_is_refused_where_one_is_needed(changes, words):
-    track = {"track": str(CATALOG / "ais" / DANISH), "mmsi": SYNTHETIC[DANISH]}
-    given = scenario(**{**changes, "vessel": track | changes.get("vessel", {})})
-    with pytest.raises(InputError, match=words):
-        vessel_of(given)

@@ -9,10 +9,8 @@ import pytest
 
 from common.physics import METRES_PER_SECOND_PER_KNOT
 from scenarios.errors import InputError
-from scenarios.scenario.files import CATALOG
 from scenarios.world.ais import ShipSize, read_ais
 from scenarios.world.ais.reports import read_others
-from scenarios.world.ais.synthetic import SYNTHETIC, danish_file, marine_cadastre_file
 
 PLAIN = "time_utc,mmsi,lat_deg,lon_deg,sog_kn,cog_deg"
 
@@ -74,10 +72,6 @@ def test_every_layout_says_the_same(read, layout):
     assert (found.rows, found.dropped) == (3, {})
 
 
-def test_a_byte_order_mark_and_windows_lines_are_read_over(read):
-    assert len(read("\ufeff" + table(*rows()).replace("\n", "\r\n")).time) == 3
-
-
 @pytest.mark.parametrize(
     ("row", "reason"),
     [
@@ -112,47 +106,6 @@ def test_a_row_of_no_use_is_dropped_and_counted(read, row, reason):
     )
 
 
-@pytest.mark.parametrize("order", [reversed, lambda lines: [*lines[::2], *lines[1::2]]])
-def test_rows_of_a_file_that_is_not_in_order_are_sorted(read, order):
-    seconds = tuple(range(0, 60, 10))
-    found = read(table(*order(rows(seconds))))
-    expected = read(table(*rows(seconds)))
-    assert (found.dropped, found.warning) == ({}, "")
-    np.testing.assert_array_equal(found.time, expected.time)
-    np.testing.assert_array_equal(found.latitude, expected.latitude)
-
-
-def test_reports_of_two_stations_one_after_the_other_are_mixed_by_their_times(read):
-    own, other = (
-        [ROW.format(second, 57.0 + 5e-5 * second) for second in range(begin, 60, 10)]
-        for begin in (0, 5)
-    )
-    found = read(table(*own, *other))
-    assert (len(found.time), found.dropped) == (12, {})
-    assert np.all(np.diff(found.time) == 5.0)
-
-
-def test_signed_speeds_and_courses_of_marine_cadastre_are_what_was_sent(read):
-    head, row = LAYOUTS["up to 2024"]
-    lines = [row.format(second, 57.0 + 1e-5 * second) for second in range(0, 60, 10)]
-    plain = read(table(*lines, head=head))
-    course = round(float(np.degrees(plain.course[0])), 1)
-    speed = lines[0].split(",")[4]
-    # Of 12 bits in tenths of a degree from -204.8 on, and of 10 bits of a knot from -51.2 on.
-    signed = [line.replace(f",{course}", f",{course - 409.6:.1f}") for line in lines]
-    found = read(table(*signed, head=head))
-    np.testing.assert_allclose(found.course, plain.course, atol=1e-9)
-    assert (found.dropped, float(speed) > 0.0) == ({}, True)
-
-
-def test_longitudes_from_0_to_360_are_those_from_minus_180(read):
-    east = [line.replace(",11.3,", ",359.9,") for line in rows()]
-    west = [line.replace(",11.3,", ",-0.1,") for line in rows()]
-    np.testing.assert_allclose(
-        read(table(*east)).longitude, read(table(*west)).longitude, atol=1e-12
-    )
-
-
 def danish(*sizes):
     """Return a Danish file with a row for each "width,length" and "A,B,C,D"."""
     head, row = LAYOUTS["danish"]
@@ -169,18 +122,11 @@ def danish(*sizes):
     [
         # ITU-R M.1371-5, figure 41: A ahead, B astern, C to port, D to starboard; 0 is not known.
         ("18,120", "90,30,7,11", ShipSize(120.0, 18.0, 90.0, 7.0)),
-        (",", "90,30,7,11", ShipSize(120.0, 18.0, 90.0, 7.0)),
         ("18,120", ",,,", ShipSize(120.0, 18.0)),
-        ("18,120", "0,0,0,0", ShipSize(120.0, 18.0)),
         ("0,120", "0,0,0,0", ShipSize(120.0)),
-        # With A = C = 0 the others are length and beam, of a place that is not known.
-        (",", "0,120,0,18", ShipSize(120.0, 18.0)),
         # The antenna at the bow, and at the port side.
         (",", "0,120,9,9", ShipSize(120.0, 18.0, 0.0, 9.0)),
-        (",", "90,30,0,18", ShipSize(120.0, 18.0, 90.0, 0.0)),
         (",", "90,30,0,0", ShipSize(120.0, None, 90.0)),
-        # Each of the three is rounded.
-        ("17.6,119.2", "90,30,7,11", ShipSize(120.0, 18.0, 90.0, 7.0)),
     ],
 )
 def test_length_beam_and_antenna_are_read(read, size, sides, expected):
@@ -193,136 +139,20 @@ def test_length_beam_and_antenna_are_read(read, size, sides, expected):
 
 
 @pytest.mark.parametrize(
-    ("size", "sides", "left", "remark"),
-    [
-        # A + B is 120 m: the ship has no length that is known, and its beam is not in doubt.
-        ("18,200", "90,30,7,11", ShipSize(None, 18.0, None, 7.0), "200 m and A + B 90 + 30 m"),
-        ("40,120", "90,30,7,11", ShipSize(120.0, None, 90.0), "width is 40 m and C + D 7 + 11 m"),
-        # The largest numbers stand for more: ITU-R M.1371-5, table 52.
-        (",", "511,30,7,11", ShipSize(None, 18.0, None, 7.0), "511 m may be more"),
-        ("18,120", "90,30,63,11", ShipSize(120.0, 18.0, 90.0), "63 m may be more"),
-        ("120,18", ",,,", None, "18 m long and 120 m wide"),
-    ],
-)
-def test_a_size_that_contradicts_itself_is_not_used_and_said(read, size, sides, left, remark):
-    found = read(danish(*[(size, sides)] * 3))
-    assert found.size == left
-    assert remark in found.size_remark
-    assert remark in found.described()
-
-
-def test_a_size_that_only_some_rows_say_is_read_and_others_are_named(read):
-    some = read(danish((",", ",,,"), ("18,120", ",,,"), ("18,120", "90,30,7,11")))
-    assert (some.size, some.size_remark) == (ShipSize(120.0, 18.0, 90.0, 7.0), "")
-    turned = read(danish(*[(",", "90,30,7,11")] * 2, (",", "30,90,7,11")))
-    assert turned.size == ShipSize(120.0, 18.0, 90.0, 7.0)
-    assert turned.size_remark == (
-        "other reports say 120 m by 18 m, antenna 30 m from the bow and 7 m from the port side"
-    )
-
-
-def test_columns_by_their_words_say_the_same_as_by_their_letters(read):
-    sized = table(
-        *(f"{row},90,30,7,11" for row in rows()),
-        head=f"{PLAIN},to_bow,to_stern,to_port,to_starboard",
-    )
-    assert read(sized).size == ShipSize(120.0, 18.0, 90.0, 7.0)
-
-
-def test_many_dropped_reports_are_a_warning_and_duplicates_are_none(read):
-    lines = rows(tuple(range(0, 50, 5)))
-    unusable = [line.replace(",12.0,", ",,") for line in lines[::4]]
-    found = read(table(*unusable, *(line for i, line in enumerate(lines) if i % 4)))
-    assert "30% of the reports" in found.warning
-    assert read(table(*lines, *lines)).warning == ""
-
-
-def test_a_direction_of_travel_without_reports_is_a_warning(read):
-    # There and back: on the way back the receiver wrote no speed.
-    def reported(minute, second, latitude, speed):
-        return f"2026-06-01T10:{minute:02d}:{second:02d}Z,219999001,{latitude:.6f},11.3,{speed},0.0"
-
-    # 12 kn are 5.55e-5 degrees of latitude a second.
-    times = [(minute, second) for minute in range(4) for second in range(0, 60, 10)]
-    way = [5.55e-5 * (60 * minute + second) for minute, second in times]
-    there = [reported(*at, 57.0 + north, 12.0) for at, north in zip(times, way, strict=True)]
-    back = [
-        reported(minute + 4, second, 57.0 + 2.0 * way[-1] - north, "")
-        for (minute, second), north in zip(times, way, strict=True)
-    ]
-    warning = read(table(*there, *back)).warning
-    assert "on the way towards 180 deg were dropped" in warning
-
-
-def test_lines_without_anything_above_the_header_are_passed_over_and_counted(read):
-    assert len(read("\n  \n" + table(*rows())).time) == len(read(table(*rows())).time) == 3
-    with pytest.raises(InputError, match=r"line 3: the header is 'a,b,c'"):
-        read("\n\na,b,c\n1,2,3\n")
-
-
-def test_a_row_that_is_cut_off_before_its_time_is_dropped_and_counted(read):
-    head, row = LAYOUTS["up to 2024"]
-    lines = [row.format(second, 57.0 + 1e-5 * second) for second in (0, 10, 20)]
-    found = read(table(*lines, "219999001", head=head))
-    assert (len(found.time), found.rows, found.dropped) == (3, 4, {"without a time": 1})
-
-
-def test_rows_that_end_in_commas_or_have_one_in_a_word_are_read(read):
-    assert read(table(*(f"{row},," for row in rows()))).dropped == {}
-    head, row = LAYOUTS["danish"]
-    lines = [
-        row.format(second, 57.0 + 1e-5 * second).replace("AIS", "OSLO, NO,AIS")
-        for second in (0, 10, 20)
-    ]
-    assert len(read(table(*lines, head=head)).time) == 3
-
-
-@pytest.mark.parametrize("at", [0, 3])
-def test_a_place_that_is_out_of_reach_is_dropped_at_the_ends_as_well(read, at):
-    lines = rows((10, 20, 30))
-    lines.insert(at, ROW.format(0 if at == 0 else 40, 58.0))
-    assert read(table(*lines)).dropped == {"out of reach of others": 1}
-
-
-def test_a_vessel_at_rest_needs_no_course(read):
-    found = read(table(*(f"2026-06-01T10:00:{s:02d}Z,1,57.0,11.3,0.4,360.0" for s in (0, 30))))
-    assert (len(found.time), found.dropped) == (2, {})
-    # With no course there is no direction of its 0.4 kn.
-    assert found.speed.tolist() == [0.0, 0.0]
-
-
-@pytest.mark.parametrize(
     ("text", "mmsi", "words"),
     [
         ("", None, ["the file is empty"]),
-        ("\n\n", None, ["the file is empty"]),
         ("a,b,c\n1,2,3\n", None, ["line 1", "the header is 'a,b,c'", PLAIN]),
-        # 5 is in lines of the file, 366 in none: either way its vessels are named.
-        (table(*rows()), 5, ["no row of MMSI 5; it has 219999001 (3 rows): check the number (vessel.mmsi"]),
         (table(*rows()), 366, ["no row of MMSI 366; it has 219999001 (3 rows): check the number (vessel.mmsi"]),
-        (table(*rows()), "219999001", ["mmsi is '219999001'; give a whole number, as in mmsi=219999001"]),
         (
             table(*rows()).replace("sog_kn", "sog_mps"), None,
             ["'sog_mps' is in another unit than 'sog_kn': convert its values before you rename it"],
         ),
-        (
-            "\n".join(f"{line},{end}" for line, end in zip(table(*rows()).splitlines(), ["sog_kn", 1, 1, 1], strict=True)), None,
-            ["line 1: the header has 'sog_kn' twice; leave one of the columns out"],
-        ),
         (table(), None, ["no row below the header has an MMSI in digits"]),
-        (table("2026-06-01T10:00:05Z,,57.0,11.3,12.0,20.5"), None, ["has an MMSI in digits, as 219999001, in the column"]),
         (table(*rows(), "2026-06-01T10:00:05Z,7,57.0,11.3,12.0,20.5"), None, ["2 vessels", "name one of them by its MMSI"]),
-        (
-            table(*rows(), "04.05.2026 08:00:00,219999001,57.0,11.3,12.0,20.5"), None,
-            ["row 5", "time '04.05.2026 08:00:00' in column 'time_utc' cannot be read"],
-        ),
         (
             table(*(f"2026-06-01T10:00:{s:02d}Z,1,91.0,11.3,12.0,20.5" for s in range(4))), None,
             ["0 of 4 rows of MMSI 1 used", "4 without a possible position (first in line 2)", "correct the rows"],
-        ),
-        (
-            table(*(f"2026-06-01T10:00:{s:02d}Z,1,57,{s:06d},11,3,12,0,20,5" for s in range(4))), None,
-            ["line 2 has 10 values, more values than the head line has names"],
         ),
         ("PK\x03\x04\x00", None, ["cannot be unpacked"]),
     ],
@@ -387,27 +217,6 @@ def test_a_track_that_jumps_by_a_mistake_is_refused_with_rows_and_mistake(read, 
     assert "\n" not in line
 
 
-def test_a_single_row_with_a_mistake_is_dropped_and_counted(read):
-    found = read(mistaken(sailed(), lambda north, east: (east, north), [15]))
-    assert found.dropped == {"out of reach of others": 1}
-    assert len(found.time) == 29
-
-
-def test_where_every_other_row_is_mistaken_the_jump_is_said_with_the_dropped_rows(read):
-    with pytest.raises(InputError, match="fit together with latitude and longitude exchanged"):
-        read(mistaken(sailed(), lambda north, east: (east, north), range(1, 30, 2)))
-
-
-@pytest.mark.parametrize(
-    ("interval", "rate"), [(10, 0.0), (90, 0.0), (90, 0.1), (90, 0.5), (90, 2.0)]
-)
-def test_a_file_in_its_own_units_is_read_straight_or_in_turns(read, interval, rate):
-    """At 0.1 deg/s and 90 s pairs of reports count as straight; at 2 deg/s she turns by 180 deg
-    between two of them.
-    """
-    assert len(read(sailed(interval=interval, rate=rate)).time) == 30
-
-
 @pytest.mark.parametrize(
     ("made", "words"),
     [
@@ -416,17 +225,11 @@ def test_a_file_in_its_own_units_is_read_straight_or_in_turns(read, interval, ra
             sailed(knots=1.0 / 0.514444),
             "reported speeds are 0.51 of those between places, in the median; they must be in knots",
         ),
-        (
-            sailed(knots=1.0 / 0.514444, interval=90),
-            "reported speeds are 0.51 of those between places, in the median; they must be",
-        ),
         (sailed(turned=180.0, interval=90), "reported courses are 180 deg off"),
-        (sailed(knots=1.0 / 1.852), "reported speeds are 1.85 of those between places"),
         (
             sailed(degrees=math.degrees(1.0)),
             "reported courses are 44 deg off those between places, in the median; they must be",
         ),
-        (sailed(turned=180.0), "reported courses are 180 deg off"),
         (sailed(swapped=True), "latitude and longitude are swapped"),
     ],
 )
@@ -434,14 +237,6 @@ def test_a_file_in_other_units_is_refused_with_the_unit_it_must_have(read, made,
     with pytest.raises(InputError, match=words) as refusal:
         read(made)
     assert "\n" not in str(refusal.value)
-
-
-def test_a_file_that_cannot_be_read_is_refused(tmp_path):
-    with pytest.raises(InputError, match=r"none\.csv: cannot be read: No such file"):
-        read_ais(tmp_path / "none.csv")
-    (tmp_path / "bytes.csv").write_bytes(b"\xff\xfe\x00" * 9)
-    with pytest.raises(InputError, match=r"bytes\.csv: not text"):
-        read_ais(tmp_path / "bytes.csv")
 
 
 def test_nmea_sentences_are_decoded_with_the_time_before_them(read):
@@ -470,103 +265,6 @@ def test_nmea_sentences_are_decoded_with_the_time_before_them(read):
     )
     with pytest.raises(InputError, match="line 1: the sentence has no time"):
         read(lines[0].rpartition("\\")[2] + "\n", name="ais.nmea")
-
-
-def sentences(mmsi, *others):
-    """Return three position reports of a ship, and other sentences between the first two."""
-    encode = pytest.importorskip("pyais.encode", reason="pyais is an extra")
-    said = {"msg_type": 1, "mmsi": mmsi, "lon": 11.3, "speed": 12.0, "course": 0.0}
-    reports = [
-        f"{1780308000 + second} "
-        + encode.encode_dict(said | {"lat": 57.0 + 5.5e-5 * second}, talker_id="AI")[0]
-        for second in (0, 10, 20)
-    ]
-    return "\n".join([reports[0], *others, *reports[1:]]) + "\n"
-
-
-EVER_DIADEM = (
-    "!AIVDM,2,1,1,A,55?MbV02;H;s<HtKR20EHE:0@T4@Dn2222222216L961O5Gf0NSQEp6ClRp8,0*1C",
-    "!AIVDM,2,2,1,A,88888888880,2*25",
-)
-"""Static report of a ship as received, whose antenna is 225 m from the bow, 70 m from the stern, 1 m
-from port and 31 m from starboard (E. S. Raymond, AIVDM/AIVDO protocol decoding, example of type
-5)."""
-
-
-def test_static_reports_in_two_sentences_say_the_size(read):
-    expected = ShipSize(295.0, 32.0, 225.0, 1.0)
-    assert read(sentences(351759000, *EVER_DIADEM)).size == expected
-    # A part that was lost completes no message, neither this one nor the next.
-    assert read(sentences(351759000, EVER_DIADEM[1], *EVER_DIADEM)).size == expected
-    assert read(sentences(351759000, EVER_DIADEM[0], *EVER_DIADEM)).size == expected
-    assert read(sentences(351759000, *EVER_DIADEM[::-1])).size is None
-
-
-def test_a_boat_of_a_ship_reports_that_ship_and_no_size(read):
-    encode = pytest.importorskip("pyais.encode", reason="pyais is an extra")
-    static = {"msg_type": 24, "partno": 1, "mothership_mmsi": 219999001}
-    static |= {"to_bow": 5, "to_stern": 3, "to_port": 1, "to_starboard": 1}
-    for mmsi, expected in ((219999001, ShipSize(8.0, 2.0, 5.0, 1.0)), (982199901, None)):
-        said = encode.encode_dict(static | {"mmsi": mmsi}, talker_id="AI")[0]
-        assert read(sentences(mmsi, said)).size == expected
-
-
-def test_an_mmsi_that_a_table_has_with_decimals_is_the_same(read):
-    text = table(*rows()).replace(",219999001,", ",219999001.0,")
-    assert [read(text, mmsi).mmsi for mmsi in (None, 219999001)] == [219999001, 219999001]
-
-
-def test_nmea_sentences_of_which_none_is_read_are_refused_with_their_types(read):
-    encode = pytest.importorskip("pyais.encode", reason="pyais is an extra")
-    said = {"msg_type": 27, "mmsi": 219999001, "lat": 57.0, "lon": 11.3, "speed": 12, "course": 20}
-    far = "1780308000 " + encode.encode_dict(said, talker_id="AI")[0] + "\n"
-    with pytest.raises(
-        InputError,
-        match="messages of type 27 alone; position reports of types 1, 2, 3, 18, 19 are read",
-    ):
-        read(far, name="ais.nmea")
-    with pytest.raises(InputError, match="no sentence that can be decoded"):
-        read("1780308000 !AIVDM,1,1,,A,garbage,0*00\n", 219999001, name="ais.nmea")
-    # A date without its marks would be milliseconds in the year 2612.
-    said |= {"msg_type": 1, "speed": 12.0, "course": 20.5}
-    with pytest.raises(
-        InputError,
-        match="line 1: the time 20260601100000 is beyond milliseconds since 1970, and no date without",
-    ):
-        read(
-            "20260601100000 " + encode.encode_dict(said, talker_id="AI")[0] + "\n", name="ais.nmea"
-        )
-
-
-def test_the_files_that_come_with_the_project_are_those_that_are_made():
-    for name, text in zip(SYNTHETIC, (danish_file(), marine_cadastre_file()), strict=True):
-        assert (CATALOG / "ais" / name).read_text(encoding="utf-8") == text
-
-
-def test_what_is_wrong_in_the_made_file_is_dropped_and_counted():
-    found = read_ais(CATALOG / "ais" / "synthetic_danish.csv", SYNTHETIC["synthetic_danish.csv"])
-    # ``danish_file`` adds one row of each kind; a row twice and one out of order have times that
-    # are there.
-    assert sum(found.dropped.values()) == found.rows - len(found.time) >= 5
-    assert found.dropped["out of reach of others"] == found.dropped["without speed or course"] == 1
-    assert np.diff(found.time).min() > 0.0
-
-
-def test_a_track_over_the_date_line_from_0_to_360_in_another_dialect_is_the_plain_one(tmp_path):
-    # 12 kn eastwards at 16 S for a minute each: 6.1733*60/(111195 cos 16) = 0.0034653 deg.
-    lines = [
-        f"2026-06-01T{10 + h:02d}:{i:02d}:00{zone},219999001,-16.0,{179.99 + 0.0034653 * i:.6f},12.0,90.0"
-        for i, (h, zone) in enumerate([(0, "Z"), (2, "+02:00"), (-4, "-04:00")] * 2)
-    ]
-    text = table(*lines).replace(",", ";").replace(".", ",").replace("-16,0", "−16,0")
-    (tmp_path / "ais.csv").write_text(text, encoding="utf-16")
-    found = read_ais(tmp_path / "ais.csv")
-    assert (len(found.time), found.dropped) == (6, {})
-    assert np.diff(found.time) == pytest.approx(60.0)
-    assert np.degrees(found.latitude) == pytest.approx(-16.0)
-    # Across the line longitudes go on from -180 degrees.
-    expected = [179.99, 179.993465, 179.996931, -179.999604, -179.996139, -179.992674]
-    assert np.degrees(found.longitude) == pytest.approx(expected, abs=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,6 @@ import pytest
 from scenarios.errors import InputError
 from scenarios.scenario.files import CATALOG
 from scenarios.scenario.sections.world import VesselConfig
-from scenarios.world.ais import read_ais
 from scenarios.world.ais.synthetic import SYNTHETIC
 from scenarios.world.ais.track import (
     JERK_DENSITY,
@@ -17,9 +16,7 @@ from scenarios.world.ais.track import (
     VELOCITY_SIGMA,
     ais_vessel,
     smooth_motion,
-    usual_intervals,
 )
-from scenarios.world.vessel import largest_acceleration, sampled
 
 HOUR = 3600.0
 
@@ -60,31 +57,6 @@ def test_the_track_keeps_to_the_reports_but_for_their_scatter(name, scatter):
     assert np.sqrt(np.mean(found[:, 2:] ** 2)) < 0.08
 
 
-def test_it_turns_and_slows_as_the_ship_did():
-    ship = vessel()
-    # 90 degrees from 1200 s on at 0.5 deg/s, and from 12 to 7 kn from 2400 s on
-    # (scenarios.world.ais.synthetic).
-    assert math.degrees(ship.course(1500.0) - ship.course(1100.0)) == pytest.approx(90.0, abs=2.0)
-    speeds = [math.hypot(*ship.motion(time)[2:]) / (1852.0 / 3600.0) for time in (2300.0, 3000.0)]
-    assert speeds == pytest.approx([12.0, 7.0], abs=0.2)
-    # The slow-down lasts 2.57 m/s over 0.03 m/s^2 = 86 s; its end is known to half of the 30 s over
-    # which it is looked for.
-    assert ship.manoeuvres_end == pytest.approx(2486.0, abs=25.0)
-    # 12 kn at 0.5 deg/s is 0.054 m/s^2.
-    assert 0.05 < largest_acceleration(ship, HOUR) < 0.08
-
-
-def test_it_begins_at_the_origin_and_place_and_velocity_agree():
-    ship = vessel()
-    assert ship.motion(0.0)[:2] == (0.0, 0.0)
-    velocity, _ = sampled(ship, HOUR)
-    for time in (100.0, 1300.03, 2450.0, HOUR):
-        before, after = ship.motion(time - 0.5), ship.motion(time + 0.5)
-        # Central differences over 1 s: 1/24 of the jerk, 0.01 m/s^3, and the table's 0.05 s.
-        assert np.subtract(after[:2], before[:2]) == pytest.approx(ship.motion(time)[2:], abs=2e-3)
-    assert np.abs(np.diff(velocity, axis=0)).max() < 0.1 * 0.05
-
-
 def test_a_flight_may_begin_at_any_time_of_the_file_and_knows_the_reports_before():
     whole = vessel()
     later = vessel(utc=datetime(2026, 6, 1, 10, 30, tzinfo=UTC), duration=600.0)
@@ -96,13 +68,6 @@ def test_a_flight_may_begin_at_any_time_of_the_file_and_knows_the_reports_before
     assert np.abs(apart).max() < 0.01
     north, east = whole.place.frame.to_local(later.place.latitude, later.place.longitude)
     assert (float(north), float(east)) == pytest.approx(whole.motion(1800.0)[:2], abs=0.05)
-
-
-def test_usual_intervals_leave_out_the_longest_gaps():
-    shortest, longest = usual_intervals(vessel())
-    # Every 10 s, 10/3 s while turning; a tenth is lost.
-    assert 2.0 <= shortest <= 4.0
-    assert longest == pytest.approx(20.0, abs=1.0)
 
 
 @pytest.mark.parametrize(
@@ -169,69 +134,3 @@ def test_smoothing_is_the_least_squares_solution_of_its_model():
     # Conditioned by gaps of up to 90 s: 1e-8 of the places.
     np.testing.assert_allclose(smooth(time), states[::3], rtol=0.0, atol=1e-4)
     np.testing.assert_allclose(smooth.derivative()(time), states[1::3], rtol=0.0, atol=1e-5)
-
-
-def thinned(path, rows, **changes):
-    """Return the settings of a vessel of which some rows of a made file are known."""
-    lines = (
-        (CATALOG / "ais" / "synthetic_marine_cadastre.csv")
-        .read_text(encoding="utf-8")
-        .splitlines(keepends=True)
-    )
-    path.write_text("".join([lines[0], *(lines[1 + row] for row in rows)]), encoding="utf-8")
-    return VesselConfig(track=str(path), **changes)
-
-
-def test_the_last_report_before_a_flight_is_known_at_its_start_however_old_it_is(tmp_path):
-    config = thinned(tmp_path / "thin.csv", range(0, 60, 2))
-    # Reports each 119 s; the flight begins 70 s after one.
-    ship = ais_vessel(
-        config,
-        altitude=60.0,
-        utc=datetime(2026, 6, 1, 10, 1, 10, tzinfo=UTC),
-        duration=300.0,
-        margin=5.0,
-    )
-    assert [round(report.time) for report in ship.reports] == [-70, 49, 168, 289]
-    # Where a flight has a single report, those of the file say how often they come.
-    short = ais_vessel(
-        config,
-        altitude=60.0,
-        utc=datetime(2026, 6, 1, 10, 2, 30, tzinfo=UTC),
-        duration=80.0,
-        margin=5.0,
-    )
-    assert len(short.reports) == 1
-    assert usual_intervals(short) == pytest.approx((119.0, 120.0), abs=1.1)
-
-
-def test_a_long_gap_that_is_allowed_is_bridged_between_the_reports_at_both_of_its_ends(tmp_path):
-    # Reports up to 10:03:58, and from 10:25:59 on. A polynomial that goes on beyond the former is
-    # 56 km off at the end.
-    config = thinned(tmp_path / "gap.csv", [0, 2, 4, 26], gap_max_s=1500.0)
-    begin = {"altitude": 60.0, "utc": datetime(2026, 6, 1, 10, 0, 30, tzinfo=UTC), "margin": 5.0}
-    end = ais_vessel(config, duration=900.0, **begin).motion(900.0)
-    true = vessel("synthetic_marine_cadastre.csv", utc=begin["utc"], duration=900.0).motion(900.0)
-    assert math.dist(end[:2], true[:2]) < 600.0
-    assert math.hypot(*end[2:]) == pytest.approx(math.hypot(*true[2:]), abs=0.5)
-
-
-def test_a_jump_is_refused_in_the_time_of_a_flight_and_not_in_another(tmp_path):
-    name = "synthetic_marine_cadastre.csv"
-    head, *lines = (CATALOG / "ais" / name).read_text(encoding="utf-8").splitlines()
-    columns = head.split(",")
-    latitude = columns.index("latitude")
-    # Two rows near the end a degree further north, 111 km (WGS 84), as from another vessel.
-    for row in (-4, -3):
-        cells = lines[row].split(",")
-        cells[latitude] = f"{float(cells[latitude]) + 1.0:.6f}"
-        lines[row] = ",".join(cells)
-    path = tmp_path / "jumps.csv"
-    path.write_text("\n".join([head, *lines]) + "\n", encoding="utf-8")
-    config = VesselConfig(track=str(path), mmsi=SYNTHETIC[name], gap_max_s=600.0)
-    assert ais_vessel(config, altitude=60.0, utc=None, duration=600.0, margin=5.0).reports
-    reports = read_ais(path, SYNTHETIC[name])
-    late = datetime.fromtimestamp(float(reports.time[-1]) - 300.0, UTC)
-    row = len(lines) - 4 + 2
-    with pytest.raises(InputError, match=rf"row {row} is 111\.\d km from that in row {row - 1}"):
-        ais_vessel(config, altitude=60.0, utc=late, duration=299.0, margin=5.0)

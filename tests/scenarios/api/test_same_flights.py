@@ -3,18 +3,16 @@ byte.
 """
 
 import csv
-import tomllib
 
 import pandas as pd
 import pytest
 
 from scenarios import fly, run
 from scenarios.api.scenario import load
-from scenarios.engine.run_directory import fingerprint
 from scenarios.errors import InputError
-from scenarios.scenario.files import load_study
 from tests.in_process import run_command
-from tests.run_tables import manifest_of
+
+pytestmark = pytest.mark.slow
 
 SHORT = """
 title = "Two short flights"
@@ -91,13 +89,6 @@ def test_files_of_a_run_are_the_same(by_command, by_program):
             assert theirs.read_bytes() == mine.read_bytes(), name
 
 
-def test_the_manifest_has_the_same_configuration(by_program, by_command):
-    theirs = manifest_of(by_command)
-    for entry in ("config_hash", "config", "overrides", "name", "trials"):
-        assert by_program.manifest[entry] == theirs[entry]
-    assert by_program.manifest["fingerprint"] == fingerprint()
-
-
 @pytest.mark.parametrize("flight_id", ["nu_0.50", "nu_0.50_no_guard"])
 def test_a_single_flight_is_that_of_the_run(file, by_program, tmp_path, flight_id):
     # It has its time history, however few a study keeps.
@@ -134,11 +125,6 @@ def test_an_aircraft_flies_the_same_in_both(tmp_path):
     assert flight.export(tmp_path / "flight.parquet").read_bytes() == recorded.read_bytes()
 
 
-def test_a_mapping_is_the_file_that_it_would_be(file, by_program):
-    flight = fly(tomllib.loads(SHORT), nu=0.5, guidance={"look_ahead_m": 55})
-    assert flight.history.equals(by_program.flights["nu_0.50"].history)
-
-
 def test_a_scenario_is_changed_as_by_the_command_line(file):
     scenario = load(file).set(nu=0.4, wind={"speed_mps": 3.0}, **{"guidance.rate_hz": 10})
     assert scenario.changes == ("sweep.nu=[0.4]", "wind.speed_mps=3.0", "guidance.rate_hz=10")
@@ -153,11 +139,3 @@ def test_a_scenario_is_changed_as_by_the_command_line(file):
         with pytest.raises(InputError, match="unknown key"):
             scenario[unknown]
     assert load(file).changes == ()
-
-
-def test_an_empty_section_takes_the_place_of_one_as_by_the_command_line(file):
-    assert load(file).config.comparison.variants
-    scenario = load(file).set(comparison={}, flight={"crossings": 4})
-    assert scenario.changes == ("comparison={}", "flight.crossings=4")
-    assert scenario.config == load_study(str(file), ["comparison={}", "flight.crossings=4"])
-    assert not scenario.config.comparison.variants

@@ -12,10 +12,7 @@ from jsonschema import Draft4Validator
 from scenarios.cli.schema import file_schema
 from scenarios.cli.template import template
 from scenarios.errors import InputError
-from scenarios.scenario.documentation import documented_keys, documented_part_keys
-from scenarios.scenario.errors import line
 from scenarios.scenario.files import bases, catalog, load_study
-from tests.in_process import run_command
 
 ROOT = Path(__file__).parents[3]
 
@@ -65,10 +62,6 @@ def test_it_is_a_schema_of_draft_4(validator):
     assert ": null" not in text
 
 
-def test_it_is_what_the_command_prints(validator):
-    assert json.loads(run_command("scenarios.cli.main", "schema").out) == validator.schema
-
-
 @pytest.mark.parametrize("path", [*catalog().values(), *bases().values()], ids=lambda of: of.stem)
 def test_every_scenario_of_the_project_is_accepted(path, validator):
     assert wrong(validator, path.read_text(encoding="utf-8")) == []
@@ -85,30 +78,15 @@ def test_an_example_that_the_program_reads_is_accepted(text, validator):
         assert wrong(validator, text) == []
 
 
-def test_some_examples_are_read():
-    assert sum(is_read(tomllib.loads(example.values[0])) for example in examples()) >= 5
-
-
-def test_a_ship_and_a_sniffer_of_ones_own_are_accepted(validator):
-    file = ROOT / "docs" / "examples" / "own_ship.toml"
-    assert wrong(validator, file.read_text(encoding="utf-8")) == []
-
-
 @pytest.mark.parametrize(
     "text",
     [
         'payload = ["sniffer"]',
-        "fault = {kind = 'engine', at_s = 100.0}",
         "[sweep.wind]\nspeed_mps = [0.0, 5.0]",
-        "[criteria]\ncrossing_interval_s = false\ntracking_error_rms_m = false",
         "extends = false",
-        "aircraft = 747",
         "[place]\nutc = 2026-06-01T12:00:00Z",
-        "[plume]\nmodel = 'mine.py:Mine'\nkey_of_mine = 3",
         "[guidance]\nlaw = 'mine.py:Mine'\nkey_of_mine = 'word'",
-        "[payload]\ninstruments = ['mine.py:Mine']\nkey_of_mine = [1, 2]",
         "[emission]\nship = {length_m = 100.0}",
-        "study = 'mine.py:Study'",
     ],
 )
 def test_what_the_loader_brings_into_form_is_accepted(text, validator):
@@ -119,33 +97,15 @@ def test_what_the_loader_brings_into_form_is_accepted(text, validator):
     ("text", "key"),
     [
         ("titel = 'A study'", ""),
-        ("[wind]\nspeed_mp = 5.0", "wind"),
         ("[wind]\nspeed_mps = 'fast'", "wind.speed_mps"),
-        ("[wind]\nspeed_mps = -1.0", "wind.speed_mps"),
         ("[wind]\nspeed_mps = true", "wind.speed_mps"),
-        ("[guidance]\nairspeed_mps = 'fast'", "guidance.airspeed_mps"),
         ("[guidance]\nbank_deg = 'steep'", "guidance.bank_deg"),
-        ("[guidance]\nbank_deg = 0.0", "guidance.bank_deg"),
         ("[keepout]\nshape = 'cube'", "keepout.shape"),
-        ("[[vessel.manoeuvres]]\nturn_deg = 90.0", "vessel.manoeuvres.0"),
         ("[reports]\ninterval_s = [1.0, 2.0, 3.0]", "reports.interval_s"),
-        ("[criteria]\ncrossing_interval_s = true", "criteria.crossing_interval_s"),
         ("[sweep]\nnu = 0.3", "sweep.nu"),
-        ("extends = true", "extends"),
         ("fidelity = 'seven_dof'", "fidelity"),
     ],
 )
 def test_a_wrong_key_or_value_is_refused_where_it_stands(text, key, validator):
     assert {*wrong(validator, text)} == {key}
     assert not is_read(tomllib.loads(text))
-
-
-def test_every_key_has_its_meaning(validator):
-    for key in [*documented_keys(), *documented_part_keys()]:
-        schema = validator.schema
-        for name in key.key.split("."):
-            # A fault stands alone, or in a list of several.
-            schema = schema["anyOf"][0] if "anyOf" in schema else schema
-            schema = schema["items"] if name == "0" else schema["properties"][name]
-        assert schema["description"], key.key
-        assert line(schema["description"]) == schema["description"], key.key

@@ -17,10 +17,11 @@ import pytest
 
 from scenarios.engine.dask_executor import _WorkPlugin
 from scenarios.engine.runner import ExecutorFactory
-from scenarios.engine.task import Limits
 from scenarios.errors import InputError
 from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
+
+pytestmark = pytest.mark.slow
 
 SETTINGS = [
     "flights=6",
@@ -132,22 +133,6 @@ def test_runs_that_share_a_worker_keep_models_of_their_own_until_they_end(tmp_pa
     plugins[0].teardown(worker)
     assert plugins[1].run(None) == "two"
     assert [path.name for path in (tmp_path / "worker").iterdir()] == ["two"]
-
-
-def test_a_limit_of_memory_with_which_no_worker_lives_is_refused_in_one_line(tmp_path):
-    with pytest.raises(
-        InputError, match=r"--memory-limit is 0\.30 GiB; a Dask worker needs 1 GiB: raise the limit"
-    ):
-        fly(tmp_path / "run", executor="dask", limits=Limits(memory=round(0.3 * 2**30)))
-
-
-def test_a_scheduler_that_is_not_there_is_named_in_one_line(tmp_path, monkeypatch):
-    monkeypatch.setattr("scenarios.engine.dask_executor.CONNECT_TIMEOUT", 0.3)
-    with pytest.raises(
-        InputError, match=r"--scheduler tcp://127\.0\.0\.1:\d+ does not answer"
-    ) as refused:
-        fly(tmp_path / "run", executor="dask", scheduler=f"tcp://127.0.0.1:{free_port()}")
-    assert "\n" not in str(refused.value)
 
 
 def test_a_worker_without_the_program_is_named_in_one_line(monkeypatch):

@@ -127,10 +127,6 @@ def test_an_exported_table_has_exactly_its_columns_and_what_is_missing_is_empty(
     assert "\r" not in text
 
 
-def test_a_table_without_rows_has_its_columns(journal):
-    assert exported(journal, "a", "b") == (0, "a,b\n")
-
-
 def test_a_result_replaces_that_of_the_same_task(journal):
     journal.add(result(0, {"a": 1}, lost=True, items=3))
     journal.add(result(1, {"a": 2}, items=3))
@@ -212,16 +208,6 @@ def test_of_two_that_open_it_at_the_same_moment_one_has_it(tmp_path):
         process.join()
 
 
-def test_a_file_that_is_no_journal_is_refused_in_a_line(tmp_path):
-    path = tmp_path / "journal.sqlite"
-    path.write_bytes(b"no database at all" * 1000)
-    with pytest.raises(InputError, match="is damaged; start a new run in another --out") as refused:
-        Journal(path)
-    assert "\n" not in str(refused.value)
-    # It is somebody's file all the same.
-    assert path.read_bytes() == b"no database at all" * 1000
-
-
 def test_a_full_disk_is_reported_and_leaves_what_was_there(tmp_path):
     path = tmp_path / "journal.sqlite"
     journal = Journal(path)
@@ -292,13 +278,6 @@ def test_a_result_that_is_not_as_it_was_added_is_refused_in_a_line(
     ) as refused:
         Journal(path, reading=reading)
     assert "\n" not in str(refused.value)
-
-
-def test_a_directory_in_its_place_is_refused_in_a_line(tmp_path):
-    (tmp_path / "journal.sqlite").mkdir()
-    for reading in (False, True):
-        with pytest.raises(InputError, match=r"cannot be opened|is damaged"):
-            Journal(tmp_path / "journal.sqlite", reading=reading)
 
 
 def test_reading_writes_nothing_beside_it(journal, tmp_path):

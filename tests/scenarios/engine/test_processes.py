@@ -17,7 +17,6 @@ from engine_cases import TABLE, Squares, begun, workers
 
 from scenarios.engine.processes import MAX_ATTEMPTS, LocalExecutor
 from scenarios.engine.task import Limits, Task
-from scenarios.errors import InputError
 
 LONG = 60.0
 """What nobody waits for [s]."""
@@ -83,35 +82,6 @@ def test_every_task_is_done_once_with_the_same_result_whatever_the_number_of_pro
     assert not multiprocessing.active_children()
 
 
-def test_nothing_to_do_is_nothing_done(tmp_path):
-    assert fly(Squares(marks=tmp_path), []) == []
-
-
-def test_a_crew_does_one_batch_after_the_other(tmp_path):
-    with LocalExecutor(Squares(marks=tmp_path), jobs=2, limits=Limits()) as executor:
-        first = [result.task.number for result in executor.fly(tasks(4))]
-        second = [result.task.number for result in executor.fly([Task(number=7, recorded=True)])]
-    assert (sorted(first), second) == ([0, 1, 2, 3], [7])
-
-
-@pytest.mark.parametrize("jobs", [1, 3])
-def test_tasks_are_taken_as_processes_get_free(jobs, tmp_path):
-    taken = 0
-
-    def endless():
-        nonlocal taken
-        for number in itertools.count():
-            taken += 1
-            yield Task(number=number)
-
-    with LocalExecutor(Squares(marks=tmp_path), jobs=jobs, limits=Limits()) as executor:
-        flying = executor.fly(endless())
-        # Each has the one at hand and the next; one more is what was just given for the result.
-        for received, _ in enumerate(itertools.islice(flying, 30), start=1):
-            assert taken - received <= 2 * jobs + 1
-        flying.close()
-
-
 def test_a_process_that_is_killed_costs_a_try_and_its_neighbour_nothing(tmp_path):
     work = Squares(marks=tmp_path, does={3: functools.partial(once, tmp_path / "killed", killed)})
     results = fly(work, range(6), jobs=1)
@@ -128,20 +98,6 @@ def test_a_task_whose_processes_are_killed_is_lost_and_says_why(jobs, tmp_path):
     assert [begun(tmp_path, number) for number in range(8)] == [1, 1, 1, MAX_ATTEMPTS, 1, 1, 1, 1]
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="other systems have no real-time signals")
-def test_a_signal_without_a_name_is_named_by_its_number(tmp_path):
-    number = signal.SIGRTMIN + 1
-    results = fly(Squares(marks=tmp_path, does={0: lambda: os.kill(os.getpid(), number)}), range(2))
-    assert_lost(results[0], f"the last one was ended by signal {number}")
-    assert_done(results, {1})
-
-
-def test_the_last_task_can_be_lost_too_and_so_can_all(tmp_path):
-    results = fly(Squares(marks=tmp_path, does=dict.fromkeys(range(2), killed)), range(2))
-    assert [result.lost for result in results] == [True] * 2
-    assert [begun(tmp_path, number) for number in range(2)] == [MAX_ATTEMPTS] * 2
-
-
 def test_an_error_that_work_lets_through_is_a_lost_process(tmp_path, capfd):
     def fails():
         raise RuntimeError("work is to make a row of this")
@@ -150,17 +106,6 @@ def test_an_error_that_work_lets_through_is_a_lost_process(tmp_path, capfd):
     assert_lost(results[1], "ended with status 1")
     assert_done(results, [0, 2])
     assert "work is to make a row of this" in capfd.readouterr().err
-
-
-def test_a_task_that_hangs_is_ended_and_lost(tmp_path):
-    work = Squares(marks=tmp_path, does={2: functools.partial(time.sleep, LONG)})
-    began = time.monotonic()
-    # Long enough for another task on a machine that has much else to do: it takes a millisecond.
-    results = fly(work, range(6), limits=Limits(time=0.6))
-    assert_lost(results[2], "did not end within 0.6 s")
-    assert_done(results, {*range(6)} - {2})
-    assert begun(tmp_path, 2) == MAX_ATTEMPTS
-    assert time.monotonic() - began < LONG / 2
 
 
 def memory():
@@ -206,13 +151,6 @@ def test_an_interrupt_ends_processes_at_once(tmp_path):
         interrupted()
     assert time.monotonic() - began < LONG / 2
     assert not multiprocessing.active_children()
-
-
-def test_processes_leave_ctrl_c_to_their_parent(tmp_path):
-    # A terminal sends it to every process of a command.
-    work = Squares(marks=tmp_path, does={1: lambda: os.kill(os.getpid(), signal.SIGINT)})
-    assert_done(fly(work, range(3), jobs=1), range(3))
-    assert begun(tmp_path, 1) == 1
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -263,11 +201,3 @@ def test_processes_whose_parent_is_killed_end_by_themselves(pause, later, tmp_pa
     with pytest.raises(EOFError):
         ours.recv()
     assert len(workers(tmp_path)) == 2
-
-
-def test_a_limit_of_memory_that_nothing_can_keep_is_refused_in_a_line(tmp_path):
-    with pytest.raises(
-        InputError,
-        match=r"--memory-limit is 0\.00 GiB; a process uses \d\.\d\d GiB before its first flight",
-    ):
-        LocalExecutor(Squares(marks=tmp_path), jobs=1, limits=Limits(memory=2**20)).__enter__()

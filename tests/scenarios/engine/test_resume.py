@@ -10,7 +10,6 @@ from engine_cases import TABLE, Squares, SquareStudy, begun, fly, interrupt_at
 
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
-from tests.run_tables import change_manifest, manifest_of
 
 
 def state_of(out):
@@ -26,16 +25,6 @@ def state_of(out):
     }
 
 
-def test_a_resumed_run_that_had_nothing_to_do_rewrites_nothing(marks, out):
-    study = SquareStudy(Squares(marks=marks), recorded=())
-    assert fly(study, out).changed
-    (out / "report.html").touch()
-    before = state_of(out)
-    result = fly(study, out, resume=True)
-    assert (result.all_met, result.changed) == (True, False)
-    assert state_of(out) == before
-
-
 def test_a_resumed_run_makes_what_is_missing_and_leaves_the_rest(marks, out):
     study = SquareStudy(Squares(marks=marks))
     fly(study, out)
@@ -49,25 +38,6 @@ def test_a_resumed_run_makes_what_is_missing_and_leaves_the_rest(marks, out):
     assert differing == {TABLE, "manifest.json"}
     # Nothing is flown for it.
     assert [begun(marks, number) for number in range(8)] == [1] * 8
-
-
-def test_a_run_that_goes_on_has_no_report_of_how_it_was_before(marks, out):
-    study = SquareStudy(Squares(marks=marks))
-    fly(study, out, progress=interrupt_at(3))
-    (out / "export").mkdir()
-    for name in ("report.html", "report.pdf", "export/run.tracks.csv"):
-        (out / name).touch()
-    assert fly(study, out, resume=True).all_met
-    assert not [name for name in ("report.html", "report.pdf", "export") if (out / name).exists()]
-
-
-def test_the_duration_of_a_run_is_that_of_all_its_sessions(marks, out):
-    study = SquareStudy(Squares(marks=marks))
-    fly(study, out, progress=interrupt_at(3))
-    # As if the first session had taken an hour.
-    change_manifest(out, wall_time_s=3600.0)
-    assert fly(study, out, resume=True).all_met
-    assert 3600.0 < manifest_of(out)["wall_time_s"] < 3700.0
 
 
 @pytest.mark.parametrize("resume", [False, True])
@@ -103,21 +73,6 @@ def test_results_without_a_manifest_are_neither_overwritten_nor_believed(marks, 
         ):
             fly(study, out, resume=resume)
     assert state_of(out) == before
-
-
-def test_results_that_are_of_no_such_study_are_refused_in_a_line(marks, out):
-    class Reads(SquareStudy):
-        def summary(self, journal):
-            assert all(row["cube"] for row in journal.rows(TABLE))
-
-    fly(SquareStudy(Squares(marks=marks)), out)
-    with pytest.raises(
-        InputError, match=r"has results that do not fit its study \(KeyError: 'cube'\)"
-    ):
-        fly(Reads(Squares(marks=marks)), out, resume=True)
-    # In a new run that is a fault of the program, and no line hides it.
-    with pytest.raises(KeyError):
-        fly(Reads(Squares(marks=marks)), out.with_name("other"))
 
 
 def resume(study, out, barrier, results):

@@ -10,9 +10,8 @@ from engine_cases import TABLE, Squares, SquareStudy, begun, fly, interrupt_at
 
 from scenarios.engine import runner
 from scenarios.engine.journal import Journal
-from scenarios.engine.processes import LocalExecutor
 from scenarios.engine.run_directory import RunDirectory
-from scenarios.engine.runner import DASK, LOCAL, ExecutorFactory
+from scenarios.engine.runner import DASK, ExecutorFactory
 from scenarios.errors import InputError
 from tests.run_tables import manifest_of, rows_of, write_manifest
 
@@ -82,46 +81,6 @@ def test_results_stand_in_the_table_though_what_follows_from_them_fails_and_the_
     assert [begun(marks, number) for number in range(8)] == [1] * 8
 
 
-def test_a_run_that_was_killed_before_its_tables_were_written_goes_on_too(marks, out, whole):
-    study = SquareStudy(Squares(marks=marks))
-    fly(study, out, progress=interrupt_at(5))
-    # As kill -9 leaves it: what was being written lies about, and nothing says that it has ended.
-    (out / TABLE).unlink()
-    write_manifest(out, study.initial_manifest() | {"state": "running"})
-    parts = [
-        out / f".{TABLE}.123.part",
-        out / ".probe-0a1b.part",
-        out / "files" / ".5.txt.123.part",
-    ]
-    for part in parts:
-        part.write_bytes(b"half")
-    assert fly(study, out, resume=True).all_met
-    assert not any(part.exists() for part in parts)
-    assert sum(begun(marks, number) == 1 for number in range(8)) >= 5
-    assert (out / TABLE).read_bytes() == whole
-
-
-def test_all_of_a_batch_is_in_the_journal_when_it_has_been_flown(marks, out):
-    study = SquareStudy(Squares(marks=marks), batches=(range(3), range(3, 8), range(8, 9)))
-    assert fly(study, out, jobs=2).verdict.counts.done == 9
-    assert study.seen == [{*range(3)}, {*range(8)}, {*range(9)}]
-    # Also where a part of it had been flown before.
-    assert fly(study, out, resume=True, jobs=2).all_met
-    assert [begun(marks, number) for number in range(9)] == [1] * 9
-
-
-def test_tasks_that_are_recorded_are_flown_for_their_files_alone(marks, out, whole):
-    told = []
-    study = SquareStudy(Squares(marks=marks), recorded=(2, 5))
-    fly(study, out, progress=lambda *report: told.append(report))
-    assert [begun(marks, number) for number in range(8)] == [1, 1, 2, 1, 1, 2, 1, 1]
-    assert (out / "files" / "2.txt").read_bytes() == b"recorded"
-    assert (out / "files" / "3.txt").read_bytes() == b"flown"
-    # Neither their rows nor their number change.
-    assert (out / TABLE).read_bytes() == whole
-    assert [done for doing, done, _ in told if doing == "flying"] == list(range(9))
-
-
 def test_a_task_whose_process_was_lost_is_a_row_and_is_tried_again_when_the_run_goes_on(
     marks, out, whole
 ):
@@ -174,25 +133,6 @@ def test_a_disk_that_is_full_keeps_what_is_done(marks, out, whole, monkeypatch):
     assert (out / TABLE).read_bytes() == whole
 
 
-def test_a_disk_that_is_full_of_the_journal_keeps_what_is_done(marks, out, whole, monkeypatch):
-    class Small(Journal):
-        def __init__(self, path):
-            super().__init__(path)
-            # Of 4096 bytes each: room for the schema and a few rows.
-            self._database.execute("PRAGMA max_page_count = 8")
-
-    study = SquareStudy(Squares(marks=marks, text=3000))
-    with monkeypatch.context() as patch:
-        patch.setattr("scenarios.engine.runner.Journal", Small)
-        refused_for_room(study, out)
-    told = []
-    assert fly(study, out, resume=True, progress=lambda *report: told.append(report)).all_met
-    kept = told[0][1]
-    assert 0 < kept < 8
-    assert [begun(marks, number) for number in range(kept)] == [1] * kept
-    assert (out / TABLE).read_bytes() == whole
-
-
 def test_a_disk_that_is_full_at_the_end_keeps_everything(marks, out, whole, monkeypatch):
     study = SquareStudy(Squares(marks=marks))
     with monkeypatch.context() as patch:
@@ -202,18 +142,6 @@ def test_a_disk_that_is_full_at_the_end_keeps_everything(marks, out, whole, monk
     assert fly(study, out, resume=True).all_met
     assert [begun(marks, number) for number in range(8)] == [1] * 8
     assert (out / TABLE).read_bytes() == whole
-
-
-def test_any_other_trouble_with_files_is_not_taken_for_a_full_disk(marks, out, monkeypatch):
-    def denied(*_):
-        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
-
-    monkeypatch.setattr(RunDirectory, "write_bytes", denied)
-    with pytest.raises(
-        InputError, match=rf"'{re.escape(str(out))}' cannot be used: Permission denied; fix that"
-    ) as refused:
-        fly(SquareStudy(Squares(marks=marks)), out)
-    assert "\n" not in str(refused.value)
 
 
 def test_a_journal_that_cannot_be_opened_is_refused_in_a_line_and_the_run_continues_once_it_can(
@@ -234,29 +162,6 @@ def test_a_journal_that_cannot_be_opened_is_refused_in_a_line_and_the_run_contin
     assert (out / TABLE).read_bytes() == whole
 
 
-def test_a_journal_that_cannot_be_opened_to_be_read_is_refused_in_a_line_too(marks, out):
-    fly(SquareStudy(Squares(marks=marks)), out)
-    (out / "journal.sqlite-wal").mkdir()
-    with pytest.raises(
-        InputError, match=r"cannot be used: unable to open .* writable, then try again$"
-    ) as refused:
-        Journal(out / "journal.sqlite", reading=True)
-    assert "\n" not in str(refused.value)
-
-
-def test_a_journal_that_cannot_be_written_any_more_is_refused_in_a_line(marks, out, monkeypatch):
-    class ReadOnly(Journal):
-        def __init__(self, path):
-            super().__init__(path)
-            self._database.execute("PRAGMA query_only = ON")
-
-    monkeypatch.setattr("scenarios.engine.runner.Journal", ReadOnly)
-    words = r"journal\.sqlite' cannot be used: attempt to write a readonly database; .* continue with --resume"
-    with pytest.raises(InputError, match=words) as refused:
-        fly(SquareStudy(Squares(marks=marks)), out)
-    assert "\n" not in str(refused.value)
-
-
 def test_a_run_that_other_code_began_is_not_gone_on_with(marks, out):
     study = SquareStudy(Squares(marks=marks))
     fly(study, out, progress=interrupt_at(3))
@@ -274,15 +179,6 @@ def test_a_run_that_other_code_began_is_not_gone_on_with(marks, out):
     assert fly(study, out, resume=True).all_met
 
 
-def test_a_run_of_another_study_is_neither_gone_on_with_nor_overwritten(marks, out):
-    fly(SquareStudy(Squares(marks=marks)), out)
-    with pytest.raises(InputError, match="was run with another configuration"):
-        fly(SquareStudy(Squares(marks=marks), config_hash="b"), out, resume=True)
-    with pytest.raises(InputError, match="holds another run"):
-        fly(SquareStudy(Squares(marks=marks)), out)
-    assert [begun(marks, number) for number in range(8)] == [1] * 8
-
-
 def test_a_run_that_another_program_flies_is_left_to_it(marks, out):
     study = SquareStudy(Squares(marks=marks))
     fly(study, out, progress=interrupt_at(3))
@@ -295,34 +191,6 @@ def test_a_run_that_another_program_flies_is_left_to_it(marks, out):
     assert (out / ".table.part").exists()
     assert (out / "manifest.json").read_bytes() == before
     assert fly(study, out, resume=True).all_met
-
-
-def test_a_journal_that_is_damaged_further_in_is_refused_in_a_line(marks, out):
-    study = SquareStudy(Squares(marks=marks))
-    fly(study, out)
-    content = bytearray((out / "journal.sqlite").read_bytes())
-    # The first page says what there is, the second holds it.
-    content[4096:8192] = b"\xff" * 4096
-    (out / "journal.sqlite").write_bytes(content)
-    with pytest.raises(
-        InputError, match=r"journal\.sqlite' is damaged; start a new run"
-    ) as refused:
-        fly(study, out, resume=True)
-    assert "\n" not in str(refused.value)
-
-
-def test_processes_of_this_machine_are_hired_where_nothing_else_is_said(tmp_path):
-    assert isinstance(ExecutorFactory()(Squares(marks=tmp_path)), LocalExecutor)
-    assert ExecutorFactory().executor == LOCAL
-    assert ExecutorFactory().jobs == 1
-
-
-def test_a_scheduler_that_would_not_be_asked_is_refused():
-    with pytest.raises(
-        InputError,
-        match=r"--scheduler is tcp://10\.0\.0\.1:8786 with --executor local; add --executor dask",
-    ):
-        ExecutorFactory(scheduler="tcp://10.0.0.1:8786")
 
 
 @pytest.mark.parametrize("scheduler", [None, "tcp://10.0.0.1:8786"])

@@ -20,6 +20,8 @@ from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 from tests.scenarios.short_trial import short_trial
 
+pytestmark = pytest.mark.slow
+
 FLIGHTS = 60
 
 TRIAL = short_trial(flights=FLIGHTS, duration=5.0, histories=10, rate=5.0)

@@ -12,8 +12,6 @@ from scenarios.experiment.sampling import beyond_declared, search_space
 from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
 
-SPEED = 19.42
-
 
 def scenario(**changes):
     """Return a kinematic scenario of a vessel at 8 m/s."""
@@ -54,35 +52,6 @@ def test_changes_of_speed_and_of_course_count_together():
     assert beyond_declared(manoeuvring(200.0, acceleration_mps2=0.3), [0.0]) == pytest.approx(
         0.2, abs=2e-3
     )
-
-
-def test_without_a_declared_acceleration_any_is_within():
-    free = manoeuvring(50.0, acceleration_mps2=0.9).model_copy(
-        update={"following": scenario().following}
-    )
-    assert beyond_declared(free, [0.0]) == 0.0
-
-
-def test_speed_ratios_are_within_their_limits():
-    still = scenario(
-        speed_ratio=(0.3, 0.5), draws=[{"key": "vessel.speed_mps", "uniform": [0.0, 2.0 * SPEED]}]
-    )
-    # nu is twice the coordinate.
-    found = [beyond_declared(still, [coordinate]) for coordinate in (0.1, 0.2, 0.4)]
-    assert found == pytest.approx([0.1, 0.0, 0.3])
-
-
-def test_values_that_contradict_each_other_are_beyond():
-    times = [{"key": f"vessel.manoeuvres.{i}.at_s", "uniform": [0.0, 100.0]} for i in (0, 1)]
-    both = scenario(
-        vessel={"manoeuvres": [{"at_s": 10.0, "turn_deg": 5.0}, {"at_s": 30.0}]}, draws=times
-    )
-    # In their order, in the wrong one, and the second before the first one's ten seconds are over.
-    assert [beyond_declared(both, point) for point in ([0.2, 0.8], [0.8, 0.2], [0.2, 0.25])] == [
-        0.0,
-        1.0,
-        1.0,
-    ]
 
 
 def test_the_space_knows_choices_times_directions_and_noise():

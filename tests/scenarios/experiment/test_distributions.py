@@ -1,7 +1,5 @@
 """Distributions of random variables: their quantiles, and which are refused."""
 
-import math
-
 import numpy as np
 import pytest
 from scipy import stats
@@ -67,13 +65,6 @@ def test_what_has_limits_begins_and_ends_there(values, ends):
     assert all(ends[0] <= value_at(draw, share) <= ends[1] for share in np.linspace(0.0, 1.0, 101))
 
 
-@pytest.mark.parametrize("values", [{"normal": (8.0, 2.0)}, {"weibull": (2.0, 8.0)}])
-def test_what_has_no_limits_has_finite_values_all_the_same(values):
-    draw = DrawConfig(key="wind.speed_mps", **values)
-    assert all(math.isfinite(value_at(draw, share)) for share in (0.0, 1e-300, 1.0 - 2.0**-53, 1.0))
-    assert value_at(draw, 0.0) < value_at(draw, 0.5) < value_at(draw, 1.0)
-
-
 def test_a_choice_takes_as_much_of_its_distribution_as_it_weighs():
     weighed = DrawConfig(key="fault.kind", choice=("a", "b", "c"), weights=(2.0, 0.0, 2.0))
     assert [value_at(weighed, share) for share in (0.0, 0.49, 0.5, 1.0)] == ["a", "a", "c", "c"]
@@ -92,29 +83,20 @@ def test_a_choice_takes_as_much_of_its_distribution_as_it_weighs():
     ("values", "words"),
     [
         ({}, "has none of uniform, normal, weibull and choice; give one"),
-        ({"uniform": [0.0, 1.0], "normal": [0.0, 1.0]}, "has uniform and normal of uniform"),
         (
             {"uniform": [1.0, 0.0]},
             "uniform of the draw of 'wind.speed_mps' is .* its first value must not exceed",
         ),
-        ({"normal": [5.0, 1.0], "within": [6.0, 4.0]}, "within of the draw of 'wind.speed_mps' is"),
         (
             {"uniform": [0.0, 1.0], "within": [0.0, 1.0]},
             "has within beside uniform; it cuts off normal or weibull",
         ),
-        ({"normal": [5.0, 0.0]}, "greater than 0"),
         ({"weibull": [0.0, 8.0]}, "greater than 0"),
-        (
-            {"choice": [1.0, 2.0], "weights": [1.0]},
-            "has weights .* give each choice one, with a sum above 0",
-        ),
         (
             {"choice": [1.0, 2.0], "weights": [1e308, 1e308]},
             "give each choice one, with a sum above 0",
         ),
-        ({"choice": [1.0, 2.0], "weights": [0.0, 0.0]}, "give each choice one, with a sum above 0"),
         ({"choice": [1.0, 2.0], "weights": [-1.0, 2.0]}, "greater than or equal to 0"),
-        ({"normal": [5.0, 1.0], "weights": [1.0]}, "has weights .* give each choice one"),
     ],
 )
 def test_a_distribution_that_makes_no_sense_is_refused(values, words):

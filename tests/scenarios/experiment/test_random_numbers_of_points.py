@@ -2,14 +2,12 @@
 
 import pytest
 
-from reports.registry import content
-from reports.run.run_data import read_run
-from scenarios.engine.processes import InProcessExecutor
 from scenarios.experiment.requests import Experiment
 from scenarios.scenario.files import load_study
-from scenarios.studies.base import run_study, study_of
+from scenarios.studies.base import study_of
 from scenarios.world.noise import PAYLOAD, own_generator
-from tests.run_tables import manifest_of, rows_of
+
+pytestmark = pytest.mark.slow
 
 WINDS = "sweep.wind.from_deg=[0, 120, 240]"
 
@@ -34,31 +32,3 @@ def test_samples_that_are_spread_evenly_are_spread_at_each_point_anew(common, di
     study = study_of(load_study("monte_carlo", keys), "monte_carlo")
     tasks = [study.task(number) for number in range(8)]
     assert len({task.point for task in tasks}) == different
-
-
-@pytest.mark.parametrize(
-    ("given", "kind", "line", "sentence"),
-    [
-        ("false", "own", "each has starts, noise and", "Each point of the sweep has starts, noise"),
-        ("true", "common", "all have the same starts", "All points of the sweep have the same"),
-    ],
-)
-def test_console_manifest_and_report_say_whose_random_numbers_points_have(
-    tmp_path, given, kind, line, sentence
-):
-    keys = (
-        "fidelity=kinematic", "guidance.rate_hz=5", "flight.log_rate_hz=5", "comparison.variants=[]", "flight.crossings=2",
-        "sweep.nu=[0.3]", "sweep.keepout.radius_m=[150, 200]", f"common_random_numbers={given}",
-    )  # fmt: skip
-    result = run_study(
-        load_study("sweep_nu", keys),
-        "sweep_nu",
-        tmp_path / "run",
-        overrides=keys,
-        executor_factory=InProcessExecutor,
-    )
-    assert any(told.startswith(f"points of the sweep: {line}") for told in result.lines)
-    assert manifest_of(tmp_path / "run")["random_numbers_of_points"] == {"sweep_nu": kind}
-    assert sentence in content(read_run(tmp_path / "run")).verdict.detail
-    seeds = {row["seed"] for row in rows_of(tmp_path / "run")}
-    assert len(seeds) == {"own": 2, "common": 1}[kind]

@@ -4,13 +4,8 @@ all others start alike.
 
 import pytest
 
-from extensions.arena.entrants import draws_left, entrants_of
-from extensions.arena.tuning import Tuner
-from scenarios.experiment.draws import sampled_flight
 from scenarios.experiment.requests import Experiment
-from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
-from scenarios.studies.base import study_of
 
 DRAWS = [
     {"key": "wind.speed_mps", "uniform": [3.0, 8.0]},
@@ -22,7 +17,6 @@ BASE = {
     "title": "t", "fidelity": "kinematic", "flights": 6, "guidance": {"mission": "follow"}, "draws": DRAWS,
     "vessel": {"manoeuvres": [{"at_s": 50.0}]},
 }  # fmt: skip
-KEYS = [draw["key"] for draw in DRAWS]
 
 
 def requests_of(**keys):
@@ -76,43 +70,3 @@ def test_a_flight_of_a_comparison_is_sampled_again_where_the_flight_beside_it_is
             key: value for key, value in study.inputs.items() if key != "wind.speed_mps"
         }
         assert calm.scenario.wind.speed_mps == 0.0
-
-
-def test_a_sample_that_gives_way_keeps_its_place_in_a_spread_sample_too():
-    scenario = Scenario.model_validate(BASE)
-    at = (0.1, 0.5, 0.3, 0.7)
-    every, without = (
-        sampled_flight("t", scenario, 0, at, given=given).values
-        for given in ((), ("wind.speed_mps",))
-    )
-    assert without == {key: value for key, value in every.items() if key != "wind.speed_mps"}
-
-
-def test_what_a_condition_of_an_arena_sets_wins_over_a_sample():
-    conditions = [
-        {"name": "drawn", "title": "Drawn"},
-        {"name": "calm", "title": "Calm", "set": {"wind.speed_mps": 0.0}},
-    ]
-    arena = {
-        "study": "arena", "flight": {"duration_max_s": 60.0, "crossings": 0},
-        "arena": {"tracking": ["cascade"], "window_s": 30.0, "evaluations": 0, "tuning_duration_s": 40.0, "conditions": conditions},
-    }  # fmt: skip
-    study = study_of(load_study(BASE | arena), "t")
-    winds = {
-        name: [of.request(i).scenario.wind.speed_mps for i in range(3)]
-        for name, of in study.experiments.items()
-    }
-    assert min(winds["drawn"]) >= 3.0
-    assert winds["calm"] == [0.0] * 3
-    assert [draw.key for draw in study.trials["calm"].draws] == KEYS[1:]
-
-
-def test_what_is_set_of_the_flights_that_laws_are_tuned_in_wins_over_a_sample():
-    scenario = Scenario.model_validate(
-        BASE | {"arena": {"tracking": ["cascade"], "tuning_set": {"wind": {"speed_mps": 5.0}}}}
-    )
-    assert draws_left(scenario, {"flight.crossings": 3}) == {}
-    (entrant,), _ = entrants_of(scenario)
-    tuned = Tuner(scenario=scenario, arena=scenario.arena, lag=0.0)._scenario(entrant, {})
-    assert [draw.key for draw in tuned.draws] == KEYS[2:]
-    assert Experiment("tuning", tuned).request(0).scenario.wind.speed_mps == 5.0

@@ -2,7 +2,6 @@
 
 import pytest
 
-from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
 from scenarios.scenario.scenario import Scenario
 
@@ -26,42 +25,3 @@ def test_each_choice_that_the_tracking_in_turbulence_depends_on_is_a_setting(key
     assert [getattr(getattr(of, section), name) for of in experiment.settings()] == choices
     flown = [experiment.request(number).scenario for number in range(2)]
     assert [getattr(getattr(of, section), name) for of in flown] == choices
-
-
-def test_a_choice_that_gives_way_to_a_case_is_no_setting_of_it():
-    draws = [{"key": "turbulence.level", "choice": ["none", "light"]}]
-    cases = [{"name": "calm", "set": {"turbulence.level": "none"}}]
-    experiment = Experiment(
-        "t", Scenario.model_validate({"title": "t", "draws": draws, "cases": cases})
-    )
-    assert [of.turbulence.level for of in experiment.settings()] == ["none"]
-
-
-@pytest.mark.parametrize(
-    ("draw", "largest"),
-    [
-        ({"key": "guidance.bank_deg", "uniform": [30.0, 49.0]}, 49.0),
-        ({"key": "guidance.bank_deg", "normal": [45.0, 2.0], "within": [40.0, 48.0]}, 48.0),
-        ({"key": "guidance.bank_deg", "choice": [30.0, 47.0, 40.0]}, 47.0),
-        ({"key": "following.climb_gradient", "uniform": [0.1, 0.3]}, 0.3),
-    ],
-)
-def test_the_aircraft_is_measured_for_the_steepest_turn_and_climb_that_may_be_sampled(
-    draw, largest
-):
-    follow = {"guidance": {"mission": "follow"}, "emission": {"ship": "container"}}
-    experiment = Experiment("t", Scenario.model_validate({"title": "t", **follow, "draws": [draw]}))
-    section, name = draw["key"].split(".")
-    assert max(getattr(getattr(of, section), name) for of in experiment.steepest()) == largest
-
-
-def test_a_turn_that_may_be_sampled_as_steep_as_you_like_is_refused():
-    draws = [{"key": "guidance.bank_deg", "normal": [40.0, 3.0]}]
-    experiment = Experiment(
-        "t",
-        Scenario.model_validate({"title": "t", "guidance": {"mission": "follow"}, "draws": draws}),
-    )
-    with pytest.raises(
-        InputError, match=r"'guidance.bank_deg' is sampled .* give the draw one with within"
-    ):
-        list(experiment.steepest())

@@ -9,7 +9,7 @@ from gnc.estimation.plume.passes import SensorState
 from gnc.mission.axis import PlumeEstimate, SearchedAxis
 from gnc.mission.mission import NO_CENTRE, Mode, OrbitStatus
 from scenarios.flight import ending
-from scenarios.flight.ending import LEFT_BY, LOOK_INTERVAL, EarlyStop, StopReason
+from scenarios.flight.ending import LOOK_INTERVAL, EarlyStop, StopReason
 
 
 class Axis(SearchedAxis):
@@ -83,26 +83,6 @@ def test_a_flight_leaves_at_the_first_look_beyond_the_guard_band_of_repeated_loo
     assert again.verdict.looks == 3
 
 
-def test_a_record_that_has_no_verdict_ends_no_flight(monkeypatch):
-    stop, mission = judged(monkeypatch, [2.0, 2.0, 2.0], quality="C")
-    looks(stop, 3)
-    assert (stop.reason, mission.departing, stop.verdict.looks) == (None, False, 0)
-
-
-def test_it_is_over_when_the_vehicle_has_gone_farther_than_where_it_left(monkeypatch):
-    stop, mission = judged(monkeypatch, [0.5])
-    looks(stop, 1)
-    assert mission.departing
-    assert not stop.has_left(40.0, 230.0 + LEFT_BY - 1.0)
-    assert stop.has_left(41.0, 230.0 + LEFT_BY + 1.0)
-
-
-def test_before_the_flight_has_settled_no_reading_counts(monkeypatch):
-    stop, _ = judged(monkeypatch, [], settled=math.nan)
-    assert looks(stop, 5) == []
-    assert stop.reason is None
-
-
 def test_off_its_orbit_and_where_it_is_detected_no_plume_is_out_of_reach(monkeypatch):
     stop, mission = judged(monkeypatch, [0.1] * 9, axis=Axis(measurable=0.01))
     mission.orbit = OrbitStatus(NO_CENTRE, 0.0, in_place=False)
@@ -110,17 +90,3 @@ def test_off_its_orbit_and_where_it_is_detected_no_plume_is_out_of_reach(monkeyp
     found, _ = judged(monkeypatch, [0.1] * 9, axis=Axis(measurable=0.01, mode=Mode.FOUND))
     looks(found, 3)
     assert (stop.reason, found.reason) == (None, None)
-
-
-@pytest.mark.parametrize(
-    ("beliefs", "reason"),
-    [
-        ({"sensor": SensorState.STUCK}, StopReason.SENSOR),
-        ({"measurable": 0.01}, StopReason.OUT_OF_REACH),
-    ],
-)
-def test_what_cannot_be_measured_is_left_with_what_is_believed(monkeypatch, beliefs, reason):
-    stop, mission = judged(monkeypatch, [], axis=Axis(**beliefs))
-    looks(stop, 2)
-    assert (stop.reason, mission.departing) == (reason, True)
-    assert "131 m high, with a deviation of 8 m" in stop.message

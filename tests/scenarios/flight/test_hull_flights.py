@@ -13,6 +13,8 @@ from reports.run.time_history import keepout_distance
 from scenarios.errors import InputError
 from scenarios.scenario.files import load_study
 
+pytestmark = pytest.mark.slow
+
 SEA = {
     "wind": {"speed_mps": 4.0, "from_deg": 60.0},
     "reports": {"interval_s": (2.0, 6.0)},

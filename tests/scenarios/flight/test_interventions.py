@@ -18,7 +18,3 @@ def test_each_stretch_of_steps_is_one_intervention():
     assert [stretch.duration_s for stretch in found] == pytest.approx([0.1, 0.15, 0.05], abs=1e-12)
     assert [stretch.distance_min_m for stretch in found] == [221.0, 205.0, 216.0]
     assert [stretch.lost for stretch in found] == [False, True, False]
-
-
-def test_a_flight_that_the_guard_left_alone_has_none():
-    assert interventions([], 0.05) == []

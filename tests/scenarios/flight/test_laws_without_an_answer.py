@@ -7,7 +7,6 @@ import pytest
 from flight_cases import ASTERN, fly
 
 from gnc.laws import STEERING_LAWS
-from scenarios.flight.ending import failure
 
 
 @dataclass(frozen=True)
@@ -28,29 +27,9 @@ class _Started:
         return 0.0 if self._until > 0 else self._answer
 
 
-def test_what_a_law_raises_in_several_lines_is_told_in_one():
-    try:
-        raise RuntimeError("first line\n  second \x1b[31m")
-    except RuntimeError as error:
-        told = failure(error)["message"]
-    assert told.startswith(
-        "RuntimeError: first line second \\x1b[31m (test_laws_without_an_answer.py:"
-    )
-
-
 @dataclass(frozen=True)
 class NotANumber(Answers):
     answer: object = float("nan")
-
-
-@dataclass(frozen=True)
-class Nothing(Answers):
-    answer: object = None
-
-
-@dataclass(frozen=True)
-class Word(Answers):
-    answer: object = "0.3"
 
 
 @dataclass(frozen=True)
@@ -62,34 +41,9 @@ class ArrayOfOne(Answers):
 
 
 @dataclass(frozen=True)
-class ArrayOfTwo(ArrayOfOne):
-    answer: object = ((0.1,), (0.2,))
-
-
-@dataclass(frozen=True)
-class ComplexNumber(Answers):
-    answer: object = np.complex128(0.1)
-
-
-@dataclass(frozen=True)
-class TooFew:
-    def heading_rate(self, _):
-        return 0.0
-
-
-@dataclass(frozen=True)
 class Wrong:
     def heading_rate(self, *_):
         return 1.0 + "one"
-
-
-@dataclass(frozen=True)
-class Frozen:
-    last: float = 0.0
-
-    def heading_rate(self, *_):
-        self.last = 1.0
-        return 0.0
 
 
 @pytest.mark.parametrize("mission", ["track", "follow", "standoff"])
@@ -97,15 +51,9 @@ class Frozen:
     ("law", "words"),
     [
         (NotANumber, "returned nan; it has to be a number, the heading rate [rad/s]"),
-        (Nothing, "returned None; it has to be a number"),
-        (Word, "returned '0.3'; it has to be a number"),
         (ArrayOfOne, "returned array([0.1]); it has to be a number"),
-        (ArrayOfTwo, "returned array([[0.1], [0.2]]); it has to be a number"),
-        (ComplexNumber, "(0.1+0j)"),
-        (TooFew, "takes 2 positional arguments but 4 were given"),
         # An error inside the law is told where it is.
         (Wrong, "failed: TypeError: "),
-        (Frozen, "failed: FrozenInstanceError: "),
     ],
 )
 def test_a_law_without_an_answer_ends_its_flight_with_a_reason_that_names_it(mission, law, words):
@@ -119,35 +67,4 @@ def test_a_law_without_an_answer_ends_its_flight_with_a_reason_that_names_it(mis
     message = flown.row["message"]
     assert message.startswith(f"steering law '{law.__name__}': heading_rate() ")
     assert words in message
-    assert ("(test_laws_without_an_answer.py:" in message) == (law in (Wrong, Frozen))
-
-
-NUMBERS = {
-    "float": 0.1,
-    "scalar": np.float64(0.1),
-    "array": np.array(0.1),
-    "where": np.where(True, 0.1, 0.2),
-}
-
-
-@dataclass(frozen=True)
-class Steady:
-    kind: str = "float"
-
-    def heading_rate(self, *_):
-        return NUMBERS[self.kind]
-
-
-@pytest.mark.parametrize("mission", ["track", "standoff"])
-@pytest.mark.parametrize("kind", ["scalar", "array", "where"])
-def test_a_law_may_return_a_number_of_numpy(mission, kind):
-    guidance = {"law": "own", "mission": mission, "keepout_guard": False}
-    with STEERING_LAWS.temporarily_registered("own", Steady):
-        rows = [
-            fly(
-                guidance=guidance | {"kind": given}, start=ASTERN, flight={"duration_max_s": 20.0}
-            ).row
-            for given in (kind, "float")
-        ]
-    assert rows[0]["outcome"] == "not_settled"
-    assert rows[0]["min_distance_m"] == rows[1]["min_distance_m"]
+    assert ("(test_laws_without_an_answer.py:" in message) == (law is Wrong)

@@ -9,6 +9,8 @@ import pytest
 
 from scenarios import fly
 
+pytestmark = pytest.mark.slow
+
 AIRSPEED, THROUGH_AIR = 19.42, 9.0
 """V_r of the vehicle, and the vessel's speed through the air, along a course of 0 in it [m/s]."""
 

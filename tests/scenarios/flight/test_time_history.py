@@ -1,18 +1,13 @@
 """Which time histories a run keeps."""
 
-import io
 import json
 
 import numpy as np
 import pandas as pd
-import pyarrow.parquet as pq
 import pytest
 
 from scenarios.engine.task import Result, Task
-from scenarios.flight.onboard import BELIEF_COLUMNS
-from scenarios.flight.record import HISTORY_COLUMNS
-from scenarios.flight.time_history import as_parquet, history_files, keeps_history
-from scenarios.instruments.sniffer import SnifferOnBoard
+from scenarios.flight.time_history import history_files, keeps_history
 from tests.run_tables import history_in
 
 MET, UNMET = (
@@ -34,13 +29,6 @@ def test_as_many_are_kept_as_are_asked_for_evenly_among_all(planned, asked):
     if len(kept) > 1:
         # Every so many: two gaps differ by one at most.
         assert np.ptp(np.diff(kept)) <= 1
-
-
-def test_flights_that_failed_or_are_to_be_recorded_are_kept_beside_them():
-    few = {"planned": 10, "kept": 0}
-    assert keeps_history(Task(number=3), **few, row=UNMET)
-    assert keeps_history(Task(number=3, recorded=True), **few, row=MET)
-    assert not keeps_history(Task(number=3), **few, row=MET)
 
 
 @pytest.mark.parametrize(
@@ -83,16 +71,3 @@ def test_a_history_comes_back_from_its_file_exactly():
     ]
     assert json.loads(result.files["flights/a.json"]) == {"fsc": 0.1}
     pd.testing.assert_frame_equal(history_in(result), history, check_exact=True)
-
-
-def test_columns_of_the_instruments_are_written_with_their_meanings():
-    columns = ["time_s", "so2_ppb", "co2_reading_ppm", "axis_height_estimated_m"]
-    known = HISTORY_COLUMNS | BELIEF_COLUMNS | SnifferOnBoard.COLUMNS
-    written = as_parquet(pd.DataFrame({name: [0.0] for name in columns}), known)
-    schema = pq.read_schema(io.BytesIO(written))
-    assert [schema.field(name).metadata[b"meaning"].decode() for name in columns] == [
-        "time since the start",
-        "true concentration along the path",
-        "reading, held until the next one",
-        "estimated height of the plume's axis",
-    ]

@@ -8,7 +8,6 @@ from flight_cases import fly
 from scenarios import flight_runner
 from scenarios.errors import InputError
 from scenarios.scenario.files import load_study
-from scenarios.studies.base import study_of
 from scenarios.studies.checks import check_without_design
 
 INSTRUMENTS = """
@@ -43,15 +42,6 @@ def test_an_instrument_that_fills_a_column_that_is_filled_already_is_a_row_with_
         f"payload '{parts[-1]}' fills the column '{column}', which the flight or another"
     )
     assert "\n" not in row["message"]
-
-
-def test_instruments_with_columns_of_their_own_fly_together(tmp_path):
-    (tmp_path / "own.py").write_text(INSTRUMENTS, encoding="utf-8")
-    result = fly(
-        payload={"instruments": [f"{tmp_path / 'own.py'}:Own"]},
-        flight={"duration_max_s": 5.0, "crossings": 0},
-    )
-    assert result.history["so2_ppb"].tolist() == [1.0] * len(result.history)
 
 
 EVALUATED = """
@@ -150,16 +140,12 @@ def evaluated(folder, *names):
     ("names", "words"),
     [
         (("Safe",), "Safe' fills the figure 'keepout_violations', which the flight or another"),
-        (("Replaced",), "Replaced' fills the table 'crossings.csv', which the flight or another"),
         (("Peak", "Also"), "Also' fills the figure 'y_peak_ppb', which the flight or another"),
-        (("Renamed",), "Renamed' fills the column 'flight_id', which the flight or another"),
         (("Folder",), "names of files that end in .csv, without a folder; not '../y.csv'"),
-        (("Text",), "Text': FIGURES is 'y_peak_ppb'; it has to be a tuple of names"),
         (
             ("Numbered",),
             "column 'y_peak_ppb' is declared by 3; give a common.columns.Column, or text",
         ),
-        (("Nameless",), "Nameless' has no COLUMNS, the names of the columns it fills"),
     ],
 )
 def test_figures_and_tables_of_the_flight_and_of_others_are_refused_before_any_flight(
@@ -172,73 +158,6 @@ def test_figures_and_tables_of_the_flight_and_of_others_are_refused_before_any_f
     assert str(refused.value).startswith("payload '")
     assert words in str(refused.value)
     assert "\n" not in str(refused.value)
-
-
-def test_an_instrument_that_is_evaluated_needs_no_figures_and_no_tables(tmp_path):
-    result = evaluated(tmp_path, "Bare")
-    assert (result.row["outcome"], result.history["y_ppb"].unique().tolist()) == (
-        "not_settled",
-        [1.0],
-    )
-    study = study_of(
-        load_study("sweep_nu", ["fidelity=kinematic", f'payload=["{tmp_path / "own.py"}:Bare"]']),
-        "own",
-    )
-    assert "y.csv" not in study.tables
-
-
-def test_columns_that_are_declared_with_what_they_are_are_written_with_it(tmp_path):
-    assert evaluated(tmp_path, "Described").history["y_ppb"].unique().tolist() == [1.0]
-    study = study_of(
-        load_study(
-            "sweep_nu", ["fidelity=kinematic", f'payload=["{tmp_path / "own.py"}:Described"]']
-        ),
-        "own",
-    )
-    figure = study.tables["summary.csv"]["y_peak_ppb"]
-    assert (figure.title, figure.unit, figure.meaning) == ("Y peak", "ppb", "largest y")
-    assert figure.part == "own.py:Described"
-
-
-def test_an_object_may_have_columns_of_its_own(tmp_path):
-    assert evaluated(tmp_path, "OfItsOwn").history["own_ppb"].unique().tolist() == [1.0]
-    (tmp_path / "own.py").write_text(EVALUATED, encoding="utf-8")
-    check_without_design(load_study("sweep_nu", [f'payload=["{tmp_path / "own.py"}:OfItsOwn"]']))
-
-
-def test_a_figure_that_is_declared_and_not_returned_is_empty_and_a_row_of_a_table_keeps_its_flight(
-    tmp_path,
-):
-    result = evaluated(tmp_path, "Peak")
-    assert result.row["y_peak_ppb"] == 3.0
-    assert "y_low_ppb" not in result.row
-    assert [(row["flight_id"], row["y_ppb"]) for row in result.tables["y.csv"]] == [
-        (result.row["flight_id"], 1.0)
-    ]
-
-
-@pytest.mark.parametrize(
-    ("name", "words"),
-    [
-        ("Undeclared", "evaluate() returned 'y_peak_ppb', which FIGURES and TABLES do not name"),
-        ("UndeclaredTable", "evaluate() returned 'y.csv', which FIGURES and TABLES do not name"),
-        ("Short", "it has to be numbers of shape (51, 1): a row for each sample, a column for"),
-        ("Pair", "figure 'y_peak_ppb' of evaluate() is array([1., 1.]); it has to be a number,"),
-        ("Words", "it has to be numbers of shape (51, 1)"),
-        ("Plain", ": evaluate(nan) returned [1.0]; it has to be an Evaluation"),
-        ("Late", ": evaluate(nan) failed: ValueError: late (own.py:28)"),
-        (
-            "Misspelt",
-            " the flight's record has no column 'times_s'; did you mean 'time_s'? (own.py:30)",
-        ),
-    ],
-)
-def test_what_fails_after_the_flight_leaves_what_is_known_of_it(name, words, tmp_path):
-    row = evaluated(tmp_path, name).row
-    assert (row["outcome"], row["criteria_met"], row["kept_out"]) == ("failed", False, True)
-    assert row["min_distance_m"] > 200.0
-    assert row["message"].startswith(f"payload '{tmp_path / 'own.py'}:{name}'")
-    assert words in row["message"]
 
 
 @pytest.mark.parametrize(("outcome", "kept_out"), [("diverged", False), ("aircraft_lost", True)])
@@ -255,34 +174,3 @@ def test_an_aircraft_that_is_gone_is_gone_whatever_fails_after_it(
     row = evaluated(tmp_path, "Late").row
     assert (row["outcome"], row["kept_out"], row["criteria_met"]) == (outcome, kept_out, False)
     assert "failed: ValueError: late (own.py:28)" in row["message"]
-
-
-@pytest.mark.parametrize(
-    ("name", "words"),
-    [
-        (
-            "WithoutArguments",
-            ": WithoutArguments() failed: TypeError: WithoutArguments.__init__() takes",
-        ),
-        (
-            "ReadsTwo",
-            "class ReadsTwo: read(0) returned (1.0, 2.0); it has to be 1 number, one for each",
-        ),
-        ("ReadsNone", "class ReadsNone: read(0) returned None; it has to be 1 number"),
-        ("ReadsText", "class ReadsText: read(0) returned ('high',); it has to be 1 number"),
-        ("ReadsAtOnce", "class ReadsAtOnce: read(0) failed: TypeError: ReadsAtOnce.read() takes 2"),
-        (
-            "GainOfTheSection",
-            "'gain_factor' is a key of SETTINGS, which this scenario leaves at its default; take it, given or not,",
-        ),
-    ],
-)
-def test_an_instrument_that_cannot_be_made_or_read_is_named(name, words, tmp_path):
-    row = evaluated(tmp_path, name).row
-    assert row["outcome"] == "failed"
-    assert row["message"].startswith("payload")
-    assert words in row["message"]
-
-
-def test_settings_are_at_their_defaults_where_the_scenario_says_nothing(tmp_path):
-    assert evaluated(tmp_path, "Gain").history["x_ppb"].unique().tolist() == [2.0]

@@ -1,7 +1,5 @@
 """The figures of a flight that looked at its verdict before its end."""
 
-import math
-
 import pytest
 
 from measurement.estimate.repeated import RepeatedVerdict
@@ -35,17 +33,6 @@ def test_the_end_of_a_flight_is_its_last_look_and_spends_what_is_left():
     figures = repeated_figures(late, row(0.15))
     assert (figures["sulphur_verdict"], figures["verdict_looks"]) == ("above", 2)
     assert 1.645 < figures["verdict_guard"] < early.guard
-
-
-def test_a_flight_that_left_with_a_verdict_keeps_it():
-    figures = repeated_figures(looked(0.3), row(0.13))
-    assert (figures["sulphur_verdict"], figures["verdict_looks"]) == ("above", 1)
-
-
-def test_what_the_whole_record_refuses_has_no_verdict():
-    figures = repeated_figures(looked(0.3), row(0.3, quality="C"))
-    assert figures["sulphur_verdict"] == "open"
-    assert math.isnan(figures["verdict_guard"])
 
 
 @pytest.mark.parametrize("verdict", ["above", "open"])

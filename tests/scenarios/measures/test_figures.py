@@ -1,7 +1,6 @@
 """Figures of histories that are made up, so that every one of them is known."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,9 +10,7 @@ from flight_cases import scenario
 from gnc.mission.mission import Mode
 from scenarios.flight.outcome import Outcome
 from scenarios.flight.record import COLUMNS, FlightRecord
-from scenarios.measures.columns import SUMMARY_COLUMNS
-from scenarios.measures.figures import flight_figures, plan_row, rms
-from scenarios.planning.flight_plan import Start
+from scenarios.measures.figures import flight_figures, rms
 from scenarios.scenario.scenario import Scenario
 
 STEP = 0.1
@@ -26,16 +23,6 @@ def plan():
     manoeuvre = {"at_s": 40.0, "turn_deg": 10.0, "turn_rate_deg_s": 1.0}
     vessel = {"speed_mps": 8.0, "manoeuvres": [manoeuvre]}
     return planned(scenario(vessel=vessel, following={"vessel_acceleration_mps2": 0.15}))
-
-
-@pytest.fixture(scope="module")
-def tracking_plan():
-    """A flight beside a steady vessel that is known exactly, in still air."""
-    return planned(
-        Scenario.model_validate(
-            {"title": "test", "fidelity": "kinematic", "vessel": {"speed_mps": 8.0}}
-        )
-    )
 
 
 def weave(plan, *, duration=100.0, distance=230.0, **columns):
@@ -133,36 +120,6 @@ def loiter_plan():
     )
 
 
-OFF = 30.0
-"""How far the middle of a weave lies to one side of the axis [m]: it crosses where 60 m cos(phase)
-is that, so that 2/3 and 4/3 of ``INTERVAL`` go by in turn.
-"""
-
-
-def weave_to_one_side(plan, crossings):
-    """Return the history of a weave with so many crossings, at 10/3 s, 50/3 s, 70/3 s, ..."""
-    duration = 10.0 * crossings - 2.0
-    time = np.arange(0.0, duration + 0.5 * STEP, STEP)
-    east = -60.0 * np.cos(math.pi / INTERVAL * time) + OFF
-    return weave(plan, duration=duration, east_m=east)
-
-
-@pytest.mark.parametrize("crossings", [3, 4, 5, 8, 9])
-@pytest.mark.parametrize("which", ["loiter_plan", "plan"])
-def test_where_crossings_alternate_their_means_are_over_whole_periods(which, crossings, request):
-    # By the orbit; and where the centre follows estimates, which put it beside the axis.
-    flown = request.getfixturevalue(which)
-    row, found = figures(flown, weave_to_one_side(flown, crossings))
-    assert row["crossing_count"] == len(found) == crossings
-    intervals = np.diff([crossing.time for crossing in found])
-    assert {round(value, 3) for value in intervals.tolist()} == {
-        round(part * INTERVAL / 3.0, 3) for part in (2.0, 4.0)
-    }
-    # Two intervals are a period, 20 s; of an odd number, the last one is left out.
-    assert row["crossing_interval_mean_s"] == pytest.approx(INTERVAL, abs=1e-4)
-    assert row["crossing_interval_std_s"] == pytest.approx(INTERVAL / 3.0, abs=1e-4)
-
-
 def test_mean_distance_and_angle_of_crossings_that_alternate_are_over_whole_periods(loiter_plan):
     # Near and far in turn: the distance from the vessel is a cosine of twice the period.
     time = np.arange(0.0, 60.05, STEP)
@@ -174,49 +131,6 @@ def test_mean_distance_and_angle_of_crossings_that_alternate_are_over_whole_peri
         # At 5, 15, 25 s: 290, 210, 290 m.
         assert row["crossing_distance_mean_m"] == pytest.approx(250.0, abs=0.01)
         assert row["crossing_distance_min_m"] == pytest.approx(210.0, abs=0.01)
-
-
-def test_less_than_a_period_of_crossings_that_alternate_has_no_mean_interval(loiter_plan):
-    row, _ = figures(loiter_plan, weave_to_one_side(loiter_plan, 2))
-    assert row["crossing_count"] == 2
-    assert "crossing_interval_mean_s" not in row
-    # There are distances, though less than those of a period at the first crossing.
-    assert row["crossing_distance_mean_m"] == pytest.approx(230.0, abs=5.0)
-
-
-def test_crossings_of_a_figure_of_eight_in_its_place_all_count(tracking_plan):
-    # Halves are alike; so is a flight's mean if its last half is left out.
-    row, crossings = figures(tracking_plan, weave(tracking_plan, duration=38.0))
-    assert len(crossings) == 4
-    times = [crossing.time for crossing in crossings]
-    assert row["crossing_interval_mean_s"] == np.mean(np.diff(times))
-
-
-def test_beside_a_plume_that_trails_elsewhere_means_are_over_whole_periods(tracking_plan):
-    # A plume of a user's own, 5 degrees to one side of where its centre was put.
-    history = weave(tracking_plan, duration=38.0, plume_axis_rad=math.pi + math.radians(5.0))
-    row, crossings = figures(tracking_plan, history)
-    assert len(crossings) == 4
-    times = [crossing.time for crossing in crossings]
-    first, second, third = np.diff(times)
-    assert first == pytest.approx(third, abs=1e-3)
-    assert abs(first - second) > 1.0
-    assert row["crossing_interval_mean_s"] == np.mean([first, second])
-
-
-def test_crossings_count_from_settling_on(plan):
-    row, crossings = figures(plan, weave(plan), settled_at=52.0)
-    assert row["crossing_count"] == 5
-    assert crossings[0].time == pytest.approx(55.0, abs=1e-6)
-
-
-def test_what_never_settles_has_no_crossings_and_is_measured_all_the_same(plan, tracking_plan):
-    for made in (plan, tracking_plan):
-        row, crossings = figures(made, weave(made), settled_at=math.nan)
-        assert crossings == []
-        assert not {"crossing_count", "tracking_error_rms_m"} & set(row)
-        assert math.isnan(row["settling_time_s"])
-        assert row["min_distance_m"] == pytest.approx(230.0, abs=1e-3)
 
 
 def test_an_axis_that_turns_is_crossed_where_it_is_by_then(plan):
@@ -265,15 +179,6 @@ def test_height_counts_for_the_distance(plan):
     assert row["min_distance_m"] == pytest.approx(math.hypot(195.0, 50.0), abs=1e-6)
 
 
-def test_crossings_resume_after_the_manoeuvre(plan):
-    row, _ = figures(plan, weave(plan))
-    # It ends at 50 s, the next crossing is at 55 s.
-    assert row["resume_time_s"] == pytest.approx(5.0, abs=1e-6)
-    assert row["resume_periods"] == pytest.approx(5.0 / plan.period(plan.nu), abs=1e-6)
-    row, _ = figures(plan, weave(plan, duration=52.0))
-    assert "resume_time_s" not in row
-
-
 def test_errors_are_measured_from_the_history(plan):
     history = weave(plan)
     north = column(history, "reference_north_m").copy()
@@ -308,27 +213,6 @@ def test_the_guards_time_is_counted_and_its_losses_too(plan):
     assert row["guard_after_settling_s"] == pytest.approx(1.0)
 
 
-def test_the_plans_part_of_the_row_is_that_of_the_plan(plan):
-    row = plan_row(replace(plan, start=Start(north=0.0, east=500.0, course=0.0)))
-    # East of a vessel that heads north, its plume to the south: 90 degrees to the left of the axis.
-    assert row["start_distance_m"] == 500.0
-    assert row["start_aspect_deg"] == pytest.approx(-90.0)
-    assert row["nu"] == pytest.approx(8.0 / 19.42)
-    assert row["manoeuvre_end_s"] == pytest.approx(50.0)
-    assert math.isnan(row["fault_time_s"])
-
-
-@pytest.mark.parametrize("settled_at", [0.0, 10.0])
-def test_the_tracking_error_counts_from_settling_on(tracking_plan, settled_at):
-    history = weave(tracking_plan)
-    # 9 m off for the first 10 s, 3 m from then on.
-    off = np.where(column(history, "time_s") < 9.95, 9.0, 3.0)
-    history = weave(tracking_plan, reference_east_m=column(history, "east_m") + off)
-    row, _ = figures(tracking_plan, history, settled_at=settled_at)
-    assert row["settling_time_s"] == settled_at
-    assert row["tracking_error_max_m"] == pytest.approx(9.0 if settled_at == 0.0 else 3.0)
-
-
 @pytest.mark.parametrize("mode", [Mode.DEPARTING, Mode.GLIDING, Mode.TERMINATING])
 def test_a_vehicle_that_leaves_for_good_is_no_longer_off_its_reference(plan, mode):
     history = weave(plan)
@@ -346,27 +230,6 @@ def test_a_vehicle_that_leaves_for_good_is_no_longer_off_its_reference(plan, mod
     assert 0.0 < row["spread_m"] < 3.0
     # What it crosses on its way is counted, and the end is the end.
     assert (len(crossings), row["tracking_error_end_m"]) == (10, pytest.approx(500.0))
-
-
-def test_modes_are_listed_in_the_order_of_their_first_time(plan):
-    history = weave(plan)
-    modes = np.full(len(history), float(Mode.TRACKING.number))
-    modes[:200], modes[500:600] = Mode.APPROACH.number, Mode.HOLDING.number
-    row, _ = figures(plan, weave(plan, mode=modes))
-    assert row["modes"] == "approach, tracking, holding off"
-
-
-def test_both_kinds_of_flight_have_rows_of_the_same_columns(plan, tracking_plan):
-    rows = [plan_row(made) | figures(made, weave(made))[0] for made in (plan, tracking_plan)]
-    for row in rows:
-        assert set(row) <= set(SUMMARY_COLUMNS)
-    # What a steady vessel in still air has no use for: a margin, and manoeuvres to resume after.
-    assert set(rows[0]) - set(rows[1]) == {
-        "keepout_margin_m",
-        "spread_predicted_m",
-        "resume_time_s",
-        "resume_periods",
-    }
 
 
 def test_the_rms_of_a_sine_over_its_period_is_its_amplitude_over_the_root_of_two():

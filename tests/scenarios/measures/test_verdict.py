@@ -3,7 +3,6 @@
 import json
 import math
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -13,7 +12,6 @@ from common.verdict import (
     NOT_MET,
     UNEXPLAINED,
     KeepOut,
-    RunVerdict,
     did_what_is_required,
     read_verdict,
 )
@@ -183,29 +181,9 @@ def test_flights_of_different_limits_are_each_judged_by_their_own():
     assert found.worst_of_all.flight == "f0"
 
 
-def test_premises_are_counted_by_the_term_that_did_not_hold():
-    rows = [row(0, premises_exceeded="none"), row(1, premises_exceeded="wind, drift")]
-    premises = judged([*rows, row(2, premises_exceeded="drift"), row(3)]).premises
-    assert (premises.measured, premises.exceeded) == (3, 2)
-    assert premises.terms == {"drift": 2, "wind": 1}
-
-
 def test_a_verdict_is_read_back_as_it_was_written(tmp_path):
     verdict = judged(ROWS, planned=8).once_interrupted(interrupted=True)
     path = tmp_path / "verdict.json"
     path.write_text(json.dumps(verdict.to_json(), allow_nan=False), encoding="utf-8")
     assert read_verdict(path).to_json() == json.loads(path.read_text(encoding="utf-8"))
     assert json.loads(path.read_text(encoding="utf-8"))["exit_status"] == INTERRUPTED
-
-
-@pytest.mark.parametrize("text", ["", "{}", "[]", '{"what": "flights"}', "{" * 9])
-def test_what_is_no_verdict_is_not_read(tmp_path, text):
-    (tmp_path / "verdict.json").write_text(text, encoding="utf-8")
-    with pytest.raises((ValueError, TypeError, LookupError, AttributeError)):
-        read_verdict(tmp_path / "verdict.json")
-
-
-def test_of_other_items_their_numbers_decide():
-    some = RunVerdict.of_items("trajectories", planned=3, done=3, met=2)
-    assert (some.exit_status, some.counts.left) == (NOT_MET, 0)
-    assert RunVerdict.of_items("trajectories", planned=3, done=3, met=3).exit_status == MET

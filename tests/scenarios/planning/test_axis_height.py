@@ -19,15 +19,3 @@ def test_it_is_the_rise_of_the_measurement_in_neutral_air_less_its_downwash(spee
     emitted = emission(scenario, speed=12.0)
     above_funnel = float(rise(emitted, speed, 300.0 / speed)) - float(downwash(emitted, speed))
     assert expected.at(300.0, speed) - 35.0 == pytest.approx(above_funnel, rel=1e-9)
-
-
-def test_it_stays_within_the_altitudes_of_the_flight():
-    expected = axis_height(load_study("sulphur"), SteadyVessel(12.0, 0.0))
-    assert expected.at(2000.0, 2.0) == 120.0
-
-
-def test_without_exhaust_it_is_the_elevation_that_is_given():
-    expected = axis_height(
-        load_study("sea_wind", ["plume.elevation_deg=10"]), SteadyVessel(8.0, 0.0)
-    )
-    assert expected.at(200.0, 9.0) == pytest.approx(60.0 + 35.265, abs=1e-3)

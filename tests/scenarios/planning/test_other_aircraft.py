@@ -9,18 +9,16 @@ import pytest
 import typer
 
 from aircraft.fleet.aerosonde import AEROSONDE
-from aircraft.fleet.find import find_spec
 from aircraft.spec import AircraftError
 from common.verdict import read_verdict
-from innerloop.store import DesignError, cache_directory
-from reports.output import write_report
-from reports.run.run_data import read_run
+from innerloop.store import DesignError
 from scenarios.engine.processes import InProcessExecutor
-from scenarios.errors import InputError
 from scenarios.run import command
 from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
-from tests.run_tables import manifest_of, rows_of
+from tests.run_tables import manifest_of
+
+pytestmark = pytest.mark.slow
 
 SHORT = ["sweep.nu=[0.5]", "flight.crossings=2", "comparison.variants=[]"]
 
@@ -51,20 +49,6 @@ def refuse(monkeypatch):
         monkeypatch.setattr("scenarios.vehicles.vehicle_setup.designed", designed)
 
     return refuse
-
-
-@pytest.mark.parametrize("name", ["737", "787-8", "c172x"])
-def test_an_aircraft_is_named_as_its_model_is_whatever_toml_makes_of_it(name):
-    # 737 is an integer in TOML, and 787-8 is not TOML at all.
-    scenario = load_study("sweep_nu", [f"aircraft={name}"])
-    assert scenario.aircraft == name
-    assert find_spec(scenario.aircraft).model == name
-
-
-def test_a_number_that_is_no_aircraft_is_refused_like_a_word(tmp_path):
-    with pytest.raises(InputError, match="aircraft: unknown aircraft '707'"):
-        run(tmp_path / "run", "aircraft=707")
-    assert not (tmp_path / "run").exists()
 
 
 @pytest.mark.parametrize(
@@ -100,23 +84,6 @@ def test_a_design_that_is_refused_is_rows_with_its_reason_and_exit_status_1(
     assert (out / "report.pdf").read_bytes().startswith(b"%PDF")
 
 
-def test_flights_that_were_refused_are_done_and_are_not_tried_again(refuse, tmp_path):
-    refuse(AircraftError("it does not trim"))
-    run(tmp_path / "run")
-    told = []
-    again = run_study(
-        load_study("sweep_nu", SHORT),
-        "sweep_nu",
-        tmp_path / "run",
-        resume=True,
-        progress=lambda *report: told.append(report),
-    )
-    assert again.verdict.counts.done == 1
-    assert [row["outcome"] for row in rows_of(tmp_path / "run")] == ["trim_failed"]
-    # One that is done from the beginning is not flown.
-    assert [report for report in told if report[0] == "flying"] == [("flying", 1, 1)]
-
-
 def test_the_kinematic_vehicle_flies_as_the_aircraft_that_is_named_would(designs, tmp_path):
     designs("aerosonde")
     out = tmp_path / "run"
@@ -135,36 +102,3 @@ def test_the_kinematic_vehicle_flies_as_the_aircraft_that_is_named_would(designs
     # No autopilot takes part, and none lags: half a step of 20 Hz is all there is to preview.
     assert manifest["guidance_lag_s"] == 0.025
     assert not (out / "innerloop.json").exists()
-
-
-def test_the_kinematic_vehicle_alone_needs_no_design(refuse, tmp_path):
-    refuse(AssertionError("designed for nothing"))
-    assert run(tmp_path / "run", "fidelity=kinematic", *LOOSE).all_met
-
-
-def test_aircraft_that_differ_from_flight_to_flight_are_refused(designs, tmp_path):
-    designs("x8")
-    variants = 'comparison={ nu = [0.5], variants = [{ name = "other", set = { aircraft = "aerosonde" } }] }'
-    scenario = load_study("sweep_nu", [*SHORT, variants])
-    with pytest.raises(InputError, match="flights differ in aircraft"):
-        run_study(scenario, "x", tmp_path / "run")
-
-
-def test_the_range_of_airspeeds_is_named_where_it_is_left(tmp_path):
-    with pytest.raises(
-        InputError,
-        match=r"airspeed_mps is 31; Aerosonde flies 21\.0 to 30\.0 m/s: choose an airspeed in between",
-    ):
-        run(tmp_path / "run", "aircraft=aerosonde", "guidance.airspeed_mps=31")
-    assert not (tmp_path / "run").exists()
-
-
-def test_no_test_touches_the_users_own_designs(cache_home):
-    assert cache_directory().is_relative_to(cache_home)
-
-
-def test_the_report_of_a_refused_aircraft_names_it(refuse, tmp_path):
-    refuse(DesignError("no design has the margins"))
-    run(tmp_path / "run", "aircraft=T37")
-    write_report(read_run(tmp_path / "run"), page := tmp_path / "report.html")
-    assert "T37" in page.read_text(encoding="utf-8")

@@ -16,6 +16,8 @@ from scenarios.flight_runner import FlightRunner
 from scenarios.planning.spreads import PredictedSpreads
 from scenarios.scenario.files import load_study
 
+pytestmark = pytest.mark.slow
+
 FLIGHT = {
     "title": "other ships",
     "fidelity": "kinematic",

@@ -4,19 +4,13 @@ the distance.
 
 import math
 
-import numpy as np
 import pytest
 
 from gnc.errors import InfeasibleError
-from gnc.estimation.plume.passes import equal_readings
-from gnc.mission.axis import PredictedPlume, SearchedPlume
-from measurement.sniffer.spec import sensor_preset, sensor_presets
-from scenarios.errors import InputError
-from scenarios.planning.missions import plan_flight
-from scenarios.planning.plume import additional_distance, co2_sensor, information, plume_axis
+from gnc.mission.axis import SearchedPlume
+from scenarios.planning.plume import plume_axis
 from scenarios.scenario.files import load_study
 from scenarios.scenario.sections.flight import ALTITUDE_MARGIN
-from scenarios.vehicles.vehicle_setup import kinematic_setup
 from scenarios.world.plume import emission
 from scenarios.world.vessel import SteadyVessel
 
@@ -49,14 +43,6 @@ def test_what_is_known_of_the_ship_is_the_middle_and_the_spread_of_the_ranges():
     assert axis.expected.load_deviation == pytest.approx(0.4, abs=0.05)
 
 
-def test_a_flight_that_is_given_the_axis_knows_the_same_height_before():
-    told, searched = (
-        plume_axis(searching(f"following.plume={how}"), VESSEL) for how in ("told", "estimated")
-    )
-    assert isinstance(told, PredictedPlume)
-    assert told.height == searched.height
-
-
 @pytest.mark.parametrize(
     ("overrides", "words"),
     [
@@ -72,56 +58,3 @@ def test_limits_that_leave_no_room_and_a_search_without_a_sniffer_are_refused_in
         plume_axis(searching(*overrides), VESSEL)
     assert words in str(refusal.value)
     assert "\n" not in str(refusal.value)
-
-
-def test_ranges_are_in_their_order_and_heights_of_the_mouth_vary_only_with_an_altitude_of_its_own():
-    with pytest.raises(InputError, match="source_height_m"):
-        searching("following.source_height_m=[60,20]")
-    with pytest.raises(InputError, match=r"plume\.source_height_m"):
-        load_study(
-            "sulphur", ["flights=2", 'draws=[{key="plume.source_height_m", uniform=[20.0,60.0]}]']
-        )
-
-
-def test_the_flight_starts_at_its_altitude_and_keeps_out_of_the_sphere_about_the_mouth():
-    scenario = load_study("sulphur", ["fidelity=kinematic", "flight.altitude_m=80"])
-    plan = plan_flight(scenario, flight_id="a", seed=1, setup=kinematic_setup(scenario))
-    assert (plan.altitude, plan.source_height) == (80.0, 35.0)
-    # The altitude may change on the way: level with the mouth the sphere is as wide as it is
-    # anywhere.
-    assert (plan.keepout_shape, plan.keepout_radius, plan.guidance.guard.radius) == (
-        "sphere",
-        200.0,
-        200.0,
-    )
-
-
-@pytest.mark.parametrize("sensor", ["fast", "electrochemical"])
-@pytest.mark.parametrize("wind", [4.0, 9.0, 16.0])
-def test_the_sulphur_is_known_best_from_as_near_as_may_be(sensor, wind):
-    scenario = load_study(
-        "sulphur", [f"payload.sensor={sensor}", "following.distance=best_measurement"]
-    )
-    assert additional_distance(scenario, VESSEL, 220.0, wind) == 0.0
-    # Flights at 500 m had up to three times the noise of those at 200 m
-    # (docs/explanation/sulphur.md).
-    near, far = information(scenario, VESSEL, np.array([200.0, 500.0]), wind)
-    assert 1.5 < math.sqrt(near / far) < 4.0
-
-
-def test_where_the_axis_is_below_the_limits_near_the_ship_it_is_measured_farther_off():
-    low = load_study(
-        "sulphur",
-        [
-            "following.distance=best_measurement",
-            "plume.source_height_m=15",
-            "flight.altitude_m=80",
-            "flight.altitude_min_m=55",
-        ],
-    )
-    assert additional_distance(low, VESSEL, 220.0, 8.0) > 50.0
-
-
-@pytest.mark.parametrize("name", [name for name in sensor_presets() if name != "unspecified"])
-def test_ten_equal_readings_are_enough_of_every_preset(name):
-    assert equal_readings(co2_sensor(sensor_preset(name))) == 10

@@ -1,26 +1,23 @@
 """A scenario scaled to an aircraft: the same study in the aircraft's own units of time and length."""
 
-import dataclasses
 import math
-import re
 
 import numpy as np
 import pytest
 from pydantic import BaseModel
 
-from aircraft.fleet.aerosonde import AEROSONDE
 from aircraft.fleet.x8 import X8
 from aircraft.spec import Envelope
-from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
 from scenarios.flight.closed_loop import fly, release
 from scenarios.flight.outcome import Outcome
 from scenarios.flight.record import COLUMNS
-from scenarios.planning import scaling
 from scenarios.planning.missions import plan_flight
-from scenarios.planning.scaling import scaled, units
+from scenarios.planning.scaling import scaled
 from scenarios.scenario.files import load_study, with_values
 from scenarios.vehicles.vehicle_setup import kinematic_setup
+
+pytestmark = pytest.mark.slow
 
 SPEED, GRAVITY = 19.42, 9.80665
 
@@ -103,33 +100,11 @@ def dimension(key):
     return next((powers for suffix, powers in DIMENSIONS.items() if key.endswith(suffix)), None)
 
 
-def test_units_are_those_of_the_turn():
-    # By hand: omega_max = g tan(bank)/V. Twice as fast at 45 degrees turns half as fast:
-    # 1/omega_max is 2, V/omega_max is 4.
-    double = units(dataclasses.replace(X8.envelope, airspeed=2.0 * SPEED))
-    assert (double.time, double.length, double.speed) == pytest.approx((2.0, 4.0, 2.0), rel=1e-12)
-    # At its own speed with tan(bank) = 1/2 it turns half as fast, over twice the length.
-    shallow = units(dataclasses.replace(X8.envelope, bank=math.atan(0.5)))
-    assert (shallow.time, shallow.length, shallow.speed) == pytest.approx(
-        (2.0, 2.0, 1.0), rel=1e-12
-    )
-    # Aerosonde, 25 m/s and 45 degrees: 25/19.42, and its square.
-    own = units(AEROSONDE.envelope)
-    assert (own.time, own.length) == pytest.approx((1.28733, 1.65722), rel=1e-5)
-
-
 @pytest.mark.parametrize("name", ["sweep_nu", "sim3", "paper"])
 def test_the_x8_flies_every_scenario_as_it_is_written(name):
     # The defaults are its numbers, to the last bit: they are multiplied by 1.
     scenario = load_study(name)
     assert scaled(scenario, X8.envelope) == scenario
-
-
-def test_an_aircraft_flies_its_own_airspeed_and_bank():
-    own = scaled(load_study("sweep_nu"), aircraft(time=2.0, length=3.0)).guidance
-    assert own.airspeed_mps == pytest.approx(1.5 * SPEED, rel=1e-12)
-    # tan(bank) = omega_max V/g = 0.5 * 1.5.
-    assert own.bank_deg == pytest.approx(math.degrees(math.atan(0.75)), rel=1e-12)
 
 
 def test_every_key_with_a_length_or_a_time_is_scaled_by_its_unit_or_said_not_to_be():
@@ -148,74 +123,6 @@ def test_every_key_with_a_length_or_a_time_is_scaled_by_its_unit_or_said_not_to_
             assert after[key] == pytest.approx(np.multiply(before[key], factor), rel=1e-12), key
         elif key not in ("guidance.airspeed_mps", "guidance.bank_deg"):
             assert after[key] == before[key], key
-
-
-def test_what_is_said_to_be_scaled_is_what_the_scenario_does_not_set():
-    given = load_study(
-        "sweep_nu", ["criteria.airspeed_error_rms_mps=0.5", "guidance.look_ahead_m=60"]
-    )
-    named = set(scaling.scaled_keys(given))
-    before, after = keys(given), keys(scaled(given, aircraft(time=2.0, length=3.0)))
-    own = {"guidance.airspeed_mps", "guidance.bank_deg"}
-    assert {key for key in before if before[key] != after[key]} - own == named
-    assert "criteria.tracking_error_rms_m" in named
-    assert not named & {"criteria.airspeed_error_rms_mps", "guidance.look_ahead_m"}
-
-
-def test_keys_without_a_unit_in_their_names_have_no_length_and_no_time():
-    # Else the test before this one would not see them. Units stand in brackets in a key's
-    # description.
-    scenario = load_study("sweep_nu")
-    for name in keys(scenario):
-        section, key = name.split(".")
-        unit = re.search(
-            r"\[([^\]]+)\]", type(getattr(scenario, section)).model_fields[key].description or ""
-        )
-        assert (dimension(name) is not None) == (
-            unit is not None and unit[1] not in ("-", "deg", "%", "% m/m", "ppm", "degC")
-        ), name
-
-
-def scaled_keys():
-    scenario = load_study("sweep_nu")
-    before, after = keys(scenario), keys(scaled(scenario, aircraft(time=2.0, length=3.0)))
-    return [key for key in before if before[key] != after[key]]
-
-
-@pytest.mark.parametrize("share", [1.0, 1.25])
-def test_what_a_scenario_sets_itself_is_never_touched(share):
-    # Neither where it is another number than the default, nor where it is the same.
-    scenario = load_study("sweep_nu")
-    names, before = scaled_keys(), keys(scenario)
-    assert len(names) >= 18
-    for key in names:
-        given = np.multiply(before[key], share).tolist()
-        # Some are keys of parts that these flights do not have.
-        written = load_study("sweep_nu", [f"{key}={given}"], refusing=False)
-        found = keys(scaled(written, aircraft(time=2.0, length=3.0)))
-        assert np.array_equal(found[key], given), key
-        # And the others are scaled all the same.
-        assert all(found[other] != before[other] for other in names if other != key)
-
-
-def test_a_file_of_its_own_is_taken_at_its_word_too(tmp_path):
-    path = tmp_path / "own.toml"
-    path.write_text(
-        'title = "own"\nsweep = { nu = [0.5] }\nguidance = { look_ahead_m = 60.0 }\n',
-        encoding="utf-8",
-    )
-    found = scaled(load_study(str(path)), aircraft(time=2.0, length=3.0))
-    assert found.guidance.look_ahead_m == 60.0
-    assert found.guidance.epsilon_per_m == pytest.approx(0.005 / 3.0, rel=1e-12)
-
-
-def test_an_aircraft_that_the_scenario_cannot_be_scaled_to_is_refused_by_the_key():
-    # So tight a turn that the nearest start, 400 m for the X8, lies inside of 200 m.
-    with pytest.raises(
-        InputError,
-        match=r"start\.distance_m begins at 180 m; it must exceed keepout\.radius_m, 200 m",
-    ):
-        scaled(load_study("sweep_nu"), aircraft(time=0.6, length=0.45))
 
 
 @pytest.fixture
@@ -281,20 +188,3 @@ def test_in_its_own_units_every_aircraft_flies_the_same_flight(
     # Twice the speed at 45 degrees of bank: factors are powers of two, so even roundings scale.
     # Equal to the last bit, whatever the law does with a difference.
     np.testing.assert_array_equal(other, base)
-
-
-@pytest.mark.parametrize(
-    ("nu", "overrides"), [(0.0, []), (0.5, []), (0.7, ["guidance.law=lyapunov"])]
-)
-def test_it_is_the_same_flight_at_another_bank_as_far_as_roundings_go(
-    kinematic_flight, nu, overrides
-):
-    # tan(bank) = 2.4/1.5^2, 47 degrees. A reference that is limited by its roll rate would differ:
-    # with the bank, by gravity.
-    base, other = (
-        kinematic_flight(*unit, *overrides, nu=nu, lag=0.3) for unit in ((1.0, 1.0), (1.5, 2.4))
-    )
-    assert base.shape == other.shape
-    # Roundings of thousands of steps that contract towards the reference, of lengths up to 4 km;
-    # measured 3e-11.
-    np.testing.assert_allclose(other, base, rtol=1e-8, atol=1e-8)

@@ -8,14 +8,14 @@ import pytest
 from flight_cases import plan, scenario
 
 from aircraft.fleet.x8 import X8
-from gnc.errors import InfeasibleError
 from scenarios.engine.run_directory import RunDirectory
-from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
-from scenarios.planning.margin.keepout_margin import CALM_AIR_SPREAD, Spread, SpreadTable
+from scenarios.planning.margin.keepout_margin import Spread, SpreadTable
 from scenarios.planning.scaling import scaled
-from scenarios.planning.spreads import SPREAD_RATIOS, PredictedSpreads, predicted_spreads
+from scenarios.planning.spreads import SPREAD_RATIOS, predicted_spreads
 from scenarios.vehicles.vehicle_setup import aircraft_setup
+
+pytestmark = pytest.mark.slow
 
 LEVELS = ("none", "light", "moderate")
 
@@ -35,16 +35,6 @@ TABLED = SpreadTable(
         for s in (1.0, 2.0)
     ),
 )
-
-
-def test_a_flight_has_the_spread_of_its_speed_ratio_and_none_in_still_air():
-    # A quarter and three quarters of the way between 0.2 and 0.6; the nearest counts.
-    for nu, sigma in ((0.3, 1.0), (0.5, 2.0)):
-        trial = scenario(
-            fidelity="six_dof", turbulence={"level": "light"}, vessel={"speed_mps": 19.42 * nu}
-        )
-        assert plan(trial, spreads=lambda _: TABLED).margin.tracking_sigma == sigma
-        assert plan(trial).margin.tracking_sigma == CALM_AIR_SPREAD.radial == 0.0
 
 
 @pytest.fixture(scope="module")
@@ -96,37 +86,6 @@ def test_an_experiment_that_samples_its_turbulence_plans_each_levels_own_margin(
     assert margins["none"].total < margins["light"].total < margins["moderate"].total
 
 
-def test_a_shape_without_an_orbit_at_some_speed_ratios_is_planned_at_the_others(x8, monkeypatch):
-    monkeypatch.setattr("scenarios.planning.spreads.SPREAD_RATIOS", SPREAD_RATIOS[2:4])
-    loiter = scenario(
-        fidelity="six_dof", turbulence={"level": "light"}, reference={"shape": "loiter"}
-    )
-    (table,) = predicted_spreads([loiter], *x8).tables.values()
-    assert table.speed_ratios == (0.5,)
-    # A flight of one that has none at all is refused for that reason, and the others are flown.
-    monkeypatch.setattr("scenarios.planning.spreads.SPREAD_RATIOS", SPREAD_RATIOS[3:])
-    spreads = predicted_spreads([loiter], *x8)
-    with pytest.raises(InfeasibleError, match="'loiter'"):
-        spreads(loiter)
-
-
-def test_a_flight_whose_spread_was_not_predicted_is_refused():
-    # Neither that of another level nor none: it would fly with too small a margin.
-    predicted = gusty(level="moderate")
-    spreads = PredictedSpreads(
-        tables={
-            (
-                "moderate",
-                predicted.guidance.model_dump_json(),
-                predicted.reference.model_dump_json(),
-            ): TABLED
-        }
-    )
-    assert spreads(gusty(level="moderate")) is TABLED
-    with pytest.raises(InputError, match="sampled from a continuous distribution in turbulence"):
-        spreads(gusty(level="light"))
-
-
 @pytest.mark.parametrize("airspeed", [19.42, 60.0])
 def test_the_margin_of_another_law_is_planned_with_parameters_scaled_to_the_aircraft(
     airspeed, monkeypatch
@@ -149,9 +108,3 @@ def test_the_margin_of_another_law_is_planned_with_parameters_scaled_to_the_airc
     # R is 60 m for the X8, and grows with the square of the airspeed at the same bank.
     assert guidance["look_ahead_m"] == pytest.approx(60.0 * (airspeed / 19.42) ** 2)
     assert spreads(flown) is TABLED
-
-
-def test_a_kinematic_vehicle_has_no_spread(x8):
-    assert predicted_spreads([scenario()], *x8).tables == {}
-    assert predicted_spreads([gusty(level="light")], None, None).tables == {}
-    assert PredictedSpreads()(scenario()) is None

@@ -1,5 +1,3 @@
-import math
-
 import numpy as np
 import pytest
 
@@ -25,13 +23,6 @@ def test_the_point_on_the_circle_moves_at_airspeed_through_the_air_and_returns_a
     assert np.hypot(*circle.offset(circle.period) - np.array(circle.offset(0.0))) == pytest.approx(
         0.0, abs=1e-3
     )
-
-
-def test_in_still_air_beside_a_vessel_at_rest_a_turn_takes_the_circumference_over_the_airspeed():
-    circle = VesselCircle(nu=0.0, speed=SPEED, radius=200.0)
-    assert circle.period == pytest.approx(2.0 * math.pi * 200.0 / SPEED, rel=1e-12)
-    assert circle.amplitude == pytest.approx(SPEED / 200.0, rel=1e-12)
-    assert circle.crossing_interval == circle.period == circle.periods(0.9)[0]
 
 
 def test_a_circle_that_is_too_tight_is_refused_with_the_radius_that_is_not():

@@ -2,26 +2,11 @@
 
 import math
 
-import numpy as np
 import pytest
 from flight_cases import plan, scenario
 
 from gnc.errors import InfeasibleError
-from gnc.estimation.navigation import MeasuredMotion
-from gnc.estimation.vessel import Tube
-from gnc.guard.guard import GuardParameters
-from scenarios.experiment.requests import Experiment
-from scenarios.planning.guidance import farthest_start
-from scenarios.planning.missions import Start, check_start
-from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
-
-
-def start_of(flight):
-    """Return distance [m], bearing and course [deg] of a flight's start."""
-    start = flight.start
-    bearing = math.degrees(math.atan2(start.east, start.north))
-    return math.hypot(start.north, start.east), bearing % 360.0, math.degrees(start.course)
 
 
 def tracking(**changes):
@@ -44,91 +29,6 @@ def test_a_given_start_is_flown_from(made):
     assert given.course == pytest.approx(math.radians(-70.0))
 
 
-@MISSIONS
-def test_a_place_ahead_and_right_of_the_vessel_may_be_given(made):
-    given = plan(
-        made(vessel={"speed_mps": 8.0, "course_deg": 90.0}, start={"place_m": (-400.0, 30.0)})
-    ).start
-    # Eastbound: astern is west, and right is south.
-    assert (given.north, given.east) == pytest.approx((-30.0, -400.0), abs=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("key", "value", "place", "found"),
-    [
-        ("range_m", 1000.0, 0, 1000.0),
-        # Against the plume's axis, 180 degrees.
-        ("aspect_deg", -45.0, 1, 135.0),
-        ("course_deg", 90.0, 2, 90.0),
-    ],
-)
-def test_nothing_else_of_a_flight_changes_with_a_start_that_is_given(key, value, place, found):
-    changes = {
-        "reports": {"interval_s": (2.0, 10.0)},
-        "sensors": {"position_sigma_m": 2.0},
-        "fault": {"kind": "vessel_data", "at_s": (10.0, 20.0)},
-    }
-    sampled, given = (plan(scenario(**changes, start=start)) for start in ({}, {key: value}))
-    one, other = list(start_of(sampled)), list(start_of(given))
-    assert other[place] == pytest.approx(found)
-    assert one[place] != pytest.approx(found)
-    del one[place], other[place]
-    assert other == pytest.approx(one, rel=1e-12)
-    assert given.sensing.received == sampled.sensing.received
-    assert given.world.faults == sampled.world.faults
-    for step in (0, 1, 100):
-        one, other = (
-            flight.sensing.errors.read(
-                step, MeasuredMotion(0.0, 0.0, 0.0, 0.0, 0.0), 0.0, 0.0, satellites=True
-            )
-            for flight in (sampled, given)
-        )
-        assert other == one
-        assert one[0][0] != 0.0
-
-
-@pytest.mark.parametrize(
-    ("start", "farthest"),
-    [
-        ({"distance_m": (400.0, 900.0)}, 900.0),
-        ({"distance_m": (400.0, 900.0), "range_m": 3000.0}, 3000.0),
-        ({"place_m": (-600.0, 800.0)}, 1000.0),
-    ],
-)
-def test_the_farthest_start_is_the_one_that_is_given_or_else_the_largest_distance(start, farthest):
-    assert farthest_start(tracking(start=start)) == pytest.approx(farthest, rel=1e-12)
-
-
-@MISSIONS
-def test_starts_that_are_not_given_lie_within_their_limits(made):
-    trial = made(
-        start={"distance_m": [400.0, 500.0], "spread_deg": 20.0}, flight={"duration_max_s": 10.0}
-    )
-    distance, bearing, course = np.transpose(
-        [start_of(plan(trial, seed=seed)) for seed in range(40)]
-    )
-    assert 400.0 <= distance.min() < 420.0
-    assert 480.0 < distance.max() <= 500.0
-    assert 160.0 <= bearing.min() < 170.0
-    assert 190.0 < bearing.max() <= 200.0
-    # Any course: both halves of the compass, and fore and aft.
-    assert course.min() < -90.0
-    assert course.max() > 90.0
-
-
-def test_starts_depend_on_the_seed_and_nu_alone():
-    def seeds(*overrides):
-        experiment = Experiment("sweep_nu", load_study("sweep_nu", overrides))
-        return {experiment.named(i): experiment.request(i).seed for i in range(experiment.flights)}
-
-    base = seeds()
-    at = base["nu_0.50", "study"]
-    assert at == seeds("sweep.nu=[0.5]", "comparison.variants=[]")["nu_0.50", "study"]
-    assert at == base["nu_0.50_no_preview", "no_preview"]
-    assert at != seeds("seed=2")["nu_0.50", "study"]
-    assert len({seed for (_, variant), seed in base.items() if variant == "study"}) == 20
-
-
 def test_a_vehicle_whose_lag_keeps_a_turn_away_from_leading_away_is_refused():
     # At 0.5 rad/s and 4 s late it overshoots by two radians: it came within 28 m of a ship from
     # which it had to keep 50 m.
@@ -138,20 +38,3 @@ def test_a_vehicle_whose_lag_keeps_a_turn_away_from_leading_away_is_refused():
     ):
         plan(tracking(kinematic={"heading_rate_lag_s": 4.0}))
     plan(tracking(kinematic={"heading_rate_lag_s": 0.4}))
-
-
-@pytest.mark.parametrize("reported", [19.95, 20.0, 25.0])
-def test_a_vessel_that_is_reported_to_be_as_fast_as_the_vehicle_is_refused(reported):
-    guard = GuardParameters(
-        radius=200.0, heading_rate_max=0.49, lag=0.26, delay=0.26, slow_lag=0.39, time_step=0.05
-    )
-    start, known = (
-        Start(north=300.0, east=0.0, course=0.0),
-        {"wind": (0.0, 0.0), "airspeed": 20.0, "keepout_radius": 200.0},
-    )
-    with pytest.raises(
-        InfeasibleError,
-        match=f"leaves at only 19.8 of its 20.0 m/s, beside a vessel with {reported:.1f} m/s",
-    ):
-        check_start(start, guard, [Tube(0.0, 0.0, 0.0, reported, 0.0)], **known)
-    check_start(start, guard, [Tube(0.0, 0.0, 0.0, 19.0, 0.0)], **known)

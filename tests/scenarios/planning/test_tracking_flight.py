@@ -6,11 +6,7 @@ from dataclasses import replace
 import pytest
 
 from gnc.errors import InfeasibleError
-from gnc.estimation.navigation import AirMotion
-from gnc.estimation.vessel import Tube
-from gnc.guard.guard import HeadingRateFilter
 from innerloop.flight.turn_reversal import TurnReversalResponse
-from scenarios.errors import InputError
 from scenarios.planning.missions import plan_flight
 from scenarios.scenario.files import load_study, with_values
 from scenarios.vehicles.vehicle_setup import VehicleSetup
@@ -30,83 +26,6 @@ def plan(*overrides, nu=0.5, seed=1, setup=SETUP):
     return plan_flight(scenario, flight_id="x", seed=seed, setup=setup)
 
 
-def test_a_tracking_flight_has_no_sensing_margin_or_health():
-    flight = plan()
-    assert (flight.sensing, flight.margin, flight.apparent_wind, flight.periods) == (
-        None,
-        None,
-        None,
-        (),
-    )
-    assert (flight.guidance.navigation, flight.guidance.health) == (None, None)
-    assert flight.guidance.vessel == pytest.approx((0.5 * 19.42, 0.0))
-    # A circle has no vessel either.
-    circling = plan_flight(
-        load_study("paper", ["cases=[]", "study=flights", "reference.path=circle"]),
-        flight_id="x",
-        seed=1,
-        setup=SETUP,
-    )
-    assert (circling.world, circling.oscillation, circling.guidance.guard) == (None, None, None)
-    assert math.isnan(circling.nu)
-
-
-def test_the_altitude_is_that_of_the_centre_of_oscillation():
-    # Equation (9): z_CO = r_CO sin(alpha_P), above the funnel at 60 m.
-    flight = plan("plume.elevation_deg=10")
-    assert flight.altitude == pytest.approx(
-        60.0 + flight.centre_distance * math.sin(math.radians(10.0)), abs=1e-9
-    )
-    assert flight.source_height == 60.0
-
-
-def test_omega_max_is_the_coordinated_turn_at_the_bank_of_the_scenario():
-    # g tan(45 deg)/19.42 m/s = 0.50498 rad/s.
-    assert plan().guidance.tracking.heading_rate_max == pytest.approx(9.80665 / 19.42, rel=1e-12)
-    given = plan("guidance.heading_rate_max_rad_s=0.503")
-    assert given.heading_rate_max == given.guidance.tracking.heading_rate_max == 0.503
-
-
-def test_the_airspeed_is_trimmed_within_what_the_vehicle_flies():
-    law = plan("guidance.airspeed_trim_max_mps=30").guidance.airspeed_law
-    assert (law.pace(-1000.0), law.pace(1000.0)) == (SETUP.airspeed_min, SETUP.airspeed_max)
-
-
-def test_commands_may_be_left_uncut():
-    flight = plan(
-        "fidelity=kinematic",
-        "guidance.command_limit=false",
-        "guidance.approach=false",
-        "guidance.keepout_guard=false",
-    )
-    assert flight.guidance.tracking.heading_rate_max == math.inf
-    # They are judged by omega_max all the same.
-    assert flight.heading_rate_max == pytest.approx(9.80665 / 19.42, rel=1e-12)
-
-
-def test_the_guard_and_an_orbit_that_is_joined_need_commands_that_are_cut():
-    # At 5 Hz 5 of 6 flights of a law that flies at the vessel came within r_min, by up to 3 m.
-    with pytest.raises(
-        InputError,
-        match=r"command_limit is false; .*the keep-out guard .*guidance.keepout_guard to false",
-    ):
-        plan("fidelity=kinematic", "guidance.command_limit=false", "guidance.approach=false")
-    with pytest.raises(
-        InputError,
-        match=r"command_limit is false; the way to the orbit.*: set guidance.approach",
-    ):
-        plan("fidelity=kinematic", "guidance.command_limit=false")
-
-
-def test_preview_and_airspeed_trim_can_be_switched_off():
-    assert plan("guidance.preview=false").guidance.tracking.lag == 0.0
-    # The vehicle's lag and half a step of 20 Hz.
-    assert plan().guidance.tracking.lag == pytest.approx(0.3, rel=1e-12)
-    assert plan().guidance.airspeed_law.gain == 0.15
-    assert plan("guidance.airspeed_trim=false").guidance.airspeed_law.gain == 0.0
-    assert plan("guidance.keepout_guard=false").guidance.guard is None
-
-
 def test_a_start_from_which_no_command_keeps_out_is_refused():
     # 210 m astern of a vessel at rest, straight at it: a turn away takes 38 m, and its lag besides.
     start = ["start.place_m=[-210.0, 0.0]", "start.course_deg=0"]
@@ -118,15 +37,6 @@ def test_a_start_from_which_no_command_keeps_out_is_refused():
     # Away from it, or with no guard, it is flown.
     plan(start[0], "start.course_deg=180", nu=0.0)
     plan(*start, "guidance.keepout_guard=false", nu=0.0)
-
-
-def test_the_guard_keeps_the_keep_out_radius_and_no_more_where_everything_is_known():
-    # The tracking allowance is the orbit's. The clearance of a vehicle that recedes is its distance
-    # less the radius.
-    guard = HeadingRateFilter(plan(nu=0.0).guidance.guard)
-    vessel = Tube(0.0, 0.0, 0.0, 0.0, 0.0)
-    own = AirMotion(ground_north=0.0, ground_east=300.0, course=math.pi / 2.0)
-    assert guard.clearance(0.0, own, (vessel,), 19.42) == pytest.approx(300.0 - 200.0, abs=1e-9)
 
 
 def test_the_guard_keeps_the_disc_that_the_keep_out_sphere_cuts_out_at_the_height_of_the_flight():
@@ -147,15 +57,3 @@ def test_the_guard_keeps_the_disc_that_the_keep_out_sphere_cuts_out_at_the_heigh
     assert (
         plan("plume.elevation_deg=60", "guidance.tracking_allowance_m=400").guidance.guard is None
     )
-
-
-@pytest.mark.parametrize(
-    ("overrides", "nu", "words"),
-    [
-        ([], 1.0, "nu is 1; it must be below 1"),
-        (["guidance.look_ahead_m=40"], 0.5, "R is 40 m; it must exceed"),
-    ],
-)
-def test_infeasible_flights_say_why(overrides, nu, words):
-    with pytest.raises(InfeasibleError, match=words):
-        plan(*overrides, nu=nu)

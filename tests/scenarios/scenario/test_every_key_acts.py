@@ -16,6 +16,8 @@ from scenarios.scenario.errors import known_keys
 from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
 
+pytestmark = pytest.mark.slow
+
 SHORT = """
 title = "short"
 fidelity = "kinematic"

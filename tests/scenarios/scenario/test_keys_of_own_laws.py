@@ -1,11 +1,7 @@
 """The keys that a steering law of one's own brings: their names, defaults and types."""
 
-from dataclasses import dataclass
-
 import pytest
 
-from extensions.arena.entrants import entrants_of
-from scenarios.api.scenario import load
 from scenarios.errors import InputError
 from scenarios.planning.guidance import steering_law
 from scenarios.scenario.files import load_study
@@ -42,16 +38,6 @@ class Other(Same):
 """
 
 
-def test_a_field_called_as_a_key_of_guidance_is_that_key_and_has_its_default(tmp_path):
-    (tmp_path / "own.py").write_text(OWN, encoding="utf-8")
-    law = f"guidance.law={tmp_path}/own.py:"
-    assert steering_law(loaded(law + "Same").guidance).gain_per_s == 1.5
-    assert steering_law(loaded(law + "Same", "guidance.gain_per_s=0.4").guidance).gain_per_s == 0.4
-    assert "has no effect" in refusal(law + "Same", "guidance.epsilon_per_m=0.01")
-    words = "look_ahead_m = 25.0, which is a key of [guidance] already, by default 60.0; give the field another name"
-    assert words in refusal(law + "Other")
-
-
 @pytest.mark.parametrize(
     ("override", "words"),
     [
@@ -71,25 +57,3 @@ def test_a_key_of_a_law_is_of_the_type_of_its_field(tmp_path, override, words):
     fitting = ["guidance.count=3", 'guidance.word="y"', "guidance.flag=true", "guidance.gain=0.5"]
     made = steering_law(loaded(law, *fitting).guidance)
     assert (made.count, made.word, made.flag, made.gain) == (3, "y", True, 0.5)
-
-
-def test_an_arena_tunes_no_parameter_that_is_a_whole_number(tmp_path):
-    (tmp_path / "own.py").write_text(OWN, encoding="utf-8")
-    scenario = load_study(
-        "arena", [f'arena.tracking=["{tmp_path}/own.py:Same"]', "arena.standoff=[]"]
-    )
-    (entrant,), _ = entrants_of(scenario)
-    assert entrant.defaults == {"gain_per_s": 1.5, "gain": 2.0}
-
-
-@dataclass(frozen=True, kw_only=True)
-class Given:
-    gain_per_s: float = 1.5
-
-    def heading_rate(self, *_):
-        return 0.0
-
-
-def test_an_object_sets_the_keys_of_its_fields_also_those_that_guidance_has():
-    scenario = load("sweep_nu", law=Given(gain_per_s=0.7), **{"comparison.variants": []})
-    assert scenario["guidance.gain_per_s"] == 0.7

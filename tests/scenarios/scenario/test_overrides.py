@@ -3,15 +3,11 @@
 import re
 
 import pytest
-from pydantic import BaseModel, RootModel
 
 from scenarios.errors import InputError
 from scenarios.experiment.points import points_of
 from scenarios.experiment.requests import Experiment
-from scenarios.scenario.errors import known_keys
-from scenarios.scenario.files import load_document, load_study
-from scenarios.scenario.overrides import given_keys, merged, set_value
-from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.files import load_study
 
 
 def write(folder, name, text):
@@ -26,38 +22,6 @@ def refusal(name, *overrides):
     message = str(refused.value)
     assert "\n" not in message
     return message
-
-
-@pytest.mark.parametrize(
-    ("name", "words"),
-    [
-        (
-            "sweep_mu",
-            "unknown scenario 'sweep_mu'; did you mean 'sweep_nu'? give the path of a TOML file or one of: arena",
-        ),
-        ("swep_nu.toml", "no scenario file 'swep_nu.toml'; did you mean 'sweep_nu'?"),
-        ("xyz", "unknown scenario 'xyz'; give the path of a TOML file or one of: arena"),
-    ],
-)
-def test_an_unknown_scenario_gets_the_nearest_known_one(name, words):
-    assert words in refusal(name)
-
-
-def test_a_file_with_a_byte_order_mark_is_read(tmp_path):
-    path = write(tmp_path, "marked.toml", '\ufeffstudy = "flights"\ntitle = "marked"\n')
-    assert load_study(path).title == "marked"
-
-
-def test_known_keys_go_through_sections_and_lists_of_sections():
-    keys = known_keys(Scenario)
-    assert {
-        "wind",
-        "wind.speed_mps",
-        "vessel.manoeuvres",
-        "vessel.manoeuvres.0.at_s",
-        "draws.0.key",
-    } <= set(keys)
-    assert len(keys) == len(set(keys))
 
 
 def test_a_file_extends_a_scenario_of_the_catalog(tmp_path):
@@ -86,30 +50,6 @@ def test_a_chain_of_files_is_resolved_relative_to_each_file(tmp_path):
     third = load_study(path)
     assert third.title == "third"
     assert (third.wind.speed_mps, third.wind.from_deg, third.vessel.speed_mps) == (4.0, 10.0, 5.0)
-
-
-def test_a_description_is_of_the_scenario_that_gives_it_and_not_of_those_that_extend_it(tmp_path):
-    assert load_study("sea_wind").description
-    second = write(
-        tmp_path, "second.toml", 'extends = "sea_wind"\ntitle = "second"\ndescription = "Own."\n'
-    )
-    third = write(tmp_path, "third.toml", 'extends = "second.toml"\ntitle = "third"\n')
-    assert [load_study(path).description for path in (second, third)] == ["Own.", ""]
-    assert load_study({"extends": "sea_wind", "title": "of a program"}).description == ""
-    # With a key set for it, it is still the scenario that is described.
-    assert load_study("sea_wind", ["flights=2"]).description == load_study("sea_wind").description
-
-
-def test_overrides_come_after_what_a_file_extends(tmp_path):
-    write(
-        tmp_path,
-        "base.toml",
-        'study = "flights"\ntitle = "base"\n[[draws]]\nkey = "wind.speed_mps"\nuniform = [0.0, 5.0]\n',
-    )
-    path = write(tmp_path, "own.toml", 'extends = "base.toml"\n')
-    assert len(load_study(path).draws) == 1
-    own = load_study(path, ["wind.speed_mps=2"])
-    assert (own.wind.speed_mps, own.draws) == (2.0, ())
 
 
 SWEPT = """
@@ -211,25 +151,6 @@ def test_an_override_of_a_speed_ends_a_sampled_speed_ratio_and_one_of_the_ratio_
     assert "'vessel.speed_mps' has no effect here" in refusal("sweep_nu", "vessel.speed_mps=5")
 
 
-def test_a_sweep_on_the_command_line_is_kept_beside_an_earlier_override(tmp_path):
-    path = write(tmp_path, "swept.toml", SWEPT)
-    assert load_study(path, ["wind.speed_mps=9", "sweep.wind.speed_mps=[1, 3]"]).sweep.root[
-        "wind.speed_mps"
-    ] == (1, 3)
-
-
-def test_an_override_of_the_speed_ratio_has_its_way_in_cases_that_name_it_as_a_sweep_does():
-    points = points_of(load_study("paper", ["vessel.speed_ratio=0.3", "fidelity=kinematic"]))
-    assert {point.scenario.vessel.speed_ratio for point in points} == {0.3}
-
-
-def test_lists_are_replaced_and_tables_are_merged():
-    base = {"a": {"x": 1, "y": [1, 2]}, "b": [{"k": 1}], "c": 1}
-    own = {"a": {"y": [3]}, "b": [{"k": 2}, {"k": 3}], "c": {"z": 1}}
-    assert merged(base, own) == {"a": {"x": 1, "y": [3]}, "b": [{"k": 2}, {"k": 3}], "c": {"z": 1}}
-    assert base == {"a": {"x": 1, "y": [1, 2]}, "b": [{"k": 1}], "c": 1}
-
-
 @pytest.mark.parametrize(
     ("extends", "words"),
     [
@@ -252,41 +173,3 @@ def test_what_cannot_be_extended_is_refused_in_one_line(tmp_path, extends, words
         tmp_path, "b.toml", f'title = "b"\nextends = {extends.replace("b.toml", "a.toml")}\n'
     )
     assert words in refusal(path)
-
-
-def test_given_keys_are_those_of_the_file_its_base_and_the_overrides(tmp_path):
-    write(
-        tmp_path,
-        "base.toml",
-        'study = "flights"\ntitle = "base"\n[wind]\nspeed_mps = 3.0\n[sensors]\n',
-    )
-    path = write(
-        tmp_path,
-        "own.toml",
-        'extends = "base.toml"\n[[draws]]\nkey = "wind.from_deg"\nuniform = [0.0, 5.0]\n',
-    )
-    document = load_document(path, ["guidance.preview=false"])
-    assert given_keys(document) == {
-        "study",
-        "title",
-        "wind.speed_mps",
-        "sensors",
-        "draws",
-        "guidance.preview",
-    }
-
-
-class Sweep(RootModel[dict[str, list[float]]]):
-    """Values by keys of other sections."""
-
-
-class Swept(BaseModel):
-    sweep: Sweep = Sweep({})
-
-
-@pytest.mark.parametrize("key", ["sweep.wind.speed_mps", 'sweep."wind.speed_mps"'])
-def test_a_section_that_has_keys_of_other_sections_takes_them_whole(key):
-    document = {}
-    set_value(document, key, [0.0, 5.0], Swept)
-    assert document == {"sweep": {"wind.speed_mps": [0.0, 5.0]}}
-    assert known_keys(Swept) == ["sweep"]

@@ -5,8 +5,7 @@ known name. One table for files and overrides.
 import pytest
 
 from scenarios.errors import InputError
-from scenarios.scenario.files import checked, load_study
-from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.files import load_study
 
 DIGITS = "9" * 5000
 
@@ -258,25 +257,6 @@ def test_what_is_wrong_in_a_file_names_the_file(tmp_path, text, words):
     message = refusal(str(path), "seed=3")
     assert words in message
     assert "own.toml" in message
-
-
-def test_what_is_wrong_in_an_override_does_not_name_the_file(tmp_path):
-    path = tmp_path / "own.toml"
-    path.write_text('title = "t"\n', encoding="utf-8")
-    assert refusal(str(path), "winds.speed_mps=5").startswith("unknown key 'winds'")
-
-
-def test_a_long_value_is_cut_in_a_message():
-    assert len(refusal("sweep_nu", f"turbulence.level={'a' * 300}")) < 200
-
-
-def test_a_funnel_may_be_high_without_exhaust_and_truth_values_stand_where_they_belong():
-    assert load_study("sweep_nu", ["plume.source_height_m=500"]).source_height == 500.0
-    words = ["criteria.tracking_error_rms_m=false", "guidance.preview=true"]
-    scenario = load_study("sweep_nu", words)
-    assert scenario.criteria.tracking_error_rms_m is False
-    assert scenario.guidance.preview is True
-    assert checked({"title": "t", "cases": [{"name": "study"}]}, Scenario).cases
 
 
 def refusal(name, *overrides):

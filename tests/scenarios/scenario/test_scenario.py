@@ -3,11 +3,9 @@ several points, where they start."""
 
 import pytest
 
-from scenarios.errors import InputError
-from scenarios.experiment.points import points_of
 from scenarios.experiment.requests import Experiment
 from scenarios.experiment.sampling import flights_per_sample, is_random_sample
-from scenarios.scenario.files import load_study, with_values
+from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
 
 WIND = {"key": "wind.speed_mps", "uniform": [0.0, 5.0]}
@@ -152,33 +150,6 @@ def test_flights_with_swept_seeds_share_their_random_variables_where_these_are_c
     assert len(winds) == samples == 3 // flights_per_sample(scenario)
 
 
-def test_what_is_random_at_a_point_of_a_sweep_follows_from_its_values_alone():
-    def seeds(**sweep):
-        scenario = Scenario(title="own", flights=2, sweep=sweep, **OWN)
-        experiment = Experiment("own", scenario)
-        return {
-            (*experiment.request(i).inputs.values(), i % 2): experiment.request(i).seed
-            for i in range(experiment.flights)
-        }
-
-    alone = seeds(**{"keepout.radius_m": [200]})
-    among = seeds(**{"keepout.radius_m": [150.0, 200.0, 250.0]})
-    assert alone.items() <= among.items()
-    assert len({*among.values()}) == 6
-
-
-def test_a_comparison_has_the_starts_of_the_point_that_it_is_beside():
-    variants = [{"name": "other", "set": {"guidance.preview": False}}]
-    sweep = {"keepout.radius_m": [200.0, 250.0]}
-    compared = {"comparison": {"variants": variants}, "draws": [WIND]}
-    scenario = Scenario(title="own", flights=3, sweep=sweep, **compared, **OWN)
-    experiment = Experiment("own", scenario)
-    study, beside = ([experiment.request(i + first) for i in range(6)] for first in (0, 6))
-    assert [of.seed for of in study] == [of.seed for of in beside]
-    assert [of.scenario.wind for of in study] == [of.scenario.wind for of in beside]
-    assert len({of.seed for of in study}) == 6
-
-
 @pytest.mark.parametrize(
     ("keys", "several"),
     [
@@ -192,56 +163,6 @@ def test_a_comparison_has_the_starts_of_the_point_that_it_is_beside():
 )
 def test_an_experiment_has_several_points_by_what_varies_otherwise_than_at_random(keys, several):
     assert Scenario(title="own", **keys).several_points is several
-
-
-def test_a_distance_that_is_sampled_is_checked_by_its_own_value_and_not_by_that_of_starts_without_it():
-    study = load_study("starts_anywhere", ["keepout.radius_m=500", "draws.1.uniform=[510,1300]"])
-    assert study.draws[1].key == "start.range_m"
-    with pytest.raises(
-        InputError, match=r"start\.range_m is 490 m; it must exceed keepout\.radius_m, 500 m"
-    ):
-        with_values(study, {"start.range_m": 490.0})
-
-
-def test_what_some_flights_may_depend_on_is_set_for_them():
-    of_flights = {"flight_seed": 3, "criteria.settles": False, "wind": {"speed_mps": 3.0}}
-    conditions = [
-        {
-            "name": "own",
-            "title": "Own",
-            "set": of_flights | {"draws": [WIND], "speed_ratio": [0.2, 0.5]},
-        }
-    ]
-    cases = [{"name": "own", "set": of_flights | {"sweep.nu": [0.3]}}]
-    assert (
-        Scenario(title="own", study="arena", arena={"conditions": conditions})
-        .arena.conditions[0]
-        .set["flight_seed"]
-        == 3
-    )
-    assert Scenario(title="own", cases=cases).cases[0].set["flight_seed"] == 3
-    variants = [
-        {
-            "name": "own",
-            "set": of_flights | {"fidelity": "kinematic", "draws.0.uniform": [0.0, 1.0]},
-        }
-    ]
-    assert (
-        Scenario(title="own", draws=[WIND], comparison={"variants": variants})
-        .comparison.variants[0]
-        .set["flight_seed"]
-        == 3
-    )
-
-
-def test_swept_values_that_are_equal_are_flown_once():
-    points = points_of(
-        Scenario(
-            title="own",
-            sweep={"wind.speed_mps": [5, 5.0, 6], "start.distance_m": [[400, 500], [400.0, 500]]},
-        )
-    )
-    assert [point.scenario.wind.speed_mps for point in points] == [5.0, 6.0]
 
 
 @pytest.mark.parametrize(
@@ -282,18 +203,3 @@ def test_a_plume_begins_at_the_funnel_of_its_ship_unless_its_height_is_given(
 ):
     scenario = load_study(name, overrides)
     assert (scenario.source_height, scenario.altitude) == (funnel, start)
-
-
-@pytest.mark.parametrize(
-    "varied", ["sweep.emission.ship=%s", 'draws=[{key="emission.ship",choice=%s}]']
-)
-def test_ships_are_compared_from_one_altitude_or_funnel_height(varied):
-    ships = varied % '["container","cruise"]'
-    with pytest.raises(
-        InputError,
-        match=r"'emission\.ship' varies .* height of the funnel here: give flight\.altitude_m, or each",
-    ):
-        load_study("sulphur", [ships])
-    # Either gives all of them the one altitude for which the autopilot is designed.
-    for given in ("flight.altitude_m=40", "plume.source_height_m=40"):
-        assert load_study("sulphur", [ships, given]).altitude == 40.0

@@ -1,20 +1,14 @@
 """Several faults in one flight, ``[[fault]]``: how they are read, refused, sampled, flown and shown."""
 
-import tomllib
-
-import numpy as np
 import pytest
 from flight_cases import fly, plan, scenario
 
-from scenarios.cli.template import template
 from scenarios.errors import InputError
-from scenarios.experiment.draws import sampled_flight
 from scenarios.experiment.requests import Experiment, scenario_file
 from scenarios.measures.columns import SUMMARY_COLUMNS, further_faults
 from scenarios.planning.air.errors import drift_rate
-from scenarios.scenario.files import load_study, with_values
+from scenarios.scenario.files import load_study
 from scenarios.studies.checks import check_without_design
-from scenarios.studies.manifest import parameters
 from scenarios.world.faults import SATELLITES, VESSEL_DATA
 
 TWICE = (
@@ -32,20 +26,6 @@ def checked(*faults, **changes):
     check_without_design(scenario(fault=faults, **changes))
 
 
-def test_one_fault_in_a_list_flies_as_it_does_alone():
-    alone, listed = (fly(fault=given, **SHORT) for given in (BOTH[0], BOTH[:1]))
-    assert listed.history.equals(alone.history)
-    assert {**listed.row, "wall_time_s": 0.0} == {**alone.row, "wall_time_s": 0.0}
-
-
-def test_another_fault_leaves_start_air_and_the_first_fault_as_they_were():
-    alone, two = (plan(scenario(fault=given, **SHORT)) for given in (TWICE[0], TWICE))
-    assert alone.start == two.start
-    assert alone.world.weather == two.world.weather
-    assert two.world.faults.each[0] == alone.world.faults.each[0]
-    assert 100.0 <= two.world.faults.each[1].begins <= 110.0
-
-
 def test_each_fault_acts_at_its_time_and_is_in_the_row_in_the_order_of_time():
     flown = fly(fault=BOTH, reports={"interval_s": (2.0, 4.0)}, **SHORT)
     row, time = flown.row, flown.history["time_s"].to_numpy()
@@ -57,19 +37,6 @@ def test_each_fault_acts_at_its_time_and_is_in_the_row_in_the_order_of_time():
     during = (time > row["fault_2_time_s"]) & (time < row["fault_2_time_s"] + 20.0)
     assert (lost[during] > 0.0).all()
     assert not (lost[~during] > 0.0)[time[~during] < row["fault_2_time_s"]].any()
-
-
-def test_the_same_data_may_be_lost_twice_apart():
-    checked(*TWICE)
-    given = plan(scenario(fault=TWICE, reports={"interval_s": (2.0, 4.0), "missing": 0.0}))
-    times = np.array([time for time, _ in given.sensing.received])
-    losses = given.world.faults.intervals(VESSEL_DATA)
-    assert [ends - begins for begins, ends in losses] == pytest.approx([20.0, 15.0])
-    for begins, ends in losses:
-        assert not ((begins <= times) & (times < ends)).any()
-        # The one before and the one after are at most an interval away.
-        assert times[times < begins].max() > begins - 4.0
-        assert times[times >= ends].min() < ends + 4.0
 
 
 @pytest.mark.parametrize(
@@ -100,87 +67,6 @@ def test_faults_that_cannot_be_are_refused_with_their_keys(faults, words):
     assert "\n" not in str(refused.value)
 
 
-def test_a_part_fails_once_and_two_parts_may_both_fail():
-    twice = ({"kind": "engine", "at_s": 50.0}, {"kind": "engine", "at_s": 90.0})
-    with pytest.raises(InputError, match=r"fault\.0\.at_s and fault\.1\.at_s: 'engine' may fail"):
-        checked(*twice, fidelity="six_dof")
-    checked(twice[0], {"kind": "left_elevon", "at_s": 50.0}, fidelity="six_dof")
-
-
-def test_times_that_are_sampled_are_looked_at_before_any_flight():
-    draws = ({"key": "fault.1.at_s", "uniform": (50.0, 110.0)},)
-    with pytest.raises(InputError, match="again between 50 s and 125 s"):
-        checked(*TWICE, draws=draws)
-    kinds = ({"key": "fault.1.kind", "choice": (VESSEL_DATA, SATELLITES)},)
-    with pytest.raises(InputError, match="'vessel_data' may fail"):
-        checked(TWICE[0], {"kind": SATELLITES, "at_s": (50.0, 60.0)}, draws=kinds)
-
-
-DOCUMENT = """
-title = "two faults"
-fidelity = "kinematic"
-guidance.mission = "follow"
-[[fault]]
-kind = "vessel_data"
-at_s = [40.0, 60.0]
-vessel_data_s = 20.0
-[[fault]]
-kind = "satellite_navigation"
-at_s = 70.0
-"""
-
-
-def test_a_file_has_a_list_of_tables_and_overrides_number_them():
-    read = load_study(tomllib.loads(DOCUMENT), ["fault.1.satellite_navigation_s=30"])
-    assert [fault.kind for fault in read.faults] == [VESSEL_DATA, SATELLITES]
-    assert read.faults[1].at_s == (70.0, 70.0)
-    assert read.faults[1].satellite_navigation_s == 30.0
-    assert read.declared_faults == {VESSEL_DATA, SATELLITES}
-
-
-@pytest.mark.parametrize(
-    ("changed", "words"),
-    [
-        ("fault.1.at_s=[90, 80]", r"fault\.1\.at_s is \[90\.0, 80\.0\]"),
-        ("fault.1.at_s=[90, 1e6]", r"fault\.1\.at_s ends at 1e\+06 s; it must lie within"),
-        ("fault.1.kin=none", r"unknown key 'fault\.1\.kin'; did you mean 'fault\.1\.kind'"),
-        ("fault.2.kind=none", r"unknown key 'fault\.2\.kind'; fault has 2 entries"),
-        ("fault.kind=none", r"unknown key 'fault\.kind'; fault has 2 entries"),
-        ("fault.1.vessel_data_s=-3", r"fault\.1\.vessel_data_s is -3"),
-        (
-            "fault.1.vessel_data_s=30",
-            r"key 'fault\.1\.vessel_data_s' has no effect here: .* set fault\.1\.kind to 'vessel_data'",
-        ),
-        ("fault=7", r"fault"),
-    ],
-)
-def test_what_is_wrong_with_one_of_them_is_said_with_its_number(changed, words):
-    with pytest.raises(InputError, match=words) as refused:
-        load_study(tomllib.loads(DOCUMENT), [changed])
-    assert "\n" not in str(refused.value)
-
-
-def test_a_key_without_effect_is_found_in_a_list_of_a_file_too():
-    with pytest.raises(InputError, match=r"key 'fault\.1\.vessel_data_s' has no effect here"):
-        load_study(tomllib.loads(DOCUMENT + "vessel_data_s = 30.0\n"))
-
-
-def test_each_is_sampled_by_a_key_of_its_own():
-    draws = (
-        {"key": "fault.0.kind", "choice": ("none", VESSEL_DATA)},
-        {"key": "fault.1.at_s", "uniform": (100.0, 110.0)},
-    )
-    trial = scenario(fault=TWICE, draws=draws)
-    flights = [sampled_flight("trial", trial, number).scenario for number in range(4)]
-    assert [flight.faults[0].kind for flight in flights] == ["none", VESSEL_DATA] * 2
-    times = [flight.faults[1].at_s for flight in flights]
-    assert all(100.0 <= earliest == latest <= 110.0 for earliest, latest in times)
-    assert len(set(times)) == 4
-    # The one that this flight does not have comes last in its row.
-    faults = plan(flights[0]).world.faults
-    assert [of.kind for of in faults.each] == [VESSEL_DATA, "none"]
-
-
 def test_the_guard_reckons_with_the_longest_loss_of_satellites():
     def drift(*lasting):
         faults = tuple(
@@ -206,22 +92,3 @@ def test_a_flight_with_several_is_written_to_a_file_that_repeats_it(tmp_path):
         plan(again, seed=again.flight_seed).world.faults
         == plan(request.scenario, seed=request.seed).world.faults
     )
-
-
-def test_a_new_file_made_from_one_with_several_has_them_all(tmp_path):
-    (tmp_path / "two.toml").write_text(DOCUMENT)
-    (tmp_path / "new.toml").write_text(template(str(tmp_path / "two.toml"), "new.toml"))
-    made, of = (load_study(str(tmp_path / name)) for name in ("new.toml", "two.toml"))
-    assert made.faults == of.faults
-
-
-def test_the_manifest_lists_the_keys_of_each():
-    listed = {of["key"]: of["value"] for of in parameters(load_study(tomllib.loads(DOCUMENT)))}
-    assert listed["fault.0.kind"] == VESSEL_DATA
-    assert listed["fault.1.at_s"] == [70.0, 70.0]
-
-
-def test_a_case_may_set_one_fault_of_several_or_all():
-    changed = with_values(scenario(fault=TWICE), {"fault.1.vessel_data_s": 9.0})
-    assert np.array([of.vessel_data_s for of in changed.faults]) == pytest.approx([20.0, 9.0])
-    assert with_values(scenario(fault=TWICE), {"fault": BOTH[0]}).faults[0].kind == SATELLITES

@@ -2,6 +2,7 @@
 so in one line with the key, and ends with status 2.
 """
 
+import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -10,6 +11,8 @@ from scenarios.scenario.errors import known_keys
 from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
 from tests.in_process import run_command
+
+pytestmark = pytest.mark.slow
 
 KEYS = sorted(known_keys(Scenario))
 VALUES = st.one_of(

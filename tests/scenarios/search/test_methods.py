@@ -7,15 +7,15 @@ import functools
 import numpy as np
 import pytest
 
-from common.errors import PluginError
 from scenarios.search.method import (
-    SEARCH_METHODS,
     Coordinate,
     SearchSettings,
     Space,
     methods_named,
     search_in_turns,
 )
+
+pytestmark = pytest.mark.slow
 
 METHODS = ("corners", "differential_evolution", "local", "cma")
 
@@ -135,42 +135,6 @@ def test_a_search_around_a_point_begins_at_the_worst_that_others_found(method):
     assert together < 1.0
 
 
-@pytest.mark.parametrize("method", ["local", "cma"])
-def test_a_search_around_a_point_that_has_found_a_violation_looks_for_another_one(method):
-    # Two pits with violations; from a point between them either is found, and then the other one.
-    pits = np.full(6, 0.2), np.full(6, 0.8)
-    space = space_of(*[Coordinate()] * 6)
-
-    def depth(point, pit):
-        return 100.0 * float(np.linalg.norm(point - pit)) - 10.0
-
-    _, tried = least(
-        (method,), space, lambda point: min(depth(point, pit) for pit in pits), turns=100
-    )
-    violating = [[depth(point, pit) < 0.0 for point in tried] for pit in pits]
-    assert all(any(of) for of in violating)
-    # Once a pit is known no point of it is a start any more: it takes a few flights, not most of
-    # them.
-    assert sum(map(sum, violating)) < 0.2 * len(tried)
-
-
-@pytest.mark.parametrize("method", ["differential_evolution", "local", "cma"])
-def test_a_method_that_is_stuck_begins_anew_as_often_as_it_may(method):
-    methods = methods_named((method,), BOWL, SearchSettings(population=16, restarts=2), 1)
-    generator = np.random.default_rng(1)
-
-    def chance(_, points):
-        tried.extend(points)
-        return generator.random(len(points))
-
-    tried = []
-    search_in_turns(methods, BOWL, chance, population=16, turns=10_000)
-    # Where nothing leads to anything better, a start is given up after some batches, and after
-    # three the search ends by itself.
-    assert methods[method].exhausted
-    assert 300 < len(tried) < 2000
-
-
 def test_what_lies_beyond_the_declared_ranges_is_avoided_by_all_that_propose_freely():
     space = space_of(*[Coordinate()] * 4, beyond=lambda point: max(0.0, float(point.sum()) - 2.0))
     for method in ("corners", "local"):
@@ -195,82 +159,3 @@ def test_corners_take_every_choice_equally_often_and_put_quantities_at_their_end
     # ends.
     assert ends[1] == pytest.approx(0.8, abs=0.06)
     assert ends[2:].tolist() == [0.0, 0.0]
-
-
-def test_cma_leaves_choices_as_they_are_and_has_nothing_to_search_without_two_quantities():
-    space = space_of(Coordinate(choices=THIRDS), *[Coordinate()] * 3)
-    _, tried = least(("cma",), space, lambda point: float(point[1]), turns=2)
-    assert len(np.unique(tried[:, 0])) == 1
-    narrow = space_of(Coordinate(choices=THIRDS), Coordinate())
-    methods = methods_named(("cma",), narrow, SearchSettings(population=16), 1)
-    assert (
-        len(
-            search_in_turns(methods, narrow, lambda _, points: points[:, 0], population=16, turns=5)
-        )
-        == 0
-    )
-
-
-def test_a_search_ends_when_its_time_is_over():
-    batches = []
-
-    def attempt(_, points):
-        batches.append(len(points))
-        return points[:, 0]
-
-    methods = methods_named(METHODS, BOWL, SearchSettings(population=POPULATION), 1)
-    search_in_turns(
-        methods,
-        BOWL,
-        attempt,
-        population=POPULATION,
-        turns=None,
-        within_time=lambda: len(batches) < 7,
-    )
-    assert len(batches) == 7
-
-
-def test_an_unknown_method_is_refused_with_the_name_that_was_meant():
-    with pytest.raises(
-        PluginError,
-        match=r"unknown search method 'corner'; did you mean 'corners'\? known are cma, corners, diff",
-    ):
-        SEARCH_METHODS.get("corner")
-
-
-class Own:
-    """A method that proposes what it is given, once."""
-
-    exhausted = True
-
-    def __init__(self, *points):
-        self.points = points
-
-    def ask(self, *_):
-        points, self.points = self.points, ()
-        return [[x] * BOWL.dimension for x in points]
-
-    def tell(self, _):
-        raise ZeroDivisionError("no\nclearance")
-
-
-@pytest.mark.parametrize(
-    ("method", "words"),
-    [
-        (Own(*[0.5] * 5), "ask(4) returned [[0.5, "),
-        (Own(0.5, 1.5), "it has to be points whose coordinates lie from 0 to 1"),
-        (Own(float("nan")), "it has to be points whose coordinates lie from 0 to 1"),
-        (Own("far"), "ask(4) returned [['far', "),
-        (Own(0.5), "tell() failed: ZeroDivisionError: no clearance (test_methods.py:"),
-    ],
-)
-def test_what_a_method_of_ones_own_cannot_be_asked_for_is_said_in_one_line_with_its_name(
-    method, words
-):
-    with pytest.raises(PluginError) as refused:
-        search_in_turns(
-            {"own.py:Own": method}, BOWL, lambda _, points: points[:, 0], population=4, turns=2
-        )
-    assert str(refused.value).startswith("search method 'own.py:Own': ")
-    assert words in str(refused.value)
-    assert "\n" not in str(refused.value)

@@ -26,19 +26,6 @@ def test_a_choice_differs_wholly_or_not_at_all_and_noise_never():
     assert Coordinate(choices=(0.0, 0.5, 0.5, 1.0)).values == (0.25, 0.75)
 
 
-def test_directions_differ_by_the_shorter_way_round():
-    assert Coordinate(circle=True).difference(0.05, 0.95) == pytest.approx(0.1)
-    assert Coordinate().difference(0.05, 0.95) == pytest.approx(0.9)
-
-
-def test_points_are_alike_by_the_root_mean_square_of_their_differences():
-    space = Space(coordinates=(Coordinate(), Coordinate(), Coordinate(choices=HALVES)))
-    assert space.alike(point(0.5, 0.5, 0.1), point(0.6, 0.6, 0.2))
-    # sqrt(2 x 0.2^2 / 3) = 0.163 is above 0.15, and so is the one choice of three, 0.58.
-    assert not space.alike(point(0.5, 0.5, 0.1), point(0.7, 0.7, 0.2))
-    assert not space.alike(point(0.5, 0.5, 0.1), point(0.5, 0.5, 0.9))
-
-
 def test_two_times_are_made_equal_within_both_ranges():
     one, other = Coordinate(time_range=(0.0, 100.0)), Coordinate(time_range=(50.0, 250.0))
     apart = Coordinate(time_range=(300.0, 400.0))

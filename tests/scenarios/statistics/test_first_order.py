@@ -5,6 +5,8 @@ import pytest
 
 from scenarios.statistics.sensitivity import first_order_index
 
+pytestmark = pytest.mark.slow
+
 REPEATS = 100
 """Samples of each model and size: a share of 95 % is known to 2.2 %."""
 
@@ -85,22 +87,6 @@ def test_an_interval_is_as_narrow_as_the_efficient_estimators():
     assert found.half_width == pytest.approx(1.960 * np.sqrt(0.5 / 4000.0), rel=0.08)
 
 
-def test_an_input_that_determines_the_figure_has_an_index_of_1():
-    x = np.random.default_rng(4).random(300)
-    found = first_order_index(x, 6.0 * (x - 0.5) ** 2, confidence=0.95)
-    assert found.index == pytest.approx(1.0, abs=1e-9)
-    assert abs(found.index - 1.0) <= found.half_width
-
-
-def test_categories_have_the_share_between_their_means():
-    generator = np.random.default_rng(5)
-    kind = generator.integers(3, size=1000).astype(float)
-    figure = 2.0 * (kind == 1.0) + generator.standard_normal(1000)
-    found = first_order_index(kind, figure, confidence=0.95)
-    # Variance 4 (1/3)(2/3) between, 1 within.
-    assert abs(found.index - (8.0 / 9.0) / (1.0 + 8.0 / 9.0)) < found.half_width < 0.06
-
-
 def test_a_scale_and_an_origin_change_nothing():
     generator = np.random.default_rng(6)
     x, y, _ = ishigami(generator, 400)
@@ -109,18 +95,6 @@ def test_a_scale_and_an_origin_change_nothing():
     # A thousandth of a spread at 1e6 keeps 7 digits of the input.
     assert moved.index == pytest.approx(plain.index, abs=1e-5)
     assert moved.half_width == pytest.approx(plain.half_width, abs=1e-5)
-
-
-def test_repeated_flights_of_one_sample_count_once():
-    generator = np.random.default_rng(7)
-    x, y, _ = linear(generator, 400)
-    once = first_order_index(x[:, 1], y, confidence=0.95)
-    repeated = first_order_index(
-        np.tile(x[:, 1], 3), np.tile(y, 3), confidence=0.95, samples=np.tile(np.arange(400), 3)
-    )
-    # Exactly: the fit is the same, and so is the prediction of a sample by the others.
-    assert repeated.index == pytest.approx(once.index, abs=1e-9)
-    assert repeated.half_width == pytest.approx(once.half_width, rel=1e-9)
 
 
 def test_a_figure_that_few_flights_decide_on_has_a_wide_interval_that_holds():

@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 from common.premises import TERMS, ratio_column
-from scenarios.statistics.estimates import premise_lines, premise_table
+from scenarios.statistics.estimates import premise_table
 
 
 def rows():
@@ -35,11 +35,3 @@ def test_each_case_and_term_has_its_median_its_largest_and_what_is_to_be_expecte
     # An hour in turbulence.
     assert (gusty["flights_above"], gusty["flights_above_expected"]) == (1, pytest.approx(0.1))
     assert table.loc[("calm", "drift"), "flights"] == 1
-
-
-def test_the_console_has_a_line_per_case_with_the_flights_above_1():
-    table = premise_table(rows(), ["calm", "calm", "gusty", "gusty"], per_hour=0.1)
-    _, head, calm, gusty = premise_lines(table)
-    assert head.split() == ["case", "wind", "drift"]
-    assert calm.split() == ["calm", "0.30", "/", "0.50", "2.00", "/", "2.00", "(1)"]
-    assert gusty.split() == ["gusty", "0.95", "/", "1.50", "(1)"]

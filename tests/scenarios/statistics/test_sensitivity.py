@@ -1,12 +1,9 @@
 """Which inputs drive a figure: cases whose indices are known, and data that has none."""
 
-import warnings
-
 import numpy as np
 import pandas as pd
 import pytest
 
-from scenarios.statistics import sensitivity as module
 from scenarios.statistics.sensitivity import sensitivity_indices
 
 
@@ -66,53 +63,6 @@ def test_a_sum_of_two_inputs_has_their_shares_of_the_variance():
     assert [index.first_order for index in found.inputs] == pytest.approx([0.8, 0.2], abs=0.06)
 
 
-def test_what_does_nothing_does_not_rise_above_the_noise_floor_and_what_drives_does(found):
-    driver, idle = found.inputs
-    assert idle.delta - idle.delta_error < found.delta_floor < driver.delta - driver.delta_error
-    assert (
-        idle.first_order - idle.first_order_error
-        < found.first_order_floor
-        < driver.first_order - driver.first_order_error
-    )
-
-
-def test_the_names_of_categories_and_the_order_of_flights_given_do_not_matter_to_who_drives():
-    inputs, figure = words_and_noise()
-    renamed = inputs.replace({"turbulence.level": {"light": "zephyr", "severe": "gale"}})
-    backwards = sensitivity_indices(renamed.iloc[::-1], figure[::-1], confidence=0.95, seed=2)
-    # As close to 1/2 as in the first test: only what is sampled at random differs.
-    assert backwards.inputs[0].delta == pytest.approx(0.5, abs=0.03)
-
-
-def test_the_same_seed_gives_the_same_indices_and_leaves_everybody_elses_random_numbers_alone():
-    inputs, figure = words_and_noise(250)
-    state = np.random.get_state()[1].copy()  # noqa: NPY002 - that it is not touched is what is tested
-    filters = list(warnings.filters)
-    first, second = (sensitivity_indices(inputs, figure, confidence=0.95, seed=0) for _ in range(2))
-    assert first == second
-    assert np.array_equal(np.random.get_state()[1], state)  # noqa: NPY002 - as above
-    assert warnings.filters == filters
-
-
-def test_an_input_that_is_another_in_one_flight_alone_drives_nothing():
-    inputs, figure = words_and_noise(250)
-    inputs["turbulence.gusts"] = np.where(np.arange(250) == 3, 1, 0)
-    found = {
-        index.key: index
-        for index in sensitivity_indices(inputs, figure, confidence=0.95, seed=1).inputs
-    }
-    # One flight in 250.
-    assert abs(found["turbulence.gusts"].delta) < 0.01
-
-
-def test_of_many_flights_so_many_are_looked_at_as_is_said(monkeypatch):
-    monkeypatch.setattr(module, "FLIGHTS_MAX", 220)
-    inputs, figure = words_and_noise()
-    figure[:10] = np.nan
-    found = sensitivity_indices(inputs, figure, confidence=0.95, seed=1)
-    assert (found.flights, found.known) == (220, 390)
-
-
 def test_inputs_that_say_nothing_are_left_out_with_the_reason_and_the_others_stay(found):
     inputs, figure = words_and_noise(250)
     inputs["keepout.radius_m"] = 200.0
@@ -150,30 +100,3 @@ def test_where_there_are_no_indices_the_reason_is_given(change, message):
     assert found.message.startswith(message)
     assert found.inputs == ()
     assert np.isnan(found.delta_floor)
-
-
-def test_flights_of_one_sample_do_not_make_an_input_without_effect_a_driver():
-    above = 0
-    for seed in range(4):
-        generator = np.random.default_rng(seed)
-        # 100 samples at each of four points, which hardly differ: 400 flights, and no input has any
-        # effect.
-        inputs = pd.DataFrame(np.tile(generator.random((100, 3)), (4, 1)), columns=["a", "b", "c"])
-        figure = np.tile(generator.normal(size=100), 4) + 0.05 * generator.normal(size=400)
-        found = sensitivity_indices(
-            inputs, figure, confidence=0.95, seed=seed, samples=np.arange(400) % 100
-        )
-        above += sum(index.delta > found.delta_floor for index in found.inputs)
-    # Each exceeds the largest of five dummies one time in six, so that more than 5 of 12 have a
-    # probability of 1 %; all of them did where each flight was taken for a sample of its own.
-    assert above <= 5
-
-
-def test_flights_that_are_samples_of_their_own_have_the_indices_that_they_have_without_saying_so(
-    found,
-):
-    inputs, figure = words_and_noise()
-    assert (
-        sensitivity_indices(inputs, figure, confidence=0.95, seed=1, samples=np.arange(len(figure)))
-        == found
-    )

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from common.intervals import clopper_pearson, quantile_interval, upper_bound
-from scenarios.statistics.estimates import NAMED_MAX, confidence_at, share, study_statistics
+from scenarios.statistics.estimates import study_statistics
 from scenarios.statistics.sensitivity import sensitivity_indices
 from tests.scenarios.study_rows import PREDICTED, RADIUS, few_indices, study_rows
 
@@ -91,13 +91,6 @@ def test_flights_without_a_measurement_are_named_and_count_as_violations_where_t
     assert found["modes_at_end"] == {"tracking": 97}
 
 
-def test_a_long_list_of_flights_is_cut_and_its_number_is_not():
-    rows, inputs = study_rows(50)
-    rows[["min_distance_m", "outcome"]] = [math.nan, "failed"]
-    failed = statistics_of(rows, inputs)["flights"]["unknown"]["failed"]
-    assert (failed["flights"], len(failed["flight_ids"])) == (50, NAMED_MAX)
-
-
 def test_quantiles_are_those_of_the_flights_that_have_the_figure(study, no_indices):
     rows, inputs = study
     rows = rows.copy()
@@ -122,41 +115,6 @@ def test_quantiles_are_those_of_the_flights_that_have_the_figure(study, no_indic
     )
     # Differences of figures near 200 are good to 3e-14.
     assert distance - RADIUS == pytest.approx(clearance, abs=1e-12)
-
-
-def test_a_tail_of_a_thousandth_is_stated_only_where_there_are_flights_enough(no_indices):
-    # 0.999^n is at most 0.025 from n = ln(0.025) / ln(0.999), 3687.04, on.
-    enough = statistics_of(*study_rows(3688))["figures"]["clearance_m"]["quantiles"]
-    few = statistics_of(*study_rows(3687))["figures"]["clearance_m"]["quantiles"]
-    assert [q["probability"] for q in enough] == [0.001, 0.01, 0.05, 0.5, 0.95, 0.99, 0.999]
-    assert [q["probability"] for q in few] == [0.01, 0.05, 0.5, 0.95, 0.99]
-    # An interval that is open on one side says so: 0.99^n is at most 0.025 from n = 367.04 on.
-    assert (
-        statistics_of(*study_rows(368))["figures"]["clearance_m"]["quantiles"][0]["low"] is not None
-    )
-    assert statistics_of(*study_rows(367))["figures"]["clearance_m"]["quantiles"][0]["low"] is None
-
-
-def test_intervals_at_a_look_are_as_wide_as_all_looks_together_need(study, statistics, no_indices):
-    third = statistics_of(*study, look_number=3)
-    level = confidence_at(3, 0.95)
-    assert (third["confidence"], third["look_number"], third["interval_confidence"]) == (
-        0.95,
-        3,
-        level,
-    )
-    assert third["violation"]["measured"]["upper"] == upper_bound(0, FLIGHTS, level)
-    assert (statistics["look_number"], statistics["interval_confidence"]) == (None, 0.95)
-
-
-def test_what_drives_a_figure_is_found_whatever_order_the_inputs_are_in(study, statistics):
-    rows, inputs = study
-    for name in ("clearance_m", "tracking_error_rms_m"):
-        found = statistics["sensitivity"][name]
-        assert found["inputs"][0]["key"] == "wind.speed_mps"
-        assert found["inputs"][0]["delta"] > 2.0 * found["delta_floor"]
-    shuffled = statistics_of(rows, inputs.sample(frac=1.0, random_state=1))
-    assert shuffled["sensitivity"] == statistics["sensitivity"]
 
 
 def test_a_study_of_nothing_but_failures_and_one_of_nothing_have_statistics_that_json_can_say():
@@ -185,16 +143,6 @@ def test_a_study_of_nothing_but_failures_and_one_of_nothing_have_statistics_that
         assert found["sensitivity"]["clearance_m"]["message"].startswith(
             "0 flights have this figure"
         )
-
-
-@pytest.mark.parametrize(("events", "whole"), [(1, 0), (99, 0), (100, 1), (150, 1), (200, 2)])
-def test_the_lower_limit_of_flights_that_share_samples_takes_their_events_for_those_of_as_few_samples_as_can_be(
-    events, whole
-):
-    found = share(events, 200, 0.95, per_sample=100)
-    # 2 samples: events of one of them are up to 100, so that fewer need not be half of all.
-    assert found["low"] == clopper_pearson(whole, 2, 0.95).low <= found["share"]
-    assert found["high"] == clopper_pearson(min(events, 2), 2, 0.95).high
 
 
 @pytest.mark.parametrize(

@@ -110,11 +110,3 @@ def test_a_study_stops_once_a_quantile_of_the_closest_approach_is_known_as_well_
     # is 0.08.
     few = {"look_number": 1, "confidence": 0.95, "distance_quantile_width_m": 1e6}
     assert not tight_enough(rows.head(256), **few)
-
-
-def test_both_of_two_wishes_have_to_be_met():
-    rows = rows_with(200.0 + np.arange(512) * 100.0 / 512.0)
-    asked = {"look_number": 1, "confidence": 0.95, "distance_quantile": 0.5}
-    assert tight_enough(rows, **asked, violation_upper=0.01, distance_quantile_width_m=11.0)
-    assert not tight_enough(rows, **asked, violation_upper=0.001, distance_quantile_width_m=11.0)
-    assert not tight_enough(rows, **asked, violation_upper=0.01, distance_quantile_width_m=9.0)

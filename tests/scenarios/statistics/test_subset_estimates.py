@@ -2,7 +2,6 @@
 nothing was reached.
 """
 
-import json
 import math
 from dataclasses import replace
 
@@ -14,15 +13,14 @@ from scipy.special import ndtri
 from common.intervals import upper_bound
 from scenarios.statistics.subset_simulation import (
     curve,
-    distance,
     input_shifts,
     near_event,
     noise_floor,
     rare_probability,
-    subset_statistics,
 )
 from tests.scenarios.statistics.rare_events import DIMENSION, linear, noisy, simulated
-from tests.scenarios.study_rows import study_rows
+
+pytestmark = pytest.mark.slow
 
 REPEATS = 5
 
@@ -105,17 +103,6 @@ def test_chains_that_began_at_copies_of_one_state_count_as_one():
         )
 
 
-def test_a_simulation_that_reaches_nothing_beside_others_that_do_widens_the_interval_to_zero():
-    reached = repeats_of(linear(1e-4), 2, flights=200)
-    stuck, _ = simulated(linear(1e-12), 3, flights=200, levels=3)
-    found, without = rare_probability([*reached, stuck], 0.95), rare_probability(reached, 0.95)
-    assert (found.low, found.reached) == (0.0, REPEATS)
-    assert found.upper > without.upper
-    assert found.estimate == pytest.approx(
-        np.mean([*(one.below(0.0)[0] for one in reached), 0.0]), rel=1e-12
-    )
-
-
 def test_the_curve_follows_the_normal_distribution_over_the_whole_range_and_ends_where_the_event_begins():
     simulations = repeats_of(linear(1e-5), 4)
     points = curve(simulations, 0.95)
@@ -154,68 +141,3 @@ def test_what_decides_is_apart_from_what_has_no_effect_by_the_noise_floor():
     # but not by much.
     assert shifts[1].distance < 2.0 * floor
     assert sum(shifts[0].near) == pytest.approx(1.0, abs=1e-12)
-
-
-def test_words_are_counted_and_numbers_are_put_into_classes():
-    declared = pd.DataFrame(
-        {"turbulence.level": ["none", "light"] * 50, "wind.speed_mps": np.arange(100.0)}
-    )
-    near = pd.DataFrame({"turbulence.level": ["light"] * 10, "wind.speed_mps": np.full(10, 99.0)})
-    at = np.column_stack([np.tile([0.25, 0.75], 50), np.arange(100.0) / 100.0])
-    wind, level = input_shifts(
-        declared, near, (at, np.column_stack([np.full(10, 0.75), np.full(10, 0.99)]))
-    )
-    assert (wind.key, wind.median, wind.median_near) == ("wind.speed_mps", 49.5, 99.0)
-    assert (level.names, level.declared, level.near) == (("light", "none"), (0.5, 0.5), (1.0, 0.0))
-    assert level.distance == 0.5
-
-
-def test_the_distance_of_two_samples_is_that_of_kolmogorov():
-    assert distance(np.array([1.0, 2.0]), np.array([3.0, 4.0])) == 1.0
-    assert distance(np.array([1.0, 3.0]), np.array([1.0, 3.0])) == 0.0
-    assert distance(np.array([1.0, 2.0, 3.0, 4.0]), np.array([3.0, 4.0])) == 0.5
-
-
-def test_flights_of_unknown_end_raise_the_pessimistic_bound_by_their_own():
-    simulations = repeats_of(linear(1e-4), 6, flights=100)
-    rows, _ = study_rows(REPEATS * 100 + 40)
-    known = subset_statistics(rows, simulations, [], confidence=0.95)
-    assert known["violation"]["pessimistic"]["upper"] == known["violation"]["upper"]
-    rows.loc[3, ["outcome", "min_distance_m", "keepout_violations"]] = ["failed", np.nan, np.nan]
-    # One that is not of a first level says nothing of the distribution.
-    rows.loc[REPEATS * 100 + 5, ["outcome", "min_distance_m", "keepout_violations"]] = [
-        "failed",
-        np.nan,
-        np.nan,
-    ]
-    found = subset_statistics(rows, simulations, [], confidence=0.95)
-    assert found["violation"]["first_levels_unknown"] == 1
-    # Clopper and Pearson's bound of 1 of 500 at 97.5 % is 1.11 %.
-    assert found["violation"]["pessimistic"]["upper"] == pytest.approx(0.0111, abs=0.001)
-    assert json.loads(json.dumps(found, allow_nan=False)) == found
-
-
-def test_estimates_that_scatter_by_decades_have_bounds_of_1_at_any_confidence():
-    # Of a plane of probability 1e-2, and planes of 1e-6 and 1e-9: their logarithms deviate by 8,
-    # and Student's t of three repeats at this confidence is 1,000: the bound's logarithm is beyond
-    # that of any number.
-    simulations = [
-        simulated(linear(10.0**-power), [20261126, power], flights=200)[0] for power in (2, 6, 9)
-    ]
-    found = rare_probability(simulations, 0.999999)
-    assert found.reached == 3
-    assert (found.high, found.upper, found.low) == (1.0, 1.0, 0.0)
-    assert found.estimate <= 1.0
-
-
-@pytest.mark.parametrize("probability", [0.5, 0.9995])
-def test_of_what_the_first_levels_see_the_interval_is_that_of_a_plain_sample(probability):
-    # Where all but one in 2,000 have it most repeats see nothing else: their scatter of 0 gave
-    # [1, 1], which holds nothing.
-    studies = [repeats_of(linear(probability), i, flights=200) for i in range(20)]
-    found = [rare_probability(simulations, 0.95) for simulations in studies]
-    values = np.concatenate([simulation.levels[0].values for simulation in studies[0]])
-    assert found[0].estimate == np.mean(values < 0.0)
-    assert found[0].upper == upper_bound(int(np.sum(values < 0.0)), len(values), 0.95)
-    assert sum(study.low <= probability <= study.high for study in found) >= 17
-    assert all(study.low < study.high for study in found)

@@ -16,6 +16,8 @@ from tests.scenarios.statistics.rare_events import (
     simulated,
 )
 
+pytestmark = pytest.mark.slow
+
 
 def estimates(value, count, **settings):
     return np.array(
@@ -124,20 +126,6 @@ def test_the_same_noise_is_kept_while_inputs_move_and_a_renewal_moves_nothing_el
         )
 
 
-def test_a_seed_that_nothing_depends_on_is_renewed_without_an_evaluation():
-    whole, evaluated = simulated(linear(1e-4), 4, noise=True)
-    found, fewer = simulated(linear(1e-4), 4, noise=True, seeded=lambda _: False)
-    assert found.below(0.0) == whole.below(0.0)
-    # And it says nothing of how chains mix.
-    assert sum(level.counts.renewed + level.counts.renewed_accepted for level in found.levels) == 0
-    renewed = sum(level.counts.renewed for level in whole.levels)
-    assert renewed == sum(level.counts.renewed_accepted for level in whole.levels)
-    assert fewer == evaluated - renewed < evaluated
-    # Where it does at some of the points, those of others are evaluated.
-    _, some = simulated(linear(1e-4), 4, noise=True, seeded=lambda inputs: inputs[0] < 0.5)
-    assert fewer < some < evaluated
-
-
 def test_points_that_are_not_allowed_are_never_evaluated_and_the_rest_is_as_declared():
     seen = []
 
@@ -150,35 +138,6 @@ def test_points_that_are_not_allowed_are_never_evaluated_and_the_rest_is_as_decl
     first = np.array(seen[:500])[:, 0]
     # Uniform below 0.5: the mean of 500 is good to 0.5/sqrt(12 500) = 0.0065; three times that.
     assert first.mean() == pytest.approx(0.25, abs=0.02)
-
-
-def test_where_no_value_differs_and_where_none_exists_the_simulation_ends_and_says_so():
-    for constant in (1.0, math.inf):
-        found, evaluated = simulated(
-            lambda points, constant=constant: np.full(len(points), constant), 1
-        )
-        assert found.stalled
-        assert evaluated == 500
-        assert found.below(0.0)[0] == 0.0
-
-
-def test_an_event_beyond_the_last_level_leaves_the_estimate_at_nothing():
-    found, _ = simulated(linear(1e-9), 1, levels=3)
-    assert len(found.levels) == 3
-    assert found.below(0.0) == (0.0, math.inf)
-    # A tenth of a tenth, and more only by states at the threshold that chains have repeated: some
-    # of 50.
-    assert 0.01 <= found.reached <= 0.013
-
-
-def test_an_event_that_is_not_rare_is_one_level_of_plain_sampling():
-    found, evaluated = simulated(linear(0.3), 1)
-    assert (len(found.levels), evaluated) == (1, 500)
-    probability, spread = found.below(0.0)
-    assert probability == np.mean(found.levels[0].values < 0.0)
-    assert spread == pytest.approx(
-        math.sqrt((1.0 - probability) / (500.0 * probability)), rel=1e-12
-    )
 
 
 def test_correlation_within_chains_widens_the_variation():

@@ -4,7 +4,6 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from common.intervals import clopper_pearson
 from scenarios.statistics.sulphur import COLUMNS, sulphur_statistics
 
 
@@ -74,49 +73,6 @@ def test_sensors_are_apart_and_fuels_are_points_of_the_operating_curve():
     }
 
 
-def test_without_a_result_there_is_nothing_to_state():
-    nothing = rows([0.0]).assign(fsc_percent=None)
-    assert sulphur_statistics(nothing, confidence=0.95)["accuracy"] == []
-
-
-def test_a_flight_whose_uncertainty_is_not_known_is_left_out():
-    table = rows([0.01, 0.03])
-    table.loc[1, "fsc_uncertainty_percent"] = float("nan")
-    (entry,) = sulphur_statistics(table, confidence=0.95)["accuracy"]
-    assert (entry["flights"], entry["bias_percent"]) == (1, pytest.approx(0.01))
-
-
-def test_a_fuel_without_sulphur_has_no_share_and_can_be_said_in_json():
-    table = rows([0.0, 0.0], fuel=0.0)
-    for column in (
-        "percent",
-        "uncertainty_percent",
-        "noise_percent",
-        "low_percent",
-        "high_percent",
-    ):
-        table[f"areas_fsc_{column}"] = table[f"fsc_{column}"]
-    table["areas_fsc_separate_percent"] = 0.0
-    _, areas = sulphur_statistics(table, confidence=0.95)["accuracy"]
-    assert areas["method"] == "areas"
-    assert [areas[name] for name in ("bias_relative", "share_read", "share_predicted")] == [
-        None
-    ] * 3
-    assert areas["bias_percent"] == 0.0
-
-
-def test_calls_above_one_limit_are_not_counted_with_those_above_another():
-    strict, lax = (
-        rows([0.0, 0.0], fuel=0.3, verdicts=[verdict] * 2).assign(sulphur_limit_percent=limit)
-        for verdict, limit in (("above", 0.1), ("below", 0.5))
-    )
-    curve = sulphur_statistics(pd.concat([lax, strict]), confidence=0.95)["operating_curve"]
-    assert [(entry["limit_percent"], entry["flights"], entry["above"]) for entry in curve] == [
-        (0.1, 2, 1.0),
-        (0.5, 2, 0.0),
-    ]
-
-
 def test_flights_of_one_seed_are_one_sample():
     errors = np.array([0.01, -0.03, 0.05, 0.01])
     points = [
@@ -141,21 +97,3 @@ def test_flights_of_one_seed_are_one_sample():
     assert all(
         entry["above_interval"] == alone["coverage_interval"] for entry in swept["operating_curve"]
     )
-
-
-def test_a_seed_whose_flights_differ_counts_for_its_share_of_events():
-    table = pd.concat([rows([0.0, 0.05, 0.05]), rows([0.05, 0.0, 0.05])], ignore_index=True)
-    entry = sulphur_statistics(table, confidence=0.95)["accuracy"][0]
-    # 2 of 6 flights are covered, half of those of two of the three seeds: one of three samples at
-    # least, and at most.
-    assert entry["coverage_interval"] == pytest.approx([*_clopper(1, 3)])
-    table.loc[1, "fsc_high_percent"] = 1.0
-    table.loc[1, "fsc_low_percent"] = 0.0
-    entry = sulphur_statistics(table, confidence=0.95)["accuracy"][0]
-    # 1.5 of three: more than one, and less than two.
-    assert entry["coverage_interval"] == pytest.approx([_clopper(1, 3)[0], _clopper(2, 3)[1]])
-
-
-def _clopper(events, trials):
-    interval = clopper_pearson(events, trials, 0.95)
-    return interval.low, interval.high

@@ -14,9 +14,10 @@ import pytest
 from measurement.emission import DEFAULT_STACK_HEIGHT
 from reports.output import write_report
 from reports.run.run_data import read_run
-from scenarios.scenario.files import load_document
 from tests.in_process import assert_refused, run_command
 from tests.run_tables import manifest_of
+
+pytestmark = pytest.mark.slow
 
 SCRIPT = Path(__file__).parents[3] / "docs" / "scripts" / "aircraft_directory.py"
 SWEEP = [
@@ -141,43 +142,3 @@ def test_the_directory_is_designed_for_and_listed(flown, heavy, tmp_path):
     assert "0 can be flown at 777 m (--altitude for another altitude)" in elsewhere.errors
     assert "; 1 was not designed for it before: --list --check designs them" in elsewhere.errors
     assert_refused(run_command("innerloop.design", "--check", *place), "--check is for --list")
-
-
-def test_a_scenario_file_names_it_relative_to_itself_and_the_command_line_to_where_it_is(
-    heavy, monkeypatch
-):
-    path = heavy.parents[1] / "own.toml"
-    path.write_text('title = "own"\naircraft = "fleet/heavy"\nsweep.nu = [0.5]\n', encoding="utf-8")
-    assert load_document(str(path))["aircraft"] == str(heavy)
-    monkeypatch.chdir(heavy.parent)
-    assert load_document("sweep_nu", ["aircraft=./heavy"])["aircraft"] == str(heavy)
-    # What is no path stays a name.
-    assert load_document("sweep_nu", ["aircraft=heavy"])["aircraft"] == "heavy"
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (("--aircraft-dir", "none"), "aircraft directory 'none': there is no such directory"),
-        (("--aircraft-dir", "empty"), "aircraft directory 'empty' holds no aircraft"),
-        (("--aircraft-dir", "two/a"), "aircraft directory 'two/a' holds no aircraft"),
-        (("--aircraft-dir", "two"), "holds 2 aircraft; name one of them: a, b"),
-        (("--aircraft-dir", "two", "--set", "aircraft=c"), "holds no aircraft 'c'"),
-        (("--aircraft-dir", "two", "--set", "aircraft=../two/a"), "holds no aircraft '../two/a'"),
-        (("--set", "aircraft=two/c"), "two/c': there is no such directory"),
-        (("--set", "aircraft=two/a"), "aircraft 'a' cannot be flown: it has no engine"),
-        (("--set", "aircraft=broken/x"), "x.xml: not valid XML"),
-    ],
-)
-def test_what_is_no_aircraft_is_refused_in_a_line(tmp_path, monkeypatch, arguments, words):
-    monkeypatch.chdir(tmp_path)
-    for name, text in {
-        "two/a": '<fdm_config name="a"/>',
-        "two/b": '<fdm_config name="b"/>',
-        "broken/x": "<fdm_config",
-    }.items():
-        Path(name).mkdir(parents=True)
-        Path(name, f"{Path(name).name}.xml").write_text(text, encoding="utf-8")
-    Path("empty").mkdir()
-    assert_refused(run_command("scenarios.run", "sweep_nu", *arguments, "--out", "run"), words)
-    assert not Path("run").exists()

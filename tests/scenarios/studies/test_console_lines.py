@@ -3,17 +3,12 @@
 import pytest
 
 from common.verdict import Counts
-from scenarios.measures.verdict import Judge, bound_of, counts_of
+from scenarios.measures.verdict import Judge, bound_of
 from scenarios.scenario.sections.flight import CriteriaConfig
 from scenarios.studies.summary import (
-    FlightNotes,
     bound_line,
-    comparison_lines,
     counts_line,
-    exit_line,
-    premise_lines,
     trial_line,
-    unexplained_lines,
 )
 
 
@@ -77,19 +72,6 @@ def test_the_line_of_flights_says_of_none_that_it_kept_out_unless_it_came_back()
     )
 
 
-def test_the_exit_line_says_what_is_required_and_how_many_flights_did_it():
-    assert exit_line(judged(ROWS)) == (
-        "exit status 1: 1 of 4 flights did what is required: to meet every criterion"
-    )
-    alone = judged({**each, "required": "keep_out"} for each in ROWS)
-    # The flight that lost its aircraft stayed outside; that which was never flown did not.
-    assert exit_line(alone) == (
-        "exit status 1: 2 of 4 flights did what is required: to stay outside of the keep-out area"
-    )
-    assert exit_line(judged(ROWS[:1], 2)).startswith("so far 1 of 2 flights did what")
-    assert exit_line(judged(ROWS[:1]).once_interrupted(interrupted=True)).startswith("so far ")
-
-
 @pytest.mark.parametrize(
     ("flights", "violated", "unknown", "samples", "words"),
     [
@@ -112,131 +94,3 @@ def test_the_bound_follows_from_the_flights_and_counts_unknown_ones_as_violation
         planned=flights, done=flights, violated=violated, unknown=unknown, hours=0.5 * flights
     )
     assert words in bound_line(bound_of(counts, samples), counts.hours)
-
-
-def test_comparisons_are_told_with_their_flights_or_why_none_was_flown():
-    judge = Judge({"t": 1})
-    verdict = judge.verdict(comparisons={"no_guard": counts_of([row(0)], 2)})
-    (line,) = comparison_lines(verdict, [])
-    assert line.startswith("  comparison no_guard, not counted above: 2 planned, 1 flown")
-    assert comparison_lines(judge.verdict(), [0.15, 0.5]) == [
-        "  comparisons: none flown, as no flight is at a speed ratio of comparison.nu, [0.15, 0.5]"
-    ]
-
-
-@pytest.mark.parametrize(
-    ("unflown", "lines"), [({}, 0), ({"manoeuvres_unflown": 0}, 0), ({"manoeuvres_unflown": 2}, 1)]
-)
-def test_manoeuvres_that_were_never_flown_are_warned_of(unflown, lines):
-    found = FlightNotes.of([row(0, **unflown)]).warnings()
-    assert len(found) == lines
-    assert all(
-        line.startswith("warning: in 1 flight a manoeuvre of the vessel begins after the end")
-        for line in found
-    )
-
-
-def test_flights_that_never_reached_the_smoke_are_warned_of():
-    passes = [{"smoke_passes": 0, "axis_height_error_mean_m": height} for height in (-36.3, 12.0)]
-    passes += [{"smoke_passes": 9, "axis_height_error_mean_m": -50.0}]
-    (line,) = FlightNotes.of(
-        [row(i, plume_axis_crossings=20, **of) for i, of in enumerate(passes)]
-    ).warnings()
-    assert line.startswith(
-        "warning: in 2 flights the UAV never passed through the smoke, and crossed its axis up to 36 m below it"
-    )
-    assert FlightNotes.of([row(0, plume_axis_crossings=0, smoke_passes=0)]).warnings() == []
-
-
-def test_of_many_flights_that_are_not_met_the_first_are_named_and_the_rest_counted():
-    lines = FlightNotes.of(row(i, met=False) for i in range(10_000)).not_met_lines("")
-    assert len(lines) == 21
-    assert lines[0] == "f0: completed: why 0"
-    assert lines[-1] == "and 9980 more, see summary.csv"
-
-
-@pytest.mark.parametrize(
-    ("quality", "verdict", "words"),
-    [
-        ("A", "above", "above the limit of 0.10 %; probability above it: 99.0 %"),
-        ("A", "below", "below the limit of 0.10 %; probability above it: 99.0 %"),
-        (
-            "B",
-            "open",
-            "not shown to be above or below the limit of 0.10 %; probability above it: 94.0 %",
-        ),
-        ("C", "open", "no verdict on the limit of 0.10 %: quality C gives none"),
-    ],
-)
-def test_the_sulphur_of_one_flight_is_stated_with_its_interval_and_of_several_by_their_verdicts(
-    quality, verdict, words
-):
-    row = {
-        "outcome": "completed", "kept_out": True, "criteria_met": True, "fsc_percent": 0.2, "fsc_low_percent": 0.12,
-        "fsc_high_percent": 0.28, "sulphur_limit_percent": 0.1, "probability_above": 0.94 if verdict == "open" else 0.99,
-        "sulphur_quality": quality, "sulphur_verdict": verdict,
-    }  # fmt: skip
-    (line,) = FlightNotes.of([row]).sulphur_lines()
-    assert line == f"fuel sulphur 0.200 % m/m, 95 % interval 0.120 to 0.280 %: {words}"
-    (line,) = FlightNotes.of([row] * 3).sulphur_lines()
-    sides = {
-        "above": "3 above the limit",
-        "below": "3 below the limit",
-        "open": "3 with an open verdict",
-    }
-    called = sides[verdict] if quality != "C" else "3 without a verdict (quality C)"
-    assert line.startswith("fuel sulphur of 3 flights: ")
-    assert called in line
-    assert FlightNotes.of([{**row, "fsc_percent": float("nan")}]).sulphur_lines() == []
-
-
-def test_flights_whose_sniffer_failed_are_told_by_the_fault():
-    # 1800 s long; one fault was to begin after that, and an engine's is told by how the flight
-    # ended.
-    begun = [
-        ("sniffer_dead", 60.0),
-        ("sniffer_dead", 90.0),
-        ("sniffer_saturated", 60.0),
-        ("sniffer_dead", 2e3),
-        ("engine", 60.0),
-    ]
-    counts = FlightNotes.of(
-        [row(i, fault=kind, fault_time_s=time) for i, (kind, time) in enumerate(begun)]
-    )
-    assert counts.sulphur_lines() == [
-        "a fault of the sniffer began in 2 of 5 flights: sniffer_dead",
-        "a fault of the sniffer began in 1 of 5 flights: sniffer_saturated",
-    ]
-    assert FlightNotes.of([row(0, fault="none", fault_time_s=float("nan"))]).sulphur_lines() == []
-
-
-def test_a_flight_whose_sniffer_gave_nothing_says_why():
-    row = {
-        "outcome": "completed",
-        "kept_out": True,
-        "criteria_met": True,
-        "sulphur_reason": "no pass through a plume",
-    }
-    (line,) = FlightNotes.of([row] * 2).sulphur_lines()
-    assert line == "no fuel sulphur content in 2 flights: no pass through a plume"
-
-
-def test_premises_that_did_not_hold_are_told_by_their_term():
-    rows = [
-        row(0, premises_exceeded="none"),
-        row(1, premises_exceeded="wind, drift"),
-        row(2, premises_exceeded="drift"),
-        # Without a guard there are none.
-        row(3),
-    ]
-    verdict = judged(rows)
-    (line,) = premise_lines(verdict)
-    assert "exceeded in 2 of 3 flights: drift of dead reckoning in 2, wind" in line
-    assert unexplained_lines(verdict) == []
-    assert premise_lines(judged(rows[3:])) == []
-
-
-def test_a_violation_that_no_premise_explains_is_said_loudly():
-    inside = row(0, "unexplained_violation", met=False, keepout_violations=1)
-    (line,) = unexplained_lines(judged([inside]))
-    assert line.startswith("THE KEEP-OUT GUARD IS WRONG: in 1 flight")

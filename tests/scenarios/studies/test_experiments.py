@@ -6,14 +6,13 @@ import pandas as pd
 import pytest
 
 from scenarios.engine.processes import InProcessExecutor
-from scenarios.errors import InputError
-from scenarios.experiment.requests import Experiment
 from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 from tests.run_tables import manifest_of, rows_of
 
+pytestmark = pytest.mark.slow
+
 SLOW_STEPS = ("fidelity=kinematic", "guidance.rate_hz=5", "flight.log_rate_hz=5")
-KINEMATIC = (*SLOW_STEPS, "comparison.variants=[]", "flight.crossings=2")
 BOTH_LAWS = '[{name="line_of_sight", set={"guidance.law"="line_of_sight"}}, {name="lyapunov", set={"guidance.law"="lyapunov"}}]'
 
 
@@ -63,106 +62,6 @@ def test_the_sweep_flies_in_wind_and_turbulence(x8):
     assert history["airspeed_mps"].std() > 0.1
     assert row["spread_predicted_m"] > 0.0
     assert row["keepout_margin_m"] > 3.0
-
-
-def test_a_plume_that_rises_is_crossed_above_the_funnel_in_wind_too(x8):
-    _, history = x8
-    last = history.iloc[-1]
-    # The orbit's centre is at least r_min from the funnel at 60 m: sin(10 deg) of that, and no more
-    # than of twice r_min.
-    assert 60.0 + 200.0 * 0.1736 < last["altitude_m"] < 60.0 + 400.0 * 0.1736
-
-
-def test_the_wind_may_be_set_in_a_kinematic_sweep(tmp_path):
-    (row,) = flown(tmp_path / "run", "sweep_nu", *KINEMATIC, "sweep.nu=[0.3]", "wind.speed_mps=5")
-    assert (row["fidelity"], row["wind_speed_mps"]) == ("kinematic", 5.0)
-    # Both head on: the vessel goes north, the wind comes from there.
-    assert row["nu"] == pytest.approx(0.3 + 5.0 / 19.42, rel=1e-9)
-
-
-@pytest.mark.parametrize("key", ["sweep.wind.speed_mps=[0, 5]", 'sweep."wind.speed_mps"=[0, 5]'])
-def test_any_key_may_be_swept(tmp_path, key):
-    rows = flown(tmp_path / "run", "sweep_nu", *KINEMATIC, "sweep.nu=[0.3]", key)
-    assert [row["flight_id"] for row in rows] == ["nu_0.30_speed_mps_0", "nu_0.30_speed_mps_5"]
-    assert [row["wind_speed_mps"] for row in rows] == [0.0, 5.0]
-    assert [row["nu"] for row in rows] == pytest.approx([0.3, 0.3 + 5.0 / 19.42], rel=1e-9)
-    inputs = rows_of(tmp_path / "run", "draws.csv")
-    assert [row["wind.speed_mps"] for row in inputs] == [0, 5]
-    assert [row["nu"] for row in inputs] == [row["nu"] for row in rows]
-    # They differ in the wind alone.
-    assert rows[0]["seed"] == rows[1]["seed"]
-
-
-@pytest.mark.parametrize("key", ["wind.speed_mps = [0, 2]", '"wind.speed_mps" = [0, 2]'])
-def test_a_file_names_a_swept_key_with_and_without_quotes(tmp_path, key):
-    path = tmp_path / "own.toml"
-    path.write_text(
-        f'title = "own"\n[sweep]\nkeepout.radius_m = [150, 200]\n{key}\n', encoding="utf-8"
-    )
-    assert load_study(str(path)).sweep.root == {
-        "keepout.radius_m": (150, 200),
-        "wind.speed_mps": (0, 2),
-    }
-
-
-def test_a_sweep_over_two_keys_flies_each_combination(tmp_path):
-    keys = ["sweep.nu=[0.3, 0.5]", "sweep.keepout.radius_m=[150, 200]"]
-    rows = flown(tmp_path / "run", "sweep_nu", *KINEMATIC, *keys)
-    assert [(row["nu"], row["keepout_radius_m"]) for row in rows] == [
-        (0.3, 150),
-        (0.3, 200),
-        (0.5, 150),
-        (0.5, 200),
-    ]
-    for row in rows:
-        assert row["min_distance_m"] >= row["keepout_radius_m"]
-
-
-def test_lists_are_swept_as_numbers_are_and_equal_ones_flown_once():
-    study = load_study(
-        "sweep_nu",
-        [
-            "sweep.start.distance_m=[[400, 500], [600, 700], [400, 500]]",
-            "sweep.nu=[0.5]",
-            *KINEMATIC,
-        ],
-    )
-    starts = [point.scenario.start.distance_m for point in Experiment("sweep_nu", study).points]
-    assert starts == [(400.0, 500.0), (600.0, 700.0)]
-
-
-def test_a_value_that_cannot_be_swept_is_refused(tmp_path):
-    with pytest.raises(ValueError, match=r"'guidance\.airspeed_mps' varies from flight to flight"):
-        load_study("sweep_nu", ["sweep.guidance.airspeed_mps=[18, 19]"])
-    with pytest.raises(
-        ValueError, match=r"unknown key 'wind\.sped_mps'; did you mean 'wind\.speed_mps'"
-    ):
-        flown(tmp_path / "run", "sweep_nu", *KINEMATIC, "sweep.wind.sped_mps=[0, 5]")
-
-
-@pytest.mark.parametrize(
-    ("override", "words"),
-    [
-        ("sweep.seed=[1, 2, 3]", r"sweep has 'seed', which sets nothing of a flight.*flight_seed"),
-        ('sweep.title=["a", "b"]', r"sweep has 'title', which sets nothing of a flight"),
-        ("sweep.flights=[5, 10]", r"sweep has 'flights', which sets nothing of a flight"),
-        (
-            "sweep.criteria.tracking_error_rms_m=[1.0, 2.0]",
-            r"sweep has 'criteria\.tracking_error_rms_m', which sets nothing",
-        ),
-    ],
-)
-def test_keys_on_which_no_flight_depends_are_not_swept(override, words):
-    # Each value would fly the same flights once more, and a bound on a probability would count all
-    # of them.
-    with pytest.raises(InputError, match=words):
-        load_study("sweep_nu", [override])
-
-
-def test_seeds_of_flights_are_swept():
-    study = load_study("sweep_nu", ["sweep.flight_seed=[1, 2]", "sweep.nu=[0.5]", *KINEMATIC])
-    experiment = Experiment("sweep_nu", study)
-    assert [experiment.request(number).seed for number in range(experiment.flights)] == [1, 2]
 
 
 def test_operational_scenarios_are_compared_with_variants_of_the_same_seeds(tmp_path):

@@ -2,18 +2,14 @@
 
 import json
 import shutil
-from pathlib import Path
 
 import pandas as pd
 import pytest
 
-from aircraft.spec import AircraftError
-from common.verdict import read_verdict
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.errors import InputError
 from scenarios.scenario.files import load_study
-from scenarios.studies.base import run_study, study_of
-from tests.run_tables import manifest_of, rows_of
+from scenarios.studies.base import run_study
 from tests.scenarios.short_trial import short_trial
 
 TRIAL = short_trial(flights=4, duration=4.0, rate=5.0)
@@ -82,28 +78,6 @@ def test_flights_are_named_by_their_trials_and_differ_from_trial_to_trial(whole)
     assert summary["wind_speed_mps"].nunique() == 8
 
 
-def test_a_share_of_the_flights_is_the_first_ones_of_each_trial(listed, whole, tmp_path):
-    result = run(listed, tmp_path / "share", "share=0.3")
-    # 0.3 of four, rounded up.
-    assert result.verdict.counts.planned == result.verdict.counts.done == 4
-    assert [row["trial"] for row in rows_of(tmp_path / "share")] == ["one", "one", "two", "two"]
-    every, part = tables(whole)[0], tables(tmp_path / "share")[0]
-    first = every[every["flight_id"].isin(part["flight_id"])].reset_index(drop=True)
-    pd.testing.assert_frame_equal(first, part, check_exact=True)
-
-
-def test_a_key_of_the_trials_is_set_in_every_one(listed, tmp_path):
-    run(listed, tmp_path / "run", "keepout.radius_m=150", "seed=5", "share=0.1")
-    assert [row["keepout_radius_m"] for row in rows_of(tmp_path / "run")] == [150.0, 150.0]
-    manifest = manifest_of(tmp_path / "run")
-    assert {trial["seed"] for trial in manifest["trials"].values()} == {5}
-    assert {trial["keepout"]["radius_m"] for trial in manifest["trials"].values()} == {150.0}
-    assert manifest["flights_planned"] == 2
-    # 4 s are too short to settle, which is not required of these trials.
-    counts = read_verdict(tmp_path / "run" / "verdict.json").counts
-    assert (counts.kept_out, counts.passed, counts.met) == (2, 2, 0)
-
-
 def test_a_run_that_is_to_keep_no_history_keeps_those_that_tell_most(listed, whole, tmp_path):
     # Of each trial the closest flight, the median one, and the first that did not settle; they are
     # flown again for it, and their rows are as they were.
@@ -128,13 +102,6 @@ def test_a_run_that_is_to_keep_no_history_keeps_those_that_tell_most(listed, who
         )
 
 
-def test_what_was_drawn_for_each_flight_is_a_table(whole):
-    drawn, flown = rows_of(whole, "draws.csv"), rows_of(whole)
-    assert [row["flight_id"] for row in drawn] == [row["flight_id"] for row in flown]
-    assert [row["wind.speed_mps"] for row in drawn] == [row["wind_speed_mps"] for row in flown]
-    assert [row["nu"] for row in drawn] == [row["nu"] for row in flown]
-
-
 def test_a_run_is_resumed_with_the_same_trials_only(tmp_path):
     listed = written(tmp_path)
     run(listed, tmp_path / "run", "share=0.1")
@@ -155,36 +122,22 @@ def test_a_run_is_resumed_with_the_same_trials_only(tmp_path):
     ("line", "words"),
     [
         ('trials = ["sea_nowhere"]', "unknown scenario 'sea_nowhere'"),
-        ('trials = ["paper"]', "'paper' is a study of paper; list scenarios of flights"),
         ('trials = ["sea_trial"]', "'sea_trial' is a study of trials; list scenarios of flights"),
-        ('trials = ["sea_wind", "sea_wind"]', "two are called 'sea_wind'; list each once"),
         ("trials = []", r"trials is \[\]; tuple should"),
-        ('trials = ["sea_wind"]\nset = 5', "set is 5; input should be a valid tuple"),
         (
             'trials = ["sea_wind"]\nset = "share=1"',
             "set is 'share=1'; input should be a valid tuple",
         ),
-        ('trials = ["sea_wind"]\nset = ["colour"]', "'colour' is not of the form key=value"),
         ('trials = ["sea_wind"]\nset = ["vessel.colour=1"]', "unknown key 'vessel.colour'"),
-        ('trials = ["sea_wind"]\nshare = 0.0', "share is 0.0"),
         (
             'trials = ["sea_wind"]\nset = ["fidelity=kinematic", "fault.kind=engine"]',
             "fault.kind is 'engine'; .*what can fail is none, satellite_navigation, sniffer_dead, sniffer_saturated, vessel_data",
         ),
         (
-            'trials = ["sea_wind"]\nset = ["fault.at_s=[300, 100]"]',
-            r"at_s is \[300.0, 100.0\]; its first value must not exceed",
-        ),
-        (
             'trials = ["sea_wind"]\nset = ["speed_ratio=[0.9, 0.1]"]',
             r"speed_ratio is \[0.9, 0.1\]; its first value",
         ),
-        (
-            'trials = ["sea_turbulence_light"]\nset = ["flight.altitude_m=400"]',
-            "turbulence.level is 'light': .*altitude is 400 m; it holds up to 304.8 m; fly lower",
-        ),
         ('trials = ["sea_wind"]\nset = ["aircraft=zeppelin"]', "unknown aircraft 'zeppelin'"),
-        ('trials = ["sea_wind"', "not valid TOML"),
     ],
 )
 def test_bad_trials_are_refused_in_one_line_before_anything_is_written(line, words, tmp_path):
@@ -196,101 +149,6 @@ def test_bad_trials_are_refused_in_one_line_before_anything_is_written(line, wor
     assert not (tmp_path / "run").exists()
 
 
-def test_what_the_aircraft_cannot_do_is_reported_in_one_line(listed, tmp_path, monkeypatch):
-    def refused(*_args, **_keys):
-        raise AircraftError("does not turn right: lower the bank")
-
-    monkeypatch.setattr("scenarios.studies.base.predicted_spreads", refused)
-    with pytest.raises(InputError, match="x8: does not turn right: lower the bank"):
-        run(listed, tmp_path / "run")
-
-
-def test_trials_that_need_different_autopilots_are_refused(tmp_path):
-    listed = written(tmp_path)
-    (tmp_path / "two.toml").write_text(
-        TRIAL + "[plume]\nsource_height_m = 80.0\n", encoding="utf-8"
-    )
-    with pytest.raises(
-        InputError,
-        match=r"flights differ in .*the funnel of emission.ship\); give each a run of its own",
-    ):
-        run(listed, tmp_path / "run")
-
-
-def test_a_share_of_a_trial_has_no_flight_that_only_rounding_adds():
-    # In double precision 0.07 * 200 is 14.000000000000002.
-    settings = ["trials=['sea_wind']", "fidelity=kinematic"]
-    shares = {"0.07": 14, "0.0701": 15, "0.001": 1, "1.0": 200}
-    studies = {
-        share: study_of(load_study("sea_trial", [*settings, f"share={share}"]), "sea_trial")
-        for share in shares
-    }
-    assert {share: study.planned for share, study in studies.items()} == shares
-
-
-def test_what_happened_is_reported_in_lines(listed, tmp_path):
-    lines = run(
-        listed, tmp_path / "run", "share=0.1", "vessel.speed_mps=19.4", "speed_ratio=[0, 9]"
-    ).lines
-    assert lines[:3] == [
-        "flights: 2 planned, 0 flown, 0 completed, 0 met every criterion, 2 could not be flown;"
-        " 0 of 2 kept out, 2 unknown; 0 keep-out violations",
-        *(
-            f"  {trial}: 1 planned, 0 flown, 0 completed, 0 met every criterion, 1 could not be"
-            " flown; 0 of 1 kept out, 1 unknown; 0 keep-out violations"
-            for trial in ("one", "two")
-        ),
-    ]
-    assert lines[3] == (
-        "exit status 1: 0 of 2 flights did what is required: to stay outside of the keep-out area"
-    )
-    assert lines[4].startswith("    one_00000: infeasible: the vessel moves at up to")
-
-
-def test_manoeuvres_that_overlap_in_every_flight_are_refused_before_any_is_flown(tmp_path):
-    path = tmp_path / "two.toml"
-    turns = "[{ at_s = 10.0, turn_deg = 90.0 }, { at_s = 60.0, turn_deg = 90.0 }]"
-    path.write_text(
-        f'title = "two"\nfidelity = "kinematic"\n[vessel]\nmanoeuvres = {turns}\n', encoding="utf-8"
-    )
-    with pytest.raises(
-        InputError,
-        match=r"vessel\.manoeuvres\.1 begins at 60 s, before an earlier one has ended, at 190 s",
-    ):
-        run(path, tmp_path / "run")
-    assert not (tmp_path / "run").exists()
-
-
-@pytest.mark.parametrize(
-    "level",
-    ["turbulence.level=light", 'draws.1={key="turbulence.level", choice=["none", "light"]}'],
-)
-def test_guidance_that_is_sampled_continuously_beside_turbulence_is_refused_before_any_is_flown(
-    level, tmp_path
-):
-    # Each flight with turbulence failed instead, and counted as a violation.
-    draw = 'draws=[{key="guidance.look_ahead_m", uniform=[20.0, 30.0]}, {key="wind.speed_mps", uniform=[3.0, 5.0]}]'
-    with pytest.raises(
-        InputError,
-        match=r"'guidance\.look_ahead_m' is sampled from a continuous distribution beside turbulence",
-    ):
-        run(Path("sea_wind"), tmp_path / "run", draw, level, "flights=2")
-    assert not (tmp_path / "run").exists()
-
-
-def test_a_manoeuvre_after_the_end_of_the_flight_is_warned_of(tmp_path):
-    path = tmp_path / "late.toml"
-    late = "[{ at_s = 500.0, turn_deg = 90.0 }]"
-    path.write_text(
-        f'title = "late"\nfidelity = "kinematic"\nflight = {{ crossings = 0, duration_max_s = 8.0 }}\nvessel.manoeuvres = {late}\n',
-        encoding="utf-8",
-    )
-    lines = run(path, tmp_path / "run").lines
-    assert lines[-1].startswith(
-        "warning: in 1 flight a manoeuvre of the vessel begins after the end of the flight"
-    )
-
-
 def state_of(directory):
     """Return content and time of every file."""
     files = (path for path in sorted(directory.rglob("*")) if path.is_file())
@@ -298,19 +156,6 @@ def state_of(directory):
         path.relative_to(directory).as_posix(): (path.read_bytes(), path.stat().st_mtime_ns)
         for path in files
     }
-
-
-def test_a_table_that_somebody_has_changed_is_written_again(listed, whole, tmp_path):
-    shutil.copytree(whole, tmp_path / "run")
-    before = state_of(tmp_path / "run")
-    summary = tmp_path / "run" / "summary.csv"
-    summary.write_text(
-        summary.read_text(encoding="utf-8").replace("completed", "ditched"), encoding="utf-8"
-    )
-    run(listed, tmp_path / "run", resume=True)
-    after = state_of(tmp_path / "run")
-    assert after["summary.csv"][0] == before["summary.csv"][0]
-    assert {name for name in before if after[name] != before[name]} == {"summary.csv"}
 
 
 def test_time_histories_that_were_deleted_or_cut_are_made_again_to_the_last_bit(

@@ -15,7 +15,8 @@ from scenarios.scenario.files import load_study
 from scenarios.statistics.sensitivity import sensitivity_indices
 from scenarios.studies.base import run_study, study_of
 from tests.run_tables import manifest_of
-from tests.scenarios.losing_executor import losing
+
+pytestmark = pytest.mark.slow
 
 SHORT = [
     "fidelity=kinematic",
@@ -114,20 +115,6 @@ def test_what_drives_a_figure_is_asked_of_the_random_variables_alone(whole, monk
     assert all(keys == [draw.key for draw in scenario.draws] for keys in asked)
 
 
-def test_the_console_says_the_bound_of_the_statistics_in_which_a_lost_flight_counts_as_a_violation(
-    whole, tmp_path
-):
-    result = run(tmp_path / "run", "flights=40", factory=losing(7))
-    upper = bound_of(tmp_path / "run")
-    # 1 of 40 at 95 %: the larger root of 40 p (1 - p)^39 + (1 - p)^40 = 0.05.
-    assert 40.0 * upper * (1.0 - upper) ** 39 + (1.0 - upper) ** 40 == pytest.approx(0.05, rel=1e-9)
-    (line,) = [line for line in result.lines if line.startswith("keep-out violations: ")]
-    assert (
-        "none known in 40 flights (0.0325 h simulated), unknown in 1, which counts as violated; at most 11.3 % of"
-        in line
-    )
-
-
 @pytest.fixture
 def frequent_looks(monkeypatch):
     """Look after 8, 16, 32 flights and so on: 256 would take too long here."""
@@ -173,41 +160,6 @@ def test_a_study_stops_by_itself_where_the_interval_it_was_asked_for_is_tight_en
     )
     assert again.verdict.counts.done == 32
     assert [p for p in flown if p[0] == "flying"] == [("flying", 32, 100)]
-
-
-def test_a_run_that_is_resumed_stops_at_no_look_before_what_it_has_flown(frequent_looks, tmp_path):
-    # One of 8 that is lost is at most 0.53 at the first look, none 0.37; one of 16 is at most 0.36
-    # at the second.
-    asked = ("flights=100", "statistics.violation_upper=0.45")
-    assert run(tmp_path / "run", *asked, factory=losing(3)).verdict.counts.done == 16
-    again = run(tmp_path / "run", *asked, resume=True)
-    assert again.all_met
-    assert again.verdict.counts.planned == again.verdict.counts.done == 16
-    assert again.lines[-1].startswith("stopped after 16 of 100 flights")
-    assert (
-        json.loads((tmp_path / "run" / "statistics.json").read_text(encoding="utf-8"))[
-            "look_number"
-        ]
-        == 2
-    )
-    assert bound_of(tmp_path / "run") == pytest.approx(1.0 - (0.05 / 6.0) ** (1.0 / 16.0), rel=1e-9)
-
-
-def test_a_study_that_never_knows_enough_flies_all_that_was_planned(frequent_looks, tmp_path):
-    result = run(tmp_path / "run", "flights=20", "statistics.violation_upper=0.001")
-    assert result.verdict.counts.done == 20
-    assert "stopped" not in result.lines[-1]
-
-
-def test_copies_of_flights_are_refused_as_no_probability_follows_from_them(tmp_path):
-    chosen = 'draws=[{key="wind.speed_mps",choice=[0.2,0.5]}]'
-    with pytest.raises(
-        InputError,
-        match=r"flights is 8, and nothing random differs between them.*set study to 'flights'",
-    ):
-        run(tmp_path / "run", "flights=8", "flight_seed=5", chosen)
-    assert run(tmp_path / "one", "flights=1", "flight_seed=5", chosen).verdict.counts.done == 1
-    assert run(tmp_path / "seeds", "flights=2", chosen).verdict.counts.done == 2
 
 
 @pytest.mark.parametrize(

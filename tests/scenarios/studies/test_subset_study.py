@@ -8,21 +8,15 @@ import pandas as pd
 import pytest
 
 from common.intervals import clopper_pearson
-from reports.output import write_report
-from reports.run.run_data import read_run
 from scenarios.engine.processes import InProcessExecutor
-from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import ExecutorFactory
-from scenarios.engine.task import Task
 from scenarios.errors import InputError
-from scenarios.experiment.draws import sampled_flight, value_at
-from scenarios.experiment.requests import Experiment
 from scenarios.experiment.sampling import beyond_declared
 from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study, study_of
 from scenarios.studies.replay import Replay
-from scenarios.world.noise import Noise
-from tests.run_tables import manifest_of
+
+pytestmark = pytest.mark.slow
 
 RARE = """
 study = "monte_carlo"
@@ -143,31 +137,6 @@ def test_every_flight_has_a_row_and_every_level_its_figures(whole):
     assert "probability of a keep-out violation in a flight" in result.lines[-1]
 
 
-def test_no_bound_is_claimed_from_flights_of_which_each_follows_from_others(whole):
-    result, out = whole
-    assert not any("of flights sampled as these were" in line for line in result.lines)
-    assert manifest_of(out)["sampled_at_random"] == {"short": False}
-
-
-def test_no_point_outside_the_declared_speed_ratios_is_flown(whole):
-    # Vessels of 4 to 10 m/s beside a UAV at about 20 m/s have 0.2 to 0.5 and a little more; without
-    # wind nu is their ratio.
-    nu = pd.read_csv(whole[1] / "summary.csv")["nu"]
-    assert nu.min() >= 0.3
-    assert nu.max() <= 0.5
-
-
-def test_points_outside_of_the_speed_ratios_are_counted_on_the_console(whole):
-    result, out = whole
-    outside = sum(
-        simulation["levels"][0]["outside"] for simulation in statistics_of(out)["simulations"]
-    )
-    # Of vessels at 4 to 10 m/s, between 0.21 and 0.51 of 19.42 m/s, a third.
-    assert 40 <= outside <= 120
-    line = f"{outside} of {150 + outside} points of the first levels were beyond speed_ratio and sampled again"
-    assert line in result.lines
-
-
 TURNING = [
     "subset.levels_max=1",
     "vessel.manoeuvres=[{at_s=1.0, turn_deg=5.0, turn_rate_deg_s=5.0}, {at_s=1.5, turn_deg=5.0, turn_rate_deg_s=5.0}]",
@@ -246,40 +215,6 @@ def test_a_flight_of_a_late_level_is_replayed_to_the_last_bit_its_blended_noise_
     assert result.all_met, result.lines
 
 
-def test_a_point_carries_its_noise(rare):
-    scenario = load_study(str(rare))
-    flight = sampled_flight("short", scenario, 0, (0.1, 0.2, 0.3, 0.6, 17.0, 5.0, 0.6, 6.0, 0.8))
-    assert flight.noise == Noise(17, ((5, 0.6), (6, 0.8)))
-    assert Experiment("short", scenario).request(0, (0.1, 0.2, 0.3, 0.6, 17.0, 5.0, 1.0)).seed == 17
-
-
-@pytest.mark.usefixtures("x8_design")
-@pytest.mark.parametrize("level", ["none", "light"])
-def test_a_flight_depends_on_the_seed_beside_its_blend_in_turbulence_alone(tmp_path, level):
-    study = study_of(
-        load_study(
-            "monte_carlo", ["method=subset", "flight.duration_max_s=10", "turbulence.gusts=1"]
-        ),
-        "monte_carlo",
-    )
-    run = RunDirectory(tmp_path / "run")
-    run.open("a", resume=False)
-    work, draws = study.work(run), study.trials["monte_carlo"].draws
-    drawn = next(i for i, draw in enumerate(draws) if draw.key == "turbulence.level")
-    inputs = [0.3] * len(draws)
-    inputs[drawn] = next(
-        at for at in np.linspace(0.01, 0.99, 99) if value_at(draws[drawn], at) == level
-    )
-    assert not beyond_declared(study.trials["monte_carlo"], inputs)
-    one, other = (
-        work.run(Task(number=0, point=(*inputs, seed, 5.0, 1.0))).tables["summary.csv"][0]
-        for seed in (17.0, 18.0)
-    )
-    assert one["min_distance_m"] > 0.0
-    assert (one["min_distance_m"] == other["min_distance_m"]) is (level == "none")
-    assert study._seeded(np.array(inputs)) is (level != "none")
-
-
 def test_a_lost_flight_is_not_flown_again_once_others_depend_on_it(rare, whole, tmp_path):
     import sqlite3
 
@@ -302,54 +237,25 @@ def test_a_lost_flight_is_not_flown_again_once_others_depend_on_it(rare, whole, 
     assert statistics_of(out) == statistics_of(whole[1])
 
 
-def test_its_report_says_the_probability_and_shows_levels_and_inputs(whole, tmp_path):
-    write_report(read_run(whole[1]), page := tmp_path / "report.html")
-    text = page.read_text(encoding="utf-8")
-    for words in ("subset simulation", "Levels", "Start range", "noise floor", "is no probability"):
-        assert words in text
-    # Its flights are led: that they are sampled as these were would be untrue.
-    summary = text[text.index('id="summary"') : text.index("<nav>")]
-    assert "ubset simulation" in summary
-    assert "sampled as these were" not in summary
-    assert "of such flights" not in summary
-
-
 @pytest.mark.parametrize(
     ("overrides", "words"),
     [
         (["method=subsett"], ["method", "'subsett'", "did you mean 'subset'"]),
         (
-            ["method=subset", "sweep.nu=[0.3,0.4]"],
-            ["method is 'subset'", "sweep", "set method to 'plain'"],
-        ),
-        (
             ["method=subset", "statistics.violation_upper=0.1"],
             ["method is 'subset'", "statistics.violation_upper", "leave them out"],
         ),
-        (["method=subset", "flights=10"], ["'flights' has no effect", "subset.flights_per_level"]),
         (
             ["method=subset", "draws=[]"],
             ["method is 'subset'", "draws is empty", "set method to 'plain'"],
-        ),
-        (
-            ["method=subset", "sampling=random"],
-            ["'sampling' has no effect", "set study to 'monte_carlo' and method to 'plain'"],
         ),
         (
             ["method=subset", "subset.flights_per_level=60"],
             ["6 flights that pass on", "must be 10", "100 or more"],
         ),
         (
-            ["method=subset", "subset.repeats=2"],
-            ["subset.repeats is 2; input should be greater than or equal to 3"],
-        ),
-        (
             ["method=subset", "subset.conditional_probability=0.7"],
             ["subset.conditional_probability", "0.7", "0.5"],
-        ),
-        (
-            ["subset.repeats=4"],
-            ["'subset.repeats' has no effect", "set study to 'monte_carlo' and method to 'subset'"],
         ),
     ],
 )

@@ -50,14 +50,6 @@ def test_it_starts_with_its_course_against_the_air_and_the_wind_on_top(place, x8
     )  # 1e-6 ft/s of north wind, and a globe's roundings
 
 
-def test_its_sensors_read_airspeed_heading_and_roll_against_the_air(place, x8_schedule):
-    start = x8_schedule.level(MIDDLE)
-    airspeed, heading, roll = place(Weather(wind=constant_wind(*WIND))).air_data()
-    assert airspeed == pytest.approx(start.airspeed, abs=1e-6)  # not the 22 m/s over the ground
-    assert heading == pytest.approx(0.7 - start.course_offset(), abs=1e-6)
-    assert roll == pytest.approx(start.roll, abs=1e-6)
-
-
 def test_it_climbs_and_sinks_to_a_commanded_altitude(place):
     vehicle = place(None)
     vehicle.command_altitude(65.0)
@@ -66,16 +58,6 @@ def test_it_climbs_and_sinks_to_a_commanded_altitude(place):
     assert vehicle.sample()[0] == pytest.approx(
         65.0, abs=0.1
     )  # 20 s, of a loop that settles within 10 (its design's record)
-
-
-def test_its_parts_fail_by_name(place):
-    vehicle = place(None, failable=True)
-    vehicle.fail("engine")
-    for _ in range(100):
-        vehicle.advance(0.0, 20.0)
-    # Without thrust, on to keep its altitude, it pays with airspeed: drag of some 4 N on 3.4 kg for
-    # 5 s takes 5 m/s at first.
-    assert vehicle.air_data()[0] < 17.0
 
 
 @pytest.mark.parametrize("rate_hz", [5.0, 6.0, 8.0, 10.0, 20.0, 40.0])

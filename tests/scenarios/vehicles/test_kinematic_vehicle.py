@@ -8,14 +8,12 @@ import pytest
 
 from aircraft.wind import WindField, constant_wind
 from gnc.guidance import Guidance
-from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
 from scenarios.flight.closed_loop import fly, release
 from scenarios.flight.outcome import Outcome
 from scenarios.planning.missions import plan_flight
 from scenarios.scenario.files import load_study
 from scenarios.vehicles.kinematic import KinematicVehicle
-from scenarios.vehicles.vehicle import SAMPLE_COLUMNS
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 
 SPEED = 19.42
@@ -72,16 +70,6 @@ def test_it_flies_a_circle_of_speed_over_heading_rate():
     assert places[-1] == pytest.approx((10.0, -20.0), abs=1e-9)
 
 
-def test_without_a_lag_it_turns_at_once_and_with_one_it_takes_its_time():
-    prompt, late = make(), make(lag=0.3)
-    for vehicle in (prompt, late):
-        for _ in range(6):
-            vehicle.advance(0.4, SPEED)
-    assert prompt.motion()[4] == 0.4
-    # After one time constant, 6 steps of 0.05 s: 1 - 1/e of the command.
-    assert late.motion()[4] == pytest.approx(0.4 * (1.0 - math.exp(-1.0)), rel=1e-12)
-
-
 @pytest.mark.parametrize("lag", [0.0, 0.3])
 def test_in_wind_it_flies_the_calm_path_carried_along(lag):
     calm, windy = make(lag), make(lag, wind=constant_wind(-6.0, 2.5))
@@ -115,36 +103,6 @@ def test_in_a_wind_that_changes_it_is_carried_by_what_blows_at_its_time_and_heig
         assert faster == pytest.approx(speed, rel=1e-9)
 
 
-def test_its_sensors_read_airspeed_heading_and_the_bank_of_a_coordinated_turn():
-    vehicle = make(course=0.5, wind=constant_wind(5.0, 0.0))
-    vehicle.advance(0.3, SPEED)
-    # tan(bank) = speed times heading rate over 9.80665 m/s^2; the heading after 0.05 s.
-    expected = (SPEED, 0.5 + 0.3 * 0.05, math.atan(SPEED * 0.3 / 9.80665))
-    assert vehicle.air_data() == pytest.approx(
-        expected, rel=1e-3
-    )  # gravity to the three digits that paper and standard share
-
-
-def test_it_has_no_parts_that_fail():
-    with pytest.raises(InputError, match="'engine' cannot fail in a kinematic flight"):
-        make().fail("engine")
-
-
-def test_its_speed_is_the_commanded_airspeed():
-    vehicle = make()
-    vehicle.advance(0.1, 20.5)
-    _, _, north_rate, east_rate, _ = vehicle.motion()
-    assert math.hypot(north_rate, east_rate) == pytest.approx(20.5, rel=1e-14)
-    assert dict(zip(SAMPLE_COLUMNS, vehicle.sample(), strict=True))["airspeed_mps"] == 20.5
-
-
-def test_a_motion_that_is_not_a_number_is_a_fault():
-    vehicle = make()
-    assert vehicle.fault(vehicle.sample()) == ""
-    vehicle.advance(math.nan, SPEED)
-    assert "not a number" in vehicle.fault(vehicle.sample())
-
-
 @pytest.mark.parametrize("nu", [0.0, 0.5, 0.95])
 def test_the_sweep_flies_with_it_too(nu):
     record = fly_scenario(nu=nu)
@@ -152,17 +110,6 @@ def test_the_sweep_flies_with_it_too(nu):
     # At constant speed, held commands of 20 Hz are late by 25 ms, half a metre at 19.42 m/s;
     # measured 0.2 m or less.
     assert error_of_the_last_minute(record) < 0.5
-
-
-def test_a_lag_is_previewed_as_the_autopilots_is():
-    # Preview by the lag and half a step of hold takes most of the error away, as with the aircraft
-    # (regression tests).
-    lag = "kinematic.heading_rate_lag_s=0.3"
-    previewed, not_previewed = (
-        error_of_the_last_minute(fly_scenario(lag, *words))
-        for words in ([], ["guidance.preview=false"])
-    )
-    assert previewed < 0.5 * not_previewed
 
 
 def test_the_guidance_is_the_same_for_both_vehicles():

@@ -1,5 +1,3 @@
-import math
-
 import numpy as np
 import pytest
 
@@ -47,28 +45,6 @@ def test_reports_are_handed_on_in_the_order_in_which_they_are_received():
     assert said != sorted(said)
 
 
-def test_the_first_report_is_always_received_at_once():
-    for seed in range(20):
-        arrivals = received(missing=0.99, outages=[(0.0, 100.0)], seed=seed, duration=50.0)
-        assert arrivals[0][0] == arrivals[0][1].time == 0.0
-
-
-def test_a_fraction_of_them_is_missing():
-    everything, some = received(missing=0.0), received(missing=0.3)
-    # 4 sigma of a binomial of 667.
-    assert len(some) / len(everything) == pytest.approx(0.7, abs=4.0 * math.sqrt(0.21 / 667))
-
-
-def test_nothing_is_received_during_an_outage():
-    arrivals, everything = received(outages=[(100.0, 160.0)], missing=0.0), received(missing=0.0)
-    when = np.array([arrival[0] for arrival in arrivals])
-    assert not np.any((when >= 100.0) & (when < 160.0))
-    # Before and after it, nothing changes.
-    without = [arrival for arrival in everything if not 100.0 <= arrival[0] < 160.0]
-    assert arrivals == without
-    assert len(without) < len(everything)
-
-
 def test_their_errors_are_as_large_as_they_say():
     arrivals = received(missing=0.0, interval_s=(2.0, 2.0))
     errors = np.array(
@@ -78,8 +54,3 @@ def test_their_errors_are_as_large_as_they_say():
     sigmas = np.array([5.0, 5.0, 0.15, 0.15])
     np.testing.assert_allclose(errors.std(axis=0), sigmas, rtol=0.065)
     assert np.abs(errors.mean(axis=0) / sigmas).max() < 0.09
-
-
-def test_the_same_seed_gives_the_same_reports():
-    assert received(seed=4, duration=300.0) == received(seed=4, duration=300.0)
-    assert received(seed=4, duration=300.0) != received(seed=5, duration=300.0)

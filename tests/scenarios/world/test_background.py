@@ -28,12 +28,6 @@ def test_haze_has_the_standard_deviation_and_the_correlation_time_that_are_given
     assert later == pytest.approx(math.exp(-1.0), abs=0.05)
 
 
-def test_haze_is_stationary_from_the_first_sample_on():
-    first = [sampled("haze", 2.0, 30.0, duration=60.0, seed=seed).at(0.0) for seed in range(2000)]
-    # Of 2000 independent values the standard deviation has one of 1.6 %: four of them.
-    assert np.std(first) == pytest.approx(2.0, rel=0.064)
-
-
 def test_a_sine_has_the_amplitude_and_the_period_that_are_given_and_any_phase():
     time = np.arange(0.0, 600.0, 0.5)
     one, other = (
@@ -53,8 +47,3 @@ def test_steps_are_as_often_and_as_large_as_given_and_level_between():
     # 500 jumps on average: sqrt(500) = 22, and sqrt(1/1000) = 3.2 % of their size; four of these.
     assert len(jumps) == pytest.approx(LONG / interval, abs=90)
     assert np.std(jumps) == pytest.approx(size, rel=0.13)
-
-
-def test_without_a_background_the_air_is_clean():
-    background = sampled_background(AirConfig(), 100.0, np.random.default_rng(1))
-    assert not background.at(np.linspace(0.0, 200.0, 50)).any()

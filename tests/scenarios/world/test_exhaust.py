@@ -7,8 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from aircraft.wind import WindField, constant_wind
-from measurement.errors import MeasurementError
+from aircraft.wind import constant_wind
 from measurement.plume.spread import MarineAir
 from scenarios.scenario.files import load_study
 from scenarios.world.plume import Exhaust, emission, exhaust_of, fuel_of
@@ -161,45 +160,3 @@ def test_the_smoke_of_a_ship_that_turned_lies_along_her_own_track():
     now = vessel.motion(125.0)
     straight = exhaust.sample(at, np.array([now[0] - 300.0]), np.array([now[1]]), np.array([60.0]))
     assert straight.dilution[0] == 0.0
-
-
-def test_wind_that_turns_bends_the_plume():
-    vessel = SteadyVessel(8.0, 0.0)
-    turning = WindField([[[0.0, 6.0]], [[0.0, -6.0]]], times=(0.0, 60.0))
-    exhaust = smoke(turning, vessel, "plume.meander=false")
-    # Emitted at 10 s, at (80, 0); until 60 s it is carried by the integral of the wind.
-    moved = [
-        d[0]
-        for d in (
-            np.subtract(
-                turning.displacement(np.array([60.0]), 35.0),
-                turning.displacement(np.array([10.0]), 35.0),
-            )
-        )
-    ]
-    found = exhaust.sample(
-        np.array([60.0]), np.array([80.0 + moved[0]]), np.array([moved[1]]), np.array([65.0])
-    )
-    assert found.age[0] == pytest.approx(50.0, abs=0.5)
-    assert abs(found.across[0]) < 0.5
-    assert found.dilution[0] > 0.0
-
-
-def test_exhaust_rises_less_in_warmer_air():
-    cold, usual, warm = (
-        emission(load_study("sulphur", [f"wind.temperature_c={celsius}"]), speed=10.0)
-        for celsius in (-10.0, 15.0, 40.0)
-    )
-    # F = g w d^2/4 (1 - Ta/Ts), with the same exhaust in each: linear in the air's temperature, and
-    # 0 at that of the exhaust, which leaves a two-stroke engine with 200 to 300 degC.
-    assert cold.buoyancy_flux > usual.buoyancy_flux > warm.buoyancy_flux
-    slope = (warm.buoyancy_flux - cold.buoyancy_flux) / 50.0
-    assert usual.buoyancy_flux == pytest.approx(cold.buoyancy_flux + 25.0 * slope, rel=1e-12)
-    assert 200.0 < -10.0 - cold.buoyancy_flux / slope < 300.0
-    # 15 degC is the standard atmosphere's, which is taken where no air is given.
-    assert emission(load_study("sulphur"), speed=10.0) == usual
-
-
-def test_air_that_hardly_moves_past_the_ship_has_no_plume():
-    with pytest.raises(MeasurementError, match=r"apparent wind"):
-        smoke(constant_wind(11.5, 0.0), SteadyVessel(12.0, 0.0))

@@ -44,22 +44,3 @@ def test_a_small_step_of_the_blend_changes_every_number_by_little_and_a_new_seed
     # and four times that is allowed.
     assert np.std(normals(after) - normals(before)) == pytest.approx(STEP, rel=0.07)
     assert np.array_equal(normals(Noise(99, before.blend)), normals(before))
-
-
-def test_whole_numbers_follow_from_the_seed_alone_which_jsbsims_turbulence_is_made_of():
-    def whole(noise):
-        return int(streams(noise).world.integers(2**31 - 1))
-
-    assert whole(Noise(1, ((2, 1.0),))) == whole(Noise(1, ((2, KEPT), (7, STEP))))
-    assert whole(Noise(1, ((2, 1.0),))) != whole(Noise(5, ((2, 1.0),)))
-
-
-def test_a_report_more_changes_nothing_of_the_sensors_of_a_blend():
-    one, other = (streams(Noise(1, ((2, 1.0),))) for _ in range(2))
-    one.reports.standard_normal(5)
-    assert one.sensors.random() == other.sensors.random()
-
-
-def test_noise_is_written_as_numbers_in_a_row():
-    assert Noise.at((4.0, 11.0, 0.6, 12.0, 0.8)) == Noise(4, ((11, 0.6), (12, 0.8)))
-    assert Noise.at((4.0,)) == Noise(4)

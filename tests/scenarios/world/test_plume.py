@@ -49,13 +49,6 @@ def test_a_given_plume_keeps_its_angle_from_the_bow_of_a_steady_vessel_whatever_
     assert plume.axis(0.0) == plume.axis(500.0) == pytest.approx(math.pi, rel=1e-15)
 
 
-def test_a_given_plume_turns_with_the_vessel():
-    vessel = manoeuvring({"at_s": 0.0, "turn_deg": 90.0, "turn_rate_deg_s": 1.0})
-    assert behind(vessel, heading_deg=180.0).axis(45.0) == pytest.approx(
-        math.pi + math.radians(45.0), abs=1e-9
-    )
-
-
 def test_the_plumes_course_never_jumps_where_its_angle_is_wrapped():
     # Behind a vessel that turns right round, seen from the air: a full turn in all.
     plume = behind(
@@ -65,12 +58,3 @@ def test_the_plumes_course_never_jumps_where_its_angle_is_wrapped():
     # 2 deg/s over the ground, by up to 8/(8 - 3) as much through the air, in 0.1 s.
     assert np.abs(np.diff(axis)).max() < math.radians(0.2 * 8.0 / 5.0) * 1.01
     assert axis[-1] - axis[0] == pytest.approx(2.0 * math.pi, abs=1e-9)
-
-
-def test_the_plume_of_a_vessel_that_stops_in_still_air_stays_where_it_was():
-    vessel = manoeuvring(
-        {"at_s": 10.0, "speed_mps": 0.0, "acceleration_mps2": 0.5}, course_deg=30.0
-    )
-    # No direction follows from no motion at all: it is that of the last, 210 degrees.
-    axis = behind(vessel).axis(100.0)
-    assert math.remainder(axis - math.radians(210.0), 2.0 * math.pi) == pytest.approx(0.0, abs=1e-9)

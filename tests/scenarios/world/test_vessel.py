@@ -2,19 +2,14 @@
 
 import math
 
-import numpy as np
 import pytest
 
 from gnc.errors import InfeasibleError
 from scenarios.scenario.sections.world import VesselConfig
 from scenarios.world.vessel import (
-    TRACK_STEP,
     ManoeuvringVessel,
-    SteadyVessel,
     check_manoeuvres,
     largest_inconsistency,
-    sampled,
-    track_times,
 )
 
 
@@ -70,42 +65,6 @@ def test_a_change_of_speed_is_a_parabola(speed, end):
         # The trapezoidal rule is exact but for the two corners, which lie on points of the table.
         assert vessel.motion(50.0 + since)[1] == pytest.approx(way, abs=1e-6)
     assert vessel.motion(50.0 + takes + 1.0)[3] == pytest.approx(end, abs=1e-12)
-
-
-def test_manoeuvres_follow_each_other():
-    vessel = track({"speed_mps": 8.0, "manoeuvres": [
-        {"at_s": 10.0, "turn_deg": 90.0, "turn_rate_deg_s": 1.0},
-        {"at_s": 200.0, "turn_deg": -30.0, "turn_rate_deg_s": 0.5, "speed_mps": 5.0, "acceleration_mps2": 0.1},
-    ]})  # fmt: skip
-    _, _, v_north, v_east = vessel.motion(150.0)
-    assert (v_north, v_east) == pytest.approx((0.0, 8.0), abs=1e-9)
-    _, _, v_north, v_east = vessel.motion(300.0)
-    course = math.radians(60.0)
-    assert (v_north, v_east) == pytest.approx(
-        (5.0 * math.cos(course), 5.0 * math.sin(course)), abs=1e-9
-    )
-    # The slower of both parts: 30/0.5 s, against 3/0.1 s.
-    assert vessel.manoeuvres_end == pytest.approx(260.0)
-
-
-@pytest.mark.parametrize("course_deg", [0.0, 30.0, -145.0])
-def test_a_vessel_without_manoeuvres_moves_as_a_steady_one(course_deg):
-    tabled = track({"speed_mps": 8.0, "course_deg": course_deg})
-    steady = SteadyVessel(8.0, math.radians(course_deg))
-    for time in (0.0, 0.01, 3.333, 100.0, 599.97):
-        # Sums of 12,000 steps over 4.8 km.
-        assert tabled.motion(time) == pytest.approx(steady.motion(time), rel=0.0, abs=1e-9)
-        assert tabled.course(time) == pytest.approx(steady.course(time), rel=0.0, abs=1e-9)
-    assert math.isnan(tabled.manoeuvres_end)
-    assert math.isnan(steady.manoeuvres_end)
-    for one, other in zip(sampled(tabled, 600.0), sampled(steady, 600.0), strict=True):
-        np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-9)
-
-
-def test_a_track_goes_on_somewhat_beyond_its_duration():
-    times = track_times(10.0)
-    assert times[-2] > 10.0
-    np.testing.assert_allclose(np.diff(times), TRACK_STEP, rtol=1e-12)
 
 
 @pytest.mark.parametrize(

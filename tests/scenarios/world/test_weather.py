@@ -3,13 +3,9 @@ import math
 import numpy as np
 import pytest
 from flight_cases import scenario
-from pydantic import ValidationError
 
-from aircraft.fdm import TIME_STEP
-from aircraft.weather import ordered_gusts
-from scenarios.scenario.sections.world import WindConfig
 from scenarios.world.vessel import given_place
-from scenarios.world.wind import sampled_weather, wind_ned, wind_of
+from scenarios.world.wind import sampled_weather, wind_of
 
 
 def sampled(given, seed=9):
@@ -31,11 +27,6 @@ def test_a_wind_with_a_profile_is_the_one_given_at_its_height_whatever_the_rough
     )
 
 
-def test_a_roughness_too_small_for_a_profile_is_refused():
-    with pytest.raises(ValidationError, match="greater than or equal to"):
-        WindConfig(speed_mps=10.0, roughness_m=1e-12)
-
-
 def test_gusts_come_one_after_the_other_and_are_no_stronger_than_they_may():
     turbulence = {"gusts": 5, "gust_speed_mps": 8.0, "gust_length_s": 4.0}
     weather = sampled(
@@ -49,21 +40,3 @@ def test_gusts_come_one_after_the_other_and_are_no_stronger_than_they_may():
         assert 4.0 <= math.hypot(*gust.velocity_ned) <= 8.0
         assert gust.velocity_ned[2] == 0.0
     assert weather.turbulence is None
-
-
-def test_the_seed_determines_the_air():
-    turbulence = {"level": "light", "gusts": 2, "gust_speed_mps": 4.0}
-    blown = scenario(
-        fidelity="six_dof", turbulence=turbulence, wind={"speed_mps": 5.0, "from_deg": 30.0}
-    )
-    assert sampled(blown) == sampled(blown)
-    assert sampled(blown, 10) != sampled(blown)
-    assert sampled(blown).wind.now(100.0, 60.0) == wind_ned(blown.wind)
-
-
-def test_many_gusts_leave_each_other_the_time_that_jsbsim_needs():
-    # 100 gusts of 2.6 s in 300 s: sampled alone, two of them met in 83 of 1000 flights.
-    turbulence = {"gusts": 100, "gust_speed_mps": 1.0, "gust_length_s": 1.3}
-    given = scenario(fidelity="six_dof", turbulence=turbulence, flight={"duration_max_s": 300.0})
-    for seed in range(100):
-        assert len(ordered_gusts(sampled(given, seed).gusts, TIME_STEP)) == 100

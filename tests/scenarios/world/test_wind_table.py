@@ -8,12 +8,10 @@ import pytest
 from flight_cases import fly, scenario
 
 from scenarios.errors import InputError
-from scenarios.scenario.files import load_study
 from scenarios.scenario.sections.world import WindConfig
-from scenarios.studies.base import FlightStudy
 from scenarios.world.vessel import Place
 from scenarios.world.wind import first_time, read_netcdf, tabled_wind
-from scenarios.world.world import mean_wind, place_of, vessel_of
+from scenarios.world.world import mean_wind, vessel_of
 
 HOURLY = """time_utc,speed_mps,from_deg
 2026-06-01T10:00:00Z,4.0,0
@@ -50,25 +48,6 @@ def test_an_hourly_table_is_timed_from_the_start_of_the_flight(table):
     assert first_time(table(HOURLY), KATTEGAT) == START
 
 
-@pytest.mark.parametrize(("separator", "decimal"), [(";", ","), ("\t", "."), (";", ".")])
-def test_a_table_of_another_country_is_the_same(table, separator, decimal):
-    plain = "height_m,speed_mps,from_deg\n10,5.5,0\n20,6.25,90\n"
-    other = plain.replace(".", decimal) if separator == "," else plain.replace(",", separator)
-    other = other.replace(".", decimal)
-    for height in (10.0, 15.0, 20.0):
-        assert wind(table(other)).now(0.0, height) == wind(table(plain)).now(0.0, height)
-
-
-def test_a_calm_row_needs_no_direction(table):
-    assert wind(table("height_m,speed_mps,from_deg\n10,0,\n20,5,90\n")).now(0.0, 10.0) == (0.0, 0.0)
-
-
-def test_a_table_over_height_holds_at_all_times(table):
-    field = wind(table("height_m,speed_mps,from_deg\n100,10,270\n10,5,270\n"))
-    assert field.now(1e6, 10.0) == pytest.approx((0.0, 5.0), abs=1e-12)
-    assert field.now(0.0, math.sqrt(1000.0)) == pytest.approx((0.0, 7.5), abs=1e-12)
-
-
 def test_a_table_over_time_and_height_is_both(table):
     rows = "".join(
         f"2026-06-01T{10 + hour}:00:00Z,{height},{hour + height / 10},180\n"
@@ -79,49 +58,25 @@ def test_a_table_over_time_and_height_is_both(table):
     assert field.now(1800.0, 100.0) == pytest.approx((10.5, 0.0), abs=1e-12)
 
 
-def test_a_table_over_time_may_have_a_profile_over_height(table):
-    field = wind(table(HOURLY), roughness_m=2e-4)
-    assert field.now(0.0, 10.0) == pytest.approx((-4.0, 0.0), abs=1e-12)
-    assert field.now(0.0, 60.0)[0] == pytest.approx(
-        -4.0 * math.log(60.0 / 2e-4) / math.log(10.0 / 2e-4), rel=1e-12
-    )
-    assert wind(table(HOURLY), roughness_m=2e-4, height_m=60.0).now(0.0, 60.0) == pytest.approx(
-        (-4.0, 0.0), abs=1e-12
-    )
-
-
 @pytest.mark.parametrize(
     ("text", "changes", "words"),
     [
         ("", {}, ["empty"]),
-        ("\n , ,\n", {}, ["the header is"]),
         (
             "height_m,speed_mps,to_deg\n10,5,0\n", {},
             ["from_deg is where the wind comes from: add 180 deg to 'to_deg', less 360 where it is more, and rename it"],
         ),
-        ("\nspeed_mps,from_deg\n5,0\n", {}, ["line 2", "the header is 'speed_mps,from_deg'"]),
         (
             "time_utc,speed_kn,from_deg\n2026-06-01T12:00:00Z,9,0\n", {},
             ["'speed_kn' is in another unit than 'speed_mps': convert its values before you rename it"],
         ),
-        ("height_m,speed_mps,from_deg,speed_mps\n10,5,0,7\n", {}, ["line 1: the header has 'speed_mps' twice; leave one of"]),
         ("height_m,speed_mps,from_deg\n", {}, ["no row below the header"]),
-        ("\n" + HOURLY + "noon,5,0\n", {}, ["row 6", "time 'noon' in column 'time_utc' cannot be read"]),
         (HOURLY + "2026-06-01T11:30:00Z,5,0\n", {}, ["line 5", "2026-06-01T11:30:00Z is before the line above", "sort"]),
-        (HOURLY + "2026-06-01T12:00:00Z,5,0\n", {}, ["line 5", "once more"]),
         (HOURLY + "2026-06-01T13:00:00Z,-5,0\n", {}, ["line 5", "speeds go from 0 to 100 m/s"]),
-        (HOURLY + "2026-06-01T13:00:00Z,5,\n", {}, ["line 5", "every row has its columns"]),
         (HOURLY + "2026-06-01T13:00:00Z,5\n", {}, ["line 5", "every row has its columns"]),
-        (HOURLY + "2026-06-01T13:00:00Z,calm,90\n", {}, ["column 'speed_mps' has 'calm' in row 5"]),
         (HOURLY + "2026-06-01T13:00:00Z,5,3,90\n", {}, ["line 5 has 4 values, more values than the head line has names"]),
-        (HOURLY + "2026-06-01T13:00:00Z,5,400\n", {}, ["line 5", "directions"]),
         (HOURLY, {"duration": 8000.0}, ["T10:00:00Z (line 2) to 2026-06-01T12:00:00Z (line 4);", "2026-06-01T12:13:20Z"]),
-        (HOURLY, {"place": replace(KATTEGAT, utc=START - 60.0)}, ["goes from 2026-06-01T09:59:00Z", "set place.utc"]),
         ("height_m,speed_mps,from_deg\n10,5,0\n", {"roughness_m": 1e-3}, ["wind.roughness_m is given beside heights"]),
-        (
-            "time_utc,height_m,speed_mps,from_deg\n2026-06-01T10:00:00Z,10,5,0\n2026-06-01T12:00:00Z,20,5,0\n", {},
-            ["heights are [20.0] m, at first [10.0]"],
-        ),
     ],
 )  # fmt: skip
 def test_a_table_of_no_use_is_refused_in_one_line(table, text, changes, words):
@@ -130,24 +85,6 @@ def test_a_table_of_no_use_is_refused_in_one_line(table, text, changes, words):
     assert "\n" not in str(refusal.value)
     for word in ["wind.csv", *words]:
         assert word in str(refusal.value)
-
-
-def test_a_table_is_relative_to_its_scenario_and_its_start_is_that_of_a_flight_without_a_time(
-    table, tmp_path
-):
-    table(HOURLY)
-    (tmp_path / "mine.toml").write_text(
-        'title = "mine"\nwind.table = "wind.csv"\nfidelity = "kinematic"\n', encoding="utf-8"
-    )
-    given = load_study(str(tmp_path / "mine.toml"))
-    assert given.follows
-    assert place_of(given, vessel_of(given)).utc == START
-    study = FlightStudy(given, "mine", {"mine": given})
-    assert list(study.initial_manifest()["plugins"]) == [str(tmp_path / "wind.csv")]
-    with pytest.raises(InputError, match="a wind that is not read from a table"):
-        load_study(str(tmp_path / "mine.toml"), ["wind.speed_mps=5"])
-    with pytest.raises(InputError, match=r"give a file \.csv or \.nc"):
-        load_study(str(tmp_path / "mine.toml"), ["wind.table=hourly"])
 
 
 def test_a_flight_in_a_wind_that_changes_knows_it_and_crosses_as_predicted(table):
@@ -251,162 +188,3 @@ def with_longitudes(path, longitudes, at):
 def test_netcdf_has_the_wind_of_a_longitude_however_its_grid_counts_it(longitudes, at, tmp_path):
     found = read_netcdf(with_longitudes(tmp_path / "era5.nc", longitudes, at), 57.2, at)[2]
     assert found[0] == pytest.approx(np.array([[1.0, 0.0]]), abs=1e-9)
-
-
-def test_netcdf_is_read_by_its_units_names_and_dimensions(tmp_path):
-    xarray = pytest.importorskip("xarray", reason="xarray is an extra")
-    with xarray.open_dataset(
-        with_longitudes(tmp_path / "era5.nc", np.array([11.0, 12.0]), 11.5)
-    ) as opened:
-        data = opened.load()
-
-    def read(name, changed):
-        changed.to_netcdf(
-            tmp_path / name,
-            engine="h5netcdf",
-            encoding={"valid_time": {"units": "seconds since 1970-01-01"}},
-        )
-        return read_netcdf(tmp_path / name, 57.2, 11.2)
-
-    expected = read_netcdf(tmp_path / "era5.nc", 57.2, 11.2)[2]
-    two = xarray.concat(
-        [data, data.assign_coords(valid_time=data["valid_time"] - np.timedelta64(1, "h"))],
-        "valid_time",
-    )
-    times, _, wind = read("backwards.nc", two)
-    assert times[1] - times[0] == 3600.0
-    assert wind[1] == pytest.approx(expected[0])
-    assert read("short.nc", data.rename(latitude="lat", longitude="lon"))[2] == pytest.approx(
-        expected
-    )
-    in_metres = data.assign(u10=data["u10"].assign_attrs(units="m s**-1"))
-    assert read("metres.nc", in_metres)[2] == pytest.approx(expected)
-    knots = data.assign(v10=data["v10"].assign_attrs(units="knots"))
-    east, north = read("knots.nc", knots)[2][0, 0][::-1]
-    assert (east, north) == pytest.approx(
-        (expected[0, 0, 1], 0.514444 * expected[0, 0, 0]), rel=1e-5
-    )
-    kelvin = data.assign(v10=data["v10"].assign_attrs(units="K"))
-    for name, changed, words in (
-        ("kelvin.nc", kelvin, r"v10: 'K' is no unit of this quantity, which is in m/s"),
-        (
-            "ensemble.nc",
-            data.expand_dims(number=2),
-            "u10 has the dimension 'number' beside time and place; select one of its 2 values",
-        ),
-        (
-            "empty.nc",
-            data.isel(valid_time=slice(0)),
-            "it has no times; give a file with the time of the flight",
-        ),
-    ):
-        with pytest.raises(InputError, match=words):
-            read(name, changed)
-    # Numbers were taken for milliseconds since 1970.
-    data.assign_coords(valid_time=[12.0]).to_netcdf(tmp_path / "numbers.nc", engine="h5netcdf")
-    with pytest.raises(
-        InputError,
-        match="its times have no unit and origin, as 'hours since 2026-06-01'; give valid_time such",
-    ):
-        read_netcdf(tmp_path / "numbers.nc", 57.2, 11.2)
-
-
-@pytest.fixture
-def hours(tmp_path):
-    """Three hours of wind on a small grid, towards the east at 1, 2 and 3 m/s."""
-    xarray = pytest.importorskip("xarray", reason="xarray is an extra")
-    pytest.importorskip("h5netcdf", reason="h5netcdf is an extra")
-    east = np.ones((3, 2, 2)) * np.array([1.0, 2.0, 3.0])[:, None, None]
-    dims = ("valid_time", "latitude", "longitude")
-    times = np.array(["2026-06-01T10", "2026-06-01T11", "2026-06-01T12"], dtype="datetime64[ns]")
-    return xarray.Dataset(
-        {"u10": (dims, east), "v10": (dims, np.zeros_like(east))},
-        coords={"valid_time": times, "latitude": [57.0, 58.0], "longitude": [11.0, 12.0]},
-    )
-
-
-def stored(data, tmp_path, name="wind.nc", **how):
-    data.to_netcdf(tmp_path / name, engine="h5netcdf", **how)
-    return str(tmp_path / name)
-
-
-def test_versions_of_era5_are_one_wind(hours, tmp_path):
-    import xarray
-
-    final, first = hours.copy(deep=True), hours.copy(deep=True)
-    final["u10"][2] = final["v10"][2] = np.nan
-    first["u10"][:2] = first["v10"][:2] = np.nan
-    both = xarray.concat([final, first], xarray.IndexVariable("expver", [1, 5]))
-    field = wind(stored(both, tmp_path))
-    assert [field.now(3600.0 * hour, 10.0)[1] for hour in range(3)] == pytest.approx(
-        [1.0, 2.0, 3.0]
-    )
-
-
-def test_hours_without_wind_count_only_where_a_flight_needs_them(hours, tmp_path):
-    hours["u10"][2] = np.nan
-    path = stored(hours, tmp_path)
-    field = wind(path, duration=3000.0)
-    assert field.now(1800.0, 10.0)[1] == pytest.approx(1.5)
-    with pytest.raises(
-        InputError, match="has no wind at 2026-06-01T12:00:00Z, which the flight needs"
-    ):
-        wind(path, duration=5000.0)
-
-
-def test_a_wind_of_cf_standard_names_is_read(hours, tmp_path):
-    renamed = hours.rename(u10="ua", v10="va", valid_time="time").assign_coords(height=10.0)
-    for name, standard in (("ua", "eastward_wind"), ("va", "northward_wind")):
-        renamed[name].attrs["standard_name"] = standard
-    assert wind(stored(renamed, tmp_path)).now(3600.0, 10.0)[1] == pytest.approx(2.0)
-
-
-def test_a_forecast_is_read_over_the_times_that_it_is_for(hours, tmp_path):
-    begin = np.datetime64("2026-06-01T10", "ns")
-    steps = hours["valid_time"].values - begin
-    forecast = hours.rename(valid_time="step").assign_coords(step=steps, time=begin)
-    assert wind(stored(forecast, tmp_path)).now(7200.0, 10.0)[1] == pytest.approx(3.0)
-
-
-def test_a_calendar_that_no_clock_has_is_named(hours, tmp_path):
-    numbered = hours.assign_coords(valid_time=[0.0, 1.0, 2.0])
-    numbered["valid_time"].attrs = {"units": "hours since 2026-06-01 10:00", "calendar": "noleap"}
-    with pytest.raises(InputError, match="its times are of the calendar 'noleap'"):
-        wind(stored(numbered, tmp_path))
-
-
-@pytest.mark.parametrize("longitudes", [np.array([11.0, 12.0]), np.arange(0.0, 350.0, 0.25)])
-def test_netcdf_without_a_longitude_is_refused_by_it(longitudes, tmp_path):
-    with pytest.raises(
-        InputError, match=r"longitudes go from .* deg, and the flight begins at -5\.000"
-    ):
-        read_netcdf(with_longitudes(tmp_path / "era5.nc", longitudes, -5.0), 57.2, -5.0)
-
-
-def test_a_place_whose_coordinates_are_exchanged_is_told_by_the_area_of_the_wind(tmp_path):
-    file = with_longitudes(tmp_path / "era5.nc", np.array([11.0, 12.0]), 11.5)
-    for latitude, longitude, mistake in (
-        (11.5, 57.2, "latitude and longitude exchanged"),
-        (57.2, -11.5, "the other sign of longitude"),
-    ):
-        with pytest.raises(InputError, match=f"with {mistake} it would be within it; give a file"):
-            read_netcdf(file, latitude, longitude)
-    with pytest.raises(InputError, match=r"begins at 7\.000; give a file of that place"):
-        read_netcdf(file, 7.0, 7.0)
-
-
-def test_a_table_in_another_dialect_blows_as_the_plain_one(tmp_path):
-    # The clock goes back at 3:00 in Berlin; a direction of -90 deg is 270.
-    text = (
-        "\ufeff# mast 3; 10 m\rtime_utc\tspeed_mps\tfrom_deg\t\t\r[UTC]\t[m/s]\t[deg]\t\t\r"
-        '2026-10-25T02:30:00+02:00\t4,5\t−90,0\t\t\r2026-10-25T02:30:00+01:00\t8,5\t"−90,0"\t\t\r'
-    )
-    path = tmp_path / "dialect.csv"
-    path.write_bytes(text.encode("utf-8"))
-    # 2026-10-25T00:30:00Z, date -u -d ... +%s.
-    place = replace(KATTEGAT, utc=1792888200.0)
-    assert first_time(str(path), place) == 1792888200.0
-    field = wind(str(path), place, duration=3000.0)
-    # From the west it blows east; after half an hour it has grown half-way to 8.5 m/s.
-    assert field.now(0.0, 60.0) == pytest.approx((0.0, 4.5), abs=1e-12)
-    assert field.now(1800.0, 60.0) == pytest.approx((0.0, 6.5), abs=1e-12)

@@ -5,8 +5,6 @@ import math
 import pytest
 from flight_cases import scenario
 
-from scenarios.scenario.scenario import Scenario
-from scenarios.world.vessel import ManoeuvringVessel, SteadyVessel
 from scenarios.world.world import apparent_wind, plume_of, vessel_of
 
 STOPS = {
@@ -32,21 +30,6 @@ def test_the_apparent_wind_is_the_vessels_speed_through_the_air(changes, at_star
     assert (wind.at_start, wind.least, wind.greatest) == pytest.approx(
         (at_start, least, greatest), abs=1e-12
     )
-
-
-def test_a_vessel_that_manoeuvres_has_a_track_and_any_other_goes_straight_on():
-    assert isinstance(
-        vessel_of(scenario(vessel={"manoeuvres": [{"at_s": 5.0, "turn_deg": 10.0}]})),
-        ManoeuvringVessel,
-    )
-    assert isinstance(vessel_of(scenario()), SteadyVessel)
-    assert isinstance(vessel_of(Scenario(title="test")), SteadyVessel)
-
-
-def test_the_speed_may_be_given_as_a_ratio():
-    given = Scenario(title="test", vessel={"speed_ratio": 0.5, "course_deg": 90.0})
-    # Half of 19.42 m/s, to the east.
-    assert vessel_of(given).motion(2.0) == pytest.approx((0.0, 19.42, 0.0, 9.71), abs=1e-12)
 
 
 @pytest.mark.parametrize(

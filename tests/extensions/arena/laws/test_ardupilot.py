@@ -8,8 +8,6 @@ import pytest
 
 from extensions.arena.laws.ardupilot import (
     FRESH,
-    L1State,
-    decided,
     update_loiter,
     update_waypoint,
 )
@@ -71,29 +69,6 @@ def test_behind_the_start_and_beyond_the_end_it_turns_to_these_points(position, 
     assert acceleration == pytest.approx(
         2.25 * 400.0 / (0.3183099 * 0.75 * 17.0 * 20.0) * math.sin(limited), rel=1e-9
     )
-
-
-def test_with_the_target_behind_it_keeps_to_the_side_it_turned_to():
-    # Section 2.1, step 6: both beyond 0.9 pi, the bearing more than 120 degrees off the yaw, and of
-    # different signs.
-    assert decided(3.0, -3.0, bearing=math.pi, yaw=0.0) == -3.0
-    assert decided(3.0, -2.0, bearing=math.pi, yaw=0.0) == 3.0
-    assert decided(3.0, -3.0, bearing=1.0, yaw=0.0) == 3.0
-
-
-def test_one_place_for_start_and_end_is_a_waypoint():
-    here, state = update_waypoint(
-        (0.0, 0.0), (20.0, 0.0), 0.0, (0.0, 50.0), (0.0, 50.0), time_step=0.1
-    )
-    # Nothing lies across a line from the vehicle to the point; the course is a quarter of a turn
-    # off it.
-    assert state.last_angle == pytest.approx(0.5 * math.pi, abs=1e-12)
-    assert here == pytest.approx(2.25 * 400.0 / (0.3183099 * 0.75 * 17.0 * 20.0), rel=1e-9)
-    assert (
-        update_waypoint((0.0, 50.0), (20.0, 0.0), 0.0, (0.0, 50.0), (0.0, 50.0), time_step=0.1)[0]
-        == 0.0
-    )
-    assert state == L1State(0.0, 0.02, state.last_angle)
 
 
 def test_a_loiter_is_captured_and_circled():

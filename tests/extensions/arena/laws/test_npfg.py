@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from extensions.arena.laws.npfg import NpfgParameters, bearing_feasibility, npfg, track_error_bound
+from extensions.arena.laws.npfg import NpfgParameters, bearing_feasibility, npfg
 
 NORTH, CALM = (1.0, 0.0), (0.0, 0.0)
 # PX4 computes in single precision: 1e-7 relative at each of some ten operations.
@@ -48,21 +48,6 @@ def test_blown_backwards_it_heads_against_the_wind_and_towards_its_bearing():
     )
     assert command.heading == pytest.approx(heading, abs=1e-12)
     assert -0.5 * math.pi < command.bearing < command.heading < 0.0
-
-
-def test_a_tight_turn_in_wind_shortens_the_period():
-    parameters = NpfgParameters(period=20.0)
-    command = npfg((0.0, 3.0), (15.0, 8.0), (0.0, 8.0), NORTH, 1.0 / 20.0, parameters)
-    # Section 1: T = 18.58226, a = 9.177056.
-    assert command.period == pytest.approx(18.58226, rel=SINGLE)
-    assert command.lateral_acceleration == pytest.approx(9.177056, rel=SINGLE)
-
-
-def test_the_error_bound_is_continuous_at_a_ground_speed_of_one():
-    # Section 1.4: v tau above 1 m/s, tau (v^2 + 1)/2 below; both are tau at 1 m/s.
-    assert track_error_bound(1.0, 7.0) == pytest.approx(
-        track_error_bound(math.nextafter(1.0, 2.0), 7.0), rel=1e-12
-    )
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,6 @@ from extensions.arena.laws.pursuit import (
     carrot_on_line,
     chase,
     collision_course,
-    look_ahead_line_of_sight,
     plos,
     pure_pursuit,
     sight_rate,
@@ -24,7 +23,6 @@ from extensions.arena.laws.vector_field import (
     orbit_field,
     orbit_roll,
 )
-from gnc.errors import InfeasibleError
 from gnc.laws import line_of_sight_law
 from gnc.vectors import along, course_of, minus, scaled
 
@@ -45,18 +43,6 @@ def test_parks_law_on_a_circle():
     # Section 3: q = (-49.88877, 86.66667), a = 7.407407.
     assert target == pytest.approx((-49.88877, 86.66667), abs=5e-6)
     assert park_l1((0.0, 120.0), (-20.0, 0.0), target) == pytest.approx(7.407407, abs=PRINTED)
-
-
-def test_parks_law_does_not_fall_off_behind():
-    behind = (-50.0, 1.0)
-    # Section 3: 2 v^2/L1 at a quarter of a turn; without that limit it would be below 0.5.
-    assert park_l1(ORIGIN, (20.0, 0.0), behind) == pytest.approx(800.0 / math.hypot(*behind))
-
-
-def test_parks_point_is_the_nearest_where_the_path_is_out_of_reach():
-    # Section 3: the foot of the line; on the circle its nearest point.
-    assert point_on_line((10.0, 100.0), 0.0, 60.0) == pytest.approx((10.0, 0.0))
-    assert point_on_circle((0.0, 300.0), ORIGIN, 100.0, 1, 60.0) == pytest.approx((0.0, 100.0))
 
 
 def test_rosplanes_courses():
@@ -123,11 +109,6 @@ def test_along_the_lyapunov_field_the_course_turns_as_in_closed_form():
     )
 
 
-def test_a_centre_as_fast_as_the_vehicle_is_refused():
-    with pytest.raises(InfeasibleError, match=r"15\.00 m/s, the vehicle at 15\.00 m/s"):
-        lgvf((150.0, 0.0), 1.0, 15.0, ORIGIN, 100.0, 1, (15.0, 0.0), ORIGIN)
-
-
 def test_the_pursuits():
     course, speed, target, target_course, target_speed = 0.2, 15.0, (50.0, 30.0), 1.0, 10.0
     relative = minus(scaled(along(target_course), target_speed), scaled(along(course), speed))
@@ -141,12 +122,6 @@ def test_the_pursuits():
     assert collision_course(target, target_course, target_speed / speed) - course == pytest.approx(
         0.6406232, abs=PRINTED
     )
-
-
-def test_line_of_sight_with_a_turning_reference():
-    omega = look_ahead_line_of_sight((-10.0, 20.0), 0.1, 15.0, 0.0, 0.1, look_ahead=30.0, gain=1.0)
-    # Section 6: omega = -0.6456372.
-    assert omega == pytest.approx(-0.6456372, abs=PRINTED)
 
 
 def test_a_carrot_is_ahead_of_the_nearest_point():

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from exhaust_cases import PRIOR, SENSOR, MadePlume, estimated
 
-from gnc.errors import InfeasibleError
 from gnc.estimation.plume.estimator import (
     STRENGTH_STEP,
     PlumeEstimator,
@@ -20,18 +19,6 @@ from gnc.estimation.plume.prior import BACKGROUND_DRIFT, BEARING_DRIFT, HEIGHT_D
 
 AROUND = [65.0, 72.0, 58.0, 68.0, 62.0, 70.0]
 """Altitudes of passes about the expected height [m]."""
-
-
-def test_without_a_reading_the_estimate_stays_the_prior() -> None:
-    estimator = PlumeEstimator(PRIOR)
-    for i in range(1200):
-        estimator.predict(0.1)
-        assert not estimator.update(230.0, 60.0 * math.cos(0.07 * i), 50.0, math.nan)
-    assert estimator.state is PlumeState.SEARCHING
-    assert estimator.passes == 0
-    # Drift is reckoned with the next pass, and there was none.
-    assert np.array_equal(estimator.cells, estimator.grid.prior)
-    assert np.array_equal(estimator.bearings, estimator.grid.bearing_prior)
 
 
 def test_after_a_silence_a_plume_that_was_found_is_known_as_little_as_it_has_drifted() -> None:
@@ -62,90 +49,6 @@ def test_a_mirrored_flight_has_the_mirrored_estimate() -> None:
     assert straight.offset > 5.0
 
 
-def test_a_constant_background_says_nothing() -> None:
-    prior = replace(PRIOR, sensor=replace(SENSOR, noise=0.5))
-
-    def with_background(level: float) -> PlumeEstimator:
-        estimator = PlumeEstimator(prior)
-        update = estimator.update
-
-        def shifted(along: float, across: float, altitude: float, reading: float) -> bool:
-            return update(along, across, altitude, reading + level)
-
-        estimator.update = shifted  # type: ignore[method-assign, assignment]
-        MadePlume(height=70.0).fly(estimator, AROUND)
-        return estimator
-
-    usual, more = with_background(0.0), with_background(150.0)
-    # The first level is only known to 1000 ppm, so that a shift of 150 ppm leaves rounding.
-    assert more.height == pytest.approx(usual.height, abs=0.01)
-    assert more.offset == pytest.approx(usual.offset, abs=0.01)
-
-
-def test_places_in_between_readings_do_not_change_the_estimate() -> None:
-    """The path is interpolated: places at 20 Hz say what places at 10 Hz say."""
-    dense, sparse = PlumeEstimator(PRIOR), PlumeEstimator(PRIOR)
-    plume = MadePlume(height=70.0, meander=0.0)
-    plume.fly(dense, AROUND)
-    update, calls = sparse.update, iter(range(10**6))
-
-    def every_other(along: float, across: float, altitude: float, reading: float) -> bool:
-        return next(calls) % 2 == 0 and update(along, across, altitude, reading)
-
-    sparse.update = every_other  # type: ignore[method-assign, assignment]
-    plume.fly(sparse, AROUND)
-    # Turns are found a step later, and the way between is a chord: less than 0.1 m.
-    assert sparse.height == pytest.approx(dense.height, abs=0.5)
-
-
-def test_absence_moves_the_estimate_away_from_the_flown_height() -> None:
-    estimator = PlumeEstimator(PRIOR)
-    grid = estimator.grid
-    near = np.abs(grid.height - 60.0) < 8.0
-    before, chance = estimator.cells[:, near].sum(), estimator.detection(60.0)
-    MadePlume(height=60.0, peak=0.0).fly(estimator, [60.0] * 4)
-    assert estimator.state is PlumeState.SEARCHING
-    assert estimator.cells[:, near].sum() < 0.2 * before
-    assert estimator.detection(60.0) < 0.3 * chance
-    # What is left lies above and below, and the best height to fly with it.
-    altitudes = np.linspace(20.0, 120.0, 51)
-    best = altitudes[
-        int(np.argmax([estimator.detection(float(altitude)) for altitude in altitudes]))
-    ]
-    assert abs(best - 60.0) > 8.0
-
-
-def test_absence_in_next_to_no_apparent_wind_says_what_it_says_in_one_of_a_metre_a_second() -> None:
-    def missed(wind: float) -> PlumeEstimator:
-        estimator = PlumeEstimator(PRIOR)
-        for i in range(600):
-            estimator.predict(0.05)
-            reading = 420.0 + SENSOR.noise * math.sin(1.7 * i) if i % 4 == 0 else math.nan
-            estimator.update(
-                230.0, 60.0 * math.cos(math.pi * i / 180.0), 65.0, reading, apparent_wind=wind
-            )
-        assert estimator.passes == 3
-        return estimator
-
-    # The floor of rise and spreads, below which a plume has no direction: nor is it any stronger.
-    slow = missed(1.0)
-    for wind in (0.3, 0.0):
-        estimator = missed(wind)
-        assert np.array_equal(estimator.cells, slow.cells)
-        assert estimator.detection(65.0) == slow.detection(65.0)
-    # A wind that is measured counts, and not the one that was expected.
-    assert not np.array_equal(missed(PRIOR.apparent_wind).cells, slow.cells)
-
-
-def test_a_plume_that_does_not_meander_is_placed_within_metres() -> None:
-    estimator = estimated(MadePlume(height=74.0, offset=-15.0, meander=0.0), AROUND)
-    assert estimator.state is PlumeState.FOUND
-    # The filter takes a meander of 4 m and an error of strength of 25 % for granted, and 6 passes.
-    assert estimator.height == pytest.approx(74.0, abs=4.0)
-    # The cells of bearing are 10 m wide, and the meander across is 5 m.
-    assert estimator.offset == pytest.approx(-15.0, abs=5.0)
-
-
 def test_stated_intervals_hold_the_truth() -> None:
     generator = np.random.default_rng(20)
     inside, squares = [], []
@@ -174,34 +77,6 @@ def test_innovations_are_those_of_a_consistent_filter() -> None:
     # And of one that reckons with a plume elsewhere, far above one, which it begins with: there are
     # misses where hits are sure.
     assert estimated(MadePlume(height=68.0, peak=0.0), AROUND).innovation > 2.0
-
-
-def test_a_plume_that_goes_is_lost_again() -> None:
-    estimator = estimated(MadePlume(height=65.0), AROUND)
-    assert estimator.state is PlumeState.FOUND
-    MadePlume(height=65.0, peak=0.0).fly(estimator, [estimator.height] * 6)
-    assert estimator.state is PlumeState.LOST
-    MadePlume(height=65.0).fly(estimator, [65.0] * 3)
-    assert estimator.state is PlumeState.FOUND
-
-
-def test_a_single_miss_does_not_lose_a_plume() -> None:
-    estimator = estimated(MadePlume(height=65.0), AROUND)
-    # Beside its edge a miss is no wonder, and one in its middle may be meander.
-    MadePlume(height=65.0, peak=0.0).fly(estimator, [85.0])
-    assert estimator.state is PlumeState.FOUND
-
-
-def test_the_interval_leaves_a_fortieth_on_either_side() -> None:
-    # Passes at the distance and in the wind of the prior: heights are those of the cells.
-    estimator = estimated(MadePlume(height=68.0), [65.0])
-    heights, of_heights = estimator.grid.height, estimator.cells.sum(axis=(0, 2))
-    step = heights[1] - heights[0]
-    low, high = estimator.height_interval
-    # Each cell is as likely anywhere between its edges.
-    below = of_heights @ np.clip(0.5 + (low - heights) / step, 0.0, 1.0)
-    above = of_heights @ np.clip(0.5 - (high - heights) / step, 0.0, 1.0)
-    assert (below, above) == pytest.approx((0.025, 0.025), abs=1e-9)
 
 
 @pytest.mark.parametrize("altitude", [45.0, 65.0, 90.0])
@@ -239,37 +114,6 @@ def test_a_sensor_that_does_not_work_is_recognised_and_says_nothing(
     assert np.abs(estimator.cells - before).max() < 0.05 * before.max()
 
 
-def test_a_pass_in_which_the_sensor_failed_says_nothing() -> None:
-    """The last third of each pass is stuck at 100 ppm more than clean air, which looks like the
-    edge of a plume.
-    """
-    estimator, generator = PlumeEstimator(PRIOR), np.random.default_rng(7)
-    before = estimator.cells.copy()
-    for i in range(round(4.0 * 18.0 / 0.1)):
-        estimator.predict(0.1)
-        stuck = (0.1 * i) % 9.0 > 6.0
-        reading = 520.0 if stuck else 420.0 + SENSOR.noise * generator.standard_normal()
-        estimator.update(
-            230.0,
-            60.0 * math.cos(math.pi * 0.1 * i / 9.0),
-            65.0,
-            reading if i % 2 == 0 else math.nan,
-        )
-    assert estimator.passes > 4
-    assert estimator.state is PlumeState.SEARCHING
-    # Only the drift of a minute is left.
-    assert np.abs(estimator.cells - before).max() < 0.1 * before.max()
-
-
-def test_a_sensor_that_comes_back_is_believed_again() -> None:
-    estimator = PlumeEstimator(PRIOR)
-    MadePlume(height=65.0).fly(estimator, [65.0] * 2, broken=420.0)
-    assert estimator.sensor is SensorState.STUCK
-    MadePlume(height=65.0).fly(estimator, AROUND)
-    assert estimator.sensor is SensorState.WORKING
-    assert estimator.state is PlumeState.FOUND
-
-
 @pytest.mark.parametrize("unread", ["silent", "ahead of the ship"])
 def test_a_background_that_drifts_while_nothing_is_read_is_no_plume(unread: str) -> None:
     """Clean air, whose reading rises at the rate that the data sheet allows: 0.1 ppm/s, 12 times
@@ -292,28 +136,6 @@ def test_a_background_that_drifts_while_nothing_is_read_is_no_plume(unread: str)
         assert estimator.state is PlumeState.SEARCHING
 
 
-def test_a_plume_above_the_limits_cannot_be_measured() -> None:
-    assert PlumeEstimator(PRIOR).measurable > 0.9
-    above = replace(PRIOR, height=190.0, height_deviation=8.0, source_deviation=5.0, highest=120.0)
-    assert PlumeEstimator(above).measurable < 0.05
-
-
-def test_the_height_is_that_at_the_place_and_in_the_wind_of_the_pass() -> None:
-    """In half the apparent wind the plume rises twice as much: Briggs, 1/U."""
-    estimator = PlumeEstimator(PRIOR)
-    risen = float(PRIOR.rise_of(65.0))
-    twice = float(PRIOR.height_at(np.array(65.0), PRIOR.distance, 0.5 * PRIOR.apparent_wind))
-    assert twice == pytest.approx(65.0 + risen)
-    farther = float(PRIOR.height_at(np.array(65.0), 8.0 * PRIOR.distance, PRIOR.apparent_wind))
-    assert farther == pytest.approx(65.0 + 3.0 * risen)  # 8^(2/3) = 4
-    assert estimator.height == pytest.approx(65.0, abs=0.5)
-
-
-def test_limits_without_room_are_refused_in_one_line() -> None:
-    with pytest.raises(InfeasibleError, match="must be above the first"):
-        replace(PRIOR, lowest=80.0, highest=60.0)
-
-
 def test_a_pass_ahead_of_the_ship_says_nothing() -> None:
     estimator = PlumeEstimator(PRIOR)
     generator = np.random.default_rng(4)
@@ -327,92 +149,10 @@ def test_a_pass_ahead_of_the_ship_says_nothing() -> None:
     assert np.abs(estimator.cells - before).max() < 0.1 * before.max()
 
 
-@pytest.mark.parametrize("name", ["interval", "time_constant", "noise"])
-def test_a_sensor_without_noise_or_lag_is_refused(name: str) -> None:
-    with pytest.raises(InfeasibleError, match=f"{name} of the CO2 sensor is 0"):
-        replace(SENSOR, **{name: 0.0})
-
-
 GRID = PlumeGrid(PRIOR)
 
 MIDDLE = len(GRID.sigma_z) // 2
 """The expected spread."""
-
-SPREAD = GRID.coarse_heights(GRID.sigma_z[MIDDLE])
-
-
-def test_the_prior_has_the_moments_that_it_was_given() -> None:
-    assert GRID.prior.sum() == pytest.approx(1.0)
-    of_heights = GRID.prior.sum(axis=(0, 2))
-    # Cut at three deviations, a Gaussian keeps 98.7 % of its deviation, and a funnel in a range has
-    # shorter tails.
-    assert of_heights @ GRID.height == pytest.approx(PRIOR.height, abs=0.1)
-    deviation = np.sqrt(of_heights @ (GRID.height - PRIOR.height) ** 2)
-    assert 0.97 * PRIOR.height_deviation < deviation < 1.001 * PRIOR.height_deviation
-    assert GRID.bearing_prior.sum() == pytest.approx(1.0)
-    # The sum over steps of a quarter of a deviation is the integral; cut at three, a Gaussian keeps
-    # 98.7 %.
-    assert np.sqrt(GRID.bearing_prior @ GRID.bearing**2) == pytest.approx(
-        0.987 * PRIOR.bearing_deviation, rel=0.005
-    )
-
-
-def test_a_funnel_whose_height_has_a_range_is_as_likely_anywhere_in_it() -> None:
-    grid = PlumeGrid(replace(PRIOR, height_deviation=12.0, source_deviation=11.9))
-    of_heights = grid.prior.sum(axis=(0, 2))
-    # A range of 2 sqrt(3) 11.9 m, of which the rise of 1.5 m blurs the ends.
-    inside = np.abs(grid.height - PRIOR.height) < 15.0
-    assert of_heights[inside] == pytest.approx(of_heights[inside].mean(), rel=0.01)
-    assert of_heights[np.abs(grid.height - PRIOR.height) > 26.0].sum() < 1e-3
-
-
-def test_a_funnel_whose_height_is_known_leaves_the_rise_alone() -> None:
-    # As likely as a normal distribution of the rise's 4 m, cut at three deviations.
-    grid = PlumeGrid(replace(PRIOR, height_deviation=4.0, source_deviation=0.0))
-    of_heights = grid.prior.sum(axis=(0, 2))
-    assert np.sqrt(of_heights @ (grid.height - PRIOR.height) ** 2) == pytest.approx(
-        0.987 * 4.0, rel=0.005
-    )
-
-
-@pytest.mark.parametrize("looks", [1, 3])
-def test_fading_is_that_of_centres_drawn_at_random(looks: int) -> None:
-    altitude, i = 70.0, len(GRID.height) // 2
-    fading = GRID.fading(GRID.height - altitude, looks)[MIDDLE, i]
-    centres = GRID.height[i] + PRIOR.meander_z * np.random.default_rng(1).standard_normal(
-        (looks, 200_000)
-    )
-    off = np.abs(centres - altitude).min(axis=0)
-    steps = np.rint(0.5 * (off / GRID.sigma_z[MIDDLE, i]) ** 2 / STRENGTH_STEP).astype(int)
-    drawn = np.bincount(steps, minlength=len(fading))[: len(fading)] / 200_000
-    # A share p of 200,000 has a deviation of at most 0.0011.
-    assert fading == pytest.approx(drawn, abs=0.005)
-
-
-def test_a_plume_far_from_the_pass_is_not_read() -> None:
-    fading = GRID.fading(GRID.height - 300.0, 1.0)
-    assert fading.sum() < 1e-9
-
-
-def test_chances_rise_with_strength_and_fall_with_the_distance() -> None:
-    off = (GRID.coarse_heights(GRID.height) - 65.0)[np.newaxis]
-    chances = GRID.chances(off, 1.0, 4.0, SPREAD)[0]
-    assert np.all(np.diff(chances, axis=1) >= -1e-12)
-    above = int(np.argmax(off[0] >= 0.0))
-    assert np.all(np.diff(chances[above:], axis=0) <= 1e-12)
-
-
-def test_heights_taken_together_have_the_mean_of_the_cells() -> None:
-    """What the next height is chosen by is where the estimate is, not half a cell below."""
-    weights, heights = GRID.coarse(GRID.prior).sum(axis=1), GRID.coarse_heights(GRID.height)
-    assert weights.sum() == pytest.approx(1.0)
-    of_heights = GRID.prior.sum(axis=(0, 2))
-    # Two cells count by the mean of their heights: within a pair of 2 m they differ by a few per
-    # cent.
-    assert weights @ heights == pytest.approx(of_heights @ GRID.height, abs=0.02)
-    one = np.zeros_like(GRID.prior)
-    one[MIDDLE, -1, 0] = 1.0
-    assert GRID.coarse(one).sum(axis=1) @ heights == GRID.height[-1]
 
 
 @pytest.mark.parametrize("steps", [0.0, 0.1, 0.5, 0.7, 10.0])
@@ -426,35 +166,6 @@ def test_a_random_walk_has_the_variance_that_it_should_and_loses_nothing(steps: 
     # Exact: each round moves a share by one step either way. At ten deviations from the ends,
     # rounding is left.
     assert found[2] @ off**2 / found[2].sum() == pytest.approx(steps, abs=1e-12)
-
-
-def test_a_pass_is_never_expected_to_widen_the_height() -> None:
-    """The law of total variance."""
-    weights, heights = GRID.coarse(GRID.prior), GRID.coarse_heights(GRID.height)
-    altitudes = np.array([-500.0, 40.0, 65.0, 90.0, 500.0])
-    expected = GRID.expected_deviation(
-        weights, heights, heights - altitudes[:, np.newaxis], 1.0, SPREAD
-    )
-    of_heights = weights.sum(axis=1)
-    now = float(np.sqrt(of_heights @ heights**2 - (of_heights @ heights) ** 2))
-    assert np.all(expected <= now + 1e-9)
-    # A pass far away says nothing, one within the plume does.
-    assert expected[[0, -1]] == pytest.approx(now, rel=1e-6)
-    assert expected[1:4].max() < 0.95 * now
-
-
-def test_a_plume_that_rises_more_is_wider_and_weaker() -> None:
-    assert np.all(np.diff(GRID.sigma_z[MIDDLE]) >= 0.0)
-    peaks = GRID.prior[MIDDLE] @ np.log(GRID.strength) / GRID.prior[MIDDLE].sum(axis=1)
-    assert peaks[-1] < peaks[0]
-
-
-def test_without_an_uncertain_stack_the_whole_difference_is_rise() -> None:
-    sure = replace(PRIOR, source_deviation=0.0)
-    assert sure.rise_of(90.0) == pytest.approx(90.0 - PRIOR.source_height)
-    assert replace(PRIOR, source_deviation=PRIOR.height_deviation).rise_of(90.0) == pytest.approx(
-        25.0
-    )
 
 
 def test_what_a_pass_is_expected_to_read_adds_up_to_its_chance_of_anything() -> None:
@@ -474,13 +185,3 @@ def test_what_a_pass_is_expected_to_read_adds_up_to_its_chance_of_anything() -> 
     ]
     expected[nearest] = fading[MIDDLE, 20]
     assert GRID.reading_probability(one, fading)[MIDDLE] == pytest.approx(expected)
-
-
-def test_a_pass_looks_as_wide_as_its_plume_or_less_likely_otherwise() -> None:
-    of_widths = GRID.width_likelihood(0.2)
-    assert of_widths.sum(axis=1) == pytest.approx(1.0)
-    beside = (of_widths.shape[1] - len(of_widths)) // 2
-    assert of_widths.argmax(axis=1).tolist() == [beside + w for w in range(len(of_widths))]
-    assert GRID.widths[beside : -beside or None] == pytest.approx(
-        PRIOR.sigma_y * GRID.sigma_y[:, 22] / GRID.sigma_y[MIDDLE, 22]
-    )

@@ -4,18 +4,15 @@ import math
 
 import numpy as np
 import pytest
-from exhaust_cases import PRIOR, SENSOR
+from exhaust_cases import SENSOR
 
-from gnc.estimation.plume.estimator import PlumeEstimator, PlumeState
 from gnc.estimation.plume.passes import (
-    PassCollector,
     PassReader,
     Path,
     SensorState,
     SensorWatch,
-    equal_readings,
 )
-from gnc.estimation.plume.prior import BACKGROUND_DRIFT, GasSensor
+from gnc.estimation.plume.prior import GasSensor
 
 _SPEED = 20.0
 
@@ -132,97 +129,6 @@ def test_the_background_at_the_end_of_a_pass_is_what_its_pulse_leaves(
     assert np.sqrt(np.mean(np.square(off))) < 1.5
 
 
-def test_slope_and_bend_are_those_of_the_whole_covariance() -> None:
-    """Woodbury's identity: against the inverse of the full matrix."""
-    path = _path(seed=3)
-    reader = PassReader(SENSOR)
-    templates = reader.templates(path, PLACES, SPREADS)
-    evidence = reader.read(path, PLACES, SPREADS)
-    assert evidence is not None
-    y = path.readings - np.median(path.readings)
-    since = path.read_at
-    background = np.stack(
-        [
-            np.full(len(y), 1e3),
-            BACKGROUND_DRIFT * (since - 0.5 * since[-1]),
-            SENSOR.noise * np.exp(-since / SENSOR.time_constant),
-        ]
-    )
-    variance = SENSOR.noise**2 + (0.15 * (y - np.median(y)).max()) ** 2
-    inverse = np.linalg.inv(variance * np.eye(len(y)) + background.T @ background)
-    assert evidence.slope.ravel() == pytest.approx(templates @ inverse @ y, rel=1e-5, abs=1e-8)
-    assert evidence.bend.ravel() == pytest.approx(
-        np.einsum("km,mn,kn->k", templates, inverse, templates), rel=1e-5
-    )
-
-
-def test_a_place_that_was_not_flown_to_says_nothing() -> None:
-    evidence = PassReader(SENSOR).read(_path(), np.array([-300.0, 300.0]), SPREADS)
-    assert evidence is not None
-    assert evidence.bend.max() < 1e-12
-
-
-def test_readings_without_noise_are_not_believed() -> None:
-    path = _path()
-    still = Path(
-        path.time,
-        path.along,
-        path.across,
-        path.altitude,
-        path.read_at,
-        np.full_like(path.readings, 421.0),
-    )
-    assert PassReader(SENSOR).read(still, PLACES, SPREADS) is None
-
-
-def test_there_is_a_pass_for_each_half_of_an_oscillation() -> None:
-    collector = PassCollector(delay=1.0, tail=0.43)
-    step, period = 0.1, 16.0
-    paths = []
-    for i in range(round(5.0 * period / step)):
-        time = i * step
-        across = 50.0 * math.cos(2.0 * math.pi * time / period)
-        path = collector.add(time, 230.0, across, 60.0, 420.0 if i % 2 == 0 else math.nan)
-        if path is not None:
-            paths.append(path)
-    # The last one has not been read to its end.
-    assert len(paths) == 9
-    for path in paths[1:]:
-        # From turn to turn, and what the sensor still has of it.
-        assert path.duration == pytest.approx(0.5 * period + 0.43, abs=0.3)
-        assert path.across[0] * path.across[-1] < 0.0
-        assert len(path.readings) == pytest.approx(0.5 * period / 0.2, abs=1)
-
-
-def test_a_way_that_does_not_turn_ends_after_a_while() -> None:
-    collector = PassCollector(delay=1.0, tail=0.43)
-    paths = [collector.add(0.2 * i, 230.0, 4.0 * i, 60.0, 420.0) for i in range(300)]
-    assert sum(path is not None for path in paths) == 2
-
-
-def test_the_way_along_the_plume_is_that_against_the_air() -> None:
-    """At rest along the axis the plume goes by at the apparent wind: here 10 m/s, half as fast as
-    the way across.
-    """
-    assert _path().obliqueness(0.0, 10.0) == pytest.approx(0.5)
-    assert _path().obliqueness(0.0, 0.0) == pytest.approx(0.0)
-
-
-@pytest.mark.filterwarnings("error")
-def test_passes_far_from_every_place_of_the_axis_detect_nothing() -> None:
-    estimator = PlumeEstimator(PRIOR)
-    # A kilometre to the side, where the widest pulse of the outermost place is less than the
-    # smallest number.
-    for i in range(1200):
-        estimator.predict(0.1)
-        reading = 420.0 + 0.5 * math.sin(i) if i % 2 == 0 else math.nan
-        estimator.update(PRIOR.distance, 1000.0 + 60.0 * math.cos(0.035 * i), 65.0, reading)
-    assert estimator.passes > 2
-    assert estimator.detection(65.0) == 0.0
-    assert estimator.state is PlumeState.SEARCHING
-    assert estimator.height == pytest.approx(PRIOR.height, abs=1.0)
-
-
 def _sensor(noise: float = 1.0, resolution: float = 0.1) -> GasSensor:
     return GasSensor(
         interval=1.0,
@@ -288,18 +194,3 @@ def test_readings_that_are_coarser_than_their_noise_are_those_of_a_working_senso
     for reading in np.round(420.0 + noise * generator.standard_normal(10_000)):
         watch.read(float(reading))
         assert watch.state is SensorState.WORKING
-
-
-def test_a_sensor_with_coarse_readings_that_sticks_is_found_later() -> None:
-    # erf(1/(2 sqrt(2) 0.5)) = 0.6827 of a normal distribution lie within one deviation; 0.6827^73 =
-    # 7.8e-13, 0.6827^72 = 1.1e-12.
-    watch = SensorWatch(_sensor(0.5, 1.0))
-    for _ in range(72):
-        watch.read(420.0)
-    assert watch.state is SensorState.WORKING
-    watch.read(420.0)
-    assert watch.state is SensorState.STUCK
-
-
-def test_noise_that_never_shows_says_nothing_of_equal_readings() -> None:
-    assert equal_readings(_sensor(0.01, 1.0)) == math.inf

@@ -6,9 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from flight_cases import plan, scenario
+from flight_cases import scenario
 
-from aircraft.weather import TURBULENCE, low_altitude_turbulence
 from aircraft.wind import CALM, WindField
 from gnc.estimation.navigation import EstimatedNavigation, SatelliteFix, SensorReadings
 from scenarios.planning.air.errors import drift_rate
@@ -25,11 +24,6 @@ def rate(wind=CALM, **changes):
 
 def in_air(**turbulence):
     return rate(turbulence=turbulence, fidelity="six_dof") - rate()
-
-
-def test_in_steady_air_it_is_what_is_declared_and_without_a_loss_there_is_none():
-    assert rate(following={"drift_rate_mps": 1.7}) == 1.7
-    assert drift_rate(scenario(), CALM, TURN) == 0.0
 
 
 def test_an_aircraft_reckons_no_better_than_to_two_per_cent_of_its_airspeed_whatever_is_declared():
@@ -50,11 +44,6 @@ def test_in_a_climb_it_reckons_with_the_airspeed_along_it_which_leads_ahead_by_i
     assert climbing == pytest.approx(
         2.0 * (1.0 - math.cos(math.atan(0.3))) * scenario().guidance.airspeed_mps
     )
-
-
-def test_guard_and_mission_reckon_with_the_same_rate():
-    guidance = plan(scenario(fault=FAULT, following={"drift_rate_mps": 1.7})).guidance
-    assert guidance.guard.errors.drift.rate == guidance.mission.errors.drift.rate == 1.7
 
 
 def test_a_wind_that_changes_adds_its_largest_change_in_an_outage_and_until_its_estimate_has_followed():
@@ -81,15 +70,6 @@ def test_gusts_displace_by_no_more_than_is_reckoned_with(speed, rise, count):
     # The wind is taken to be what is left of a gust that the estimate has followed, and none may
     # blow: no more than both.
     assert added <= 2.0 * speed
-
-
-def test_turbulence_is_a_term_of_its_own_with_its_key():
-    errors = plan(scenario(fault=FAULT, turbulence={"level": "light"}, fidelity="six_dof")).guidance
-    air = low_altitude_turbulence(60.0, TURBULENCE["light"].wind_at_20ft)
-    gusts = errors.guard.errors.turbulence
-    assert (gusts.sigma, gusts.key) == (air.horizontal, "turbulence.level")
-    assert gusts.correlation_time == air.horizontal_length / 19.42
-    assert errors.guard.errors.drift.rate == rate()
 
 
 @pytest.mark.parametrize("sigma_deg", [5.0, 15.0])
@@ -122,12 +102,6 @@ def test_a_compass_with_noise_makes_it_go_wrong_by_no_more_than_planned(sigma_de
                 age = navigation.lost
                 wrong = math.hypot(navigation.ground_north - north, navigation.ground_east - east)
                 assert wrong <= (planned + navigation.wind_error) * (age + TURN)
-
-
-def test_noise_counts_where_it_exceeds_what_is_declared():
-    noisy = {"heading_sigma_deg": 15.0}
-    assert rate(sensors=noisy, following={"drift_rate_mps": 0.0}) == rate(sensors=noisy) > 1.0
-    assert rate(sensors={"heading_sigma_deg": 1.0, "airspeed_sigma_mps": 0.3}) == rate() == 1.0
 
 
 def test_a_wind_that_turns_round_at_the_height_of_the_flight_counts_for_who_does_not_keep_it_exactly():

@@ -5,15 +5,11 @@ outruns it, where it glides to.
 import pytest
 
 from gnc.errors import InfeasibleError
-from scenarios.planning.air.wind import check_not_outrun, climbed_along, flown_heights, wind_change
-from scenarios.planning.plume import axis_height
+from scenarios.planning.air.wind import check_not_outrun
 from scenarios.scenario.files import load_study, with_values
 from scenarios.world.world import mean_wind, vessel_of
 
-LAYER = "height_m,speed_mps,from_deg\n1,8,0\n127,8,0\n130,8,180\n2000,8,180\n"
-"""A wind that turns round between 127 and 130 m."""
 FASTER_ALOFT = "height_m,speed_mps,from_deg\n1,10,0\n60,10,0\n250,26,0\n2000,26,0\n"
-JET_BELOW = "height_m,speed_mps,from_deg\n1,18,0\n45,18,0\n57,3,0\n200,3,0\n"
 
 CIRCLE = {
     "guidance.mission": "standoff",
@@ -35,21 +31,6 @@ def scenario(tmp_path, table, **values):
     return found, vessel_of(found)
 
 
-def test_a_layer_at_the_height_of_a_given_circle_counts_beyond_three_keepout_radii(tmp_path):
-    flown, vessel = scenario(tmp_path, LAYER, **CIRCLE)
-    # The wind turns from 8 m/s southwards to 8 northwards within the layer.
-    assert wind_change(flown, mean_wind(flown, vessel), 0.0) == pytest.approx(16.0)
-    level, vessel = scenario(tmp_path, LAYER, **CIRCLE | {"plume.elevation_deg": 0.0})
-    assert wind_change(level, mean_wind(level, vessel), 0.0) == 0.0
-
-
-def test_no_height_is_commanded_beyond_those_that_are_looked_at(tmp_path):
-    flown, vessel = scenario(tmp_path, LAYER, **CIRCLE)
-    highest = max(flown_heights(flown))
-    assert axis_height(flown, vessel).at(1e6, 10.0) == pytest.approx(highest)
-    assert climbed_along(flown) > 150.0
-
-
 def test_a_vessel_that_outruns_the_vehicle_where_it_climbs_to_is_refused(tmp_path):
     flown, vessel = scenario(tmp_path, FASTER_ALOFT, **CIRCLE)
     # At the funnel she moves at 14 m/s through the air; at 60 + 150 m at 4 + 10 + 16 *
@@ -60,17 +41,3 @@ def test_a_vessel_that_outruns_the_vehicle_where_it_climbs_to_is_refused(tmp_pat
     ):
         check_not_outrun(flown, vessel, mean_wind(flown, vessel), 150.0)
     check_not_outrun(flown, vessel, mean_wind(flown, vessel), 10.0)
-
-
-@pytest.mark.parametrize("fault", ["engine", "left_elevon", "throttle"])
-def test_winds_below_count_where_the_aircraft_may_have_to_glide(tmp_path, fault):
-    sound, vessel = scenario(tmp_path, JET_BELOW, **{"vessel.speed_mps": 10.0})
-    check_not_outrun(sound, vessel, mean_wind(sound, vessel), 250.0)
-    assert wind_change(sound, mean_wind(sound, vessel), 0.0) == 0.0
-    declared = with_values(sound, {"fault.declared": [fault]})
-    with pytest.raises(
-        InfeasibleError,
-        match=r"height of 4\d m, to which it glides if a part of it fails, the vessel moves at up to 28",
-    ):
-        check_not_outrun(declared, vessel, mean_wind(declared, vessel), 250.0)
-    assert wind_change(declared, mean_wind(declared, vessel), 0.0) == pytest.approx(15.0)

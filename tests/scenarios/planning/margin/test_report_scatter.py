@@ -13,7 +13,6 @@ from scenarios.planning.limits import PLAN_PERIOD
 from scenarios.planning.margin.keepout_margin import (
     GUARDED_PER_HOUR,
     filter_parameters,
-    scatter_allowance,
     vessel_limits,
     widest_tube,
 )
@@ -87,39 +86,3 @@ def test_discs_reach_farther_than_planned_as_often_as_is_allowed(acceleration):
     assert np.count_nonzero(found > widest.reach(TURN)) <= 2.0 * hours * GUARDED_PER_HOUR
     # The disc of a report that is as old as it becomes is not enough.
     assert np.count_nonzero(found > disc.reach(TURN)) > 3.0 * hours * GUARDED_PER_HOUR
-
-
-def test_exact_reports_need_no_allowance():
-    scenario = load_study("sea_wind")
-    limits = vessel_limits(scenario, TURN)
-    assert scenario.reports.exact
-    assert widest_tube(limits, scenario.reports, plan_period=PLAN_PERIOD) == tube(
-        VesselReport(-PLAN_PERIOD, 0.0, 0.0, 0.0, 0.0), limits, 0.0
-    )
-
-
-def test_reports_without_errors_do_not_scatter():
-    # The newest disc is then the smallest one, and never older than the oldest: what is left is the
-    # filter's own error.
-    scenario = declared(**{"reports.position_sigma_m": 0.0, "reports.velocity_sigma_mps": 0.0})
-    limits, disc = oldest(scenario, position_sigma=0.0, velocity_sigma=0.0, acceleration=0.2)
-    known, reports = filter_parameters(scenario.reports), scenario.reports
-    found = scatter_allowance(
-        limits,
-        known,
-        reports.interval_s,
-        reports.latency_max_s,
-        plan_period=PLAN_PERIOD,
-        planned=disc.reach(TURN),
-    )
-    assert found == 0.0
-
-
-@pytest.mark.parametrize("interval_s", [[0.0, 0.02], [1e5, 1e6]])
-def test_reports_that_come_all_the_time_or_hardly_ever_have_an_allowance(interval_s):
-    scenario = declared(**{"reports.interval_s": interval_s})
-    limits, disc = oldest(scenario)
-    widest = widest_tube(limits, scenario.reports, plan_period=PLAN_PERIOD)
-    # The newest three of many reports hardly differ in age; their errors do not add up to more than
-    # one may have.
-    assert disc.radius <= widest.radius <= disc.radius + limits.deviations * limits.position_sigma

@@ -3,7 +3,6 @@ by it, and in flight.
 """
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,7 +10,7 @@ import pytest
 from gnc.reference.reference import CirclingReference
 from gnc.tracker import Tracker
 from scenarios.api.flying import fly
-from scenarios.planning.guidance import satellite_noise, speed_hold, tracking_parameters
+from scenarios.planning.guidance import speed_hold, tracking_parameters
 from scenarios.planning.margin.keepout_margin import (
     GUARDED_PER_HOUR,
     noise_allowance,
@@ -20,6 +19,8 @@ from scenarios.planning.margin.keepout_margin import (
 from scenarios.scenario.files import load_study, with_values
 from scenarios.vehicles.sensors import NAVIGATION_TIME
 from scenarios.vehicles.vehicle_setup import KINEMATIC_BANDWIDTH, kinematic_setup
+
+pytestmark = pytest.mark.slow
 
 KINEMATIC = {"fidelity": "kinematic", "kinematic.heading_rate_lag_s": 0.4}
 MINUTES = 40.0
@@ -92,36 +93,10 @@ def test_the_error_that_a_vehicle_sees_scatters_as_predicted(turn):
     assert 0.2 < predicted < 0.4
 
 
-def test_a_law_that_does_not_track_is_as_far_off_as_its_noise():
-    scenario, setup = given()
-
-    class Straight:
-        def heading_rate(self, *_):
-            return 0.0
-
-    tracking = replace(tracking_parameters(scenario, setup), law=Straight())
-    hold, speed = speed_hold(scenario, setup), scenario.guidance.airspeed_mps
-    assert (
-        position_scatter(
-            tracking, hold, [0.3], speed=speed, lag=0.4, airspeed_bandwidth=1.0, noise_time=60.0
-        )
-        == 1.0
-    )
-
-
 def test_the_allowance_is_exceeded_no_oftener_than_allowed():
     # The probability that a normal error exceeds it, times the steps of an hour at 20 Hz.
     deviations = noise_allowance(0.3, 0.4, time_step=0.05) / 0.5
     assert 72_000.0 * 0.5 * math.erfc(deviations / math.sqrt(2.0)) < GUARDED_PER_HOUR
-
-
-def test_without_noise_nothing_is_allowed_for():
-    assert satellite_noise(*given(), 0.4) == 0.0
-    quiet, loud = (
-        satellite_noise(*given(**{"sensors.position_sigma_m": sigma}), 0.4) for sigma in (1.5, 3.0)
-    )
-    assert 0.0 < quiet < loud == pytest.approx(2.0 * quiet)
-    assert satellite_noise(*given(**{"sensors.velocity_sigma_mps": 0.1}), 0.4) > 0.0
 
 
 @pytest.mark.parametrize("mission", ["follow", "standoff"])

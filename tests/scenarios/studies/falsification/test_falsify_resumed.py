@@ -4,17 +4,14 @@ import itertools
 from types import SimpleNamespace
 
 import pandas as pd
+import pytest
 
 from scenarios.studies import falsify as falsification
-from scenarios.studies.falsify import (
-    UNFLOWN,
-    SearchedFlight,
-    search_lines,
-    search_manifest,
-)
 from tests.run_tables import manifest_of
 from tests.scenarios.losing_executor import losing
 from tests.scenarios.short_search import CONFIRMATIONS, KEPT, POPULATION, run, same_tables, tables
+
+pytestmark = pytest.mark.slow
 
 TURNS = "search.generations=4"
 """Each method's turn, and one more: what the first turns found decides the later ones."""
@@ -48,28 +45,6 @@ def test_a_search_is_resumed_after_a_lost_flight_on_which_others_depend(search, 
     # A search that was not interrupted goes the same way.
     run(search, tmp_path / "whole", TURNS, factory=losing(7))
     same_tables(tmp_path / "whole", out)
-
-
-def test_a_method_of_one_flight_without_a_measurement_has_no_nearest():
-    lost = SearchedFlight(
-        number=0, flight_id="a", method="corners", confirms="", clearance=UNFLOWN, violates=False
-    )
-    said = search_manifest([lost], [])
-    assert said["methods"]["corners"] == {
-        "flights": 1,
-        "measured": 0,
-        "violations": 0,
-        "worst_clearance_m": None,
-    }
-    assert list(search_lines(said)) == ["  corners: 1 flight, 0 violated, none measured"]
-    flown = SearchedFlight(
-        number=1, flight_id="b", method="corners", confirms="", clearance=5.0, violates=False
-    )
-    (line,) = search_lines(search_manifest([lost, flown, flown], []))
-    assert (
-        line
-        == "  corners: 3 flights (2 could be flown and measured), 0 violated, nearest 5.00 m outside of r_min"
-    )
 
 
 def test_a_lost_flight_on_which_no_other_depends_is_tried_again(search, tmp_path):

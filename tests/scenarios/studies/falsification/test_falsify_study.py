@@ -6,27 +6,22 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from reports.document.chart import Chart
-from reports.monte_carlo.falsification import falsification_sections
-from reports.output import write_report
-from reports.render.matplotlib_charts import draw
-from reports.run.run_data import read_run
 from scenarios.engine.processes import InProcessExecutor
-from scenarios.engine.runner import ExecutorFactory, fly_study
+from scenarios.engine.runner import ExecutorFactory
 from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
-from scenarios.studies.replay import Replay
 from tests.run_tables import manifest_of
 from tests.scenarios.short_search import (
     CONFIRMATIONS,
     GENERATIONS,
     KEPT,
-    METHODS,
     POPULATION,
     run,
     same_tables,
     tables,
 )  # fmt: skip
+
+pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module")
@@ -49,38 +44,6 @@ def test_the_search_closes_in_on_the_nearest_start_that_flies_at_the_vessel(foun
     nearest_possible = 400.0 - 4.0 * (8.0 + 19.42 + 3.0)
     assert nearest_possible < every.min() < nearest_possible + 25.0
     assert np.median(every[-POPULATION:]) < np.median(every[:POPULATION]) - 100.0
-
-
-def test_every_flight_says_which_method_proposed_it(found):
-    searched, repeats = tables(found)
-    assert dict.fromkeys(searched["search_method"]) == dict.fromkeys(METHODS)
-    assert set(repeats["search_method"]) == {"confirmation"}
-    said = manifest_of(found)["search"]
-    for name, of in said["methods"].items():
-        rows = pd.concat([searched, repeats])
-        rows = rows[rows["search_method"] == name]
-        assert (of["flights"], of["violations"]) == (len(rows), 0)
-        assert of["worst_clearance_m"] == pytest.approx(
-            rows["min_distance_m"].min() - 200.0, rel=1e-12
-        )
-    assert said["violations"] == []
-    assert said["proposed"] == len(searched)
-
-
-def test_violations_are_listed_the_worst_first(search, tmp_path):
-    # Starts of 400 m and more, and a keep-out area of 340 m: some flights at the vessel violate it,
-    # as there is no guard.
-    overrides = ("keepout.radius_m=340", "guidance.keepout_guard=false", "search.generations=3")
-    result = run(search, tmp_path / "run", *overrides)
-    assert not result.all_met
-    searched, repeats = tables(tmp_path / "run")
-    rows = pd.concat([searched, repeats])
-    violating = rows[rows["keepout_violations"] > 0].sort_values("min_distance_m", kind="stable")
-    said = manifest_of(tmp_path / "run")["search"]
-    assert len(violating) > 0
-    assert [entry["flight_id"] for entry in said["violations"]] == violating["flight_id"].tolist()
-    assert [entry["method"] for entry in said["violations"]] == violating["search_method"].tolist()
-    assert sum(of["violations"] for of in said["methods"].values()) == len(violating)
 
 
 def test_the_worst_flights_are_repeated_with_fresh_noise(found):
@@ -120,19 +83,6 @@ def test_the_worst_flights_are_kept_as_scenarios_that_fly_again_to_the_last_bit(
     changed = load_study(str(kept[0]), ["keepout.radius_m=150"])
     other = run_study(changed, "changed", tmp_path / "changed", executor_factory=InProcessExecutor)
     assert other.verdict.counts.done == 1
-
-
-def test_flights_of_a_search_are_replayed_identically(found, tmp_path):
-    searched, repeats = tables(found)
-    for flight_id in (searched["flight_id"].iloc[-1], repeats["flight_id"].iloc[-1]):
-        result = fly_study(
-            Replay(str(found / "flights" / flight_id)),
-            tmp_path / flight_id,
-            executor_factory=InProcessExecutor,
-            resume=False,
-            progress=lambda *_: None,
-        )
-        assert result.all_met, result.lines
 
 
 def test_the_search_goes_the_same_way_whatever_the_number_of_processes_and_where_it_was_interrupted(
@@ -191,40 +141,3 @@ def test_a_method_of_ones_own_takes_its_turns(search, tmp_path):
     )
     assert not len(repeats)
     assert list(manifest_of(out)["plugins"]) == [name]
-
-
-def test_its_report_says_what_was_found(found, tmp_path):
-    write_report(read_run(found), page := tmp_path / "report.html")
-    # The figures of flights are drawn elsewhere; that of the search is its own.
-    (section,) = falsification_sections(read_run(found))
-    (chart,) = [block for block in section.blocks if isinstance(block, Chart)]
-    draw(chart).draw_without_rendering()
-    text = page.read_text(encoding="utf-8")
-    least = pd.read_csv(found / "summary.csv")["min_distance_m"].min() - 200.0
-    assert f"The closest that it found stayed {least:.1f} m outside the keep-out area." in text
-    for words in (
-        "corner sampling",
-        "differential evolution",
-        "local climb",
-        "CMA-ES",
-        "repeated with fresh noise",
-    ):
-        assert words in text
-    worst = manifest_of(found)["search"]["worst"]
-    assert all(entry["flight_id"] in text for entry in worst)
-    assert f"0 of {CONFIRMATIONS}" in text
-    assert manifest_of(found)["worst_clearance_m"] == pytest.approx(least, rel=1e-12)
-
-
-def test_how_well_sulphur_is_measured_is_not_stated_from_flights_that_were_searched_for(
-    search, tmp_path
-):
-    sniffing = (
-        'payload.instruments=["sniffer"]',
-        "emission.ship=container",
-        "plume.model=fluctuating",
-        "search.generations=0",
-    )
-    assert run(search, tmp_path / "run", *sniffing).verdict.counts.done
-    assert "fsc_percent" in pd.read_csv(tmp_path / "run" / "summary.csv")
-    assert not (tmp_path / "run" / "sulphur.json").exists()

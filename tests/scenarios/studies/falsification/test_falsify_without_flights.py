@@ -81,14 +81,6 @@ def test_a_search_by_time_ends_where_no_point_is_within_the_declared_ranges(tmp_
     )
 
 
-def test_a_search_by_a_method_that_cannot_search_the_draws_is_refused(tmp_path):
-    # CMA-ES needs a covariance: two coordinates at the least.
-    line = refused(tmp_path, "search.methods=['cma']")
-    assert line.startswith(
-        "search.methods ['cma'] proposed no flight (continuous draws: 1 of 1, search.population: 16): add"
-    )
-
-
 @pytest.mark.parametrize(
     ("name", "words"),
     [
@@ -106,27 +98,6 @@ def test_a_method_of_ones_own_that_raises_is_named_with_its_file(tmp_path, name,
     assert line.startswith(f"search.methods: search method '{method}': {words}")
 
 
-def test_a_number_of_flights_is_refused_with_what_a_search_flies():
-    keys = [
-        "search.generations=2",
-        "search.population=16",
-        "search.kept=3",
-        "search.confirmations=2",
-    ]
-    with pytest.raises(InputError) as refused:
-        load_study("falsify", ["flights=5"])
-    assert (
-        "a search flies search.population times one more than search.generations, at most, and then search.confirmations of each"
-        " of search.kept flights: set these" in str(refused.value)
-    )
-    scenario = load_study("falsify", keys)
-    assert scenario.search.flights_max == 16 * (2 + 1)
-
-
-def test_a_search_without_anything_to_search_is_refused(tmp_path):
-    assert "draws is empty; give the keys to search over" in refused(tmp_path, "draws=[]")
-
-
 @pytest.mark.parametrize(
     ("override", "words"),
     [
@@ -134,14 +105,8 @@ def test_a_search_without_anything_to_search_is_refused(tmp_path):
             "search.generations=5",
             r"'search\.generations' has no effect here: .*: leave search\.time_s out",
         ),
-        ("search.methods=['locl']", r"unknown search method 'locl'; did you mean 'local'\?"),
         ("search.methods=[]", r"search\.methods is \[\]"),
-        ("search.methods=['local','local']", "name each method once"),
         ("search.mutation=[1.0,0.5]", "its first value must not exceed its second"),
-        (
-            "search={population=10000, generations=100}",
-            "make 9090000 flights; the most is",
-        ),
         ("search.time_s=0", r"search\.time_s"),
     ],
 )

@@ -10,6 +10,8 @@ from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
 from tests.scenarios.short_search import short_flights
 
+pytestmark = pytest.mark.slow
+
 SEARCH = f"""
 study = "falsify"
 title = "short"
