@@ -116,7 +116,6 @@ def test_a_figure_has_the_track_and_the_histories(flight):
     figure = flight.plot()
     assert isinstance(figure, Figure)
     titles = [ax.get_title() for ax in figure.axes]
-    assert len(figure.subfigs) == 2
     assert titles[0] == "The whole flight"
     assert "Distance\n[m]" in [ax.get_ylabel() for ax in figure.axes]
 
