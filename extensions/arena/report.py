@@ -36,14 +36,13 @@ from reports.document.blocks import (
 )
 from reports.document.chart import Chart, Line, Note, Panel, Style
 from reports.document.palette import Meaning
+from reports.document.parameters import parameter_blocks, parameter_value
 from reports.document.ship_map import ship_panel
 from reports.document.state import state_words
 from reports.document.tables import (
     Cell,
     number,
     outcome,
-    parameter_blocks,
-    parameter_value,
     rows_table,
 )
 from reports.flights.added import added_sections

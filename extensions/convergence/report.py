@@ -17,8 +17,9 @@ from common.run_layout import HISTORY_SUFFIX
 from extensions.convergence import COUNTEREXAMPLES, TRAJECTORIES, trajectory_path
 from reports.document.blocks import Block, Card, Findings, Heading, Section, Table, Text, Verdict
 from reports.document.chart import Chart, Line, Panel, Style
+from reports.document.parameters import parameter_blocks
 from reports.document.state import state_words
-from reports.document.tables import Cell, number, parameter_blocks, rows_table
+from reports.document.tables import Cell, number, rows_table
 from reports.run.columns import Array, column
 from reports.run.run_data import RunData
 

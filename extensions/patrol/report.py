@@ -21,9 +21,9 @@ from reports.document.blocks import Card, Findings, Fold, Heading, Section, Tabl
 from reports.document.chart import Chart, Line, Note, Panel, Style
 from reports.document.map_marks import on_map
 from reports.document.palette import Meaning
+from reports.document.parameters import distribution, parameter_blocks
 from reports.document.state import state_words
-from reports.document.tables import Cell, approach, parameter_blocks, rows_table, vehicle_flown
-from reports.flights.parameter_tables import distribution
+from reports.document.tables import Cell, approach, rows_table, vehicle_flown
 from reports.run.columns import column, least
 from reports.run.run_data import RunData
 from reports.run.table_file import read_table

@@ -7,7 +7,7 @@ from typing import Any
 
 from reports.compare.runs import Run
 from reports.document.blocks import Table
-from reports.flights.parameter_tables import distribution, value_in_words
+from reports.document.parameters import distribution, parameter_value
 from reports.run.trials import Trial, leaves
 
 NOT_A_KEY = "not a key"
@@ -131,7 +131,7 @@ def _in_words(key: str, values: Sequence[Any]) -> Values:
 
 
 def _whole(value: Any, key: str) -> str:
-    return value_in_words(value, key)
+    return parameter_value(value, key)
 
 
 def _brief(value: Any, key: str) -> str:

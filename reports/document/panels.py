@@ -1,6 +1,5 @@
 """Panels with a marker per flight, or of the flights counted."""
 
-import itertools
 import math
 from collections.abc import Sequence
 
@@ -13,9 +12,6 @@ from reports.run.columns import Array, Mask
 
 Group = tuple[Mask, str, str]
 """Which flights have markers of a name and a colour."""
-
-CLASS_COLOURS = ("sky", "blue", "plum", "black")
-"""From the least to the most, ever darker."""
 
 COUNTED_MIN = 5
 """Flights that are counted at least: fewer are seen one by one in a table."""
@@ -35,38 +31,6 @@ _NAMED = 3
 
 _SPARE = 1.15
 """Largest ordinate that is shown, over the highest marker, where none is cut."""
-
-
-def classes(values: Array, bounds: Sequence[float], what: str, unit: str) -> list[Group]:
-    """Return which values lie in each class, its name and its colour. What is not a number lies in
-    none.
-
-    Parameters
-    ----------
-    values, bounds : three bounds make four classes
-    what, unit : for the names
-    """
-    names = [
-        f"{what} below {bounds[0]:g} {unit}",
-        *(f"{low:g} to {high:g} {unit}" for low, high in itertools.pairwise(bounds)),
-        f"above {bounds[-1]:g} {unit}",
-    ]
-    place = np.where(np.isfinite(values), np.searchsorted(bounds, values, side="right"), -1)
-    return [
-        (place == i, name, colour)
-        for i, (name, colour) in enumerate(zip(names, CLASS_COLOURS, strict=True))
-    ]
-
-
-def quartiles(values: Array, step: float) -> list[float]:
-    """Return three rising bounds that part the values into four about equal shares, each a multiple
-    of ``step``.
-    """
-    known = values[np.isfinite(values)]
-    found = np.round(np.quantile(known, [0.25, 0.5, 0.75]) / step) if len(known) else np.zeros(3)
-    first, second, third = (float(v) for v in found)
-    second = max(second, first + 1.0)
-    return [step * first, step * second, step * max(third, second + 1.0)]
 
 
 def points(x: Array, y: Array, groups: Sequence[Group]) -> list[Line]:

@@ -16,10 +16,9 @@ from reports.flights.answers import kept_out_and_finished
 from reports.flights.comparison import comparison_section
 from reports.flights.first_page import flights_in_words, telling_and_typical
 from reports.flights.names import flight_name, flown_elsewhere, swept_column, told_name
-from reports.flights.parameter_tables import parameter_blocks
+from reports.flights.parameter_tables import trial_parameters
 from reports.flights.selection import flight_section
 from reports.flights.trials.charts import trial_charts
-from reports.flights.trials.crossing_gaps import gap_lines
 from reports.flights.trials.failures import tracking_lines
 from reports.flights.trials.tables import (
     criteria_table,
@@ -89,7 +88,7 @@ def flights_content(run: RunData, answer: Answer = kept_out_and_finished) -> Fin
             anchor="parameters",
             title="Parameters",
             blocks=[
-                *parameter_blocks(run, trials),
+                *trial_parameters(run, trials),
                 *design_words(run),
             ],
         ),
@@ -135,13 +134,7 @@ def _trial(trial: Trial, *, only: bool) -> Section:
     # Page 1 says of a flight alone what a table of one row would.
     if len(trial.rows) > 1 and (trial.swept or (only and len(trial.rows) <= _LISTED_MAX)):
         head, name = swept_column(trial) if trial.swept else ("Flight", partial(flight_name, trial))
-        caption = " ".join(
-            [
-                "The flights, a row each, with their outcome.",
-                *tracking_lines(trial),
-                *gap_lines(trial),
-            ]
-        )
+        caption = " ".join(["The flights, a row each, with their outcome.", *tracking_lines(trial)])
         table.append(
             flight_table(
                 trial.run,

@@ -12,7 +12,6 @@ from reports.document.palette import Meaning
 from reports.flights.flight_view import FlightView
 from reports.flights.names import flight_name
 from reports.flights.tracks import track_chart
-from reports.flights.trials.crossing_gaps import crossing_gap, gap_words
 from reports.run.columns import NOTICEABLE, Array, column, is_figure
 from reports.run.faults import fault_marks
 from reports.run.flight_config import keepout_shape, source_height
@@ -74,7 +73,7 @@ class _Histories:
         return Chart(
             name="histories",
             caption=f"{flight_name(trial, self._view.row)}: time histories.{self._distance_words()}{small}{vessel}"
-            f"{self._gap_words()} Dashed in the panel of the heading rate: ω_max."
+            " Dashed in the panel of the heading rate: ω_max."
             + (
                 f" Rate and bank: the range of the values within each {_WITHIN_S:g} s."
                 if self._long
@@ -143,17 +142,6 @@ class _Histories:
         far, farthest = self._distance_range()[1], float(np.nanmax(self._view.distance))
         where = measured_from(keepout_shape(self._view.config))
         return f" Distance is {where}, dashed r_min.{f' Distances above {far:.0f} m are not shown.' if farthest > far else ''}"
-
-    def _gap_words(self) -> str:
-        """Return how long the flight did not cross the plume though it had settled; nothing where
-        that was not long.
-        """
-        gap = crossing_gap(self._view.trial, self._view.row)
-        return (
-            f" No crossing for {gap_words(gap)}, before the vessel's last manoeuvre had ended."
-            if gap
-            else ""
-        )
 
     def _distance_range(self) -> tuple[float, float]:
         """Return the least and the largest distance that are shown [m]."""

@@ -27,7 +27,6 @@ from reports.flights.criteria import (
     worst_words,
 )
 from reports.flights.names import told_name
-from reports.flights.trials.crossing_gaps import gap_lines
 from reports.flights.trials.failures import failure_lines, noteworthy, tracking_lines
 from reports.measurement.flights import sulphur_below, sulphur_cards, sulphur_headline
 from reports.run.columns import (
@@ -108,7 +107,6 @@ def flight_verdict(
             *_warnings(run),
             *(line for trial in trials for line in failure_lines(trial)),
             *(line for trial in trials for line in tracking_lines(trial, only=only)),
-            *(line for trial in trials for line in gap_lines(trial, only=only)),
             *noteworthy(run.verdict, flown),
         ],
         figures=[*(search_cards(run) or sulphur_cards(run)), *_figures(trials, flown)],

@@ -22,13 +22,13 @@ from reports.document.blocks import (
     Text,
 )
 from reports.document.chart import Chart
+from reports.document.parameters import parameter_blocks
 from reports.document.tables import (
     Cell,
     approach,
     kinematic,
     length,
     outcome,
-    parameter_blocks,
     rows_table,
 )
 from reports.flights.flight_view import flight_view

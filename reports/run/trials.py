@@ -28,7 +28,6 @@ class Kind(Enum):
     SWEEP = "sweep"
     FAULTS = "faults"
     MANOEUVRES = "manoeuvres"
-    APPROACH = "approach"
     GENERAL = "general"
 
 
@@ -203,9 +202,6 @@ class Trial:
             Kind.FAULTS: self._has_faults(),
             Kind.MANOEUVRES: calm
             and (bool(self.setting("vessel.manoeuvres", [])) or self.varies("vessel.manoeuvres")),
-            Kind.APPROACH: calm
-            and self.criteria.get("settles", False)
-            and not self.criteria.get("crossing_interval_error"),
         }
         return next((kind for kind, holds in kinds.items() if holds), Kind.GENERAL)
 

@@ -65,9 +65,6 @@ _FLIGHT_COLUMNS = (
 )
 
 
-OSCILLATION_COLUMNS = ("eta", "omega_0_rad_s", "crossing_interval_predicted_s", "r_co_m")
-
-
 _APART = 1.25
 """Relative width of the column of distances beyond r_min, whose head would touch that of the one
 before it.
@@ -84,7 +81,6 @@ def flight_table(
     rows: pd.DataFrame,
     head: str,
     name: Callable[["pd.Series[Any]"], str],
-    columns: Sequence[str] = _FLIGHT_COLUMNS,
     caption: str = "The flights, a row each, with their outcome.",
     *,
     flown_ratio: bool = False,
@@ -95,13 +91,12 @@ def flight_table(
     ----------
     run, rows : the run, and the rows of some of its flights
     head, name : of the first column, and what it says of a flight
-    columns : of the summary, after the outcome
     caption : what the table shows
     flown_ratio : whether a column says the speed ratio that was flown, where that is not the one
         that was swept
     """
-    shown = {column: (run.column(column).head, run.column(column)) for column in columns}
-    if columns is _FLIGHT_COLUMNS and radii_differ(rows):
+    shown = {column: (run.column(column).head, run.column(column)) for column in _FLIGHT_COLUMNS}
+    if radii_differ(rows):
         rows = rows.assign(clearance_m=clearance(rows))
         beyond = {"clearance_m": (_BEYOND, run.column("clearance_m"))}
         first = list(shown.items())
