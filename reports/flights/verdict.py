@@ -12,6 +12,7 @@ from common.intervals import percent
 from common.premises import UNEXPLAINED
 from common.verdict import MET, Criterion, RunVerdict
 from reports.document.blocks import Card, LossCard, Verdict
+from reports.document.state import state_words
 from reports.document.tables import approach
 from reports.finding.answer import search_answer, search_cards
 from reports.flights.answers import kept_out_and_finished
@@ -68,8 +69,6 @@ there are such fractions.
 _BESIDE = 1.0
 """How much nearer the funnel is horizontally than in space, from which on both are told [m]."""
 
-_STATE = "{state} after {done:,} of {planned:,} flights"
-_STATE_OF_COMPARISONS = "{state} before all comparisons were flown"
 _NOTHING_FLOWN = "Nothing was flown: of {planned:,}, {outcomes}"
 _GUARD_IS_WRONG = "The keep-out guard is wrong in {flights:,} of {done:,} flights: {unexplained}"
 
@@ -121,7 +120,14 @@ def _headline(run: RunData, answer: Answer) -> Iterator[str]:
     was measured.
     """
     verdict, counts = run.verdict, run.verdict.counts
-    yield from _state(verdict)
+    yield from state_words(
+        "flights",
+        counts.done,
+        counts.planned,
+        is_done=verdict.is_done,
+        interrupted=verdict.interrupted,
+        missing="all comparisons were flown",
+    )
     if not counts.flown:
         ends = counted(run.summary["outcome"].astype(str).str.replace("_", " "))
         yield _NOTHING_FLOWN.format(planned=counts.planned, outcomes=ends or "none was begun")
@@ -138,16 +144,6 @@ def _headline(run: RunData, answer: Answer) -> Iterator[str]:
         yield answer(run) or kept_out_and_finished(run)
     if sulphur:
         yield sulphur
-
-
-def _state(verdict: RunVerdict) -> Iterator[str]:
-    """Yield that a run was interrupted or is incomplete."""
-    if verdict.is_done:
-        return
-    counts = verdict.counts
-    words = _STATE if counts.left else _STATE_OF_COMPARISONS
-    state = "INTERRUPTED" if verdict.interrupted else "INCOMPLETE"
-    yield words.format(state=state, done=counts.done, planned=counts.planned)
 
 
 def _warnings(run: RunData) -> list[str]:
