@@ -4,13 +4,17 @@ the inputs near it.
 
 from typing import Any
 
+import numpy as np
+
 from common.columns import Column
 from common.intervals import percent
 from reports.document.blocks import Block, Heading, Section, Table, Text
+from reports.document.chart import Chart, Line, Panel
+from reports.document.palette import Meaning
 from reports.document.tables import number
 from reports.monte_carlo.names import Units, input_name, input_unit
-from reports.monte_carlo.subset_charts import curve_chart, distance_chart, input_charts
 from reports.monte_carlo.tables import Record, ending_table
+from reports.run.columns import Array
 
 FEW_RENEWALS = 0.05
 """Fraction of accepted renewals below which the seed decides: intervals were too narrow in tests
@@ -57,6 +61,48 @@ def subset_headline(statistics: Record) -> str:
     if found["reached"]:
         return f"Keep-out violation with a probability of {percent(found['estimate'])} in a flight, {bound}, by subset simulation"
     return f"Subset simulation reached no keep-out violation: a probability of {bound} in a flight"
+
+
+def curve_chart(statistics: dict[str, Any], clearance: Column) -> list[Chart]:
+    """Return the probability of coming closer than a distance, over that distance; none if no
+    distance was reached by all.
+    """
+    points = statistics["curve"]
+    if len(points) < 2:
+        return []
+    x, estimate, low, high = (
+        _column(points, name) for name in ("clearance_m", "estimate", "low", "high")
+    )
+    floor = 0.5 * float(low.min())
+    panel = Panel(
+        x_label=clearance.label,
+        y_label="Probability of a flight that comes closer [-]",
+        lines=[
+            Line(
+                x=np.concatenate([x, x[::-1]]),
+                y=np.concatenate([low, high[::-1]]),
+                label="interval",
+                colour="sky",
+                fill=True,
+            ),
+            Line(x=x, y=estimate, label="estimate", colour="blue"),
+            Line(
+                x=np.zeros(2),
+                y=np.array([floor, 1.5]),
+                label="r_min",
+                colour=Meaning.LIMIT,
+                style="dash",
+            ),
+        ],
+        log_y=True,
+        y_range=(floor, 1.5),
+    )
+    caption = (
+        "Probability that the closest approach of a flight lies below a distance beyond r_min, from"
+        " all levels, with its two-sided interval at each distance. The curve ends where a"
+        " simulation has nothing nearer."
+    )
+    return [Chart(name="rare-curve", caption=caption, panels=[panel], panel_height=0.42)]
 
 
 def probability_in_words(statistics: Record) -> str:
@@ -229,12 +275,7 @@ def _inputs(statistics: Record, units: Units) -> list[Block]:
         " of the two cumulative distributions (Kolmogorov), 0 for an input that does not matter, 1 for one that decides alone. The"
         f" noise floor, {statistics['noise_floor']:.2f}, is the largest distance of some inputs without any effect that moved too."
     )
-    return [
-        Text(text),
-        *distance_chart(statistics),
-        input_table(statistics, units),
-        *input_charts(statistics, units),
-    ]
+    return [Text(text), input_table(statistics, units)]
 
 
 def input_table(statistics: Record, units: Units) -> Table:
@@ -270,3 +311,7 @@ def _values(entry: Record) -> tuple[str, str]:
         for which in ("declared", "near")
     ]
     return shares[0], shares[1]
+
+
+def _column(entries: list[dict[str, Any]], name: str) -> Array:
+    return np.array([entry[name] for entry in entries], dtype=np.float64)
