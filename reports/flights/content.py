@@ -61,18 +61,20 @@ def flights_content(run: RunData, answer: Answer = kept_out_and_finished) -> Fin
         *added_sections(run, trials, name),
         comparison_section(run, trials),
     ]
-    of_probabilities = [*monte_carlo_sections(run), *falsification_sections(run)]
+    of_probabilities, of_worst = monte_carlo_sections(run), falsification_sections(run)
     # Whether these flights keep out is then not the question.
     is_search = bool(searching_variants(run))
     asks_otherwise = is_of_the_method(run) or is_search
     if is_search:
         of_fuel = [folded(of) for of in of_fuel]
     if asks_otherwise:
-        of_probabilities, of_flights = (
-            [folded(of) for of in sections] for sections in (of_probabilities, of_flights)
-        )
+        of_probabilities = [folded(of) for of in of_probabilities]
+    # Flights that a search leads are no sample, and say nothing by how they are spread.
+    if asks_otherwise or of_worst:
+        of_flights = [folded(of) for of in of_flights]
     sections = [
         *of_probabilities,
+        *of_worst,
         *of_search,
         *of_fuel,
         _overview(trials),

@@ -200,7 +200,7 @@ def worst_table(flights: pd.DataFrame, worst: list[dict[str, Any]]) -> Table:
         Cell("Method", lambda of: method_name(of["method"]), width=1.9),
         Cell("Beyond r_min [m]", lambda of: approach(of["clearance_m"], 0.0), width=0.8),
         Cell("Repeats that violate", _repeats, width=0.9),
-        Cell("Closest of them [m]", "confirmations_nearest_m", "{:.1f}", 0.9),
+        Cell("Closest of them [m]", _nearest_repeat, width=0.9),
         Cell("Planned margin [m]", "keepout_margin_m", "{:.1f}", 0.9),
         Cell("Fault", faults_name, width=1.5),
         Cell("ν", lambda of: f"{of['nu_min']:.2f}–{of['nu_max']:.2f}"),
@@ -214,3 +214,8 @@ def worst_table(flights: pd.DataFrame, worst: list[dict[str, Any]]) -> Table:
 
 def _repeats(of: Mapping[str, Any]) -> str:
     return f"{of['confirmations_violating']} of {of['confirmations']}"
+
+
+def _nearest_repeat(of: Mapping[str, Any]) -> str | None:
+    nearest = of["confirmations_nearest_m"]
+    return None if nearest is None else approach(nearest, 0.0)
