@@ -26,9 +26,6 @@ from reports.run.time_history import (
     tracking_error,
 )
 
-_FAR = 1.6
-"""Least end of the distances that are shown, over r_min [-]."""
-
 _ASPECT = 1.1
 """Width of a map over its height [-]."""
 

@@ -1,19 +1,13 @@
 """Tables of a design."""
 
 import math
-from collections.abc import Sequence
 from typing import Any
 
 from reports.design.data import (
     Record,
-    bank_deg,
     case_name,
-    climb_trims,
-    climbing,
     damping,
     down,
-    grid_trims,
-    is_effect,
     loop_name,
     loops_of,
     responses_of,
@@ -92,67 +86,6 @@ def _perturbed(row: Record | None, name: str) -> list[str]:
         if row
         else ["∞", "", ""]
     )
-
-
-def extreme_trims(design: Record) -> list[Record]:
-    """Return the equilibria in level flight, at the largest banks, and in the steepest climb and
-    descent.
-    """
-    grid = grid_trims(design)
-    banks = sorted({bank_deg(t) for t in grid})
-    chosen = [t for t in grid if bank_deg(t) in {banks[0], 0.0, banks[-1]}]
-    climbs = climb_trims(design)
-    steepest = [t for t in (climbs[0], climbs[-1]) if climbing(t)] if climbs else []
-    return [*sorted(chosen, key=lambda t: (t["airspeed_mps"], bank_deg(t))), *steepest]
-
-
-def trim_table(design: Record, chosen: Sequence[Record]) -> Table:
-    """Return a table of equilibria, with the columns that all of them have."""
-    columns = _trim_columns(design, chosen)
-    limits = any(t.get("limits") for t in chosen)
-    rows = [
-        [_cell(t, *column) for column in columns] + ["; ".join(t.get("limits", []))] * limits
-        for t in chosen
-    ]
-    return Table(
-        head=[title for title, _, _ in columns] + ["At a limit"] * limits,
-        rows=rows,
-        widths=[1.0] * len(columns) + [2.2] * limits,
-        left_columns=0,
-        breakable=True,
-    )
-
-
-def _trim_columns(design: Record, trims: Sequence[Record]) -> list[tuple[str, str, float]]:
-    """Return title, field and scale of each column that every equilibrium has."""
-    degrees = math.degrees(1.0)
-    columns = [
-        ("Airspeed [m/s]", "airspeed_mps", 1.0),
-        ("Bank [deg]", "bank_rad", degrees),
-        ("Climb [deg]", "climb_angle_rad", degrees),
-        ("α [deg]", "alpha_rad", degrees),
-        ("β [deg]", "sideslip_rad", degrees),
-        ("θ [deg]", "pitch_rad", degrees),
-        ("Yaw rate [rad/s]", "yaw_rate_rad_s", 1.0),
-        *(
-            (_control_head(design, name), name, 1.0)
-            for name in ("elevator", "aileron", "rudder", "throttle")
-        ),
-    ]
-    if not any(climbing(t) for t in trims):
-        columns = [column for column in columns if column[1] != "climb_angle_rad"]
-    return [column for column in columns if all(column[1] in t for t in trims)]
-
-
-def _control_head(design: Record, name: str) -> str:
-    return f"{name.capitalize()}{' effect' if is_effect(design, name) else ''} [-]"
-
-
-def _cell(trim: Record, title: str, key: str, scale: float) -> str:
-    """Return a figure of an equilibrium; ``z`` makes a zero of what is rounded to minus zero."""
-    forms = {"airspeed_mps": "z.1f", "bank_rad": "z.0f", "climb_angle_rad": "z.1f"}
-    form = forms.get(key, "z.2f" if "[deg]" in title else "z.3f")
-    return minus(f"{scale * trim[key]:{form}}")
 
 
 def pole_table(design: Record) -> Table:
