@@ -116,8 +116,8 @@ def _chart(trial: Trial, pairs: pd.DataFrame) -> Chart:
     longest = max((float(line.x.max(initial=0.0)) for line in every), default=shown)
     most = max((float(np.nanmax(line.y, initial=0.0)) for line in every), default=1.0)
     highest = min(_ROOM * most, _SHOWN_BANDS * float(trial.setting("flight.settling_band_m")))
-    ranges = {"x_range": (0.0, longest), "y_range": (0.0, highest or 1.0)}
-    panels = [replace(panel, **ranges) for panel in panels]
+    x_range, y_range = (0.0, longest), (0.0, highest or 1.0)
+    panels = [replace(panel, x_range=x_range, y_range=y_range) for panel in panels]
     return Chart(
         name=f"{trial.name}-comparison",
         caption=_ERRORS.format(shown=shown) + cut_words(panels),
