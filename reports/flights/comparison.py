@@ -90,7 +90,7 @@ def _chart(trial: Trial, pairs: pd.DataFrame) -> Chart:
     # The same part of the flight for a fast aircraft, which turns slowly, as for a slow one.
     shown = float(f"{_SHOWN_TURNS / pairs['heading_rate_limit_rad_s'].max():.2g}")
     looks = _looks(pairs)
-    panels = []
+    panels: list[Panel] = []
     for _, flights in pairs.groupby("base", sort=False):
         # The study's own flight lies over the others.
         own = flights["variant"] == AS_IN_THE_STUDY
