@@ -64,8 +64,8 @@ Data = dict[str, Any]
 
 def draw(chart: Chart) -> Data:
     """Return a chart as the page reads it: its columns on a wide and on a narrow screen, the bands
-    of its legend by their colour, and its panels, each with ``data`` and ``layout`` of Plotly's, its
-    heights over the width of the page, and whether it is as wide as that.
+    of its legend by their colour, and its panels, each with ``data`` and ``layout`` of Plotly's,
+    its heights over the width of the page, and whether it is as wide as that.
     """
     chart = with_one_abscissa(chart)
     bands = {band.label: COLOURS[band.colour] for panel in chart.panels for band in panel.bands}
