@@ -865,7 +865,7 @@ def track_charts(arena: Arena, *, tracking: bool) -> list[Chart]:
     what = "The oscillating reference tracked" if tracking else "The vessel circled"
     caption = (
         f"{what}: the last {_SHOWN_S:g} s of one flight a law, the same start for all; condition:"
-        f" {first}. Seen from the ship, to scale, with her plume up the page. The best on the"
+        f" {first}. Seen from the ship, to scale, with its plume up the page. The best on the"
         " tracking error come first."
     )
     return [

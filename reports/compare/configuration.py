@@ -166,7 +166,8 @@ def software_table(runs: Sequence[Run]) -> Table:
         [
             "State",
             *(
-                f"{run.state}, {len(run.data.summary):,} of {run.manifest['flights_planned']:,} flights"
+                f"{run.state}, {len(run.data.summary):,} of {run.manifest['flights_planned']:,}"
+                " flights"
                 for run in runs
             ),
         ],
@@ -220,7 +221,9 @@ def _packages(runs: Sequence[Run]) -> list[list[str]]:
 
 
 def _files(runs: Sequence[Run]) -> list[list[str]]:
-    """Return a row for each file of the user that some run takes a part or a vessel's track from."""
+    """Return a row for each file of the user that some run takes a part or a vessel's track
+    from.
+    """
     used = [run.manifest.get("plugins", {}) | run.manifest.get("vessel_files", {}) for run in runs]
     # Without their directories, which are those of a machine.
     named = [
@@ -257,7 +260,8 @@ def _designs(runs: Sequence[Run]) -> list[str]:
             ]
             more = f" and {len(parts) - _NAMED_MAX} more" if len(parts) > _NAMED_MAX else ""
             words.append(
-                f"{design['title']}, {_hash(design)}: differs in {', '.join(parts[:_NAMED_MAX])}{more}"
+                f"{design['title']}, {_hash(design)}: differs in"
+                f" {', '.join(parts[:_NAMED_MAX])}{more}"
             )
     return words
 

@@ -187,7 +187,8 @@ def _pair_section(compared: Compared, tracks: Chart | None) -> Section:
 
 _PAIRED = "{paired:,} flights are paired: the same point or case, number and seed."
 _ALONE = (
-    "Without a partner are {of_first:,} of {first} and {of_other:,} of {other}; {same:,} of them have"
+    "Without a partner are {of_first:,} of {first} and {of_other:,} of {other}; {same:,} of them"
+    " have"
     " the same name in both runs, but another seed."
 )
 _RATIOS = (
@@ -223,7 +224,8 @@ def pairing_sentences(pairs: Pairs) -> list[str]:
 
 _DIFFERENCES = (
     "Differences are those of each pair; pairs that share their random sample count as one, with"
-    " the mean of their differences: there are {samples:,} samples. The interval is the exact one of"
+    " the mean of their differences: there are {samples:,} samples. The interval is the exact one"
+    " of"
     " their median at 95 %, from order statistics, for any distribution; it takes {least} samples,"
     " and is bold where it leaves out 0, as one in twenty does by chance. Of flights that are no"
     " random sample it says how far they agree, not what others would show. Figures that are the"
@@ -261,8 +263,8 @@ def headline(compared: Sequence[Compared]) -> str:
 
 
 def _sentences(compared: Compared, changes: int) -> Iterator[str]:
-    """Yield what a headline says of a run beside the first: what must never happen, else the largest
-    changes, one at least, and then how many flights met their criteria.
+    """Yield what a headline says of a run beside the first: what must never happen, else the
+    largest changes, one at least, and then how many flights met their criteria.
     """
     pairs, found = compared.pairs, largest_changes(compared)[: max(1, changes)]
     names = {"first": pairs.first.letter, "other": pairs.other.letter, "pairs": len(pairs)}
@@ -334,7 +336,8 @@ def _lines(compared: Compared) -> list[str]:
     for words, mask, where in turned:
         if count(mask):
             lines.append(
-                f"{other}: {count(mask):,} of {len(pairs):,} paired flights {words} in {where} alone"
+                f"{other}: {count(mask):,} of {len(pairs):,} paired flights {words} in {where}"
+                " alone"
             )
     return lines
 

@@ -15,8 +15,12 @@ _FAR = 10_000.0
 """Distances from which axes are in kilometres [m]."""
 
 _MANTISSAS: tuple[tuple[float, ...], ...] = (
-    (1,), (1, 3), (1, 2, 5), (1, 2, 3, 4, 5, 6, 7, 8, 9), tuple(tenth / 10.0 for tenth in range(10, 100))
-)  # fmt: skip
+    (1,),
+    (1, 3),
+    (1, 2, 5),
+    (1, 2, 3, 4, 5, 6, 7, 8, 9),
+    tuple(tenth / 10.0 for tenth in range(10, 100)),
+)
 """Figures at which a logarithmic axis is marked, the fewest first."""
 
 _MARKS_MIN, _MARKS_MAX = 3, 8
@@ -134,7 +138,9 @@ def wrapped(label: str, room: float) -> list[str]:
 
 
 def mark_text(value: float) -> str:
-    """Return a mark of a logarithmic axis in digits, or as a power of ten where it would have many."""
+    """Return a mark of a logarithmic axis in digits, or as a power of ten where it would have
+    many.
+    """
     if 1e-4 < value < 1e5:
         return f"{value:g}"
     mantissa, _, exponent = f"{value:.0e}".partition("e")

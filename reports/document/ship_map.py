@@ -1,4 +1,6 @@
-"""Maps about a ship: her hull to scale, her plume up the page, the keep-out area, wind and north."""
+"""Maps about a ship: its hull to scale, its plume up the page, the keep-out area, wind and
+north.
+"""
 
 import math
 from collections.abc import Sequence
@@ -63,7 +65,7 @@ def _large(line: Line, panel: Panel) -> bool:
 
 def ship_lines(about: Surroundings, up: float, x: float = 0.0, y: float = 0.0) -> list[Line]:
     """Return keep-out area, plume and ship, on a page on which the course ``up`` [rad] is up, with
-    her funnel at a place.
+    its funnel at a place.
     """
     right, along = area_outline(about, about.heading - up)
     plume = about.plume
@@ -99,7 +101,7 @@ def ship_panel(
     shown: Sequence[Line] = (),
     aspect: float = 1.0,
 ) -> Panel:
-    """Return a map about the ship with her plume up the page.
+    """Return a map about the ship with its plume up the page.
 
     Parameters
     ----------
@@ -111,8 +113,8 @@ def ship_panel(
     """
     every = [*ship_lines(about, about.axis), *lines]
     panel = Panel(
-        x_label="Right of the plume's axis [m]",
-        y_label="Along it [m]",
+        x_label="Across the plume [m]",
+        y_label="Behind the stack [m]",
         title=title,
         lines=every,
         notes=notes,
@@ -145,7 +147,7 @@ def ship_words(*about: Surroundings, panels: Sequence[Panel] | None = None) -> s
     still = "Ship, north and wind are" if SHIP in shown else "North and wind are"
     moved = f" {still} as they were at the closest approach." if changing else ""
     return (
-        f"Seen from the ship, with the axis of her plume up the page.{width}"
+        f"Seen from the ship, with the axis of its plume up the page.{width}"
         + (f" {told[0].upper()}{told[1:]}." if told else "")
         + moved
     )
@@ -154,7 +156,7 @@ def ship_words(*about: Surroundings, panels: Sequence[Panel] | None = None) -> s
 def _area_words(about: Sequence[Surroundings]) -> str:
     """Return what the keep-out area is about."""
     shapes = " or ".join(dict.fromkeys(of.shape for of in about if of.outline is None))
-    words = [f"the keep-out {shapes} is about the funnel"] if shapes else []
+    words = [f"the keep-out {shapes} is about the stack"] if shapes else []
     if any(of.outline is not None for of in about):
         words.append(
             "the keep-out area is what is within r_min of the hull, the rectangle about the ship"
@@ -166,7 +168,7 @@ def hull_words(hull: Hull) -> str:
     """Return how large a ship is drawn, and why."""
     size = f"{hull.length:g} m by {hull.beam:g} m"
     if hull.given:
-        return f"her hull is {size}"
+        return f"its hull is {size}"
     if hull.known:
         return f"the scenario gives no hull: that of {hull.title}, {size}, is drawn"
     return f"the scenario gives no hull: {hull.title} of {size} is drawn"

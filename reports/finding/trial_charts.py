@@ -20,7 +20,8 @@ _STRETCH = 30.0
 """Time over which the hits of all flights are counted together [s]."""
 
 _ERROR_TOLD = (
-    "Error of the axis' height after 3 minutes over its stated standard deviation: between the dashed lines the 95 % interval holds"
+    "Error of the axis' height after 3 minutes over its stated standard deviation: between the"
+    " dashed lines the 95 % interval holds"
     " the truth."
 )
 
@@ -32,8 +33,10 @@ def finding_charts(trial: Trial, variants: list[Variant]) -> list[Chart]:
     charts = [
         Chart(
             name=f"{trial.name}-detection",
-            caption="Share of flights that have found their plume over the time since they reached their orbit, and share of the"
-            f" passes that hit it, peak above {HIT:g} of the plume's axis, in stretches of {_STRETCH:g} s.",
+            caption="Share of flights that have found their plume over the time since they reached"
+            " their orbit, and share of the"
+            f" passes that hit it, peak above {HIT:g} of the plume's axis, in stretches of"
+            f" {_STRETCH:g} s.",
             panels=shown,
             columns=len(shown),
             panel_height=0.38,

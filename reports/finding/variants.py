@@ -49,6 +49,13 @@ class Variant:
         """Number of flights that found the plume."""
         return int(np.isfinite(self.times).sum())
 
+    @property
+    def latest(self) -> float:
+        """Time within which 95 % of the flights found the plume [s]: that of a flight, as there is
+        nothing between a time and never.
+        """
+        return float(np.quantile(self.times, 0.95, method="inverted_cdf"))
+
     def share_found(self, within: float) -> float:
         """Return the share of flights that found the plume within a time [s]; at least one flight
         is needed.

@@ -120,8 +120,10 @@ def _overview(trials: list[Trial]) -> Section:
     if len(trials) == 1:
         return Section(anchor="trials", title="Criteria", blocks=criteria)
     meaning = (
-        "Completed: the aircraft came through, settled, and flew the crossings that were asked for, or one at least. Met: it kept"
-        " out, completed, and met every other criterion. Kept out: known to have kept out to its end. Distances are from the"
+        "Completed: the aircraft came through, settled, and flew the crossings that were asked for,"
+        " or one at least. Met: it kept"
+        " out, completed, and met every other criterion. Kept out: known to have kept out to its"
+        " end. Distances are from the"
         " keep-out sphere's centre, or horizontal where the keep-out area is a cylinder."
     )
     return Section(

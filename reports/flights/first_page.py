@@ -35,7 +35,7 @@ _NAME_MAX = 30
 """Letters of a flight's name that there is room for above its picture."""
 
 _STEADY = 0.005
-"""Change of the speed ratio up to which a vessel keeps her speed and course [-]."""
+"""Change of the speed ratio up to which a vessel keeps its speed and course [-]."""
 
 _MINUTES_MIN = 2.0
 """Time of flight from which on it is told in minutes [min]."""
@@ -48,7 +48,10 @@ def flights_in_words(run: RunData, flown: pd.DataFrame) -> str:
     """Return what was flown: flights and hours, vehicle, vessel and air; without a full stop."""
     if not len(flown):
         return "No flight was flown"
-    flights = f"{len(flown):,} flight{'s' * (len(flown) > 1)} ({simulated(flown)}) of {vehicle_flown(run)}"
+    flights = (
+        f"{len(flown):,} flight{'s' * (len(flown) > 1)} ({simulated(flown)}) of"
+        f" {vehicle_flown(run)}"
+    )
     vessel = column(flown, "vessel_speed_mps")
     if not np.isfinite(vessel).any():
         return f"{flights}, about a circle without a vessel"
@@ -64,7 +67,10 @@ def flights_in_words(run: RunData, flown: pd.DataFrame) -> str:
     some = f", in {len(levels):,} of them," * (len(levels) < len(flown))
     gusty = f" and{some} {' or '.join(map(str, levels.unique()))} turbulence" if len(levels) else ""
     manoeuvres = np.any(column(flown, "nu_max") - column(flown, "nu_min") > _STEADY)
-    return f"{flights}, beside a vessel at {_range(vessel)} m/s{' at the start' * bool(manoeuvres)}, in {air}{gusty}"
+    return (
+        f"{flights}, beside a vessel at {_range(vessel)} m/s{' at the start' * bool(manoeuvres)},"
+        f" in {air}{gusty}"
+    )
 
 
 def simulated(flown: pd.DataFrame) -> str:

@@ -12,10 +12,10 @@ from reports.flights.flight_view import FlightView
 from reports.run.columns import Array, column
 
 _NEAR = 1500.0
-"""Distance beyond her radius within which another ship is drawn [m]."""
+"""Distance beyond its radius within which another ship is drawn [m]."""
 
 _AROUND = 60.0
-"""Time before and after her closest approach for which her track is drawn [s]."""
+"""Time before and after its closest approach for which its track is drawn [s]."""
 
 _NAMED = 6
 """Ships whose closest approach is told, at most."""
@@ -23,15 +23,15 @@ _NAMED = 6
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OtherShip:
-    """Another ship, as a flight came nearest to her.
+    """Another ship, as a flight came nearest to it.
 
     Attributes
     ----------
-    name, radius : of her, and what is kept from her [m]
+    name, radius : of it, and what is kept from its [m]
     distance, at : of the closest approach [m, s]
     track : time, north and east about then, shape (n, 3) [s, m]
     vessel : where the measured ship was at these times, north and east, shape (n, 2) [m]
-    place : of her at the closest approach, north and east over the ground [m]
+    place : of it at the closest approach, north and east over the ground [m]
     vessel_then : of the measured ship then, likewise
     """
 

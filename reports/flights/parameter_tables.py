@@ -43,8 +43,8 @@ _LAG = (
 
 
 def trial_parameters(run: RunData, trials: list[Trial]) -> list[Block]:
-    """Return what a run's trials set, sweep and sample, and behind a fold every other parameter with
-    its default.
+    """Return what a run's trials set, sweep and sample, and behind a fold every other parameter
+    with its default.
     """
     if not trials:
         return []
@@ -63,7 +63,9 @@ def trial_parameters(run: RunData, trials: list[Trial]) -> list[Block]:
 
 
 def _rows(trial: Trial) -> list[list[str]]:
-    """Return what a trial sweeps and samples, and the parameters that differ from their defaults."""
+    """Return what a trial sweeps and samples, and the parameters that differ from their
+    defaults.
+    """
     numbers = f"{trial.planned}, {trial.config['seed']}"
     rows = [["flights, seed", numbers, "", "", "Number of flights; seed of all random numbers"]]
     low, high = trial.setting("speed_ratio") or (0.0, _ANY_RATIO)

@@ -40,7 +40,7 @@ turns long [s], and its tint.
 _TIME = "Time [s]"
 
 _VESSEL_ERROR = "Vessel error [m]"
-_VESSEL_WORDS = " Vessel error: from where the vessel is to where the guidance takes her to be."
+_VESSEL_WORDS = " Vessel error: from where the vessel is to where the guidance takes it to be."
 
 
 def flight_charts(view: FlightView | None) -> list[Chart]:
@@ -57,9 +57,16 @@ class _Histories:
     def chart(self) -> Chart:
         """Return its time histories, of what it has."""
         makers = [
-            self._distance_panel, self._tracking_panel, self._wind_panel, self._vessel_panel, self._rate_panel,
-            self._bank_panel, self._airspeed_panel, self._altitude_panel, self._mode_panel,
-        ]  # fmt: skip
+            self._distance_panel,
+            self._tracking_panel,
+            self._wind_panel,
+            self._vessel_panel,
+            self._rate_panel,
+            self._bank_panel,
+            self._airspeed_panel,
+            self._altitude_panel,
+            self._mode_panel,
+        ]
         trial, bands = self._view.trial, self._view.bands()
         own = (make() for make in makers)
         panels = [
@@ -72,7 +79,8 @@ class _Histories:
         vessel = _VESSEL_WORDS * any(panel.y_label == _VESSEL_ERROR for panel in panels)
         return Chart(
             name="histories",
-            caption=f"{flight_name(trial, self._view.row)}: time histories.{self._distance_words()}{small}{vessel}"
+            caption=f"{flight_name(trial, self._view.row)}: time"
+            f" histories.{self._distance_words()}{small}{vessel}"
             " Dashed in the panel of the heading rate: ω_max."
             + (
                 f" Rate and bank: the range of the values within each {_WITHIN_S:g} s."
@@ -141,7 +149,10 @@ class _Histories:
             return ""
         far, farthest = self._distance_range()[1], float(np.nanmax(self._view.distance))
         where = measured_from(keepout_shape(self._view.config))
-        return f" Distance is {where}, dashed r_min.{f' Distances above {far:.0f} m are not shown.' if farthest > far else ''}"
+        return (
+            f" Distance is {where}, dashed"
+            f" r_min.{f' Distances above {far:.0f} m are not shown.' if farthest > far else ''}"
+        )
 
     def _distance_range(self) -> tuple[float, float]:
         """Return the least and the largest distance that are shown [m]."""
@@ -237,7 +248,7 @@ class _Histories:
         oscillation.
         """
         row, funnel = self._view.row, source_height(self._view.config)
-        levels = {"funnel": (funnel, Meaning.SHIP)}
+        levels = {"stack": (funnel, Meaning.SHIP)}
         rise = float(row.get("r_co_m", 0.0)) * math.sin(
             math.radians(float(row.get("plume_elevation_deg", 0.0)))
         )

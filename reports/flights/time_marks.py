@@ -24,7 +24,9 @@ TIMES = "time since the start"
 
 
 class _Word(NamedTuple):
-    """Where a word may stand: its middle, half its size, and the end of it that stands at ``at``."""
+    """Where a word may stand: its middle, half its size, and the end of it that stands at
+    ``at``.
+    """
 
     middle: tuple[float, float]
     half: tuple[float, float]

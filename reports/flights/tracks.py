@@ -1,4 +1,4 @@
-"""Tracks of flights: about the ship with her plume up the page, at the plume from near, and over
+"""Tracks of flights: about the ship with its plume up the page, at the plume from near, and over
 the ground.
 """
 
@@ -47,7 +47,7 @@ _ABOVE = 0.08
 """Height of words above what is drawn over the ground, over the height of the panel."""
 
 _AWAY = 1.0
-"""Way of the ship over the size of the track about her, from which there is a panel over the
+"""Way of the ship over the size of the track about its, from which there is a panel over the
 ground.
 """
 
@@ -68,7 +68,7 @@ _PICTURE = "picture"
 
 
 def track_chart(view: FlightView) -> Chart:
-    """Return where one flight went: about the ship, her plume up the page, from near, and over the
+    """Return where one flight went: about the ship, its plume up the page, from near, and over the
     ground.
     """
     return _Tracks(view).chart()
@@ -152,7 +152,7 @@ class _Tracks:
         )
 
     def _whole(self, about: Surroundings, title: str, aspect: float) -> Panel:
-        """Return the whole flight, seen from the ship with her plume up the page."""
+        """Return the whole flight, seen from the ship with its plume up the page."""
         view = self.view
         lines = [
             *view.guarded(about_the_plume),
@@ -266,7 +266,7 @@ class _Tracks:
         )
 
     def _goes_far(self) -> bool:
-        """Return whether there is a ship that goes farther than the track about her is wide."""
+        """Return whether there is a ship that goes farther than the track about it is wide."""
         if not self.view.vessel:
             return False
         (north, east), size = (
@@ -276,7 +276,7 @@ class _Tracks:
         return bool(np.hypot(north, east) >= _AWAY * size)
 
     def _way(self) -> float | None:
-        """Return the course that puts the ship's way across the page [rad]; None where she does not
+        """Return the course that puts the ship's way across the page [rad]; None where it does not
         go far, or turns.
         """
         if not self._goes_far():

@@ -185,7 +185,9 @@ def _figures(trials: Sequence[Trial], flown: pd.DataFrame) -> list[Card]:
 
 
 def _loss_is_allowed(verdict: RunVerdict) -> bool:
-    """Return whether a flight did what is required of it, which was to stay outside, and no more."""
+    """Return whether a flight did what is required of it, which was to stay outside, and no
+    more.
+    """
     counts = verdict.counts
     return bool(counts.required.get("keep_out")) and counts.passed > counts.met
 
@@ -253,7 +255,7 @@ def _closest_card(trials: Sequence[Trial], beside: pd.DataFrame) -> Card | None:
     distance, radius = closest.distance_m, closest.radius_m
     horizontal = float(row.get("horizontal_distance_min_m", math.nan))
     if closest.shape == "sphere" and horizontal < distance - _BESIDE:
-        note += f", {horizontal:.1f} m horizontally from the funnel"
+        note += f", {horizontal:.1f} m horizontally from the stack"
     kept = distance >= radius
     if radii_differ(beside):
         name = "Closest approach, beyond the flight's own r_min"
@@ -310,7 +312,9 @@ def _worst_card(trials: Sequence[Trial], key: str) -> Card | None:
 
 
 def _is_within(value: float | str, limit: object) -> bool:
-    """Return whether the worst of all flights is within the limit of those that are judged by it."""
+    """Return whether the worst of all flights is within the limit of those that are judged by
+    it.
+    """
     return isinstance(value, float | int) and isinstance(limit, float | int) and value <= limit
 
 
@@ -319,7 +323,9 @@ def _noted(*notes: str) -> str:
 
 
 def _nearly_all(run: RunData, key: str) -> str:
-    """Return what nearly all of many flights stay below, of the tracking error; no word of others."""
+    """Return what nearly all of many flights stay below, of the tracking error; no word of
+    others.
+    """
     if key != TRACKING:
         return ""
     errors = column(run.summary, TRACKING)

@@ -15,7 +15,9 @@ INPUTS_MAX = 12
 
 
 def driver_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
-    """Return bars of the sensitivity indices of each figure that has any, the largest delta first."""
+    """Return bars of the sensitivity indices of each figure that has any, the largest delta
+    first.
+    """
     return [
         _bars(key, run.column(key).title, found)
         for key, found in statistics["sensitivity"].items()

@@ -59,7 +59,10 @@ def subset_headline(statistics: Record) -> str:
     found, confidence = statistics["violation"], percent(statistics["confidence"])
     bound = f"at most {percent(found['pessimistic']['upper'])} at {confidence} confidence"
     if found["reached"]:
-        return f"Keep-out violation with a probability of {percent(found['estimate'])} in a flight, {bound}, by subset simulation"
+        return (
+            f"Keep-out violation with a probability of {percent(found['estimate'])} in a flight,"
+            f" {bound}, by subset simulation"
+        )
     return f"Subset simulation reached no keep-out violation: a probability of {bound} in a flight"
 
 
@@ -111,16 +114,20 @@ def probability_in_words(statistics: Record) -> str:
     repeats, reached = found["repeats"], found["reached"]
     if reached:
         words = (
-            f"A flight of this study violates the keep-out area with a probability of {percent(found['estimate'])}: with"
-            f" {confidence} confidence {percent(found['low'])} to {percent(found['high'])}, and at most {percent(found['upper'])}."
+            "A flight of this study violates the keep-out area with a probability of"
+            f" {percent(found['estimate'])}: with"
+            f" {confidence} confidence {percent(found['low'])} to {percent(found['high'])}, and at"
+            f" most {percent(found['upper'])}."
             f" {repeats} independent subset simulations estimate it"
         )
         words += (
             "." if reached == repeats else f"; {repeats - reached} of them reached no violation."
         )
         words += (
-            " The interval is that of the mean of a log-normal distribution (Cox, with Student's t), from the scatter of the"
-            " simulations, or from the correlation within their chains (Au and Beck), whichever is larger."
+            " The interval is that of the mean of a log-normal distribution (Cox, with Student's"
+            " t), from the scatter of the"
+            " simulations, or from the correlation within their chains (Au and Beck), whichever is"
+            " larger."
         )
     else:
         nearest = _range(
@@ -128,23 +135,33 @@ def probability_in_words(statistics: Record) -> str:
             "{:.1f}",
         )
         words = (
-            f"None of {repeats} independent subset simulations reached a keep-out violation. With {confidence} confidence its"
-            f" probability in a flight is at most {percent(found['upper'])}, if chains find the way to it. Their nearest flights"
-            f" stayed {nearest} m beyond r_min; the more these differ, the less the chains have seen."
+            f"None of {repeats} independent subset simulations reached a keep-out violation. With"
+            f" {confidence} confidence its"
+            f" probability in a flight is at most {percent(found['upper'])}, if chains find the way"
+            " to it. Their nearest flights"
+            f" stayed {nearest} m beyond r_min; the more these differ, the less the chains have"
+            " seen."
         )
     if outside := sum(
         simulation["levels"][0]["outside"] for simulation in statistics["simulations"]
     ):
-        words += f" For the first levels {outside:,} points outside of the declared speed ratios were sampled again."
+        words += (
+            f" For the first levels {outside:,} points outside of the declared speed ratios were"
+            " sampled again."
+        )
     if unknown := found["first_levels_unknown"]:
         words += (
-            f" Of the flights of the first levels {unknown:,} {'is' if unknown == 1 else 'are'} of unknown end; with each of them"
+            f" Of the flights of the first levels {unknown:,} {'is' if unknown == 1 else 'are'} of"
+            " unknown end; with each of them"
             f" as a violation the bound is {percent(found['pessimistic']['upper'])}."
         )
     return words + (
-        " What lies apart from all flights of a level, in a corner to which nothing leads that comes closer, is not found by"
-        " chains; a search (falsify) is the other way to look for it. The figures are of flights sampled as these were, in this"
-        " simulation. Flights of further levels are led towards violations: their share is no probability."
+        " What lies apart from all flights of a level, in a corner to which nothing leads that"
+        " comes closer, is not found by"
+        " chains; a search (falsify) is the other way to look for it. The figures are of flights"
+        " sampled as these were, in this"
+        " simulation. Flights of further levels are led towards violations: their share is no"
+        " probability."
     )
 
 
@@ -152,7 +169,8 @@ def _probability_table(statistics: Record) -> Table:
     found, plain = statistics["violation"], statistics["violation"]["first_levels"]
     level = percent(statistics["confidence"])
     return Table(
-        caption="The probability of a keep-out violation, by subset simulation and by its first levels alone.",
+        caption="The probability of a keep-out violation, by subset simulation and by its first"
+        " levels alone.",
         head=[
             "By",
             "Flights",
@@ -186,10 +204,14 @@ def _probability_table(statistics: Record) -> Table:
 def _levels(statistics: Record) -> list[Block]:
     simulations = statistics["simulations"]
     text = (
-        "The first level is a plain random sample. The flights of each further level grow in Markov chains from the nearest of the"
-        " level before, and stay at least as near. The probability is the product of the fractions that passed. Inputs and noise"
-        " (reports, sensor errors, gusts) move by small steps; the seed of the turbulence is renewed as a whole. The last three"
-        " columns say how many of these moves were accepted. Where simulations differ, the smallest and the largest figure are"
+        "The first level is a plain random sample. The flights of each further level grow in Markov"
+        " chains from the nearest of the"
+        " level before, and stay at least as near. The probability is the product of the fractions"
+        " that passed. Inputs and noise"
+        " (reports, sensor errors, gusts) move by small steps; the seed of the turbulence is"
+        " renewed as a whole. The last three"
+        " columns say how many of these moves were accepted. Where simulations differ, the smallest"
+        " and the largest figure are"
         " shown."
     )
     deepest = max(len(simulation["levels"]) for simulation in simulations)
@@ -198,7 +220,8 @@ def _levels(statistics: Record) -> list[Block]:
         for i in range(deepest)
     ]
     head = [
-        "Level", "Simulations", "Within r_min plus [m]", "Nearest flight beyond r_min [m]", "Flights", "Fraction that passed",
+        "Level", "Simulations", "Within r_min plus [m]", "Nearest flight beyond r_min [m]",
+        "Flights", "Fraction that passed",
         "Inputs", "Noise", "Seed",
     ]  # fmt: skip
     return [
@@ -245,7 +268,8 @@ def _warnings(simulations: list[Record]) -> list[str]:
     lines = []
     if stalled := sum(simulation["stalled"] for simulation in simulations):
         lines.append(
-            f"{stalled} of {len(simulations)} simulations ended early: all flights of a level were equally near."
+            f"{stalled} of {len(simulations)} simulations ended early: all flights of a level were"
+            " equally near."
         )
     last = [simulation["levels"][-1] for simulation in simulations]
     tried, accepted = (
@@ -253,8 +277,10 @@ def _warnings(simulations: list[Record]) -> list[str]:
     )
     if tried and accepted < FEW_RENEWALS * tried:
         lines.append(
-            f"Only {percent(accepted / tried)} of the renewals of the seed were accepted in the last levels: the turbulence's seed"
-            " decides which flights come near, chains depend on the few seeds that they began with, and the interval may be too"
+            f"Only {percent(accepted / tried)} of the renewals of the seed were accepted in the"
+            " last levels: the turbulence's seed"
+            " decides which flights come near, chains depend on the few seeds that they began with,"
+            " and the interval may be too"
             " narrow. Use more flights per level (subset.flights_per_level)."
         )
     return lines
@@ -271,9 +297,12 @@ def _near(statistics: Record) -> str:
 def _inputs(statistics: Record, units: Units) -> list[Block]:
     which = "with a violation" if statistics["violation"]["reached"] else "of the last level"
     text = (
-        f"How the inputs of flights {which} are distributed, against how they are declared: the distance is the largest difference"
-        " of the two cumulative distributions (Kolmogorov), 0 for an input that does not matter, 1 for one that decides alone. The"
-        f" noise floor, {statistics['noise_floor']:.2f}, is the largest distance of some inputs without any effect that moved too."
+        f"How the inputs of flights {which} are distributed, against how they are declared: the"
+        " distance is the largest difference"
+        " of the two cumulative distributions (Kolmogorov), 0 for an input that does not matter, 1"
+        " for one that decides alone. The"
+        f" noise floor, {statistics['noise_floor']:.2f}, is the largest distance of some inputs"
+        " without any effect that moved too."
     )
     return [Text(text), input_table(statistics, units)]
 

@@ -138,7 +138,7 @@ def sim_3_charts(run: RunData) -> list[Chart]:
             run, ["sim3"], figure_9, name="fig9", labels=("Time [s]", "Distance to the vessel [m]"),
             shown_after=math.inf,
             caption="The paper's figure 9: "
-            "distance between the vessel, at its funnel, and the UAV; dashed the radius of the"
+            "distance between the vessel, at its stack, and the UAV; dashed the radius of the"
             " keep-out area.",
         ),
     ]  # fmt: skip

@@ -180,7 +180,8 @@ class Trial:
             return draws.set_index("flight_id")[key].reindex(self.rows["flight_id"])
         if key not in self.rows:
             raise ReportError(
-                f"'{self.run.path / DRAWS}' is gone or has no column '{key}', which flights differ in; {REMEDY}"
+                f"'{self.run.path / DRAWS}' is gone or has no column '{key}', which flights differ"
+                f" in; {REMEDY}"
             )
         return self.rows[key].set_axis(self.rows["flight_id"])
 

@@ -40,7 +40,8 @@ from reports.run.time_history import keepout_distance
 from reports.run.trials import Name, Trial
 
 _FAILED = (
-    "{failed:,} flights did not meet every criterion; {listed:,} are listed, lost ones, diverged ones"
+    "{failed:,} flights did not meet every criterion; {listed:,} are listed, lost ones, diverged"
+    " ones"
     " and keep-out violations first. {summary} has all, with what to do about each."
 )
 
@@ -242,8 +243,8 @@ def _whose(trial: Trial, of: Criterion) -> str:
 
 
 def fault_table(trial: Trial) -> Table:
-    """Return a row per kind of fault: how the flights ended, and how close they came from the fault,
-    of several from the first, on.
+    """Return a row per kind of fault: how the flights ended, and how close they came from the
+    fault, of several from the first, on.
     """
     flown = trial.flown
     differ = radii_differ(flown)
@@ -251,35 +252,40 @@ def fault_table(trial: Trial) -> Table:
         str(row["flight_id"]): _closest_after(trial, row, beyond=differ)
         for _, row in flown.iterrows()
     }
-    rows = []
-    for kind, members in flown.groupby(names_of_faults(flown), sort=False):
-        closest = [after[str(flight_id)] for flight_id in members["flight_id"]]
-        known = [value for value in closest if value is not None]
-        rows.append([
-            str(kind),
-            f"{len(members)}",
-            f"{count(kept_out(members))}",
-            f"{count(completed(members))}",
-            f"{count(lost(members))}",
-            f"{total(members, 'keepout_violations')}",
-            *nearest_cells(members)[: 2 if differ else 1],
-            number(min(known, default=None), "{:+.1f}" if differ else "{:.1f}")
-            + (f" (of {len(known)})" if known and len(known) < len(closest) else ""),
-            span(column(members, "end_distance_m"), "{:.0f}"),
-            counted(members["mode_at_end"]),
-        ])  # fmt: skip
-    approach_head = trial.run.column("min_distance_m").head
-    head = [
-        "Fault", "Flights", "Kept out", "Completed", "Aircraft lost", "Keep-out violations", approach_head,
-        *([_BEYOND, f"after the fault, {_BEYOND}"] if differ else ["Closest after the fault [m]"]),
-        "At the end [m]", "Mode at the end",
-    ]  # fmt: skip
-    return Table(
+    kinds = [
+        {"kind": kind, "rows": rows, "after": [after[str(of)] for of in rows["flight_id"]]}
+        for kind, rows in flown.groupby(names_of_faults(flown), sort=False)
+    ]
+    since = f"after the fault, {_BEYOND}" if differ else "Closest after the fault [m]"
+    cells = [
+        Cell("Fault", "kind", width=1.5),
+        Cell("Flights", lambda of: len(of["rows"]), "{:.0f}", 0.7),
+        Cell("Kept out", lambda of: count(kept_out(of["rows"])), "{:.0f}", 0.7),
+        Cell("Completed", lambda of: count(completed(of["rows"])), "{:.0f}", 1.1),
+        Cell("Aircraft lost", lambda of: count(lost(of["rows"])), "{:.0f}", 0.8),
+        Cell("Keep-out violations", lambda of: total(of["rows"], "keepout_violations"), "{:.0f}"),
+        Cell(
+            trial.run.column("min_distance_m").head,
+            lambda of: nearest_cells(of["rows"])[0],
+            width=0.8,
+        ),
+        Cell(_BEYOND, lambda of: nearest_cells(of["rows"])[1], width=0.8),
+        Cell(since, lambda of: _least_words(of["after"], signed=differ), width=1.2),
+        Cell("At the end [m]", lambda of: span(column(of["rows"], "end_distance_m"), "{:.0f}")),
+        Cell("Mode at the end", lambda of: counted(of["rows"]["mode_at_end"]), width=1.8),
+    ]
+    return rows_table(
+        kinds,
+        [cell for cell in cells if differ or cell.head != _BEYOND],
         caption="The faults: how the flights ended, and how close they came from the fault on.",
-        head=head,
-        rows=rows,
-        widths=[1.5, 0.7, 0.7, 1.1, 0.8, 1.0, 0.8, *([0.8] if differ else []), 1.2, 1.1, 1.8],
     )
+
+
+def _least_words(distances: Sequence[float | None], *, signed: bool) -> str:
+    """Return the least of the known distances, and how many are known where that is not all."""
+    known = [distance for distance in distances if distance is not None]
+    words = number(min(known, default=None), "{:+.1f}" if signed else "{:.1f}")
+    return f"{words} (of {len(known)})" if 0 < len(known) < len(distances) else words
 
 
 def _closest_after(trial: Trial, row: "pd.Series[Any]", *, beyond: bool) -> float | None:
