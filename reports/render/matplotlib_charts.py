@@ -220,6 +220,8 @@ def _below(ax: Any) -> float:
 @lru_cache(maxsize=1024)
 def _wide(words: str) -> float:
     """Return the width of words in the letters of marks [inches]."""
+    if not words.strip():
+        return 0.0
     return float(TextPath((0.0, 0.0), words, size=_STYLE["font.size"]).get_extents().width) / 72.0
 
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 import pandas as pd
 import pytest
 from judged_runs import changed
+from snapshots import assert_reads_as_before
 
 from extensions.arena.entrants import Entrant
 from extensions.arena.paired_bootstrap import Estimate
@@ -341,3 +342,7 @@ def test_every_number_on_page_1_is_that_of_the_evaluation(path, tmp_path):
         *("95", "0"),
     }
     assert numbers_on_page_1(path, tmp_path) <= expected
+
+
+def test_an_arena_reads_as_before(run):
+    assert_reads_as_before("arena", content(run))

@@ -108,7 +108,7 @@ def test_every_axis_reads_quantity_and_unit_and_holds_something(failed):
 def test_every_chart_is_drawn_alike_on_screen_and_in_print(failed):
     for chart in named_charts(failed).values():
         lines = [line for panel in chart.panels for line in panel.lines]
-        assert len(plotly_charts.draw(chart)["data"]) == len(lines)
+        assert sum(len(of["data"]) for of in plotly_charts.draw(chart)["panels"]) == len(lines)
         assert sum(len(ax.lines) for ax in matplotlib_charts.draw(chart).axes) == len(lines)
 
 
@@ -122,7 +122,7 @@ def test_a_logarithmic_ordinate_is_one_on_screen_and_in_print():
         y_range=(0.001, 1000.0),
     )
     chart = Chart(name="chart", caption="", panels=[panel])
-    axis = plotly_charts.draw(chart)["layout"]["yaxis"]
+    axis = plotly_charts.draw(chart)["panels"][0]["layout"]["yaxis"]
     assert (axis["type"], tuple(axis["range"])) == ("log", (-3.0, 3.0))
     (ax,) = matplotlib_charts.draw(chart).axes
     assert (ax.get_yscale(), ax.get_ylim()) == ("log", (0.001, 1000.0))

@@ -7,6 +7,7 @@ import pandas as pd
 import pytest
 from convergence_runs import LAWS, REFERENCES, TRAJECTORIES, write_convergence_run
 from report_parts import blocks_of, built, draw_all_but, numbers_on_page_1
+from snapshots import assert_reads_as_before
 
 from extensions.convergence.report import FAILED_ROWS, FAILURES_NAMED, settled_time
 from reports.build import build_reports, export_run
@@ -266,3 +267,7 @@ def test_every_number_on_page_1_is_that_of_the_summary(failed_path, tmp_path):
         for number in re.findall(r"\d+(?:\.\d+)?", text)
     }
     assert numbers_on_page_1(failed_path, tmp_path) <= expected | messages
+
+
+def test_a_convergence_study_reads_as_before(failed):
+    assert_reads_as_before("convergence", failed)

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
+from snapshots import assert_reads_as_before
 
 from extensions.patrol.report import (
     _matters,
@@ -20,6 +21,7 @@ from extensions.patrol.report import (
     time_lines,
 )
 from reports.document.blocks import CARDS_MAX
+from reports.registry import content
 from reports.run.run_data import read_run
 from tests.reports.report_parts import flown, numbers_on_page_1
 
@@ -200,3 +202,7 @@ def test_every_number_on_page_1_is_that_of_the_tables(run, tmp_path):
         *("0", "80", "5", "200"),
     }
     assert numbers_on_page_1(run.path, tmp_path) <= expected
+
+
+def test_patrols_read_as_before(run):
+    assert_reads_as_before("patrol", content(run))

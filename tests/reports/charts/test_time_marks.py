@@ -41,32 +41,6 @@ def test_a_word_stands_where_the_fewest_curves_are(drawn, align, above):
     assert (lines[0].x.tolist(), lines[0].y.tolist()) == ([50.0], [50.0])
 
 
-@pytest.mark.parametrize(("edge", "align"), [("right", "right"), ("left", "left"), ("top", "left")])
-def test_a_word_does_not_stand_beyond_all_curves_where_the_figure_may_end(edge, align):
-    # A track that comes to the edge of what is shown, which ends there, and turns back.
-    ends = {
-        "right": ([10.0, 51.0], [20.0, 80.0]),
-        "left": ([49.0, 90.0], [20.0, 80.0]),
-        "top": ([10.0, 90.0], [10.0, 54.0]),
-    }
-    (x, y) = ends[edge]
-    _, (note,) = marked([line(x, [y[0]] * 2), line([x[0]] * 2, y)])
-    assert note.align == align
-    assert note.y == 50.0
-
-
-def test_a_straight_line_of_two_points_is_seen_where_it_goes_through_a_word():
-    # Four lines to the right of the mark, each from one edge to the other.
-    lines = [line([57.0 + 0.5 * i] * 2, [0.0, 100.0]) for i in range(4)]
-    _, (note,) = marked(lines)
-    assert note.align == "right"
-
-
-def test_a_mark_among_many_curves_is_left_out_with_its_word():
-    curves = [line(np.linspace(20, 80, 200), np.full(200, y)) for y in np.linspace(30.0, 70.0, 40)]
-    assert marked(curves) == ([], [])
-
-
 def test_words_of_marks_that_are_near_each_other_do_not_overlap():
     _, notes = marked([], [f"{i} min" for i in range(1, 9)])
     assert 1 < len(notes) < 8

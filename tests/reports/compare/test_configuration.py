@@ -62,64 +62,6 @@ def test_a_key_without_effect_that_an_aircraft_scales_has_its_unit_and_meaning(t
     assert row == ["guidance.bound_speed_margin_mps", "0.5", "2", "m/s", "A margin."]
 
 
-def test_titles_are_no_difference_of_what_is_flown(two):
-    config_of(two[1])["title"] = "Another"
-    assert configuration_table(two) is None
-
-
-def test_values_that_would_be_written_alike_are_written_in_full(two):
-    config_of(two[1])["wind"]["speed_mps"] = 1e-9 + config_of(two[0])["wind"]["speed_mps"] + 3.0
-    config_of(two[0])["wind"]["speed_mps"] = 3.0
-    assert cells(two) == {"wind.speed_mps": ("3.0", "3.000000001")}
-
-
-def test_long_lists_are_written_by_their_range_unless_that_is_the_same(two):
-    values = [round(0.05 * i, 2) for i in range(20)]
-    config_of(two[0])["sweep"]["nu"], config_of(two[1])["sweep"]["nu"] = values, [*values, 0.97]
-    assert cells(two) == {"sweep.nu": ("20 values, 0 to 0.95", "21 values, 0 to 0.97")}
-    config_of(two[1])["sweep"]["nu"] = [0.0, 0.06, *values[2:]]
-    before, after = cells(two)["sweep.nu"]
-    assert before.startswith("0, 0.05, 0.1")
-    assert after.startswith("0, 0.06, 0.1")
-
-
-def test_random_variables_cases_and_variants_are_told_by_their_names(two):
-    draw = {
-        "key": "wind.speed_mps",
-        "uniform": [2.0, 4.0],
-        "choice": None,
-        "weights": None,
-        "normal": None,
-        "weibull": None,
-    }
-    for run, high in zip(two, (4.0, 5.0), strict=True):
-        config_of(run)["draws"] = [draw | {"uniform": [2.0, high], "within": None}]
-        config_of(run)["cases"] = [
-            {"name": "near", "set": {"keepout.radius_m": 100.0 * high}, "comparison": False}
-        ]
-    assert cells(two) == {
-        "wind.speed_mps": ("uniform from 2 to 4", "uniform from 2 to 5"),
-        "cases.near.set.keepout.radius_m": ("400", "500"),
-    }
-
-
-def test_a_key_that_one_run_samples_is_told_by_its_distribution_there(two):
-    draw = {
-        "key": "wind.speed_mps",
-        "uniform": [2.0, 4.0],
-        "choice": None,
-        "weights": None,
-        "normal": None,
-        "weibull": None,
-    }
-    config_of(two[0])["draws"], config_of(two[0])["wind"]["speed_mps"] = (
-        [draw | {"within": None}],
-        0.0,
-    )
-    config_of(two[1])["wind"]["speed_mps"] = 3.0
-    assert cells(two) == {"wind.speed_mps": ("uniform from 2 to 4", "3")}
-
-
 def test_a_key_that_one_version_does_not_have_is_said_to_be_none(two):
     del config_of(two[0])["guidance"]["preview"]
     parameters_of(two[0])[:] = [

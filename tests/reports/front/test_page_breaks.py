@@ -3,25 +3,10 @@
 from dataclasses import replace
 
 import pypdfium2
-import pytest
-from matplotlib.figure import Figure
 
 from reports.document.blocks import Section, Table, Text
-from reports.render.matplotlib_charts import draw
 from reports.render.pdf import write_pdf
 from tests.reports.test_blocks import a_chart, a_report
-
-
-@pytest.fixture(autouse=True)
-def blank(monkeypatch):
-    """Figures are as large as they are, and empty: to lay out what is in them takes nearly all of
-    their time.
-    """
-
-    def drawn(chart):
-        return Figure(figsize=draw(chart).get_size_inches())
-
-    monkeypatch.setattr("reports.render.figure_files.draw", drawn)
 
 
 def pages_of(blocks, path):

@@ -387,11 +387,11 @@ def test_points_have_the_colour_of_their_value_on_one_scale():
     panels = [Panel(x_label="A [m]", y_label="B [m]", lines=[line]) for line in lines]
     chart = Chart(name="coloured", caption="", panels=panels, columns=3, scale_label="CO2 [ppm]")
     assert chart.scale == (0.0, 6.0)
-    traces = plotly_charts.draw(chart)["data"]
+    traces = [panel["data"][0] for panel in plotly_charts.draw(chart)["panels"]]
     assert [(trace["marker"]["cmin"], trace["marker"]["cmax"]) for trace in traces] == [
         (0.0, 6.0)
     ] * 3
-    assert ["showscale" in trace["marker"] for trace in traces] == [True, False, False]
+    assert ["showscale" in trace["marker"] for trace in traces] == [False, False, True]
     figure = matplotlib_charts.draw(chart)
     # Three panels and one colour scale; values that are no numbers are not drawn.
     assert len(figure.axes) == 4
