@@ -19,9 +19,6 @@ _WORDS = ("title", "description", "study")
 _LONG = 6
 """Numbers of a list that are all shown."""
 
-_NAMED_MAX = 6
-"""Parts of an autopilot's design that are named."""
-
 _SAME = "the same"
 
 Values = tuple[str, ...]
@@ -242,28 +239,9 @@ def _file(known: Any) -> str:
 
 
 def _designs(runs: Sequence[Run]) -> list[str]:
-    """Return what designs are called, and in which parts they differ from that of the first run."""
-    first, words = runs[0].data.innerloop, []
-    for run in runs:
-        design = run.data.innerloop
-        if design is None:
-            words.append("none")
-        elif run is runs[0] or first is None or design["aircraft"] != first["aircraft"]:
-            words.append(f"{design['title']}, {_hash(design)}")
-        elif design == first:
-            words.append(_SAME)
-        else:
-            parts = [
-                key.replace("_", " ")
-                for key in dict.fromkeys([*first, *design])
-                if first.get(key) != design.get(key)
-            ]
-            more = f" and {len(parts) - _NAMED_MAX} more" if len(parts) > _NAMED_MAX else ""
-            words.append(
-                f"{design['title']}, {_hash(design)}: differs in"
-                f" {', '.join(parts[:_NAMED_MAX])}{more}"
-            )
-    return words
+    """Return what designs are called, and their hashes."""
+    designs = (run.data.innerloop for run in runs)
+    return [f"{of['title']}, {_hash(of)}" if of else "none" for of in designs]
 
 
 def _hash(design: Mapping[str, Any]) -> str:

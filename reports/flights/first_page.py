@@ -115,26 +115,21 @@ def telling_and_typical(trials: Sequence[Trial]) -> Chart | None:
     chosen = {telling: first} | ({"Typical": typical} if typical != first else {})
     beyond = radii_differ(rows)
     names = {what: told_name(*flown[place]) for what, place in chosen.items()}
-    # Longer names would touch above the panels; a flight that is alone has none there.
-    if len(chosen) == 1 or any(len(name) > _NAME_MAX for name in names.values()):
-        above, below = dict.fromkeys(names, ""), names
-    else:
-        above, below = names, dict.fromkeys(names, "")
     shown = [
-        (*flown[place], _panel_title(flown[place][1], what, above[what], beyond=beyond))
+        (*flown[place], _panel_title(flown[place][1], what, names[what], beyond=beyond))
         for what, place in chosen.items()
     ]
-    told = _told(recorded, below, median=median, beyond=beyond)
+    told = _told(recorded, names, median=median, beyond=beyond)
     return track_picture(shown, told=told * (len(flown) > 1))
 
 
 def _panel_title(row: "pd.Series[Any]", what: str, name: str, *, beyond: bool) -> str:
-    """Return what a flight is shown for, its name unless that is empty, and how near it came."""
+    """Return what a flight is shown for, its name unless that is long, and how near it came."""
     distance, radius = float(row["min_distance_m"]), float(row["keepout_radius_m"])
     nearest = f"{approach(distance, radius)} m"
     if beyond:
         nearest = f"{approach(distance - radius, 0.0)} m beyond r_min"
-    return f"{what}: {name}, {nearest}" if name else f"{what}: {nearest}"
+    return f"{what}: {name}, {nearest}" if len(name) <= _NAME_MAX else f"{what}: {nearest}"
 
 
 def _first_recorded(trials: Sequence[Trial]) -> Chart | None:
@@ -156,9 +151,7 @@ def _first_recorded(trials: Sequence[Trial]) -> Chart | None:
 
 
 def _told(recorded: Mask, names: Mapping[str, str], *, median: bool, beyond: bool) -> str:
-    """Return which flights are shown, with those names that are not empty, whether the typical one
-    is the median, and of what.
-    """
+    """Return which flights are shown, whether the typical one is the median, and of what."""
     of = "" if recorded.all() else " of those with a time history"
     what = "least distance beyond its own r_min" if beyond else "closest approach"
     near = (
@@ -171,6 +164,4 @@ def _told(recorded: Mask, names: Mapping[str, str], *, median: bool, beyond: boo
         "Closest": f"the flight with the {what}{of}",
         "Typical": near,
     }
-    return "".join(
-        f" {what}: {f'{name}, ' if name else ''}{meanings[what]}." for what, name in names.items()
-    )
+    return "".join(f" {what}: {name}, {meanings[what]}." for what, name in names.items())

@@ -158,22 +158,9 @@ def _swept(trial: Trial, key: str, value: Any) -> str:
     words = _value(key, value, _numbers(trial, key))
     if key == "nu":
         return f"ν = {words}"
-    # Of words some say nothing by themselves, nor does one that another key of the sweep has too.
-    return (
-        f"{input_name(key)} {words}"
-        if _is_number(value) or words in _BARE or _shared(trial, key, words)
-        else words
-    )
-
-
-def _shared(trial: Trial, key: str, words: str) -> bool:
-    """Return whether another key is swept over these words, too."""
-    return any(
-        words == _value(of, value)
-        for of, values in trial.swept.items()
-        if of not in (key, "nu")
-        for value in values
-    )
+    # A word may be that of another key, or say nothing by itself.
+    bare = _is_number(value) or len(trial.swept) > 1 or words in _BARE
+    return f"{input_name(key)} {words}" if bare else words
 
 
 def _value(key: str, value: Any, among: tuple[float, ...] = ()) -> str:

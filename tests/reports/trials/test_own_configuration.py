@@ -94,7 +94,7 @@ def test_the_time_history_of_a_flight_has_the_closest_approach_of_its_row_and_it
         caption = flight_charts(view)[1].caption
         assert ("from the keep-out sphere's centre" in caption) == (shape == "sphere")
         assert ("from the keep-out cylinder's axis" in caption) == (shape == "cylinder")
-        funnel = next(line for line in panel_of(view, "Height").lines if line.label == "funnel")
+        funnel = next(line for line in panel_of(view, "Height").lines if line.label == "stack")
         assert set(funnel.y) == {height}
 
 
@@ -136,7 +136,7 @@ def test_a_trial_of_both_shapes_says_so_and_page_1_says_which_the_closest_flight
     # Without height a distance is shorter.
     (closest,) = [card for card in report.verdict.figures if card.name == "Closest approach"]
     assert closest.note.endswith(", horizontal, from the keep-out cylinder's axis")
-    assert "The keep-out cylinder or sphere is about the funnel" in report.picture.caption
+    assert "The keep-out cylinder or sphere is about the stack" in report.picture.caption
     (picker,) = blocks_of(report, FlightPicker)
     assert [flight.scene.keepout_shape for flight in picker.flights] == [shape for shape, _ in OWN]
 

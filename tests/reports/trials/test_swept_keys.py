@@ -17,7 +17,6 @@ from reports.flights.names import (
     swept_column,
 )
 from reports.flights.trials.charts import trial_charts
-from reports.flights.trials.tables import failed_blocks, fault_table
 from reports.registry import content
 from reports.run.columns import column
 from reports.run.run_data import read_run
@@ -98,41 +97,6 @@ def test_page_1_tells_of_flights_with_different_radii_how_far_each_stayed_beyond
     assert [row[table.head.index("beyond r_min [m]")] for row in table.rows] == [
         f"{value:+.1f}" for value in kept
     ]
-
-
-def test_tables_of_failed_flights_and_of_faults_have_the_distance_beyond_each_flights_own_radius(
-    trial,
-):
-    kept = column(trial.rows, "min_distance_m") - column(trial.rows, "keepout_radius_m")
-    faulty = trial.rows.assign(
-        fault="rudder", fault_time_s=0.0, end_distance_m=300.0, criteria_met=False
-    )
-    _, failed = failed_blocks([replace(trial, rows=faulty)])
-    assert [row[failed.head.index("beyond r_min [m]")] for row in failed.rows] == [
-        f"{value:+.1f}" for value in np.sort(kept)
-    ]
-    faults = fault_table(replace(trial, rows=faulty))
-    (row,) = faults.rows
-    assert row[faults.head.index("beyond r_min [m]")] == f"{kept.min():+.1f}"
-    assert float(row[faults.head.index("after the fault, beyond r_min [m]")]) == pytest.approx(
-        kept.min(), abs=0.1
-    )
-    for table in (failed, faults):
-        assert len(table.head) == len(table.widths) == len(table.rows[0])
-    # With one radius for all, the closest approach says it.
-    one = faulty[faulty["keepout_radius_m"] == 150.0]
-    for table in (
-        failed_blocks([replace(trial, rows=one)])[1],
-        fault_table(replace(trial, rows=one)),
-    ):
-        assert "beyond" not in " ".join(table.head)
-
-
-def test_page_1_tells_of_flights_with_one_radius_how_close_they_came(windy):
-    assert "Closest approach, from the keep-out sphere's centre" in [
-        card.name for card in windy.verdict.figures
-    ]
-    assert "r_min" not in windy.verdict.detail + windy.picture.caption.partition("Closest:")[2]
 
 
 def test_the_speed_ratio_that_was_swept_is_in_a_table_of_the_run_beside_the_one_that_was_flown(
