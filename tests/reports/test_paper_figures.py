@@ -5,12 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from snapshots import assert_reads_as_before
 from trial_runs import small_trials
 
 from common.run_layout import time_history_path
 from reports.paper.charts import sim_3_charts
-from reports.registry import content
 from reports.run.run_data import read_run
 from reports.run.time_history import keepout_distance
 
@@ -51,7 +49,3 @@ def test_figure_9_shows_the_distance_that_the_keep_out_area_is_about(sim_3, shap
         if shape == "cylinder"
         else (on_curve - crossed.y).min() > 5.0
     )
-
-
-def test_the_paper_reads_as_before(sim_3):
-    assert_reads_as_before("paper", content(sim_3))

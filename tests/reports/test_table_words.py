@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from reports.document.tables import approach, beside_limit, parameter_value
-from reports.flights.parameter_tables import value_in_words
+from reports.document.parameters import parameter_value
+from reports.document.tables import approach, beside_limit
 
 
 @pytest.mark.parametrize(
@@ -37,7 +37,7 @@ def test_a_parameter_is_written_in_words(value, words):
     ],
 )
 def test_two_figures_are_a_range_where_their_key_has_limits(key, words):
-    assert value_in_words([100.0, 250.0], key) == words
+    assert parameter_value([100.0, 250.0], key) == words
 
 
 @pytest.mark.parametrize(

@@ -253,8 +253,8 @@ def fault_table(trial: Trial) -> Table:
         for _, row in flown.iterrows()
     }
     kinds = [
-        {"kind": kind, "rows": rows, "after": [after[str(of)] for of in rows["flight_id"]]}
-        for kind, rows in flown.groupby(names_of_faults(flown), sort=False)
+        {"kind": str(kind), "rows": rows, "after": [after[str(of)] for of in rows["flight_id"]]}
+        for kind, rows in flown.groupby(np.array(names_of_faults(flown)), sort=False)
     ]
     since = f"after the fault, {_BEYOND}" if differ else "Closest after the fault [m]"
     cells = [
