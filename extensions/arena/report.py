@@ -709,9 +709,7 @@ def _family(entrant: Entrant) -> str:
 
 
 def merit_chart(arena: Arena, figures: Sequence[str]) -> Chart:
-    """Return figures of every law over all conditions, the best on the first of them first; of the
-    crossings with the most that any path allows, where it is known.
-    """
+    """Return figures of every law over all conditions, the best on the first of them first."""
     entrants = arena.ranked(figures[0], arena.entrants)
     return Chart(
         name="merit",
@@ -730,7 +728,6 @@ _WITH_INTERVAL = " Lines: its 95 % interval."
 
 
 def _merit_panel(arena: Arena, entrants: Sequence[Entrant], figure: str, *, named: bool) -> Panel:
-    condition, most = arena.together, arena.limits.get(arena.together)
     rows = {entrant.name: float(len(entrants) - 1 - i) for i, entrant in enumerate(entrants)}
     lines: list[Line] = []
     for tracking, label, colour in (
@@ -738,7 +735,7 @@ def _merit_panel(arena: Arena, entrants: Sequence[Entrant], figure: str, *, name
         (False, "circles the vessel", "orange"),
     ):
         members = [entrant for entrant in entrants if entrant.tracks == tracking]
-        found = [arena.of(figure, entrant, condition) for entrant in members]
+        found = [arena.of(figure, entrant, arena.together) for entrant in members]
         x = np.array([value for of in found for value in (of.low, of.high, math.nan)])
         y = np.array([rows[entrant.name] for entrant in members for _ in range(3)])
         if members:
@@ -754,16 +751,6 @@ def _merit_panel(arena: Arena, entrants: Sequence[Entrant], figure: str, *, name
                 ),
             ]
     ends = np.array([-0.7, len(entrants) - 0.3])
-    if figure == CROSSINGS and most is not None:
-        lines.append(
-            Line(
-                x=np.array([most, most]),
-                y=ends,
-                label="limit of any path",
-                colour=Meaning.LIMIT,
-                style="dash",
-            )
-        )
     names = [
         (rows[entrant.name], f"{entrant.title} {entrant.number}" if named else "")
         for entrant in entrants

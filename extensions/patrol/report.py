@@ -427,5 +427,9 @@ def _time_panel(stretches: pd.DataFrame, count: int, marks: list[Line], **labels
     names = [(float(count - i), str(i)) for i in range(count)]
     shown: Any = labels
     return Panel(
-        lines=[*lines, *marks], y_range=(1.0 - _EDGE, count + _EDGE), y_names=names, **shown
+        lines=[*lines, *marks],
+        y_range=(1.0 - _EDGE, count + _EDGE),
+        y_names=names,
+        y_whole=True,
+        **shown,
     )

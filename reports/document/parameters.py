@@ -44,8 +44,9 @@ def parameter_blocks(run: RunData, sampled: Mapping[str, str] | None = None) -> 
     those that are ``sampled`` how, by their keys.
     """
     every = run.manifest["parameters"]
-    own = parameter_rows(every, sampled or {})
-    return [brief_table(own), Fold(title="Every parameter", blocks=[default_table(every)])]
+    words = sampled or {}
+    own = parameter_rows(every, words)
+    return [brief_table(own), Fold(title="Every parameter", blocks=[full_table(every, words)])]
 
 
 def parameter_rows(every: Sequence[Parameters], words: Mapping[str, str]) -> list[list[str]]:
@@ -107,11 +108,19 @@ def parameter_table(rows: Sequence[Sequence[str]]) -> Table:
     )
 
 
-def default_table(every: Iterable[Parameters]) -> Table:
-    """Return every parameter with its default, or its value where it has none."""
+def full_table(every: Iterable[Parameters], words: Mapping[str, str] | None = None) -> Table:
+    """Return every parameter with its value, or the ``words`` for it, and its default; without
+    ``words`` the default alone.
+    """
     return parameter_table(
         [
-            [p["key"], "", _default(p) or parameter_value(p["value"]), p["unit"], p["meaning"]]
+            [
+                p["key"],
+                "" if words is None else words.get(p["key"]) or parameter_value(p["value"]),
+                _default(p),
+                p["unit"],
+                p["meaning"],
+            ]
             for p in every
         ]
     )

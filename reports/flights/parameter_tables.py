@@ -5,8 +5,8 @@ import re
 from reports.document.blocks import Block, Fold, Text
 from reports.document.parameters import (
     brief_table,
-    default_table,
     distribution,
+    full_table,
     parameter_rows,
     parameter_table,
     parameter_value,
@@ -48,17 +48,16 @@ def trial_parameters(run: RunData, trials: list[Trial]) -> list[Block]:
     """
     if not trials:
         return []
-    defaults = default_table(trials[0].parameters())
     blocks: list[Block] = []
     if len(trials) == 1:
         rows = _rows(trials[0]) + _follows(run, trials[0])
         blocks.append(brief_table(rows))
-        more = [parameter_table(rows), defaults]
+        more = [full_table(trials[0].parameters(), _sampled(trials[0]))]
     else:
         # What a trial is about stands above its figures.
         blocks.append(Text("What each trial sets is in the manifest, and in report.html."))
         blocks += [Fold(title=of.title, blocks=[parameter_table(_rows(of))]) for of in trials]
-        more = [defaults]
+        more = [full_table(trials[0].parameters())]
     return [*blocks, Fold(title="Every parameter, with its default", blocks=more)]
 
 
@@ -72,9 +71,7 @@ def _rows(trial: Trial) -> list[list[str]]:
     if high < _ANY_RATIO and (trial.varies("wind") or trial.varies("vessel")):
         meaning = "Samples with another speed ratio ν are sampled again"
         rows.append(["speed_ratio", f"{low:g} to {high:g}", "", "", meaning])
-    study = trial.setting("study", "flights")
-    inputs = {key: f"swept: {parameter_value(values)}" for key, values in trial.swept.items()}
-    inputs |= {sample["key"]: distribution(sample, study) for sample in trial.sampled}
+    inputs = _sampled(trial)
     own = parameter_rows(trial.parameters(), inputs)
     listed = {row[0] for row in own}
     others = [
@@ -83,6 +80,13 @@ def _rows(trial: Trial) -> list[list[str]]:
         if key not in listed
     ]
     return [*rows, *others, *sorted(own, key=lambda row: row[0] not in inputs)]
+
+
+def _sampled(trial: Trial) -> dict[str, str]:
+    """Return how each key is swept or sampled in which flights differ."""
+    study = trial.setting("study", "flights")
+    words = {key: f"swept: {parameter_value(values)}" for key, values in trial.swept.items()}
+    return words | {sample["key"]: distribution(sample, study) for sample in trial.sampled}
 
 
 def _meaning(key: str) -> str:

@@ -21,12 +21,11 @@ from extensions.arena.report import (
     by_condition_table,
     clusters,
     condition_table,
-    crossing_chart,
-    effort_charts,
+    effort_chart,
+    merit_chart,
     plume_table,
     track_charts,
     tracking_table,
-    worth_chart,
 )
 from extensions.arena.results import estimates
 from extensions.arena.window import WINDOW_COLUMNS
@@ -79,16 +78,13 @@ def test_the_best_mean_of_each_figure_is_bold_and_first_where_it_ranks(arena):
 
 
 def test_there_is_one_mark_a_law_numbered_as_in_the_tables(arena):
-    together, each = effort_charts(arena)
+    together = effort_chart(arena)
     (panel,) = together.panels
     assert sum(len(line.x) for line in panel.lines) == 2
     assert {note.text for note in panel.notes} == {"1", "2"}
     # Page 1 has the first one: the section does not show it once more.
-    assert [chart.name for chart in blocks_of(content(arena.run), Chart, "tracking")] == [
-        "tracks1",
-        "efforts",
-    ]
-    assert len(each.panels) == 2
+    (tracks,) = blocks_of(content(arena.run), Chart, "tracking")
+    assert tracks.name == "tracks1"
     # The ordinate is logarithmic: its marks are powers of ten.
     error = arena.of(ERROR, arena.entrants[0], "all").mean
     assert any(math.isclose(float(y), math.log10(error)) for line in panel.lines for y in line.y)
@@ -99,25 +95,20 @@ def test_a_law_that_does_not_say_what_it_makes_use_of_is_not_said_to_leave_the_t
     unsaid = replace(
         arena, entrants=[replace(first, inputs="its class does not say (inputs)"), *others]
     )
-    (panel,) = effort_charts(unsaid)[0].panels
+    (panel,) = effort_chart(unsaid).panels
     labels = {line.label: len(line.x) for line in panel.lines}
     assert labels["it does not say what it makes use of"] == 1
     assert sum(labels.values()) == 2
 
 
-def test_the_limit_of_any_path_is_drawn_and_listed_where_it_is_known(arena):
-    chart = crossing_chart(arena)
-    limits = [
-        line for panel in chart.panels for line in panel.lines if line.label == "limit of any path"
-    ]
+def test_the_limit_of_any_path_is_listed_where_it_is_known(arena):
     # 5 + 4 nu at nu = 0.5 in calm air.
-    assert limits[0].x == pytest.approx([7.0, 7.0], abs=1e-3)
     table = by_condition_table(arena, CROSSINGS)
     assert table.rows[-1][1:3] == ["limit of any path", "7.00"]
 
 
 def test_what_a_minute_is_worth_to_the_measurement_is_drawn_and_listed(arena):
-    sulphur, inside, crossings = worth_chart(arena).panels
+    sulphur, inside, crossings = merit_chart(arena, (SULPHUR, PLUME_TIME, CROSSINGS)).panels
     assert [panel.x_label for panel in (sulphur, inside, crossings)] == [
         "Sulphur error of a minute [% m/m]", "In the plume [s/min]", "Crossings [1/min]"
     ]  # fmt: skip
@@ -244,7 +235,7 @@ def test_a_mean_of_single_flights_stands_without_an_interval():
 
 def test_a_mean_without_an_interval_is_on_its_panel(arena, monkeypatch):
     monkeypatch.setattr(type(arena), "of", lambda *_: Estimate(mean=6.56, flights=1))
-    for panel in (*worth_chart(arena).panels, *crossing_chart(arena).panels):
+    for panel in merit_chart(arena, (SULPHUR, PLUME_TIME, CROSSINGS)).panels:
         assert panel.x_range[1] > 6.56
 
 

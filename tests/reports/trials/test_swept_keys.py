@@ -58,7 +58,10 @@ def trial(tmp_path_factory):
 
 
 def test_a_flight_is_called_by_all_that_was_swept(trial):
-    assert flight_name(trial, trial.rows.iloc[0]) == "ν = 0.20, keep-out radius 150 m, cascade"
+    assert (
+        flight_name(trial, trial.rows.iloc[0])
+        == "ν = 0.20, keep-out radius 150 m, guidance law cascade"
+    )
 
 
 def test_a_flight_that_was_lost_with_its_process_is_called_as_in_the_files(trial):
