@@ -182,7 +182,7 @@ def _plume(arena: Arena) -> list[Block]:
     by_condition = [by_condition_table(arena, figure) for figure in figures]
     return [
         Text(f"{_PLUME} {_SULPHUR}" if SULPHUR in figures else _PLUME),
-        merit_chart(arena, figures),
+        *([merit_chart(arena, figures)] if figures else []),
         plume_table(arena),
         Fold(title="Measuring the plume, by condition", blocks=by_condition),
     ]

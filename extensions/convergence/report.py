@@ -189,12 +189,6 @@ def _question(data: Convergence) -> list[Block]:
             f" {number(states['start_distance_m'].max(), '{:,.0f}')} m from the reference and a"
             f" course, both at random, and a reference that turns. Of the references {counts}."
         ),
-        Text(
-            "A trajectory is given up when it has taken many times as long as the motion averaged"
-            " over its reference's turns predicts, and at least ensemble.time_max_s. The slowest"
-            " are those about references that hardly turn: an error along the track then decays"
-            " ever so slowly, at a rate that goes with the square of ω_r."
-        ),
         Heading("What converged means"),
         Text(
             f"A trajectory has converged once it is within {manifest['converged_distance_m']:g} m"

@@ -14,53 +14,8 @@ from reports.run.columns import Array
 from reports.run.ship import Hull
 from reports.run.surroundings import Surroundings
 
-AREA, SHIP, PLUME = "keep-out area", "ship", "plume"
-"""What a map is about, as legends begin and as captions name it."""
-
-_SEEN = 0.03
-"""Size of what a caption names at least, over the width of its panel: some five points, as of the
-marks on a track.
-"""
-
-_POINTS = 500
-"""Points of a line that are looked at."""
-
-
 _EDGE_POINTS = 181
 """Points of the edge of a keep-out area about a hull."""
-
-
-def seen(panels: Sequence[Panel]) -> list[str]:
-    """Return which of ship, keep-out area and plume are large enough on any of some maps to be seen
-    there.
-    """
-    return [
-        what
-        for what in (SHIP, AREA, PLUME)
-        if any(_large(line, of) for of in panels for line in of.lines if _is(line, what))
-    ]
-
-
-def _is(line: Line, what: str) -> bool:
-    """Return whether a line is of the ship, the area or the plume: not the track of the ship, nor a
-    place on the plume's axis.
-    """
-    return line.label.startswith((f"{what}, ", *(["plume's axis"] if what == PLUME else [])))
-
-
-def _large(line: Line, panel: Panel) -> bool:
-    """Return whether the part of a line that lies within its panel is large enough to be seen."""
-    # Between its points, too: an axis has two.
-    at, every = np.arange(len(line.x)), np.linspace(0.0, len(line.x) - 1.0, _POINTS)
-    x, y = np.interp(every, at, line.x), np.interp(every, at, line.y)
-    (left, right), (bottom, top) = (
-        panel.x_range or (x.min(), x.max()),
-        panel.y_range or (y.min(), y.max()),
-    )
-    inside = (left <= x) & (x <= right) & (bottom <= y) & (y <= top)
-    return bool(
-        inside.any() and max(np.ptp(x[inside]), np.ptp(y[inside])) >= _SEEN * (right - left)
-    )
 
 
 def ship_lines(about: Surroundings, up: float, x: float = 0.0, y: float = 0.0) -> list[Line]:
@@ -125,32 +80,21 @@ def ship_panel(
     )
 
 
-def ship_words(*about: Surroundings, panels: Sequence[Panel] | None = None) -> str:
-    """Return what maps about the ship show, one or several side by side, for a caption.
-
-    Parameters
-    ----------
-    about : of each
-    panels : the maps, where some of ship, keep-out area and plume may lie outside of them; None
-        where all is inside
+def ship_words(*about: Surroundings) -> str:
+    """Return what maps about the ship show, one or several side by side, for a caption, given what
+    was about each.
     """
-    shown = (SHIP, AREA, PLUME) if panels is None else seen(panels)
     hulls = "; or ".join(hull_words(hull) for hull in dict.fromkeys(of.hull for of in about))
-    smoke, changing = (
-        PLUME in shown and any(of.plume.smoke for of in about),
-        any(of.changing for of in about),
-    )
-    width = (
-        " Its width is two standard deviations of the mean smoke to either side." if smoke else ""
-    )
-    told = "; ".join([_area_words(about)] * (AREA in shown) + [hulls] * (SHIP in shown))
-    still = "Ship, north and wind are" if SHIP in shown else "North and wind are"
-    moved = f" {still} as they were at the closest approach." if changing else ""
+    area = _area_words(about)
     return (
-        f"Seen from the ship, with the axis of its plume up the page.{width}"
-        + (f" {told[0].upper()}{told[1:]}." if told else "")
-        + moved
+        f"{_SEEN_FROM}{_SMOKE * any(of.plume.smoke for of in about)}"
+        f" {area[0].upper()}{area[1:]}; {hulls}.{_CHANGING * any(of.changing for of in about)}"
     )
+
+
+_SEEN_FROM = "Seen from the ship, with the axis of its plume up the page."
+_SMOKE = " Its width is two standard deviations of the mean smoke to either side."
+_CHANGING = " Ship, north and wind are as they were at the closest approach."
 
 
 def _area_words(about: Sequence[Surroundings]) -> str:

@@ -8,7 +8,6 @@ import pandas as pd
 from measurement.estimate.verdict import COVERAGE
 from measurement.plume.fluctuating_plume import FOUND_WITHIN, HIT, passes
 from reports.document.chart import Chart, Line, Panel
-from reports.document.panels import histogram
 from reports.finding.variants import Variant
 from reports.run.columns import Array, column
 from reports.run.trials import Trial
@@ -19,45 +18,33 @@ _HISTORIES_MAX = 40
 _STRETCH = 30.0
 """Time over which the hits of all flights are counted together [s]."""
 
-_ERROR_TOLD = (
-    "Error of the axis' height after 3 minutes over its stated standard deviation: between the"
-    " dashed lines the 95 % interval holds"
-    " the truth."
-)
-
 
 def finding_charts(trial: Trial, variants: list[Variant]) -> list[Chart]:
-    """Return the figures of the searches of a trial, of those that have something to show."""
-    panels = [_found_panel(variants), _hits_panel(trial, variants)]
-    shown = [panel for panel in panels if panel is not None]
+    """Return how soon plumes were found, and how well their height was known."""
+    found = [_found_panel(variants), _hits_panel(trial, variants)]
+    errors = [_error_panel(variants)]
     charts = [
-        Chart(
-            name=f"{trial.name}-detection",
-            caption="Share of flights that have found their plume over the time since they reached"
-            " their orbit, and share of the"
-            f" passes that hit it, peak above {HIT:g} of the plume's axis, in stretches of"
-            f" {_STRETCH:g} s.",
-            panels=shown,
-            columns=len(shown),
-            panel_height=0.38,
-        )
+        _chart(f"{trial.name}-detection", _FOUND, found),
+        _chart(f"{trial.name}-search-errors", _ERROR, errors),
     ]
-    times, error = _times_panel(variants[0]), _error_panel(variants)
-    known = [panel for panel in (times, error) if panel is not None]
-    if known:
-        told = ["Time to find the plume."] if times is not None else []
-        told += [_ERROR_TOLD] if error is not None else []
-        name = f"{trial.name}-search-errors"
-        charts.append(
-            Chart(
-                name=name,
-                caption=" ".join(told),
-                panels=known,
-                columns=len(known),
-                panel_height=0.38,
-            )
-        )
-    return charts
+    return [chart for chart in charts if chart.panels]
+
+
+def _chart(name: str, caption: str, panels: list[Panel | None]) -> Chart:
+    shown = [panel for panel in panels if panel is not None]
+    columns = max(1, len(shown))
+    return Chart(name=name, caption=caption, panels=shown, columns=columns, panel_height=0.38)
+
+
+_FOUND = (
+    "Share of flights that have found their plume over the time since they reached their orbit, and"
+    f" share of the passes that hit it, peak above {HIT:g} of the plume's axis, in stretches of"
+    f" {_STRETCH:g} s."
+)
+_ERROR = (
+    "Error of the axis' height after 3 minutes over its stated standard deviation: between the"
+    " dashed lines the 95 % interval holds the truth."
+)
 
 
 def _found_panel(variants: list[Variant]) -> Panel:
@@ -133,13 +120,6 @@ def hits_over_time(trial: Trial, rows: pd.DataFrame) -> tuple[Array, Array]:
             times.append(float(time[(at.start + at.stop) // 2 if at.stop < len(time) else -1]))
             hits.append(float(np.max(fraction[at]) > HIT))
     return np.array(times), np.array(hits)
-
-
-def _times_panel(variant: Variant) -> Panel | None:
-    times = variant.times
-    return histogram(
-        [(times[np.isfinite(times)], variant.name, variant.colour)], "Time to find the plume [s]"
-    )
 
 
 def _error_panel(variants: list[Variant]) -> Panel | None:

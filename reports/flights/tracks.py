@@ -14,7 +14,7 @@ from reports.document.axes import in_kilometres
 from reports.document.chart import Chart, Line, Note, Panel
 from reports.document.map_marks import on_map
 from reports.document.palette import Meaning
-from reports.document.ship_map import seen, ship_lines, ship_panel, ship_words
+from reports.document.ship_map import ship_lines, ship_panel, ship_words
 from reports.flights.flight_view import FlightView, Place, flight_view
 from reports.flights.other_ships import other_ship_lines, other_ship_words, other_ships
 from reports.flights.time_marks import marks_beside, marks_in_a_row
@@ -100,7 +100,7 @@ def track_picture(
         chart = found[0][0].chart(_LARGE)
         return replace(chart, name=_PICTURE, caption=chart.caption + told)
     panels = [tracks.picture(title) for tracks, title in found]
-    words = _words([tracks.about for tracks, _ in found], panels)
+    words = _words([tracks.about for tracks, _ in found])
     return Chart(
         name=_PICTURE, caption=words + told, panels=panels, columns=len(panels), panel_height=0.42
     )
@@ -125,7 +125,7 @@ class _Tracks:
         if about is None:
             return Chart(
                 name="tracks",
-                caption=_words([about], []) + other_ship_words(self._others),
+                caption=_words([about]) + other_ship_words(self._others),
                 panels=[in_kilometres(self.ground())],
                 panel_height=0.42,
             )
@@ -136,9 +136,7 @@ class _Tracks:
         ]
         return Chart(
             name="tracks",
-            caption=_words([about], panels)
-            + (_ground_words(ground) if ground else "")
-            + other_ship_words(self._others),
+            caption=_words([about]) + _GROUND_WORDS * bool(ground) + other_ship_words(self._others),
             panels=[in_kilometres(panel) for panel in [*panels, *([ground] if ground else [])]],
             columns=len(panels),
             panel_height=0.28,
@@ -314,24 +312,13 @@ class _Tracks:
         return marks_in_a_row(x, y, words, top + _ABOVE * length / _FLAT, length)
 
 
-def _words(about: Sequence[Surroundings | None], panels: Sequence[Panel]) -> str:
-    """Return what the tracks of flights are seen from, for a caption, given what was about each,
-    and the maps about the ship.
-    """
+def _words(about: Sequence[Surroundings | None]) -> str:
+    """Return what the tracks of flights are seen from, for a caption, given what was about each."""
     beside = [of for of in about if of is not None]
-    return ship_words(*beside, panels=panels) if beside else "Over the ground."
+    return ship_words(*beside) if beside else "Over the ground."
 
 
-def _ground_words(panel: Panel) -> str:
-    """Return what a map over the ground shows below those about the ship."""
-    still = seen([panel])
-    names = f"{', '.join(still[:-1])} and {still[-1]}" if len(still) > 1 else "".join(still)
-    shown = (
-        f", with {names} as {'they were' if len(still) > 1 else 'it was'} at the closest approach"
-        if still
-        else ""
-    )
-    return f" Below, over the ground{shown}."
+_GROUND_WORDS = " Below, over the ground, with the ship as it was at the closest approach."
 
 
 def _reference_of(samples: pd.DataFrame) -> pd.DataFrame:

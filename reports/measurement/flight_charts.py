@@ -295,7 +295,7 @@ def sulphur_track_chart(history: pd.DataFrame, about: Surroundings) -> Chart:
     ]
     caption = (
         "The true CO2 concentration, as the colour of the track; in height with the plume's mean"
-        f" axis where it was crossed. {ship_words(about, panels=panels)}"
+        f" axis where it was crossed. {ship_words(about)}"
     )
     return Chart(
         name="sulphur-track",

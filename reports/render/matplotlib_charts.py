@@ -174,7 +174,7 @@ def _place(
     shares = [chart.panel_height] * len(rows)
     if chart.last_height:
         rows, shares = [*rows, axes[-1:]], [*shares, chart.last_height]
-    lefts = [max(map(_beside, axes[i :: chart.columns])) for i in range(chart.columns)]
+    lefts = [max(map(_beside, axes[i :: chart.columns]), default=0.0) for i in range(chart.columns)]
     wide = (width - sum(lefts) - chart.columns * _RIGHT) / chart.columns
     above, below = ([max(map(room, row)) for row in rows] for room in (_above, _below))
     scale = (height - sum(above) - sum(below)) / sum(shares)
