@@ -40,7 +40,6 @@ from reports.run.columns import (
     kept_out,
     largest,
     radii_differ,
-    total,
 )
 from reports.run.run_data import RunData
 from reports.run.trials import SHAPES, Trial, measured_from
@@ -349,12 +348,6 @@ def _further(trials: Sequence[Trial], flown: pd.DataFrame) -> Iterator[Card]:
     yield from _of_flights("Flights in which the guard intervened", guarded)
     unable = column(flown, "guard_lost_s") > 0.0
     yield from _of_flights("Flights in which the guard could not hold its own radius", unable)
-    premises = trials[0].run.verdict.premises
-    if premises.measured:
-        value = f"{premises.exceeded:,} of {premises.measured:,}"
-        yield Card("Flights with a premise of the guard exceeded", value)
-    if crossings := total(flown, "crossing_count"):
-        yield Card("Plume crossings after settling", f"{crossings:,}")
     yield from _commands(trials, flown)
 
 

@@ -14,27 +14,20 @@ from extensions.arena.entrants import Entrant
 from extensions.arena.paired_bootstrap import Estimate
 from extensions.arena.record import CROSSINGS, ERROR, PLUME_TIME, SULPHUR, Figure, read_arena
 from extensions.arena.report import (
-    _cards,
     _headline,
     _interval,
     arena_content,
     by_condition_table,
-    clusters,
-    condition_table,
-    effort_chart,
     merit_chart,
     plume_table,
-    track_charts,
     tracking_table,
 )
 from extensions.arena.results import estimates
 from extensions.arena.window import WINDOW_COLUMNS
-from reports.document.blocks import CARDS_MAX, Table
-from reports.document.chart import Chart
 from reports.registry import content
 from reports.run.run_data import read_run
 from scenarios.scenario.files import load_study
-from tests.reports.report_parts import blocks_of, built, flown, numbers_on_page_1
+from tests.reports.report_parts import built, flown, numbers_on_page_1
 
 QUICK = (
     "fidelity=kinematic", "guidance.rate_hz=5", "flight.log_rate_hz=5",
@@ -77,30 +70,6 @@ def test_the_best_mean_of_each_figure_is_bold_and_first_where_it_ranks(arena):
     assert re.fullmatch(r"\d+\.\d\d \(\d+\.\d\d–\d+\.\d\d\)", table.rows[0][2])
 
 
-def test_there_is_one_mark_a_law_numbered_as_in_the_tables(arena):
-    together = effort_chart(arena)
-    (panel,) = together.panels
-    assert sum(len(line.x) for line in panel.lines) == 2
-    assert {note.text for note in panel.notes} == {"1", "2"}
-    # Page 1 has the first one: the section does not show it once more.
-    (tracks,) = blocks_of(content(arena.run), Chart, "tracking")
-    assert tracks.name == "tracks1"
-    # The ordinate is logarithmic: its marks are powers of ten.
-    error = arena.of(ERROR, arena.entrants[0], "all").mean
-    assert any(math.isclose(float(y), math.log10(error)) for line in panel.lines for y in line.y)
-
-
-def test_a_law_that_does_not_say_what_it_makes_use_of_is_not_said_to_leave_the_turn_out(arena):
-    first, *others = arena.entrants
-    unsaid = replace(
-        arena, entrants=[replace(first, inputs="its class does not say (inputs)"), *others]
-    )
-    (panel,) = effort_chart(unsaid).panels
-    labels = {line.label: len(line.x) for line in panel.lines}
-    assert labels["it does not say what it makes use of"] == 1
-    assert sum(labels.values()) == 2
-
-
 def test_the_limit_of_any_path_is_listed_where_it_is_known(arena):
     # 5 + 4 nu at nu = 0.5 in calm air.
     table = by_condition_table(arena, CROSSINGS)
@@ -130,36 +99,6 @@ def test_what_a_minute_is_worth_to_the_measurement_is_drawn_and_listed(arena):
     best = min(shown.values(), key=lambda estimate: estimate.mean)
     assert best.best
     assert not math.isnan(arena.of(PLUME_TIME, arena.entrants[0], "wind").mean)
-
-
-def test_tracks_are_shown_of_each_law_from_the_same_start(arena):
-    assert [
-        [len(chart.panels) for chart in track_charts(arena, tracking=tracking)]
-        for tracking in (True, False)
-    ] == [[2], [1]]
-
-
-def test_numbers_that_would_hide_each_other_are_written_together():
-    # A number is as wide as a tenth of the panel: 3 touches 2, and 2 touches 1; 4 is far off, and 5
-    # has no place.
-    places = {1: (0.5, 0.5), 2: (0.55, 0.52), 3: (0.62, 0.55), 4: (0.1, 0.9), 5: (math.nan, 0.1)}
-    found = {tuple(numbers): place for numbers, place in clusters(places, (0.1, 0.1))}
-    assert set(found) == {(1, 2, 3), (4,)}
-    assert found[1, 2, 3][0] == 0.62
-
-
-def test_what_each_law_was_given_and_what_it_cannot_do_is_said(run):
-    report = content(run)
-    given, refused = blocks_of(report, Table, "tuning")
-    assert "tangent and curvature" in given.rows[0][2]
-    assert "npfg_period_s 10 → " in given.rows[0][3]
-    assert refused.rows[0][:2] == ["circle the vessel", "pure pursuit"]
-
-
-def test_what_the_conditions_set_is_said_in_words(arena):
-    rows = {row[0]: row[1:] for row in condition_table(arena).rows}
-    assert rows["calm"][1] == "none"
-    assert rows["wind"][1].startswith("wind.speed_mps = ")
 
 
 def with_errors(arena, *errors):
@@ -213,17 +152,6 @@ def test_of_one_flight_in_each_condition_no_law_is_called_best(run, monkeypatch)
     assert "no law can be told from the others" in found.verdict.detail
 
 
-def test_tiles_are_six_at_most_and_name_how_many_laws_are_alike(arena):
-    alike = with_errors(arena, (1.0, 0.1, True), (1.1, 0.1, True), (3.0, 0.1, True))
-    cards = _cards(alike)
-    assert len(cards) <= CARDS_MAX
-    assert cards[0][:3] == (
-        "Tracking error, best mean: npfg, and 1 alike",
-        "1.00 m",
-        "95 %: 0.90 to 1.10",
-    )
-
-
 def test_a_mean_of_single_flights_stands_without_an_interval():
     error = Figure(column=WINDOW_COLUMNS[ERROR], greater_first=False, shown=float)
     assert _interval(Estimate(mean=0.12, flights=2), error) == "0.12"
@@ -231,12 +159,6 @@ def test_a_mean_of_single_flights_stands_without_an_interval():
         _interval(Estimate(mean=0.12, low=0.1, high=0.15, flights=4), error)
         == "0.12 (0.10\N{EN DASH}0.15)"
     )
-
-
-def test_a_mean_without_an_interval_is_on_its_panel(arena, monkeypatch):
-    monkeypatch.setattr(type(arena), "of", lambda *_: Estimate(mean=6.56, flights=1))
-    for panel in merit_chart(arena, (SULPHUR, PLUME_TIME, CROSSINGS)).panels:
-        assert panel.x_range[1] > 6.56
 
 
 def of_a_few_flights(run, path, missing):

@@ -9,9 +9,9 @@ from convergence_runs import LAWS, REFERENCES, TRAJECTORIES, write_convergence_r
 from report_parts import blocks_of, built, draw_all_but, numbers_on_page_1
 from snapshots import assert_reads_as_before
 
-from extensions.convergence.report import FAILED_ROWS, FAILURES_NAMED, settled_time
+from extensions.convergence.report import FAILED_ROWS, settled_time
 from reports.build import build_reports, export_run
-from reports.document.blocks import Table, Text
+from reports.document.blocks import Table
 from reports.errors import ReportError
 from reports.registry import content
 from reports.run.run_data import read_run
@@ -54,24 +54,6 @@ def test_counter_examples_are_named_with_their_reasons(failed):
     assert [row[0] for row in lyapunov.rows] == ["3"]
     assert [row[0] for row in cascade.rows] == ["7", "200"]
     assert len(cut.rows) == FAILED_ROWS < 40
-
-
-def test_cut_commands_have_no_part_in_the_verdict_but_are_shown(tmp_path):
-    report = small(tmp_path, cut_failures=4)
-    assert report.verdict.holds
-    assert report.verdict.complete
-    assert "26 of 30 converged" in report.verdict.detail
-    assert report.verdict.figures[2][:2] == ("Law (30), cut at ω_max: converged", "26 of 30")
-    (table,) = blocks_of(report, Table, "counterexamples")
-    assert len(table.rows) == 4
-
-
-def test_the_verdict_names_the_first_counter_examples_and_counts_the_others(tmp_path):
-    report = small(
-        tmp_path, failures=[("cascade", i, "time_up") for i in range(FAILURES_NAMED + 5)]
-    )
-    assert len(report.verdict.failures) == FAILURES_NAMED + 1
-    assert report.verdict.failures[-1].startswith("and 5 more")
 
 
 def test_an_unfinished_study_is_not_called_complete(tmp_path):
@@ -132,28 +114,6 @@ def test_the_table_counts_and_orders_as_the_run_did(failed_path, failed):
         # Under every law some never settled, so that there is no time by which all had.
         assert cells[7] == "–"
         assert [row[2] for row in table.rows[4 * i : 4 * i + 3]] == ["400", "400", "400"]
-
-
-def test_where_no_settling_time_is_predicted_none_is_compared(tmp_path):
-    path = write_convergence_run(tmp_path / "run", 30)
-    rows = pd.read_csv(path / "summary.csv")
-    rows.loc[rows["trajectory"] < 6, "settling_time_predicted_s"] = [0.0, np.inf, np.nan] * 6
-    rows.to_csv(path / "summary.csv", index=False)
-    known = rows[rows["trajectory"] >= 6].query("law != 'cascade_cut'")
-    ratio = (known["settling_time_s"] / known["settling_time_predicted_s"]).median()
-    report = content(read_run(path))
-    assert report.verdict.figures[-1][:2] == ("Settling over predicted, median", f"{ratio:.2f}")
-
-
-def test_the_text_says_what_was_drawn_and_what_converged_means(converged):
-    text = " ".join(block.text for block in blocks_of(converged, Text))
-    assert f"{TRAJECTORIES:,} initial states" in text
-    assert "400 are circling, 400 are oscillating, 400 are randomly turning" in text
-    # The manifest's limits.
-    assert "within 0.02 m of its reference" in text
-    assert "within 0.0002 rad" in text
-    assert "stays below 5 m" in text
-    assert "φ = π" in text
 
 
 def test_both_reports_are_built_and_self_contained(failed_path, monkeypatch):

@@ -5,7 +5,6 @@ one that cannot be.
 import math
 from dataclasses import replace
 
-import numpy as np
 import pandas as pd
 import pytest
 from snapshots import assert_reads_as_before
@@ -14,11 +13,8 @@ from extensions.patrol.report import (
     _matters,
     counts_of,
     oracle_table,
-    patrol_chart,
     patrol_content,
     read_patrols,
-    ship_table,
-    time_lines,
 )
 from reports.document.blocks import CARDS_MAX
 from reports.registry import content
@@ -47,15 +43,6 @@ def test_the_verdict_compares_with_the_oracle(run):
     assert found.holds
     assert right.met == (row["correct"] >= 0.8 * row["oracle_verdicts"])
     assert 4 <= len(found.figures) <= CARDS_MAX
-
-
-def test_keys_that_are_sampled_say_how_and_not_what_they_are_where_nothing_samples_them(run):
-    (fold,) = (s.blocks[-1] for s in patrol_content(run).sections if s.anchor == "parameters")
-    (table,) = fold.blocks
-    values = {row[0]: row[1] for row in table.rows}
-    # As in the catalog.
-    assert values["wind.speed_mps"] == "uniform from 3 to 12"
-    assert values["emission.sulphur_percent"].startswith("67 % 0.1; ")
 
 
 def of_row(run, **values):
@@ -123,42 +110,6 @@ def test_names_that_a_spreadsheet_would_compute_are_found_in_every_table(run, tm
     renamed = replace(run, path=tmp_path, summary=run.summary.assign(flight_id="=p_00000"))
     (patrol,) = read_patrols(renamed)
     assert (len(patrol.ships), len(patrol.phases)) == (2, len(pd.read_csv(run.path / "phases.csv")))
-
-
-def test_bars_are_as_long_as_the_stretches_and_stand_in_the_ships_rows(run):
-    patrols = read_patrols(run)
-    (patrol,) = patrols
-    _, times = patrol_chart(patrol).panels
-    for line in (line for line in times.lines if line.style == "broad"):
-        own = patrol.phases[patrol.phases["phase"] == line.label]
-        lasts = np.nansum(np.diff(line.x.reshape(-1, 3)[:, :2], axis=1))
-        # Minutes in the figure, seconds in the table.
-        assert lasts == pytest.approx((own["ends_s"] - own["begins_s"]).sum() / 60.0, rel=1e-9), (
-            line.label
-        )
-        assert set(line.y[np.isfinite(line.y)]) == set(2.0 - own["ship"])
-    assert {line.label for line in time_lines(patrols).panels[0].lines} == set(
-        patrol.phases["phase"]
-    ) | {"leaving", "measuring"}
-
-
-def test_the_map_has_every_ship_and_marks_those_that_are_not_served(run):
-    (patrol,) = read_patrols(run)
-    shown, _ = patrol_chart(patrol).panels
-    assert sum(line.label == "ship" for line in shown.lines) == 2
-    assert (
-        sum(line.label == "not served" for line in shown.lines)
-        == patrol.ships["position"].isna().sum()
-        == 1
-    )
-    assert {note.text for note in shown.notes} >= {"0", "1", "N"}
-    served = ship_table(patrol).rows[int(patrol.ships["position"].notna().to_numpy().argmax())]
-    assert "right" in served[6] or "open" in served[6]
-    # Ship and turn are those of ships.csv, both from 0: of one served ship the turn is 0.
-    assert (served[0], served[11]) == (
-        str(patrol.ships["ship"][patrol.ships["position"] == 0].item()),
-        "0",
-    )
 
 
 def test_a_patrol_that_failed_is_a_row_of_dashes_with_its_reason(run):

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from reports.compare.configuration import configuration_table, software_table, trials_apart
+from reports.compare.configuration import configuration_table, software_table
 from reports.compare.runs import read_runs
 
 
@@ -86,51 +86,10 @@ def test_a_key_of_a_part_that_one_run_leaves_out_has_its_default(two):
     assert row == ["payload.sensor", "electrochemical", "fast", "", "Sniffer."]
 
 
-def test_keys_of_lists_of_trials_name_the_trials(two):
-    for run in two:
-        run.manifest["trials"] = {
-            name: copy.deepcopy(config_of(run)) for name in ("one", "two", "three")
-        }
-    two[1].manifest["trials"]["one"]["wind"]["speed_mps"] = 7.0
-    two[1].manifest["trials"]["three"]["wind"]["speed_mps"] = 7.0
-    two[1].manifest["trials"]["four"] = two[1].manifest["trials"].pop("two")
-    runs = [
-        replace(
-            run,
-            trials=[
-                replace(run.trials[0], key=key, config=config)
-                for key, config in run.manifest["trials"].items()
-            ],
-        )
-        for run in two
-    ]
-    runs = [replace(run, trials=[_quiet(trial) for trial in run.trials]) for run in runs]
-    assert cells(runs) == {"wind.speed_mps (one, three)": ("0", "7")}
-    assert trials_apart(runs) == [
-        "Not in every run are, of A: first, the trials two.",
-        "Not in every run are, of B: same, the trials four.",
-    ]
-
-
-def _quiet(trial):
-    """Return a trial whose parameters are listed, as far as meanings need it."""
-    manifest = trial.run.manifest | {"trial_parameters": {trial.key: []}}
-    return replace(trial, run=replace(trial.run, manifest=manifest))
-
-
 def software(runs):
     table = software_table(runs)
     bold = {table.rows[i][0] for i, _ in table.bold}
     return {row[0]: row[1:] for row in table.rows}, bold
-
-
-def test_of_runs_alike_nothing_but_what_they_are_called_stands_out(two):
-    rows, bold = software(two)
-    assert rows["State"] == ["complete, 3 of 3 flights"] * 2
-    assert rows["Packages"][1] == "the same"
-    # Kinematic flights have no autopilot.
-    assert rows["Autopilot’s design"] == ["none", "none"]
-    assert not bold
 
 
 def test_versions_files_and_hashes_that_differ_stand_out(two):
@@ -146,20 +105,3 @@ def test_versions_files_and_hashes_that_differ_stand_out(two):
     assert rows["File mylaw.py:MyLaw"] == ["not used", "0123"]
     assert rows["State"][1] == "interrupted, 3 of 3 flights"
     assert bold == {"Version of jsbsim", "Hash of the source", "File mylaw.py:MyLaw", "State"}
-
-
-def test_designs_are_compared_part_by_part(two):
-    design = {"aircraft": "x8", "title": "Skywalker X8", "poles": [1.0], "heading_rate_lag_s": 0.3}
-    others = (
-        design,
-        design | {"heading_rate_lag_s": 0.4},
-        design | {"aircraft": "T37", "title": "T37"},
-    )
-    for other, words in zip(
-        others, ("the same", "differs in heading rate lag s", "T37, "), strict=True
-    ):
-        runs = [
-            replace(run, data=replace(run.data, innerloop=of))
-            for run, of in zip(two, (design, other), strict=True)
-        ]
-        assert words in software(runs)[0]["Autopilot’s design"][1]
