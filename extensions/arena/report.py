@@ -756,12 +756,12 @@ def _merit_panel(arena: Arena, entrants: Sequence[Entrant], figure: str, *, name
         for entrant in entrants
     ]
     drawn = np.concatenate([line.x for line in lines])
-    farthest = float(np.nanmax(drawn, initial=0.0)) if np.isfinite(drawn).any() else 1.0
+    farthest = float(np.max(drawn[np.isfinite(drawn)], initial=0.0)) or 1.0
     return Panel(
         x_label=arena.figure(figure).column.row,
         y_label="Law" if named else "",
         lines=lines,
-        x_range=(0.0, _BEYOND * farthest or 1.0),
+        x_range=(0.0, _BEYOND * farthest),
         y_names=names,
         y_range=(float(ends[0]), float(ends[1])),
     )

@@ -348,6 +348,10 @@ def _further(trials: Sequence[Trial], flown: pd.DataFrame) -> Iterator[Card]:
     yield from _of_flights("Flights in which the guard intervened", guarded)
     unable = column(flown, "guard_lost_s") > 0.0
     yield from _of_flights("Flights in which the guard could not hold its own radius", unable)
+    premises = trials[0].run.verdict.premises
+    if premises.measured:
+        value = f"{premises.exceeded:,} of {premises.measured:,}"
+        yield Card("Flights with a premise of the guard exceeded", value)
     yield from _commands(trials, flown)
 
 

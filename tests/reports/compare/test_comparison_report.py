@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from judged_runs import judged
-from report_parts import blocks_of
+from report_parts import blocks_of, numbers_of_page_1
 from snapshots import assert_reads_as_before
 
 from reports.compare.content import compare, comparison_content, headline
@@ -16,6 +16,7 @@ from reports.compare.table_of_pairs import write_differences
 from reports.document.blocks import Section, Table, Text
 from reports.document.chart import Chart
 from reports.render.pdf import write_pdf
+from reports.run.columns import judged as judged_figure
 from reports.run.time_history import about_the_plume
 
 
@@ -243,3 +244,18 @@ def test_a_verdict_on_the_fuel_that_is_another_is_told_and_not_green(first, same
 
 def test_a_comparison_reads_as_before(report):
     assert_reads_as_before("compare", report)
+
+
+def test_every_number_on_page_1_is_that_of_the_summaries(runs, compared, report, tmp_path):
+    tables = [run.data.summary.set_index("flight_id").sort_index() for run in runs]
+    assert list(tables[0].index) == list(tables[1].index)
+    known = {"3", "0"}
+    for name, of in compared[0].found.items():
+        first, other = (of.figure.scale * judged_figure(rows, name, of.figure) for rows in tables)
+        digits = of.figure.digits
+        known |= {f"{np.median(values):.{digits}f}" for values in (first, other)}
+        # One that is smaller than its digits show has two of its own.
+        change = abs(np.median(other - first))
+        known |= {f"{change:.{digits}f}", f"{change:.2g}"}
+    shown = {number.lstrip("-+") for number in numbers_of_page_1(report, tmp_path)}
+    assert shown <= known
