@@ -25,8 +25,6 @@ from reports.run.run_data import RunData
 
 CURVE_POINTS, HISTORY_POINTS = 200, 500
 """Points of a cumulative curve and of a time history, at most."""
-DISTANCE_BINS, BIN_TRAJECTORIES = 20, 20
-"""Bins of start distances at most, and trajectories for each, on average, above two bins."""
 PANEL_HEIGHT, HISTORIES_PER_LAW, FAILED_ROWS, FAILURES_NAMED = 0.32, 6, 20, 10
 DISTANCE_SHOWN_MIN_M, TIME_SHOWN_MIN_S = 1e-3, 1.0
 """Floors of logarithmic axes: distances go to zero, and a start inside the settling band is settled
@@ -458,29 +456,16 @@ def _line(reference: str, x: Array, y: Array) -> Line:
 def _settling_charts(data: Convergence) -> list[Chart]:
     """Return the figures of when trajectories settle, for the laws of which any did."""
     laws = [law for law in data.laws if data.of(law)["settling_time_s"].notna().any()]
-    return [
-        *_by_law(
-            "settling",
-            "Fraction of all trajectories that have settled, over time since their start; a"
-            " curve that ends below 100 % leaves out those that never did.",
-            {law: _settled_shares(data, law) for law in laws},
-            x_label="Settling time [s]",
-            y_label="Settled [%]",
-            log_x=True,
-            y_range=(0.0, 103.0),
-        ),
-        *_by_law(
-            "distance",
-            "Settling time over the distance at the start, of those that settled, in up to"
-            f" {DISTANCE_BINS} bins of distance. The prediction, by the motion averaged over the"
-            " reference's turns, is drawn by its median.",
-            {law: _over_distance(data, law) for law in laws},
-            x_label="Start distance [m]",
-            y_label="Settling time [s]",
-            log_y=True,
-            x_range=(0.0, 1.03 * float(data.rows["start_distance_m"].max())) if laws else None,
-        ),
-    ]
+    return _by_law(
+        "settling",
+        "Fraction of all trajectories that have settled, over time since their start; a curve that"
+        " ends below 100 % leaves out those that never did.",
+        {law: _settled_shares(data, law) for law in laws},
+        x_label="Settling time [s]",
+        y_label="Settled [%]",
+        log_x=True,
+        y_range=(0.0, 103.0),
+    )
 
 
 def _settled_shares(data: Convergence, law: Law) -> list[Line]:
@@ -504,29 +489,6 @@ def cumulative(values: Array) -> tuple[Array, Array]:
     ranks = _thinned(len(known), CURVE_POINTS)
     fraction = (ranks + 1.0) / max(1, len(values))
     return np.append(known[:1], known[ranks]), np.append(np.zeros(len(known[:1])), fraction)
-
-
-def _over_distance(data: Convergence, law: Law) -> list[Line]:
-    settled, farthest = (
-        data.of(law).dropna(subset=["settling_time_s"]),
-        float(data.rows["start_distance_m"].max()),
-    )
-    count = min(max(len(settled) // BIN_TRAJECTORIES, 2), DISTANCE_BINS)
-    number_of = np.minimum(settled["start_distance_m"] * count / farthest, count - 1.0).astype(int)
-    curves: tuple[tuple[str, float, str, str, Style], ...] = (
-        ("settling_time_s", 1.0, "slowest", "grey", "diamonds"),
-        ("settling_time_s", 0.9, "90 % are faster", "sky", "solid"),
-        ("settling_time_s", 0.1, "10 % are faster", "sky", "dot"),
-        ("settling_time_s", 0.5, "median", "blue", "solid"),
-        ("settling_time_predicted_s", 0.5, "predicted", "black", "dash"),
-    )
-    lines = []
-    for name, fraction, label, colour, style in curves:
-        times = settled[name].clip(lower=TIME_SHOWN_MIN_S).replace(math.inf, math.nan)
-        y = times.groupby(number_of).quantile(fraction)
-        x = (y.index.to_numpy() + 0.5) * farthest / count
-        lines.append(Line(x=x, y=y.to_numpy(), label=label, colour=colour, style=style))
-    return lines
 
 
 def _history_charts(data: Convergence, name: str, caption: str, *, converged: bool) -> list[Block]:

@@ -13,7 +13,7 @@ from reports.design.data import (
     grid_trims,
     is_effect,
 )
-from reports.document.chart import Chart, Line, Panel, Style
+from reports.document.chart import Chart, Line, Panel, Style, across, upright
 from reports.document.palette import Meaning, series_colour
 from reports.document.tables import minus
 
@@ -148,10 +148,7 @@ def _limit_lines(
 ) -> list[Line]:
     shown = [limit for limit in quantity.limits if y_range[0] < limit[0] < y_range[1]]
     ends = np.array(x_range)
-    return [
-        Line(x=ends, y=np.array([at, at]), label=label, colour=Meaning.LIMIT, style=_STYLES[label])
-        for at, label in shown
-    ]
+    return [across(ends, at, label, style=_STYLES[label]) for at, label in shown]
 
 
 def _envelope_lines(
@@ -165,7 +162,7 @@ def _envelope_lines(
     # A stall far below the grid would push the curves to the edge.
     reach = x_range[0] - 0.5 * (x_range[1] - x_range[0])
     return [
-        Line(x=np.array([at, at]), y=np.array(y_range), label=label, colour="grey", style=style)
+        upright(at, y_range, label, "grey", style)
         for at, label, style in marks
         if at is not None and at >= reach
     ]

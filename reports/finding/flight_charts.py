@@ -3,7 +3,7 @@
 import numpy as np
 
 from measurement.estimate.verdict import COVERAGE
-from reports.document.chart import Chart, Line, Panel, circle
+from reports.document.chart import Chart, Line, Panel, between, circle
 from reports.document.palette import Meaning
 from reports.finding.search_view import ESTIMATED, Ellipse, SearchView
 from reports.run.columns import column
@@ -29,17 +29,9 @@ def height_chart(view: SearchView, name: str) -> Chart:
     )
     known = np.isfinite(height)
     time, height, reach = time[known], height[known], COVERAGE * deviation[known]
-    reached = np.append(height - reach, (height + reach)[::-1])
     crossed = view.time[view.crossings], view.axis_height[view.crossings]
     lines = [
-        Line(
-            x=np.append(time, time[::-1]),
-            y=reached,
-            label="believed, 95 %",
-            colour="black",
-            style="thin",
-            fill=True,
-        ),
+        between(time, height - reach, height + reach, "believed, 95 %", "black"),
         Line(
             x=column(rows, "time_s"),
             y=column(rows, "altitude_m"),

@@ -7,7 +7,7 @@ import numpy as np
 
 from common.run_layout import FLIGHTS
 from reports.document.axes import in_kilometres
-from reports.document.chart import Chart, Line, Panel, Style
+from reports.document.chart import Chart, Line, Panel, Style, across, between, upright
 from reports.document.palette import Meaning
 from reports.flights.flight_view import FlightView
 from reports.flights.names import flight_name
@@ -109,33 +109,22 @@ class _Histories:
     def _column(self, name: str) -> Array:
         return column(self._view.samples, name)
 
-    def _level(self, value: float, label: str, colour: str, style: Style = "dash") -> Line:
-        return Line(
-            x=self._view.ends, y=np.array([value, value]), label=label, colour=colour, style=style
-        )
-
     def _distance_panel(self) -> Panel | None:
         if not self._view.vessel:
             return None
         low, high = self._distance_range()
-        upright = {
+        told = {
             **fault_marks(self._view.row),
             "manoeuvre ends": self._view.row.get("manoeuvre_end_s"),
         }
         marks = [
-            Line(
-                x=np.array([time, time]),
-                y=np.array([low, high]),
-                label=label,
-                colour="black",
-                style="dot",
-            )
-            for label, time in upright.items()
+            upright(time, (low, high), label, "black", "dot")
+            for label, time in told.items()
             if time is not None and 0.0 < time <= self._view.ends[1]
         ]
         lines = [
             self._line(self._view.distance),
-            self._level(self._view.radius, "limit", Meaning.LIMIT),
+            across(self._view.ends, self._view.radius, "limit"),
             *marks,
         ]
         lines += self._view.marks(
@@ -198,7 +187,7 @@ class _Histories:
 
     def _rate_panel(self) -> Panel:
         limit = float(self._view.row["heading_rate_limit_rad_s"])
-        lines = [self._level(side * limit, "limit", Meaning.LIMIT) for side in (1.0, -1.0)]
+        lines = [across(self._view.ends, side * limit, "limit") for side in (1.0, -1.0)]
         # What is flown lies over its command: of many turns the one that is above hides the other.
         lines += self._fast("heading_rate_command_rad_s", "command", Meaning.ASKED, 1.0)
         lines += self._fast("heading_rate_rad_s", "flown", Meaning.FLOWN, 1.0)
@@ -216,18 +205,8 @@ class _Histories:
         least, most = np.minimum.reduceat(known, starts), np.maximum.reduceat(known, starts)
         edges = np.append(time[starts], time[-1])
         x, low, high = np.repeat(edges, 2)[1:-1], np.repeat(least, 2), np.repeat(most, 2)
-        outline = np.concatenate([x, x[::-1]]), np.concatenate([high, low[::-1]])
-        return [
-            Line(
-                x=outline[0],
-                y=outline[1],
-                label=label,
-                colour=colour,
-                style="thin",
-                fill=label == "flown",
-                opacity=_TINT,
-            )
-        ]
+        stretch = between(x, low, high, label, colour, opacity=_TINT)
+        return [replace(stretch, fill=label == "flown")]
 
     def _bank_panel(self) -> Panel:
         return Panel(
@@ -258,7 +237,7 @@ class _Histories:
         # The true wind is dashed. A level that nearly all of the flight lies upon would be in the
         # legend alone.
         lines = [
-            self._level(height, label, colour, "thin")
+            across(self._view.ends, height, label, colour, "thin")
             for label, (height, colour) in levels.items()
             if np.nanquantile(np.abs(altitude - height), 0.95) > _HIDDEN
         ]

@@ -4,8 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from reports.document.chart import Chart, Line, Panel
-from reports.document.palette import Meaning
+from reports.document.chart import Chart, Line, Panel, upright
 from reports.monte_carlo.names import input_name
 from reports.run.columns import Array
 from reports.run.run_data import RunData
@@ -71,10 +70,10 @@ def _index_panel(
         if mask.any()
     ]
     ends = np.column_stack([value - error, value + error, np.full(len(value), np.nan)]).ravel()
-    reach = np.array([-0.6, len(inputs) - 0.4])
+    reach = (-0.6, len(inputs) - 0.4)
     lines += [
         Line(x=ends, y=np.repeat(place, 3), label="interval", colour="black"),
-        Line(x=np.full(2, floor), y=reach, label="noise floor", colour=Meaning.LIMIT, style="dash"),
+        upright(floor, reach, "noise floor"),
     ]
     low, high = min(0.0, float((value - error).min())), max(floor, float((value + error).max()))
     return Panel(
@@ -83,7 +82,7 @@ def _index_panel(
         title=title,
         lines=lines,
         x_range=(low - 0.02 * (high - low), high + 0.05 * (high - low)),
-        y_range=(float(reach[0]), float(reach[1])),
+        y_range=reach,
         y_names=list(zip(place.tolist(), names, strict=True)),
     )
 

@@ -9,8 +9,8 @@ import numpy as np
 import pandas as pd
 
 from reports.document.blocks import Block, Heading, Section, Table, Text
-from reports.document.chart import Chart, Line, Panel, Style
-from reports.document.palette import Meaning, series_colour
+from reports.document.chart import Chart, Line, Panel, Style, across
+from reports.document.palette import series_colour
 from reports.document.tables import Cell, approach, rows_table
 from reports.run.columns import beside_vessel, clearance, least, violated
 from reports.run.faults import faults_name
@@ -155,7 +155,7 @@ def search_chart(flights: pd.DataFrame) -> Chart:
         )
     lines += [
         Line(x=number, y=np.minimum.accumulate(distance), label="closest so far", colour="grey"),
-        Line(x=number[[0, -1]], y=np.zeros(2), label="r_min", colour=Meaning.LIMIT, style="dash"),
+        across(number[[0, -1]], 0.0, "r_min"),
     ]
     # Flights that stay far away say nothing of the worst.
     highest = float(np.quantile(distance, 0.9))

@@ -8,7 +8,7 @@ import numpy as np
 
 from common.columns import Column
 from common.intervals import percent
-from reports.document.chart import Chart, Line, Panel
+from reports.document.chart import Chart, Line, Panel, upright
 from reports.document.palette import Meaning
 from reports.document.panels import histogram
 from reports.run.columns import Array, clearance
@@ -80,13 +80,7 @@ def _tail(near: Array, statistics: dict[str, Any], of: Column) -> Panel:
         lines=[
             Line(x=x, y=100.0 * fraction, label="flights", colour=Meaning.FLOWN),
             Line(x=ends, y=heights, label="interval of a quantile", colour="black"),
-            Line(
-                x=np.zeros(2),
-                y=np.array([0.7 * least, 100.0]),
-                label="r_min",
-                colour=Meaning.LIMIT,
-                style="dash",
-            ),
+            upright(0.0, (0.7 * least, 100.0), "r_min"),
         ],
         log_y=True,
         x_range=(nearest - 0.04 * (far - nearest), far),

@@ -1,8 +1,6 @@
 """Figures of made-up convergence studies: what is counted and drawn."""
 
 import numpy as np
-import pandas as pd
-from report_parts import named_charts
 
 from extensions.convergence.report import (
     CURVE_POINTS,
@@ -27,12 +25,3 @@ def test_a_cumulative_curve_is_thinned_and_keeps_its_ends():
     assert np.all(np.diff(y) > 0.0)
     # Of 5000 values no larger than x, the share is exact at every point kept.
     assert y[100] == np.mean(values <= x[100])
-
-
-def test_over_distance_the_slowest_bound_every_settling_time(converged_path, converged):
-    slowest, most, few, median, _ = named_charts(converged)["distance"].panels[0].lines
-    rows = pd.read_csv(converged_path / "summary.csv").query("law == 'lyapunov'")
-    assert slowest.y.max() == rows["settling_time_s"].max()
-    assert np.all(few.y <= median.y)
-    assert np.all(median.y <= most.y)
-    assert np.all(most.y <= slowest.y)
