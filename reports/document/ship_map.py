@@ -87,12 +87,14 @@ def ship_words(*about: Surroundings) -> str:
     hulls = "; or ".join(hull_words(hull) for hull in dict.fromkeys(of.hull for of in about))
     area = _area_words(about)
     return (
-        f"{_SEEN_FROM}{_SMOKE * any(of.plume.smoke for of in about)}"
+        f"{SEEN_FROM}{_SMOKE * any(of.plume.smoke for of in about)}"
         f" {area[0].upper()}{area[1:]}; {hulls}.{_CHANGING * any(of.changing for of in about)}"
     )
 
 
-_SEEN_FROM = "Seen from the ship, with the axis of its plume up the page."
+SEEN_FROM = "Seen from the ship, with the axis of its plume up the page."
+"""What a caption says of maps on which neither ship nor keep-out area need be in sight."""
+
 _SMOKE = " Its width is two standard deviations of the mean smoke to either side."
 _CHANGING = " Ship, north and wind are as they were at the closest approach."
 

@@ -9,7 +9,7 @@ from measurement.gases import MASS_PERCENT
 from reports.document.chart import Chart, Line, Panel, Style, between, upright
 from reports.document.palette import Meaning, series_colour
 from reports.document.panels import level
-from reports.document.ship_map import ship_panel, ship_words
+from reports.document.ship_map import SEEN_FROM, ship_panel
 from reports.measurement.data import Record, measured_minutes, share_read
 from reports.run.columns import Array, Mask, column
 from reports.run.run_data import RunData
@@ -279,7 +279,7 @@ def sulphur_track_chart(history: pd.DataFrame, about: Surroundings) -> Chart:
     ]
     caption = (
         "The true CO2 concentration, as the colour of the track; in height with the plume's mean"
-        f" axis where it was crossed. {ship_words(about)}"
+        f" axis where it was crossed. {SEEN_FROM}"
     )
     return Chart(
         name="sulphur-track",
