@@ -43,20 +43,6 @@ def test_an_arrow_points_where_its_angle_says():
     assert (head.x.max(), head.y[0]) == pytest.approx((3.0, 2.0))
 
 
-def test_a_map_shows_every_line_below_its_strip_whatever_its_aspect():
-    for aspect in (0.6, 1.0, 4.5):
-        panel = a_map(north=0.0, wind=(5.0, 1.0), aspect=aspect)
-        (left, right), (bottom, top) = panel.x_range, panel.y_range
-        assert (right - left) / (top - bottom) == pytest.approx(aspect)
-        assert panel.equal
-        track, strip = panel.lines[0], panel.lines[1]
-        assert left < track.x.min() < track.x.max() < right
-        assert bottom < track.y.min() < track.y.max() < strip.y.min()
-        # Bar, arrows and words lie in the strip.
-        assert all(line.y.min() >= strip.y.min() for line in panel.lines[2:])
-        assert all(strip.y.min() < note.y < top for note in panel.notes)
-
-
 def test_the_scale_bar_is_as_long_as_it_says():
     panel = a_map(north=None)
     bar, text = panel.lines[2], panel.notes[0].text

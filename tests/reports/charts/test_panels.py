@@ -30,14 +30,6 @@ def test_symbols_of_messages_and_documents_are_those_of_figures():
     assert in_symbols("omega_0_rad_s, sweep.nu=[0.3]") == "omega_0_rad_s, sweep.nu=[0.3]"
 
 
-@pytest.mark.parametrize(("flights", "bars"), [(6, 5), (32, 12), (1000, 24)])
-def test_few_flights_are_counted_in_few_bars(flights, bars):
-    panel = histogram([(np.linspace(0.0, 1.0, flights), "flights", "blue")], "Settling time [s]")
-    # An outline has two points for each end of a bar.
-    assert panel is not None
-    assert len(panel.lines[0].x) == 2 * (bars + 1)
-
-
 def test_two_figures_of_three_flights_are_not_enough_for_a_histogram():
     three = np.array([1.0, 2.0, 3.0])
     assert histogram([(three, "largest", "black"), (three, "rms", "blue")], "Error [m]") is None
