@@ -175,18 +175,8 @@ def convergence_content(run: RunData) -> Findings:
 def _question(data: Convergence) -> list[Block]:
     if not len(data.rows):
         return []
-    states, manifest = data.rows.drop_duplicates("trajectory"), data.run.manifest
-    kinds = states["reference"].value_counts()
-    counts = ", ".join(
-        f"{kinds[key]:,} are {name}" for key, (name, *_) in REFERENCES.items() if key in kinds
-    )
+    manifest = data.run.manifest
     return [
-        Heading("Sampled initial states"),
-        Text(
-            f"{len(states):,} initial states, the same for every law: a place up to"
-            f" {number(states['start_distance_m'].max(), '{:,.0f}')} m from the reference and a"
-            f" course, both at random, and a reference that turns. Of the references {counts}."
-        ),
         Heading("What converged means"),
         Text(
             f"A trajectory has converged once it is within {manifest['converged_distance_m']:g} m"

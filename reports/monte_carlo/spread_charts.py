@@ -25,9 +25,9 @@ _NEARER = 0.9
 
 
 _KEPT = (
-    "Left: flights by their closest approach beyond r_min, the farthest half per cent in the last"
-    " bar. Right: share of flights that came as near, log scale, with intervals of its quantiles,"
-    " cut at {nearer}; the farthest came to {farthest:.0f} m."
+    "Flights by their closest approach beyond r_min, the farthest half per cent in the last bar;"
+    " and the share that came as near, log scale, with intervals of its quantiles, cut at {nearer}."
+    " The farthest came to {farthest:.0f} m."
 )
 
 
