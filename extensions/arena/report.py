@@ -1,7 +1,7 @@
 """The report of an arena: a reader ranks the laws at a glance, and sees how each was tuned."""
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -36,14 +36,13 @@ from reports.document.blocks import (
 )
 from reports.document.chart import Chart, Line, Note, Panel, Style
 from reports.document.palette import Meaning
+from reports.document.parameters import parameter_blocks, parameter_value
 from reports.document.ship_map import ship_panel
 from reports.document.state import state_words
 from reports.document.tables import (
     Cell,
     number,
     outcome,
-    parameter_blocks,
-    parameter_value,
     rows_table,
 )
 from reports.flights.added import added_sections
@@ -138,8 +137,9 @@ def arena_content(run: RunData) -> Findings:
         f"{laws}, each flown {often} in each of {len(arena.conditions)} conditions:"
         f" {flights_in_words(run, flights_flown(run.summary))}."
     )
-    pictures = effort_charts(arena) if arena.in_task(tracking=True) else [crossing_chart(arena)]
-    return Findings(flown=flown, verdict=_verdict(arena), picture=pictures[0], sections=sections)
+    tracked = bool(arena.in_task(tracking=True))
+    picture = effort_chart(arena) if tracked else merit_chart(arena, [CROSSINGS])
+    return Findings(flown=flown, verdict=_verdict(arena), picture=picture, sections=sections)
 
 
 def _section(anchor: str, title: str, nav_title: str, blocks: list[Block]) -> Section:
@@ -149,14 +149,14 @@ def _section(anchor: str, title: str, nav_title: str, blocks: list[Block]) -> Se
 def _tracking(arena: Arena) -> list[Block]:
     if not arena.in_task(tracking=True):
         return []
-    tracks, efforts = track_charts(arena, tracking=True), effort_charts(arena)
+    tracks = track_charts(arena, tracking=True)
     return [
         Text(f"{_TRACKING} {_BOLD if arena.flights > 1 else _ONCE}"),
         tracking_table(arena, tracking=True),
         *tracks[:1],
         Fold(
             title="Tracking by condition, and the tracks of the other laws",
-            blocks=[by_condition_table(arena, ERROR, tracking=True), *efforts[1:], *tracks[1:]],
+            blocks=[by_condition_table(arena, ERROR, tracking=True), *tracks[1:]],
         ),
     ]
 
@@ -178,21 +178,13 @@ def _standoff(arena: Arena) -> list[Block]:
 
 
 def _plume(arena: Arena) -> list[Block]:
-    figures = [figure for figure in (CROSSINGS, PLUME_TIME, SULPHUR) if arena.has(figure)]
-    table, has_sulphur = plume_table(arena), arena.has(SULPHUR)
-    # The figure shows the means of the table.
-    shown: list[Block] = [worth_chart(arena)] if has_sulphur else [table]
+    figures = [figure for figure in (SULPHUR, PLUME_TIME, CROSSINGS) if arena.has(figure)]
+    by_condition = [by_condition_table(arena, figure) for figure in figures]
     return [
-        Text(f"{_PLUME} {_SULPHUR}" if has_sulphur else _PLUME),
-        *shown,
-        Fold(
-            title="Measuring the plume in figures, and by condition",
-            blocks=[
-                *([table] if has_sulphur else []),
-                crossing_chart(arena),
-                *(by_condition_table(arena, figure) for figure in figures),
-            ],
-        ),
+        Text(f"{_PLUME} {_SULPHUR}" if SULPHUR in figures else _PLUME),
+        *([merit_chart(arena, figures)] if figures else []),
+        plume_table(arena),
+        Fold(title="Measuring the plume, by condition", blocks=by_condition),
     ]
 
 
@@ -611,33 +603,23 @@ _BEYOND = 1.08
 """Largest abscissa that is drawn, over the largest mark."""
 
 
-def effort_charts(arena: Arena) -> list[Chart]:
-    """Return tracking error against control effort with one mark a law: over all conditions, and a
-    panel for each.
-    """
+def effort_chart(arena: Arena) -> Chart:
+    """Return tracking error against control effort over all conditions, with one mark a law."""
     entrants = arena.in_task(tracking=True)
-    together = Chart(
+    return Chart(
         name="effort",
-        caption="Distance to the oscillating reference against the heading rate commanded, each"
-        " as its root mean square over the end of the flights, settled or not; a mark a law,"
-        " numbered as in the tables. Down and to the left is better. What tracks the reference"
-        " exactly needs the reference's own heading rate.",
+        caption=_EFFORT,
         panels=[_effort_panel(arena, entrants, arena.together, _WORD)],
         panel_height=0.5,
     )
-    if len(arena.conditions) == 1:
-        return [together]
-    each = Chart(
-        name="efforts",
-        caption="The same for each condition.",
-        panels=[
-            _effort_panel(arena, entrants, condition, (3.0 * _WORD[0], 2.0 * _WORD[1]))
-            for condition in arena.conditions
-        ],
-        columns=3,
-        panel_height=0.34,
-    )
-    return [together, each]
+
+
+_EFFORT = (
+    "Distance to the oscillating reference against the heading rate commanded, each as its root"
+    " mean square over the end of the flights, settled or not; a mark a law, numbered as in the"
+    " tables. Down and to the left is better. What tracks the reference exactly needs the"
+    " reference's own heading rate."
+)
 
 
 def _effort_panel(
@@ -679,7 +661,6 @@ def _effort_panel(
     return Panel(
         x_label="Heading rate, rms [rad/s]",
         y_label="Tracking error, rms [m]",
-        title=_title(condition),
         lines=lines,
         notes=notes,
         x_range=(min(reach) - 0.06 * span, max(reach) + 0.1 * span),
@@ -718,15 +699,6 @@ def _near(one: tuple[float, float], other: tuple[float, float], word: tuple[floa
     return all(abs(a - b) < size for a, b, size in zip(one, other, word, strict=True))
 
 
-def _title(condition: str) -> str:
-    """Return the name of a condition in words."""
-    return (
-        "All conditions"
-        if condition == ALL
-        else condition[:1].upper() + condition[1:].replace("_", " ")
-    )
-
-
 def _family(entrant: Entrant) -> str:
     forward, tangent, place, unknown = (label for label, _, _ in _FAMILIES)
     if "turn rate" in entrant.inputs or "curvature" in entrant.inputs:
@@ -736,61 +708,26 @@ def _family(entrant: Entrant) -> str:
     return place if "M3" in entrant.inputs else unknown
 
 
-def crossing_chart(arena: Arena) -> Chart:
-    """Return the crossings per minute of every law, a panel for each condition, with the limit
-    where it is known.
-    """
-    entrants = arena.ranked(CROSSINGS, arena.entrants)
-    reach = _BEYOND * max(_most(arena, CROSSINGS, arena.conditions), *arena.limits.values(), 0.0)
-    panels = [
-        _merit_panel(arena, entrants, CROSSINGS, condition, reach=reach, named=i == 0)
-        for i, condition in enumerate(arena.conditions)
-    ]
-    limit = (
-        " The dashed line is the most that any path allows at these speed ratios."
-        if arena.limits
-        else ""
-    )
+def merit_chart(arena: Arena, figures: Sequence[str]) -> Chart:
+    """Return figures of every law over all conditions, the best on the first of them first."""
+    entrants = arena.ranked(figures[0], arena.entrants)
     return Chart(
-        name="crossings",
-        caption="Plume crossings per minute over the end of the flights; a mark is a law's"
-        f" mean{_interval_words(arena)}.{limit}",
-        panels=panels,
-        columns=len(panels),
-        panel_height=0.1 + 0.025 * len(entrants),
-    )
-
-
-def worth_chart(arena: Arena) -> Chart:
-    """Return what a minute of every law is worth to the measurement, over all conditions."""
-    entrants = arena.ranked(SULPHUR, arena.entrants)
-    figures = (SULPHUR, PLUME_TIME, CROSSINGS)
-    reaches = [_BEYOND * _most(arena, figure, [arena.together]) for figure in figures]
-    panels = [
-        _merit_panel(arena, entrants, figure, arena.together, reach=reach, named=figure == SULPHUR)
-        for figure, reach in zip(figures, reaches, strict=True)
-    ]
-    return Chart(
-        name="worth",
-        caption="What a minute is worth, over all conditions: the standard uncertainty by noise"
-        " that the fuel's sulphur content is left with after it, the time that it has in the"
-        f" plume, and its crossings. A mark is a law's mean{_interval_words(arena)}. The best on"
-        " the sulphur content come first.",
-        panels=panels,
-        columns=len(panels),
+        name="merit",
+        caption=_MERIT + _WITH_INTERVAL * (arena.flights > 1),
+        panels=[_merit_panel(arena, entrants, of, named=of == figures[0]) for of in figures],
+        columns=len(figures),
         panel_height=0.1 + 0.02 * len(entrants),
     )
 
 
-def _merit_panel(
-    arena: Arena,
-    entrants: Sequence[Entrant],
-    figure: str,
-    condition: str,
-    *,
-    reach: float,
-    named: bool,
-) -> Panel:
+_MERIT = (
+    "What a minute of each law is worth, over the end of the flights in all conditions: a mark is"
+    " the mean."
+)
+_WITH_INTERVAL = " Lines: its 95 % interval."
+
+
+def _merit_panel(arena: Arena, entrants: Sequence[Entrant], figure: str, *, named: bool) -> Panel:
     rows = {entrant.name: float(len(entrants) - 1 - i) for i, entrant in enumerate(entrants)}
     lines: list[Line] = []
     for tracking, label, colour in (
@@ -798,7 +735,7 @@ def _merit_panel(
         (False, "circles the vessel", "orange"),
     ):
         members = [entrant for entrant in entrants if entrant.tracks == tracking]
-        found = [arena.of(figure, entrant, condition) for entrant in members]
+        found = [arena.of(figure, entrant, arena.together) for entrant in members]
         x = np.array([value for of in found for value in (of.low, of.high, math.nan)])
         y = np.array([rows[entrant.name] for entrant in members for _ in range(3)])
         if members:
@@ -814,41 +751,19 @@ def _merit_panel(
                 ),
             ]
     ends = np.array([-0.7, len(entrants) - 0.3])
-    if figure == CROSSINGS and (most := arena.limits.get(condition)) is not None:
-        lines.append(
-            Line(
-                x=np.array([most, most]),
-                y=ends,
-                label="limit of any path",
-                colour=Meaning.LIMIT,
-                style="dash",
-            )
-        )
     names = [
         (rows[entrant.name], f"{entrant.title} {entrant.number}" if named else "")
         for entrant in entrants
     ]
+    drawn = np.concatenate([line.x for line in lines])
+    farthest = float(np.max(drawn[np.isfinite(drawn)], initial=0.0)) or 1.0
     return Panel(
         x_label=arena.figure(figure).column.row,
         y_label="Law" if named else "",
-        title="" if condition == arena.together else _title(condition),
         lines=lines,
-        x_range=(0.0, reach or 1.0),
+        x_range=(0.0, _BEYOND * farthest),
         y_names=names,
         y_range=(float(ends[0]), float(ends[1])),
-    )
-
-
-def _most(arena: Arena, figure: str, conditions: Iterable[str]) -> float:
-    """Return the largest value of a figure that is drawn."""
-    found = [
-        arena.of(figure, entrant, condition)
-        for condition in conditions
-        for entrant in arena.entrants
-    ]
-    # A mean of too few flights has no interval.
-    return max(
-        (value for of in found for value in (of.mean, of.high) if math.isfinite(value)), default=0.0
     )
 
 
@@ -866,7 +781,7 @@ def track_charts(arena: Arena, *, tracking: bool) -> list[Chart]:
     what = "The oscillating reference tracked" if tracking else "The vessel circled"
     caption = (
         f"{what}: the last {_SHOWN_S:g} s of one flight a law, the same start for all; condition:"
-        f" {first}. Seen from the ship, to scale, with her plume up the page. The best on the"
+        f" {first}. Seen from the ship, to scale, with its plume up the page. The best on the"
         " tracking error come first."
     )
     return [
@@ -913,8 +828,3 @@ def _square(middle: float, half: float) -> Line:
         label="",
         colour=Meaning.PLUME,
     )
-
-
-def _interval_words(arena: Arena) -> str:
-    """Return what is drawn beside a mean: of one flight in each condition there is no interval."""
-    return ", with its 95 % interval" if arena.flights > 1 else ""

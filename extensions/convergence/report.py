@@ -17,15 +17,14 @@ from common.run_layout import HISTORY_SUFFIX
 from extensions.convergence import COUNTEREXAMPLES, TRAJECTORIES, trajectory_path
 from reports.document.blocks import Block, Card, Findings, Heading, Section, Table, Text, Verdict
 from reports.document.chart import Chart, Line, Panel, Style
+from reports.document.parameters import parameter_blocks
 from reports.document.state import state_words
-from reports.document.tables import Cell, number, parameter_blocks, rows_table
+from reports.document.tables import Cell, number, rows_table
 from reports.run.columns import Array, column
 from reports.run.run_data import RunData
 
 CURVE_POINTS, HISTORY_POINTS = 200, 500
 """Points of a cumulative curve and of a time history, at most."""
-DISTANCE_BINS, BIN_TRAJECTORIES = 20, 20
-"""Bins of start distances at most, and trajectories for each, on average, above two bins."""
 PANEL_HEIGHT, HISTORIES_PER_LAW, FAILED_ROWS, FAILURES_NAMED = 0.32, 6, 20, 10
 DISTANCE_SHOWN_MIN_M, TIME_SHOWN_MIN_S = 1e-3, 1.0
 """Floors of logarithmic axes: distances go to zero, and a start inside the settling band is settled
@@ -176,24 +175,8 @@ def convergence_content(run: RunData) -> Findings:
 def _question(data: Convergence) -> list[Block]:
     if not len(data.rows):
         return []
-    states, manifest = data.rows.drop_duplicates("trajectory"), data.run.manifest
-    kinds = states["reference"].value_counts()
-    counts = ", ".join(
-        f"{kinds[key]:,} are {name}" for key, (name, *_) in REFERENCES.items() if key in kinds
-    )
+    manifest = data.run.manifest
     return [
-        Heading("Sampled initial states"),
-        Text(
-            f"{len(states):,} initial states, the same for every law: a place up to"
-            f" {number(states['start_distance_m'].max(), '{:,.0f}')} m from the reference and a"
-            f" course, both at random, and a reference that turns. Of the references {counts}."
-        ),
-        Text(
-            "A trajectory is given up when it has taken many times as long as the motion averaged"
-            " over its reference's turns predicts, and at least ensemble.time_max_s. The slowest"
-            " are those about references that hardly turn: an error along the track then decays"
-            " ever so slowly, at a rate that goes with the square of ω_r."
-        ),
         Heading("What converged means"),
         Text(
             f"A trajectory has converged once it is within {manifest['converged_distance_m']:g} m"
@@ -463,29 +446,16 @@ def _line(reference: str, x: Array, y: Array) -> Line:
 def _settling_charts(data: Convergence) -> list[Chart]:
     """Return the figures of when trajectories settle, for the laws of which any did."""
     laws = [law for law in data.laws if data.of(law)["settling_time_s"].notna().any()]
-    return [
-        *_by_law(
-            "settling",
-            "Fraction of all trajectories that have settled, over time since their start; a"
-            " curve that ends below 100 % leaves out those that never did.",
-            {law: _settled_shares(data, law) for law in laws},
-            x_label="Settling time [s]",
-            y_label="Settled [%]",
-            log_x=True,
-            y_range=(0.0, 103.0),
-        ),
-        *_by_law(
-            "distance",
-            "Settling time over the distance at the start, of those that settled, in up to"
-            f" {DISTANCE_BINS} bins of distance. The prediction, by the motion averaged over the"
-            " reference's turns, is drawn by its median.",
-            {law: _over_distance(data, law) for law in laws},
-            x_label="Start distance [m]",
-            y_label="Settling time [s]",
-            log_y=True,
-            x_range=(0.0, 1.03 * float(data.rows["start_distance_m"].max())) if laws else None,
-        ),
-    ]
+    return _by_law(
+        "settling",
+        "Fraction of all trajectories that have settled, over time since their start; a curve that"
+        " ends below 100 % leaves out those that never did.",
+        {law: _settled_shares(data, law) for law in laws},
+        x_label="Settling time [s]",
+        y_label="Settled [%]",
+        log_x=True,
+        y_range=(0.0, 103.0),
+    )
 
 
 def _settled_shares(data: Convergence, law: Law) -> list[Line]:
@@ -509,29 +479,6 @@ def cumulative(values: Array) -> tuple[Array, Array]:
     ranks = _thinned(len(known), CURVE_POINTS)
     fraction = (ranks + 1.0) / max(1, len(values))
     return np.append(known[:1], known[ranks]), np.append(np.zeros(len(known[:1])), fraction)
-
-
-def _over_distance(data: Convergence, law: Law) -> list[Line]:
-    settled, farthest = (
-        data.of(law).dropna(subset=["settling_time_s"]),
-        float(data.rows["start_distance_m"].max()),
-    )
-    count = min(max(len(settled) // BIN_TRAJECTORIES, 2), DISTANCE_BINS)
-    number_of = np.minimum(settled["start_distance_m"] * count / farthest, count - 1.0).astype(int)
-    curves: tuple[tuple[str, float, str, str, Style], ...] = (
-        ("settling_time_s", 1.0, "slowest", "grey", "diamonds"),
-        ("settling_time_s", 0.9, "90 % are faster", "sky", "solid"),
-        ("settling_time_s", 0.1, "10 % are faster", "sky", "dot"),
-        ("settling_time_s", 0.5, "median", "blue", "solid"),
-        ("settling_time_predicted_s", 0.5, "predicted", "black", "dash"),
-    )
-    lines = []
-    for name, fraction, label, colour, style in curves:
-        times = settled[name].clip(lower=TIME_SHOWN_MIN_S).replace(math.inf, math.nan)
-        y = times.groupby(number_of).quantile(fraction)
-        x = (y.index.to_numpy() + 0.5) * farthest / count
-        lines.append(Line(x=x, y=y.to_numpy(), label=label, colour=colour, style=style))
-    return lines
 
 
 def _history_charts(data: Convergence, name: str, caption: str, *, converged: bool) -> list[Block]:

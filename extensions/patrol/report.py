@@ -21,9 +21,9 @@ from reports.document.blocks import Card, Findings, Fold, Heading, Section, Tabl
 from reports.document.chart import Chart, Line, Note, Panel, Style
 from reports.document.map_marks import on_map
 from reports.document.palette import Meaning
+from reports.document.parameters import distribution, parameter_blocks
 from reports.document.state import state_words
-from reports.document.tables import Cell, approach, parameter_blocks, rows_table, vehicle_flown
-from reports.flights.parameter_tables import distribution
+from reports.document.tables import Cell, approach, rows_table, vehicle_flown
 from reports.run.columns import column, least
 from reports.run.run_data import RunData
 from reports.run.table_file import read_table
@@ -163,11 +163,7 @@ def patrol_content(run: RunData) -> Findings:
                 anchor="patrols",
                 title="Patrols and the oracle",
                 nav_title="Patrols",
-                blocks=[
-                    Text(_ORACLE),
-                    oracle_table(patrols),
-                    *([time_lines(patrols)] if len(flown) > 1 else []),
-                ],
+                blocks=[Text(_ORACLE), oracle_table(patrols)],
             ),
             Section(
                 anchor="ships",
@@ -346,15 +342,7 @@ def patrol_chart(patrol: Patrol) -> Chart:
     count, done = len(patrol.ships), patrol.ships[patrol.ships["oracle_ended_s"].notna()]
     x, y = column(done, "oracle_ended_s") / _MINUTE, count - column(done, "ship")
     oracle = Line(x=x, y=y, label="done by the oracle", colour=Meaning.SHIP, style="diamonds")
-    stretches = patrol.phases.assign(row=count - patrol.phases["ship"])
-    times = _time_panel(
-        stretches,
-        count,
-        [oracle],
-        x_label="Time since the start [min]",
-        y_label="Ship",
-        title="Time line",
-    )
+    times = _time_panel(patrol.phases, count, [oracle])
     return Chart(
         name=patrol.name,
         caption=f"{patrol.title}. Map: where ships went, numbered where they began and until they"
@@ -363,19 +351,6 @@ def patrol_chart(patrol: Patrol) -> Chart:
         panels=[in_kilometres(_map(patrol)), times],
         columns=2,
         panel_height=0.5,
-    )
-
-
-def time_lines(patrols: Sequence[Patrol]) -> Chart:
-    """Return the time lines of all patrols, a row each."""
-    count = len(patrols)
-    stretches = pd.concat([patrol.phases.assign(row=count - i) for i, patrol in enumerate(patrols)])
-    panel = _time_panel(
-        stretches, count, [], x_label="Time since the start of the patrol [min]", y_label="Patrol"
-    )
-    caption = "What the UAV did when, a row for each patrol."
-    return Chart(
-        name="time_lines", caption=caption, panels=[panel], panel_height=0.12 + 0.035 * count
     )
 
 
@@ -414,18 +389,22 @@ def _map(patrol: Patrol) -> Panel:
     return on_map(panel, north=0.0, wind=wind, shown=shown)
 
 
-def _time_panel(stretches: pd.DataFrame, count: int, marks: list[Line], **labels: str) -> Panel:
-    """Return bars over time, one for each stretch at its ``row``: one curve a phase, with gaps."""
+def _time_panel(phases: pd.DataFrame, count: int, marks: list[Line]) -> Panel:
+    """Return bars over time, a row for each ship: one curve a phase, with gaps."""
     lines = []
     for phase, colour in _PHASES.items():
-        rows = stretches[stretches["phase"] == phase].assign(gap=np.nan)
+        rows = phases[phases["phase"] == phase].assign(row=count - phases["ship"], gap=np.nan)
         time, row = (
             rows[names].to_numpy(np.float64).ravel()
             for names in (["begins_s", "ends_s", "gap"], ["row", "row", "gap"])
         )
         lines.append(Line(x=time / _MINUTE, y=row, label=phase, colour=colour, style="broad"))
-    names = [(float(count - i), str(i)) for i in range(count)]
-    shown: Any = labels
     return Panel(
-        lines=[*lines, *marks], y_range=(1.0 - _EDGE, count + _EDGE), y_names=names, **shown
+        x_label="Time since the start [min]",
+        y_label="Ship",
+        title="Time line",
+        lines=[*lines, *marks],
+        y_range=(1.0 - _EDGE, count + _EDGE),
+        y_names=[(float(count - i), str(i)) for i in range(count)],
+        y_whole=True,
     )

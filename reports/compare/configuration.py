@@ -7,7 +7,7 @@ from typing import Any
 
 from reports.compare.runs import Run
 from reports.document.blocks import Table
-from reports.flights.parameter_tables import distribution, value_in_words
+from reports.document.parameters import distribution, parameter_value
 from reports.run.trials import Trial, leaves
 
 NOT_A_KEY = "not a key"
@@ -18,9 +18,6 @@ _WORDS = ("title", "description", "study")
 
 _LONG = 6
 """Numbers of a list that are all shown."""
-
-_NAMED_MAX = 6
-"""Parts of an autopilot's design that are named."""
 
 _SAME = "the same"
 
@@ -131,7 +128,7 @@ def _in_words(key: str, values: Sequence[Any]) -> Values:
 
 
 def _whole(value: Any, key: str) -> str:
-    return value_in_words(value, key)
+    return parameter_value(value, key)
 
 
 def _brief(value: Any, key: str) -> str:
@@ -166,7 +163,8 @@ def software_table(runs: Sequence[Run]) -> Table:
         [
             "State",
             *(
-                f"{run.state}, {len(run.data.summary):,} of {run.manifest['flights_planned']:,} flights"
+                f"{run.state}, {len(run.data.summary):,} of {run.manifest['flights_planned']:,}"
+                " flights"
                 for run in runs
             ),
         ],
@@ -220,7 +218,9 @@ def _packages(runs: Sequence[Run]) -> list[list[str]]:
 
 
 def _files(runs: Sequence[Run]) -> list[list[str]]:
-    """Return a row for each file of the user that some run takes a part or a vessel's track from."""
+    """Return a row for each file of the user that some run takes a part or a vessel's track
+    from.
+    """
     used = [run.manifest.get("plugins", {}) | run.manifest.get("vessel_files", {}) for run in runs]
     # Without their directories, which are those of a machine.
     named = [
@@ -239,27 +239,9 @@ def _file(known: Any) -> str:
 
 
 def _designs(runs: Sequence[Run]) -> list[str]:
-    """Return what designs are called, and in which parts they differ from that of the first run."""
-    first, words = runs[0].data.innerloop, []
-    for run in runs:
-        design = run.data.innerloop
-        if design is None:
-            words.append("none")
-        elif run is runs[0] or first is None or design["aircraft"] != first["aircraft"]:
-            words.append(f"{design['title']}, {_hash(design)}")
-        elif design == first:
-            words.append(_SAME)
-        else:
-            parts = [
-                key.replace("_", " ")
-                for key in dict.fromkeys([*first, *design])
-                if first.get(key) != design.get(key)
-            ]
-            more = f" and {len(parts) - _NAMED_MAX} more" if len(parts) > _NAMED_MAX else ""
-            words.append(
-                f"{design['title']}, {_hash(design)}: differs in {', '.join(parts[:_NAMED_MAX])}{more}"
-            )
-    return words
+    """Return what designs are called, and their hashes."""
+    designs = (run.data.innerloop for run in runs)
+    return [f"{of['title']}, {_hash(of)}" if of else "none" for of in designs]
 
 
 def _hash(design: Mapping[str, Any]) -> str:

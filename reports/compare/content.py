@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from common.verdict import MET
-from reports.compare.charts import pair_charts
 from reports.compare.configuration import configuration_table, software_table, trials_apart
 from reports.compare.figures import JUDGED, PAIRS_MIN, Difference, differences
 from reports.compare.pairs import SPEED_RATIO, Pairs, paired
@@ -113,7 +112,7 @@ def comparison_content(runs: Sequence[Run], compared: Sequence[Compared]) -> Con
             anchor="figures",
             title="Figures side by side",
             nav_title="Figures",
-            blocks=_figures(runs),
+            blocks=[Text(_WHOLE), side_by_side(runs)],
         ),
         *(
             _pair_section(of, chart)
@@ -142,20 +141,15 @@ def comparison_content(runs: Sequence[Run], compared: Sequence[Compared]) -> Con
 
 def _configuration(runs: Sequence[Run]) -> list[Block]:
     table = configuration_table(runs)
-    same = [] if table else [Text("No key differs in the configuration of the flights.")]
-    return [*([table] if table else same), *(Text(sentence) for sentence in trials_apart(runs))]
+    shown = table or Text("No key differs in the configuration of the flights.")
+    return [shown, *(Text(sentence) for sentence in trials_apart(runs))]
 
 
-def _figures(runs: Sequence[Run]) -> list[Block]:
-    text = "Of every flight of each run, whether or not another run has it too. Figures after settling are of flights that settled."
-    if len({len(run.data.summary) for run in runs}) > 1:
-        text += " There is no difference from a run with another number of flights; those of the paired flights are below."
-    else:
-        text += (
-            " Where runs have a figure of different numbers of flights, no difference is shown; those of the paired flights are"
-            " below."
-        )
-    return [Text(text), side_by_side(runs)]
+_WHOLE = (
+    "Of every flight of each run, whether or not another run has it too. Figures after settling are"
+    " of flights that settled. No difference is shown between figures of different numbers of"
+    " flights; those of the paired flights are below."
+)
 
 
 def _pair_section(compared: Compared, tracks: Chart | None) -> Section:
@@ -164,7 +158,10 @@ def _pair_section(compared: Compared, tracks: Chart | None) -> Section:
     if compared.differing:
         table = changed_table(pairs)
         differences = difference_table(pairs, compared.found)
-        blocks += [Text(_difference_sentences(compared)), differences] if differences.rows else []
+        if differences.rows:
+            samples = len(set(pairs.samples.tolist()))
+            words = _DIFFERENCES.format(samples=samples, least=PAIRS_MIN)
+            blocks += [Text(words), differences]
         if table is not None:
             number = count(changed(pairs))
             first = f", of which the first {LISTED_MAX} are listed" if number > LISTED_MAX else ""
@@ -174,7 +171,6 @@ def _pair_section(compared: Compared, tracks: Chart | None) -> Section:
                 ),
                 table,
             ]
-        blocks += pair_charts(pairs, compared.found)
         blocks += [tracks] if tracks is not None else []
     else:
         blocks.append(
@@ -189,74 +185,52 @@ def _pair_section(compared: Compared, tracks: Chart | None) -> Section:
     )
 
 
+_PAIRED = "{paired:,} flights are paired: the same point or case, number and seed."
+_ALONE = (
+    "Without a partner are {of_first:,} of {first} and {of_other:,} of {other}; {same:,} of them"
+    " have"
+    " the same name in both runs, but another seed."
+)
+_RATIOS = (
+    "The speed ratio ν, which follows from the speeds of vessel, UAV and air, differs in {pairs:,}."
+)
+_INPUTS = "The flights of a pair differ in what was swept or sampled: {keys}{more}."
+
+
 def pairing_sentences(pairs: Pairs) -> list[str]:
     """Return how many flights are paired, how many have no partner, and whether what was sampled
     agrees.
     """
-    first, other = pairs.first, pairs.other
-    sentences = [
-        f"{len(pairs):,} flight{'s are' if len(pairs) > 1 else ' is'} paired: the same point or case, number and seed."
-    ]
-    if any(pairs.alone):
-        alone = " and ".join(
-            f"{of:,} of {run.letter}"
-            for of, run in zip(pairs.alone, (first, other), strict=True)
-            if of
-        )
-        same = (
-            f"; {pairs.same_name:,} of them have the same name in both runs, but another seed"
-            if pairs.same_name
-            else ""
-        )
-        sentences.append(f"Without a partner are {alone}{same}.")
+    sentences = [_PAIRED.format(paired=len(pairs))]
+    of_first, of_other = pairs.alone
+    if of_first or of_other:
+        letters = {"first": pairs.first.letter, "other": pairs.other.letter}
+        counts = {"of_first": of_first, "of_other": of_other, "same": pairs.same_name}
+        sentences.append(_ALONE.format(**letters, **counts))
     differing = pairs.differing_inputs()
     if ratios := differing.pop(SPEED_RATIO, 0):
-        sentences.append(
-            f"The speed ratio ν, which follows from the speeds of vessel, UAV and air, differs in {ratios:,}."
-        )
+        sentences.append(_RATIOS.format(pairs=ratios))
     if differing:
-        keys = ", ".join(
-            f"{key} in {number:,}" for key, number in list(differing.items())[:_NAMED_MAX]
-        )
-        more = (
-            f" and {len(differing) - _NAMED_MAX} more keys" if len(differing) > _NAMED_MAX else ""
-        )
+        named = list(differing.items())[:_NAMED_MAX]
+        left = len(differing) - len(named)
         sentences.append(
-            f"The flights of a pair differ in what was swept or sampled: {keys}{more}."
+            _INPUTS.format(
+                keys=", ".join(f"{key} in {number:,}" for key, number in named),
+                more=f" and {left} more keys" if left else "",
+            )
         )
     return sentences
 
 
-def _difference_sentences(compared: Compared) -> str:
-    trials = {trial.key: trial for trial in compared.pairs.first.trials}
-    at_random = all(
-        trials[str(name)].sampled_at_random
-        for name in dict.fromkeys(compared.pairs.before["trial"])
-    )
-    others = (
-        ""
-        if at_random
-        else " These flights are no random sample: it says how far they agree, not what others would show."
-    )
-    same = [
-        of.figure.title.lower()
-        for name, of in compared.found.items()
-        if of.is_none and name != "keepout_violations"
-    ]
-    equal = f" The same in every pair that has them: {'; '.join(same)}." if same else ""
-    samples = len(set(compared.pairs.samples.tolist()))
-    shared = (
-        f" Pairs that share their random sample count as one, with the mean of their differences: there are {samples:,} of these."
-        if samples < len(compared.pairs)
-        else ""
-    )
-    if samples < PAIRS_MIN:
-        return f"Differences are those of each pair; of fewer than {PAIRS_MIN} a median has no interval.{shared}{equal}"
-    return (
-        f"Differences are those of each pair.{shared} The interval is the exact one of their median at 95 %, from order statistics,"
-        f" for any distribution; it takes {PAIRS_MIN} pairs, and is bold where it leaves out 0, as one in twenty does by chance."
-        f"{others}{equal}"
-    )
+_DIFFERENCES = (
+    "Differences are those of each pair; pairs that share their random sample count as one, with"
+    " the mean of their differences: there are {samples:,} samples. The interval is the exact one"
+    " of"
+    " their median at 95 %, from order statistics, for any distribution; it takes {least} samples,"
+    " and is bold where it leaves out 0, as one in twenty does by chance. Of flights that are no"
+    " random sample it says how far they agree, not what others would show. Figures that are the"
+    " same in every pair are left out."
+)
 
 
 def _verdict(runs: Sequence[Run], compared: Sequence[Compared]) -> Verdict:
@@ -289,8 +263,8 @@ def headline(compared: Sequence[Compared]) -> str:
 
 
 def _sentences(compared: Compared, changes: int) -> Iterator[str]:
-    """Yield what a headline says of a run beside the first: what must never happen, else the largest
-    changes, one at least, and then how many flights met their criteria.
+    """Yield what a headline says of a run beside the first: what must never happen, else the
+    largest changes, one at least, and then how many flights met their criteria.
     """
     pairs, found = compared.pairs, largest_changes(compared)[: max(1, changes)]
     names = {"first": pairs.first.letter, "other": pairs.other.letter, "pairs": len(pairs)}
@@ -362,7 +336,8 @@ def _lines(compared: Compared) -> list[str]:
     for words, mask, where in turned:
         if count(mask):
             lines.append(
-                f"{other}: {count(mask):,} of {len(pairs):,} paired flights {words} in {where} alone"
+                f"{other}: {count(mask):,} of {len(pairs):,} paired flights {words} in {where}"
+                " alone"
             )
     return lines
 

@@ -84,7 +84,9 @@ class Difference:
 
     @property
     def change(self) -> Array:
-        """Return the difference of each pair; not a number where a flight does not have the figure."""
+        """Return the difference of each pair; not a number where a flight does not have the
+        figure.
+        """
         change: Array = self.after - self.before
         return change
 

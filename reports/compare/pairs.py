@@ -187,7 +187,8 @@ def _why_none(one: pd.DataFrame, two: pd.DataFrame, same: int) -> str:
         return f"{what}; give both the same --seed"
     names = " and ".join(f"'{table['trial'].iloc[0]}'" for table in (one, two))
     return (
-        f"{what}, since seeds follow from --seed and from the scenario's name, here {names}; fly one scenario both times, with"
+        f"{what}, since seeds follow from --seed and from the scenario's name, here {names}; fly"
+        " one scenario both times, with"
         " --set for what is to differ, or, if it has one flight, give both the same flight_seed"
     )
 

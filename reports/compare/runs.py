@@ -20,11 +20,13 @@ _NOT_COMPARED = {
 """Studies whose runs are not compared, and why; a study that others add says it in its manifest."""
 
 _ENTRIES = (
-    *FLIGHT_ENTRIES, "name", "overrides", "config_hash", "fingerprint", "packages", "git_revision", "python", "platform",
+    *FLIGHT_ENTRIES, "name", "overrides", "config_hash", "fingerprint", "packages", "git_revision",
+    "python", "platform",
     "flights_planned",
 )  # fmt: skip
 _COLUMNS = (
-    "flight_id", "trial", "seed", "outcome", "message", "criteria_met", "kept_out", "keepout_violations", "keepout_radius_m",
+    "flight_id", "trial", "seed", "outcome", "message", "criteria_met", "kept_out",
+    "keepout_violations", "keepout_radius_m",
     "min_distance_m", "settling_time_s", "duration_s",
 )  # fmt: skip
 """What a comparison needs of a manifest, and of a summary."""
@@ -76,7 +78,8 @@ def read_runs(paths: Sequence[Path]) -> list[Run]:
     """
     if not 2 <= len(paths) <= RUNS_MAX:
         raise ReportError(
-            f"{len(paths)} run{'s' if len(paths) != 1 else ''} given; 2 to {RUNS_MAX} can be compared: name so many"
+            f"{len(paths)} run{'s' if len(paths) != 1 else ''} given; 2 to {RUNS_MAX} can be"
+            " compared: name so many"
         )
     resolved = [path.resolve() for path in paths]
     for i, path in enumerate(resolved):
@@ -93,7 +96,8 @@ def _read(letter: str, path: Path) -> Run:
     refuse_other_version(data, _ENTRIES)
     if missing := [name for name in _COLUMNS if name not in data.summary]:
         raise ReportError(
-            f"'{path}' was flown by another version: its {SUMMARY} has no '{missing[0]}'; run the scenario again in another --out"
+            f"'{path}' was flown by another version: its {SUMMARY} has no '{missing[0]}'; run the"
+            " scenario again in another --out"
         )
     # A run that did not end has no verdict, and is refused.
     _ = data.verdict

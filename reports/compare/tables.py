@@ -181,7 +181,8 @@ def difference_table(pairs: Pairs, found: dict[str, Difference]) -> Table:
         bold += [(i, 5)] if difference.excludes_zero else []
     first, other = pairs.first.letter, pairs.other.letter
     head = [
-        "Figure", "Pairs", f"Median in {first}", f"in {other}", f"Median of {other} − {first}", "95 % interval",
+        "Figure", "Pairs", f"Median in {first}", f"in {other}", f"Median of {other} − {first}",
+        "95 % interval",
         "Least to greatest", "Lower, higher",
     ]  # fmt: skip
     return Table(head=head, rows=rows, widths=[2.7, 0.6, 0.9, 0.8, 1.0, 1.5, 1.6, 0.9], bold=bold)

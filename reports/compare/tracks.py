@@ -10,9 +10,8 @@ import pandas as pd
 from reports.compare.figures import JUDGED, Difference
 from reports.compare.pairs import Pairs
 from reports.compare.runs import Run
-from reports.document.axes import cut_words, in_kilometres
+from reports.document.axes import in_kilometres
 from reports.document.chart import Chart, Line, Panel, circle
-from reports.document.palette import Meaning
 from reports.document.ship_map import ship_panel, ship_words
 from reports.run.columns import Array, column
 from reports.run.flight_config import Config, flight_config
@@ -26,9 +25,6 @@ from reports.run.time_history import (
     thinned,
     tracking_error,
 )
-
-_FAR = 1.6
-"""Least end of the distances that are shown, over r_min [-]."""
 
 _ASPECT = 1.1
 """Width of a map over its height [-]."""
@@ -106,25 +102,24 @@ def _chart(pairs: Pairs, place: int, why: str) -> Chart | None:
         )
     vessel = all(np.isfinite(column(flight.history, "vessel_north_m")).any() for flight in flown)
     about = _about(flown[0]) if vessel else None
-    distances = [_distances(flown)] if about else []
-    panels = (
-        [_whole(flown, about), _settled(flown, about), *distances]
-        if about
-        else [_over_the_ground(flown)]
-    )
+    panels = [_whole(flown, about), _settled(flown, about)] if about else [_over_the_ground(flown)]
+    floor = floor_words(flight.history for flight in flown)
+    names = {"flight": pairs.names[place], "why": why, "floor": floor}
+    caption = _CAPTION.format(**names)
+    if about:
+        caption += _BESIDE.format(ship=ship_words(about), first=pairs.first.letter)
     return Chart(
         name=f"changed{pairs.other.letter}",
-        caption=f"The flight that differs most, {pairs.names[place]}: {why}.{floor_words(flight.history for flight in flown)}"
-        + cut_words(distances)
-        + (
-            f" {ship_words(about)} Ship, filled area, plume, wind and north are as in {pairs.first.letter}."
-            if about
-            else ""
-        ),
+        caption=caption,
         panels=[in_kilometres(panel) for panel in (*panels, _errors(flown))],
-        columns=2,
+        columns=len(panels),
         panel_height=0.42,
+        last_height=0.2,
     )
+
+
+_CAPTION = "The flight that differs most, {flight}: {why}.{floor}"
+_BESIDE = " {ship} Ship, filled area, plume, wind and north are as in {first}."
 
 
 def _about(flight: "_Flight") -> Surroundings:
@@ -200,42 +195,6 @@ def _over_the_ground(flown: list[_Flight]) -> Panel:
     ]
     return Panel(
         x_label="East [m]", y_label="North [m]", title="Over the ground", equal=True, lines=lines
-    )
-
-
-def _distances(flown: list[_Flight]) -> Panel:
-    radii = [flight.radius for flight in flown]
-    distances = [keepout_distance(flight.history, flight.config) for flight in flown]
-    nearest = min(float(np.nanmin(distance)) for distance in distances)
-    late = max(float(np.nanmax(distance[len(distance) // 2 :])) for distance in distances)
-    end = max(float(flight.history["time_s"].iloc[-1]) for flight in flown)
-    limits: dict[float, tuple[str, str]] = {radii[0]: ("keep-out area, r_min", Meaning.LIMIT)}
-    if radii[0] != radii[1]:
-        limits = {
-            flight.radius: (f"r_min of {flight.run.letter}", flight.colour) for flight in flown
-        }
-    levels = [
-        Line(
-            x=np.array([0.0, end]),
-            y=np.array([level, level]),
-            label=label,
-            colour=colour,
-            style="dash",
-        )
-        for level, (label, colour) in limits.items()
-    ]
-    return Panel(
-        x_label="Time [s]",
-        y_label="Distance [m]",
-        title="Distance from the keep-out area’s centre",
-        lines=[
-            *levels,
-            *(
-                flight.over_time(distance)
-                for flight, distance in zip(flown, distances, strict=True)
-            ),
-        ],
-        y_range=(min(0.95 * min(radii), nearest - 2.0), max(_FAR * max(radii), 1.1 * late)),
     )
 
 

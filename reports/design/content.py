@@ -4,24 +4,22 @@ from pathlib import Path
 
 from common.run_layout import DESIGN_RECORD, MODEL
 from reports.design.data import Record, complete, reversal_sentences, speed_range
-from reports.design.loop_charts import loop_charts
-from reports.design.margin_charts import margin_charts
+from reports.design.loop_charts import nichols_chart
+from reports.design.margin_charts import margin_chart
 from reports.design.pole_chart import pole_chart
-from reports.design.response_charts import first_chart, response_charts
+from reports.design.response_charts import first_chart
 from reports.design.tables import (
     envelope_table,
-    extreme_trims,
     pole_table,
     robustness_table,
     step_table,
-    trim_table,
     verification_table,
     weight_table,
     worst_margin_table,
 )
-from reports.design.trim_charts import trim_charts
+from reports.design.trim_charts import trim_map
 from reports.design.verdict import design_verdict
-from reports.document.blocks import Block, Findings, Fold, Heading, Section, Text
+from reports.document.blocks import Block, Findings, Heading, Section, Text
 from reports.errors import ReportError
 from reports.run.run_data import RunData
 
@@ -39,25 +37,24 @@ def design_content(run: RunData) -> Findings:
             " run plume-flight design again"
         )
     design = complete(run.innerloop)
-    bode, nichols = loop_charts(design)
-    more_steps = Fold(title="What else moves in a step", blocks=response_charts(design))
+    nichols = nichols_chart(design)
     sections = [
         _margins(design),
         Section(
             anchor="loops",
             title="Loop shapes",
-            blocks=[nichols, Fold(title="Bode diagrams", blocks=[bode])],
+            blocks=[nichols] if nichols else [],
         ),
         Section(
             anchor="responses",
             title="Step responses",
-            blocks=[step_table(design), Text(reversal_sentences(design)), more_steps],
+            blocks=[step_table(design), Text(reversal_sentences(design))],
         ),
         _equilibria(design),
         Section(anchor="poles", title="Poles", blocks=[pole_chart(design), pole_table(design)]),
         Section(
             anchor="linearisation",
-            title="Is the linear model right?",
+            title="Verification of the linear model",
             nav_title="Linear model",
             blocks=[Text(_VERIFICATION), verification_table(design)],
         ),
@@ -114,12 +111,10 @@ _WEIGHTS = (
 
 
 def _margins(design: Record) -> Section:
-    disk, classical = margin_charts(design)
     blocks: list[Block] = [
         Heading(_NOMINAL.format(**design["required"])),
         worst_margin_table(design),
-        classical,
-        Fold(title="Disk margins", blocks=[disk]),
+        margin_chart(design),
         Heading(_PERTURBED.format(**design["required"])),
         robustness_table(design),
         Text(_EFFECTIVENESS),
@@ -128,22 +123,19 @@ def _margins(design: Record) -> Section:
 
 
 def _equilibria(design: Record) -> Section:
-    envelope, shown = design["envelope"], extreme_trims(design)
-    *climbs, trims = trim_charts(design)
+    envelope = design["envelope"]
     residuals = [float(t["residual"]) for t in design["trims"] if t.get("residual") is not None]
     sizes = (
         [Text(_RESIDUAL.format(count=len(residuals), largest=max(residuals)))] if residuals else []
     )
-    title = "Level flight, the largest banks, and the steepest climb and descent"
     return Section(
         anchor="equilibria",
         title="Equilibria",
         blocks=[
             envelope_table(envelope),
             *(Text(note) for note in envelope["notes"]),
-            trims,
+            trim_map(design),
             *sizes,
-            Fold(title=title, blocks=[*climbs, trim_table(design, shown)]),
         ],
     )
 
@@ -180,4 +172,4 @@ def _elsewhere(root: Path) -> Section:
         commands = "; ".join(f"JSBSim --root=model --script={path}" for path in scripts)
         written = "; ".join(f"{MODEL}/{Path(path).stem}.csv" for path in scripts)
         blocks.append(Text(_FLY.format(commands=commands, written=written)))
-    return Section(anchor="elsewhere", title="Fly it elsewhere", blocks=blocks)
+    return Section(anchor="elsewhere", title="Use in stand-alone JSBSim", blocks=blocks)

@@ -10,9 +10,6 @@ from reports.document.tables import minus
 
 Record = dict[str, Any]
 
-CONTROLS = ("elevator", "aileron", "throttle", "rudder")
-"""Loop breaks at a control; every other loop break is at a measurement."""
-
 TOGETHER = "all controls"
 """The loop break at all controls at once, which has disk margins only."""
 
@@ -148,13 +145,6 @@ def grid_trims(record: Record) -> list[Record]:
         (t for t in record["trims"] if not climbing(t)),
         key=lambda t: (bank_deg(t), t["airspeed_mps"]),
     )
-
-
-def climb_trims(record: Record) -> list[Record]:
-    """Return the wings-level equilibria at the design airspeed, by climb angle."""
-    airspeed = record["design_airspeed_mps"]
-    rows = (t for t in record["trims"] if _same(t["airspeed_mps"], airspeed) and not bank_deg(t))
-    return sorted(rows, key=lambda t: float(t["climb_angle_rad"]))
 
 
 def responses_of(record: Record, command: str) -> list[Record]:

@@ -1,12 +1,10 @@
-"""Figures of the open loops of a design: Bode and Nichols."""
+"""The open loops of a design in Nichols' plane."""
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
-from reports.design.data import CONTROLS, Record, at_middle, loop_name, speed
-from reports.design.loop_styles import LOOP_STYLES, OTHER_LOOP
+from reports.design.data import Record, at_middle, loop_name
 from reports.document.axes import cut_words
 from reports.document.chart import Chart, Line, Panel, circle
 from reports.document.palette import Meaning
@@ -23,22 +21,11 @@ there.
 """
 
 
-_BODE = (
-    "Open loops at {speed} in level flight, one opened at a time and all others closed, with"
-    " servos, engine and computing delay. Dotted: gain 1 and −180 deg."
-)
 _NICHOLS = (
     "The loops in Nichols' plane. Each has to pass the critical point (gain 1, −180 deg) outside"
     " the tinted region, whose corners are the required margins of {gain:g} dB and {phase:g} deg;"
     " its disk margin is dashed."
 )
-
-
-def loop_charts(design: Record) -> list[Chart]:
-    """Return the Bode and the Nichols figure of every loop of the record, or nothing where it has
-    no loops.
-    """
-    return [_bode(design), _nichols(design)] if design["loops"] else []
 
 
 def turned(loop: Record) -> Array:
@@ -67,64 +54,10 @@ def disk_region(gain_margin_db: float) -> tuple[Array, Array]:
     return _CRITICAL + np.degrees(np.angle(factor)), 20.0 * np.log10(np.abs(factor))
 
 
-def _bode(design: Record) -> Chart:
-    groups = [
-        ("Opened at a control", [loop for loop in design["loops"] if loop["loop"] in CONTROLS]),
-        (
-            "Opened at a measurement",
-            [loop for loop in design["loops"] if loop["loop"] not in CONTROLS],
-        ),
-    ]
-    groups = [group for group in groups if group[1]]
-    panels = [
-        *(_bode_panel(loops, title, "gain_db") for title, loops in groups),
-        *(_bode_panel(loops, "", "phase_deg") for _, loops in groups),
-    ]
-    return Chart(
-        name="bode",
-        caption=_BODE.format(speed=speed(design["design_airspeed_mps"])) + cut_words(panels),
-        panels=panels,
-        columns=len(groups),
-        share_x=True,
-        panel_height=0.32,
-    )
-
-
-def _bode_panel(loops: Sequence[Record], title: str, key: str) -> Panel:
-    gain = key == "gain_db"
-    frequency = np.array(loops[0]["frequency_rad_s"])
-    limits = (float(frequency[0]), float(frequency[-1]))
-    lines = [
-        _curve(
-            loop, np.array(loop["frequency_rad_s"]), np.array(loop[key]) if gain else turned(loop)
-        )
-        for loop in loops
-    ]
-    level = 0.0 if gain else _CRITICAL
-    lines.append(
-        Line(x=np.array(limits), y=np.array([level, level]), label="", colour="black", style="dot")
-    )
-    lowest, highest = (
-        min(float(line.y.min()) for line in lines),
-        max(float(line.y.max()) for line in lines),
-    )
-    return Panel(
-        x_label="Frequency [rad/s]",
-        y_label="Gain [dB]" if gain else "Phase [deg]",
-        lines=lines,
-        title=title,
-        log_x=True,
-        x_range=limits,
-        y_range=(-60.0, 60.0) if gain else (max(lowest - 15.0, -540.0), min(highest + 15.0, 180.0)),
-    )
-
-
-def _curve(loop: Record, x: Array, y: Array) -> Line:
-    colour, style = LOOP_STYLES.get(loop["loop"], OTHER_LOOP)
-    return Line(x=x, y=y, label=loop_name(loop), colour=colour, style=style)
-
-
-def _nichols(design: Record) -> Chart:
+def nichols_chart(design: Record) -> Chart | None:
+    """Return the open loops in Nichols' plane, or nothing where the record has no loops."""
+    if not design["loops"]:
+        return None
     disks = {
         row["loop"]: row["disk_gain_db"]
         for row in at_middle(design, design["margins"])

@@ -1,99 +1,75 @@
 """Figures of the margins over the grid of a design."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from reports.design.data import Record, bank_deg, loop_name, loops_of, worst
-from reports.design.loop_styles import LOOP_STYLES, OTHER_LOOP
 from reports.document.axes import cut_words
-from reports.document.chart import Chart, Line, Panel, constant
+from reports.document.chart import Chart, Line, Panel, Style, constant
 from reports.document.palette import Meaning
 
+_LOOP_STYLES: dict[str, tuple[str, Style]] = {
+    "elevator": ("blue", "solid"),
+    "aileron": ("orange", "solid"),
+    "throttle": ("green", "thin"),
+    "rudder": ("plum", "solid"),
+    "altitude": ("blue", "dash"),
+    "heading_rate": ("orange", "dash"),
+    "airspeed": ("green", "dot"),
+    "sideslip": ("plum", "dash"),
+    "all controls": ("black", "solid"),
+}
+"""Colour and style by loop: a measurement has the colour of the control that mostly regulates it,
+dashed or dotted. Blue and green, which are alike in grey, have other styles."""
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Margin:
+_OTHER_LOOP: tuple[str, Style] = ("grey", "solid")
+"""Of a loop that the table does not know."""
+
+
+class _Margin(NamedTuple):
     """A margin to draw: its field, its axis, what is required of it, and above what it no longer
     matters.
     """
 
     key: str
     label: str
-    required: float | None
+    required: float
     ceiling: float
 
 
-def margin_charts(design: Record) -> list[Chart]:
-    """Return the disk margins and the classical margins over airspeed and over bank."""
-    required = design["required"]
-    disk = [
-        _Margin(key="disk_gain_db", label="Disk gain [dB]", required=None, ceiling=25.0),
-        _Margin(key="disk_phase_deg", label="Disk phase [deg]", required=None, ceiling=90.0),
+def margin_chart(design: Record) -> Chart:
+    """Return the classical margins over airspeed and over bank."""
+    rows, required = design["margins"], design["required"]
+    margins = [
+        _Margin("gain_db", "Gain margin [dB]", required["gain_db"], 40.0),
+        _Margin("phase_deg", "Phase margin [deg]", required["phase_deg"], 120.0),
     ]
-    classical = [
-        _Margin(
-            key="gain_db", label="Gain margin [dB]", required=required["gain_db"], ceiling=40.0
-        ),
-        _Margin(
-            key="phase_deg",
-            label="Phase margin [deg]",
-            required=required["phase_deg"],
-            ceiling=120.0,
-        ),
-    ]
-    return [
-        _chart(
-            design,
-            "diskmargins",
-            disk,
-            "Disk margins of each loop: gain and phase may change together by so much. “All"
-            " controls”: in every control at once, each for itself.",
-        ),
-        _chart(
-            design,
-            "classicalmargins",
-            classical,
-            "Classical margins: gain alone or phase alone, of one loop, all others closed. A loop"
-            " without a curve has no such margin: no change of its gain, or of its phase, makes it"
-            " unstable.",
-        ),
-    ]
-
-
-def _chart(design: Record, name: str, margins: Sequence[_Margin], caption: str) -> Chart:
-    rows = design["margins"]
     panels = [_panel(rows, margin, over_bank=False) for margin in margins]
-    over_bank = len({bank_deg(row) for row in rows}) > 1
-    if over_bank:
+    if len({bank_deg(row) for row in rows}) > 1:
         panels += [_panel(rows, margin, over_bank=True) for margin in margins]
-        caption += (
-            " Above, the worst over bank at each airspeed; below, the worst over airspeed at each"
-            " bank."
-        )
-    if any(row["between"] for row in rows):
-        caption += (
-            " Diamonds, and rings of dashed and dotted loops: at points between those of the grid"
-            " and at the largest bank, for which nothing was designed."
-        )
     return Chart(
-        name=name, caption=caption + cut_words(panels), panels=panels, columns=2, panel_height=0.21
+        name="classicalmargins",
+        caption=_CAPTION + cut_words(panels),
+        panels=panels,
+        columns=2,
+        panel_height=0.21,
     )
+
+
+_CAPTION = (
+    "Classical margins: gain alone or phase alone, of one loop, all others closed; the worst over"
+    " bank at each airspeed, and over airspeed at each bank. A loop without a curve has no such"
+    " margin. Diamonds, and rings of dashed and dotted loops: at points between those of the grid"
+    " and at the largest bank, for which nothing was designed."
+)
 
 
 def _panel(rows: Sequence[Record], margin: _Margin, *, over_bank: bool) -> Panel:
     at = np.array(sorted({_abscissa(row, over_bank=over_bank) for row in rows}))
-    lines = []
-    if margin.required is not None:
-        lines.append(
-            Line(
-                x=at,
-                y=constant(at, margin.required),
-                label="required",
-                colour=Meaning.LIMIT,
-                style="dash",
-            )
-        )
+    required = constant(at, margin.required)
+    lines = [Line(x=at, y=required, label="required", colour=Meaning.LIMIT, style="dash")]
     for loop in loops_of(rows):
         own = [row for row in rows if row["loop"] == loop]
         lines += _curve(
@@ -124,7 +100,7 @@ def _curve(rows: Sequence[Record], key: str, *, over_bank: bool, between: bool) 
     }
     if not least:
         return []
-    colour, style = LOOP_STYLES.get(rows[0]["loop"], OTHER_LOOP)
+    colour, style = _LOOP_STYLES.get(rows[0]["loop"], _OTHER_LOOP)
     return [
         Line(
             x=np.array(list(least)),

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from reports.design.data import FAST, Record, speed
-from reports.document.chart import Chart, Line, Note, Panel
+from reports.document.chart import Chart, Line, Note, Panel, upright
 from reports.document.palette import series_colour
 
 _SLOW = 1.5
@@ -96,15 +96,7 @@ def _rays(
     x_range: tuple[float, float], y_range: tuple[float, float], reach: float
 ) -> tuple[list[Line], list[Note]]:
     """Return the rays of equal damping with their figures, and the limit of stability."""
-    lines = [
-        Line(
-            x=np.zeros(2),
-            y=np.array([0.0, y_range[1]]),
-            label="limit of stability",
-            colour="black",
-            style="dash",
-        )
-    ]
+    lines = [upright(0.0, (0.0, y_range[1]), "limit of stability", "black")]
     notes = []
     for ratio in _DAMPING_RATIOS:
         direction = np.array([-ratio, math.sqrt(1.0 - ratio**2)])

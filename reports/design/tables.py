@@ -1,19 +1,15 @@
 """Tables of a design."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable
 from typing import Any
 
 from reports.design.data import (
+    TOGETHER,
     Record,
-    bank_deg,
     case_name,
-    climb_trims,
-    climbing,
     damping,
     down,
-    grid_trims,
-    is_effect,
     loop_name,
     loops_of,
     responses_of,
@@ -23,136 +19,81 @@ from reports.design.data import (
     worst,
 )
 from reports.document.blocks import Table
-from reports.document.tables import minus, number, pairs_table
+from reports.document.tables import Cell, minus, number, pairs_table, rows_table
 
 
 def worst_margin_table(design: Record) -> Table:
     """Return the least of each margin of each loop over the grid and between its points, and where
     that is.
     """
-    rows = []
-    for loop in loops_of(design["margins"]):
-        own = [row for row in design["margins"] if row["loop"] == loop]
-        gain, phase, disk = (worst(own, key) for key in ("gain_db", "phase_deg", "disk_gain_db"))
-        rows.append(
-            [
-                loop_name(own[0]),
-                *_margin_cells(gain, "gain_db", loop),
-                *_margin_cells(phase, "phase_deg", loop),
-                down(disk["disk_gain_db"]) if disk else "∞",
-                down(disk["disk_phase_deg"]) if disk else "∞",
-                where(disk) if disk else "",
-            ]
-        )
-    head = [
-        "Loop opened at",
-        "Gain [dB]",
-        "at",
-        "Phase [deg]",
-        "at",
-        "Disk gain [dB]",
-        "Disk phase [deg]",
-        "at",
+    rows = [
+        {"name": loop_name(own[0])}
+        | {key: worst(own, key) for key in ("gain_db", "phase_deg", "disk_gain_db")}
+        | {"classical": loop != TOGETHER}
+        for loop in loops_of(design["margins"])
+        if (own := [row for row in design["margins"] if row["loop"] == loop])
     ]
-    return Table(head=head, rows=rows, widths=[1.15, 0.85, 1.35, 0.95, 1.35, 1.1, 1.1, 1.35])
+    cells = [
+        Cell("Loop opened at", "name", width=1.15),
+        Cell("Gain [dB]", _margin("gain_db"), width=0.85),
+        Cell("at", _where("gain_db"), width=1.35),
+        Cell("Phase [deg]", _margin("phase_deg"), width=0.95),
+        Cell("at", _where("phase_deg"), width=1.35),
+        Cell("Disk gain [dB]", _margin("disk_gain_db"), width=1.1),
+        Cell("Disk phase [deg]", _margin("disk_gain_db", "disk_phase_deg"), width=1.1),
+        Cell("at", _where("disk_gain_db"), width=1.35),
+    ]
+    return rows_table(rows, cells)
 
 
-def _margin_cells(row: Record | None, key: str, loop: str) -> list[str]:
-    if row is None:
-        return ["–" if loop == "all controls" else "∞", ""]
-    return [down(row[key]), where(row)]
+def _margin(key: str, shown: str = "") -> Callable[[Record], str]:
+    """Return what writes a margin; one without a value is unlimited, and all controls together have
+    no classical one.
+    """
+
+    def cell(of: Record) -> str:
+        if of[key]:
+            return down(of[key][shown or key])
+        return "∞" if of["classical"] or key == "disk_gain_db" else "–"
+
+    return cell
+
+
+def _where(key: str) -> Callable[[Record], str]:
+    return lambda of: where(of[key]) if of[key] else ""
 
 
 def robustness_table(design: Record) -> Table:
     """Return the least margins of any loop under each perturbation, and where they are."""
     required = design["required"]
-    rows = []
-    for case in dict.fromkeys(row["case"] for row in design["robustness"]):
-        own = [row for row in design["robustness"] if row["case"] == case]
-        gain, phase = worst(own, "gain_db"), worst(own, "phase_deg")
-        short = short_of(own, "gain_db", required["perturbed_gain_db"]) + short_of(
-            own, "phase_deg", required["perturbed_phase_deg"]
-        )
-        rows.append(
-            [
-                case_name(own[0]),
-                *_perturbed(gain, "gain"),
-                *_perturbed(phase, "phase"),
-                "no" if short else "yes",
-            ]
-        )
-    head = ["Perturbation", "Gain [dB]", "of", "at", "Phase [deg]", "of", "at", "Met"]
-    return Table(head=head, rows=rows, widths=[1.8, 0.75, 0.9, 1.15, 0.95, 0.9, 1.15, 0.4])
-
-
-def _perturbed(row: Record | None, name: str) -> list[str]:
-    key = "gain_db" if name == "gain" else "phase_deg"
-    return (
-        [down(row[key]), str(row[f"{name}_loop"]).replace("_", " "), where(row)]
-        if row
-        else ["∞", "", ""]
-    )
-
-
-def extreme_trims(design: Record) -> list[Record]:
-    """Return the equilibria in level flight, at the largest banks, and in the steepest climb and
-    descent.
-    """
-    grid = grid_trims(design)
-    banks = sorted({bank_deg(t) for t in grid})
-    chosen = [t for t in grid if bank_deg(t) in {banks[0], 0.0, banks[-1]}]
-    climbs = climb_trims(design)
-    steepest = [t for t in (climbs[0], climbs[-1]) if climbing(t)] if climbs else []
-    return [*sorted(chosen, key=lambda t: (t["airspeed_mps"], bank_deg(t))), *steepest]
-
-
-def trim_table(design: Record, chosen: Sequence[Record]) -> Table:
-    """Return a table of equilibria, with the columns that all of them have."""
-    columns = _trim_columns(design, chosen)
-    limits = any(t.get("limits") for t in chosen)
     rows = [
-        [_cell(t, *column) for column in columns] + ["; ".join(t.get("limits", []))] * limits
-        for t in chosen
+        {
+            "name": case_name(own[0]),
+            "gain_db": worst(own, "gain_db"),
+            "phase_deg": worst(own, "phase_deg"),
+            "classical": True,
+            "short": short_of(own, "gain_db", required["perturbed_gain_db"])
+            + short_of(own, "phase_deg", required["perturbed_phase_deg"]),
+        }
+        for case in dict.fromkeys(row["case"] for row in design["robustness"])
+        if (own := [row for row in design["robustness"] if row["case"] == case])
     ]
-    return Table(
-        head=[title for title, _, _ in columns] + ["At a limit"] * limits,
-        rows=rows,
-        widths=[1.0] * len(columns) + [2.2] * limits,
-        left_columns=0,
-        breakable=True,
-    )
-
-
-def _trim_columns(design: Record, trims: Sequence[Record]) -> list[tuple[str, str, float]]:
-    """Return title, field and scale of each column that every equilibrium has."""
-    degrees = math.degrees(1.0)
-    columns = [
-        ("Airspeed [m/s]", "airspeed_mps", 1.0),
-        ("Bank [deg]", "bank_rad", degrees),
-        ("Climb [deg]", "climb_angle_rad", degrees),
-        ("α [deg]", "alpha_rad", degrees),
-        ("β [deg]", "sideslip_rad", degrees),
-        ("θ [deg]", "pitch_rad", degrees),
-        ("Yaw rate [rad/s]", "yaw_rate_rad_s", 1.0),
-        *(
-            (_control_head(design, name), name, 1.0)
-            for name in ("elevator", "aileron", "rudder", "throttle")
-        ),
+    cells = [
+        Cell("Perturbation", "name", width=1.8),
+        Cell("Gain [dB]", _margin("gain_db"), width=0.75),
+        Cell("of", _loop("gain"), width=0.9),
+        Cell("at", _where("gain_db"), width=1.15),
+        Cell("Phase [deg]", _margin("phase_deg"), width=0.95),
+        Cell("of", _loop("phase"), width=0.9),
+        Cell("at", _where("phase_deg"), width=1.15),
+        Cell("Met", lambda of: "no" if of["short"] else "yes", width=0.4),
     ]
-    if not any(climbing(t) for t in trims):
-        columns = [column for column in columns if column[1] != "climb_angle_rad"]
-    return [column for column in columns if all(column[1] in t for t in trims)]
+    return rows_table(rows, cells)
 
 
-def _control_head(design: Record, name: str) -> str:
-    return f"{name.capitalize()}{' effect' if is_effect(design, name) else ''} [-]"
-
-
-def _cell(trim: Record, title: str, key: str, scale: float) -> str:
-    """Return a figure of an equilibrium; ``z`` makes a zero of what is rounded to minus zero."""
-    forms = {"airspeed_mps": "z.1f", "bank_rad": "z.0f", "climb_angle_rad": "z.1f"}
-    form = forms.get(key, "z.2f" if "[deg]" in title else "z.3f")
-    return minus(f"{scale * trim[key]:{form}}")
+def _loop(kind: str) -> Callable[[Record], str]:
+    key = {"gain": "gain_db", "phase": "phase_deg"}[kind]
+    return lambda of: _words(of[key][f"{kind}_loop"]) if of[key] else ""
 
 
 def pole_table(design: Record) -> Table:
@@ -166,66 +107,48 @@ def pole_table(design: Record) -> Table:
             for point in design["poles"]
             for pole in point[kind]
         ]
-        slowest = max(poles, key=lambda item: item[1][0])
         swinging = [item for item in poles if item[1][1] > 0.0]
         least = min(swinging, key=lambda item: damping(item[1]), default=None)
-        cells = [
-            name,
-            minus(f"{slowest[1][0]:.3g}"),
-            where(slowest[0]),
-            minus(f"{damping(least[1]):.2f}") if least else "–",
-            f"{math.hypot(*least[1]):.2f}" if least else "–",
-            where(least[0]) if least else "",
-        ]
-        rows.append(cells)
-    head = ["", "Largest real part [1/s]", "at", "Least damping [-]", "Frequency [rad/s]", "at"]
-    return Table(
-        caption=(
-            "The slowest and the least damped pole, with and without the autopilot, and where"
-            " they are."
-        ),
-        head=head,
-        rows=rows,
-        widths=[1.3, 1.2, 1.2, 1.1, 1.1, 1.2],
-    )
+        slowest = max(poles, key=lambda item: item[1][0])
+        rows.append({"name": name, "slowest": slowest, "least": least})
+    cells = [
+        Cell("", "name", width=1.3),
+        Cell("Largest real part [1/s]", lambda of: of["slowest"][1][0], "{:.3g}", 1.2),
+        Cell("at", lambda of: where(of["slowest"][0]), width=1.2),
+        Cell("Least damping [-]", lambda of: of["least"] and damping(of["least"][1]), "{:.2f}"),
+        Cell("Frequency [rad/s]", lambda of: of["least"] and math.hypot(*of["least"][1]), "{:.2f}"),
+        Cell("at", lambda of: where(of["least"][0]) if of["least"] else "", width=1.2),
+    ]
+    return rows_table(rows, cells, caption=_POLES)
+
+
+_POLES = (
+    "The slowest and the least damped pole, with and without the autopilot, and where they are."
+)
 
 
 def step_table(design: Record) -> Table:
     """Return what the steps show."""
-    rows = [
-        [
-            f"{response['command'].replace('_', ' ')}, " + minus(f"{response['size']:g}"),
-            "reference model" if response["kind"] == "model" else str(response["kind"]),
-            number(response["rise_time_s"], "{:.2f}"),
-            f"{100 * response['overshoot']:.1f}",
-            *(
-                _moved(response, channel)
-                for channel in ("altitude_largest_m", "airspeed_largest_mps")
-            ),
-        ]
-        for command in dict.fromkeys(response["command"] for response in design["responses"])
-        for response in responses_of(design, command)
+    commands = dict.fromkeys(response["command"] for response in design["responses"])
+    cells = [
+        Cell("Step [rad/s, m/s, m]", _step, width=1.4),
+        Cell("", lambda of: "reference model" if of["kind"] == "model" else of["kind"], width=1.1),
+        Cell("Rise 10–90 % [s]", "rise_time_s", "{:.2f}", 1.2),
+        Cell("Overshoot [%]", lambda of: 100.0 * of["overshoot"], "{:.1f}"),
+        Cell("Altitude moves [m]", _moved("altitude_largest_m"), "{:.3f}", 1.25),
+        Cell("Airspeed moves [m/s]", _moved("airspeed_largest_mps"), "{:.3f}", 1.5),
     ]
-    head = [
-        "Step [rad/s, m/s, m]",
-        "",
-        "Rise 10–90 % [s]",
-        "Overshoot [%]",
-        "Altitude moves [m]",
-        "Airspeed moves [m/s]",
-    ]
-    return Table(
-        caption="What the steps show.",
-        head=head,
-        rows=rows,
-        widths=[1.4, 1.1, 1.2, 1.0, 1.25, 1.5],
-        left_columns=2,
-    )
+    rows = [response for command in commands for response in responses_of(design, command)]
+    return rows_table(rows, cells, caption="What the steps show.", left_columns=2)
 
 
-def _moved(response: Record, key: str) -> str:
-    """Return how far a quantity moves; a reference model has no such quantity."""
-    return "–" if response["kind"] == "model" else number(response.get(key), "{:.3f}")
+def _step(response: Record) -> str:
+    return f"{_words(response['command'])}, " + minus(f"{response['size']:g}")
+
+
+def _moved(key: str) -> Callable[[Record], float | None]:
+    """Return what says how far a quantity moves; a reference model has no such quantity."""
+    return lambda of: None if of["kind"] == "model" else of.get(key)
 
 
 def verification_table(design: Record) -> Table:

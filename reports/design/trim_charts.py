@@ -1,4 +1,4 @@
-"""Figures of the equilibria of a design: over airspeed and bank, and over the climb angle."""
+"""The equilibria of a design over airspeed and bank."""
 
 import math
 from collections.abc import Sequence
@@ -9,13 +9,11 @@ import numpy as np
 from reports.design.data import (
     Record,
     bank_deg,
-    climb_trims,
     control_axis,
     grid_trims,
     is_effect,
-    speed,
 )
-from reports.document.chart import Chart, Line, Panel, Style
+from reports.document.chart import Chart, Line, Panel, Style, across, upright
 from reports.document.palette import Meaning, series_colour
 from reports.document.tables import minus
 
@@ -61,21 +59,6 @@ def _control(design: Record, name: str) -> _Quantity:
     return _Quantity(key=name, label=control_axis(design, name), limits=limits[0] if limits else ())
 
 
-def trim_charts(design: Record) -> list[Chart]:
-    """Return the equilibria of straight climbs and descents where the record has some, and the trim
-    map.
-    """
-    climbs = climb_trims(design)
-    return [
-        *(
-            [_climb_chart(design, climbs)]
-            if len({t["climb_angle_rad"] for t in climbs}) > 1
-            else []
-        ),
-        trim_map(design),
-    ]
-
-
 def trim_map(design: Record) -> Chart:
     """Return the equilibria over airspeed, a curve for each bank."""
     trims = grid_trims(design)
@@ -119,16 +102,10 @@ def _map_panel(design: Record, trims: Sequence[Record], quantity: _Quantity) -> 
         rows = [t for t in trims if bank_deg(t) == bank]
         style: Style = "solid" if bank >= 0.0 else "dash"
         label = minus(f"bank {bank:+g}°") if bank else "level"
-        lines.append(
-            _line(
-                rows, "airspeed_mps", quantity, label, series_colour(sizes.index(abs(bank))), style
-            )
-        )
+        lines.append(_line(rows, quantity, label, series_colour(sizes.index(abs(bank))), style))
     at_limit = [t for t in trims if t.get("limits")]
     if at_limit:
-        lines.append(
-            _line(at_limit, "airspeed_mps", quantity, "at a limit", Meaning.LIMIT, "diamonds")
-        )
+        lines.append(_line(at_limit, quantity, "at a limit", Meaning.LIMIT, "diamonds"))
     y_range = _limits_of(lines, quantity)
     airspeeds = [float(t["airspeed_mps"]) for t in trims]
     lines += _limit_lines(quantity, y_range, (min(airspeeds), max(airspeeds)))
@@ -146,9 +123,9 @@ def _map_panel(design: Record, trims: Sequence[Record], quantity: _Quantity) -> 
 
 
 def _line(
-    rows: Sequence[Record], over: str, quantity: _Quantity, label: str, colour: str, style: Style
+    rows: Sequence[Record], quantity: _Quantity, label: str, colour: str, style: Style
 ) -> Line:
-    x = np.array([float(row[over]) for row in rows])
+    x = np.array([float(row["airspeed_mps"]) for row in rows])
     y = quantity.scale * np.array([float(row[quantity.key]) for row in rows])
     return Line(x=x, y=y, label=label, colour=colour, style=style)
 
@@ -171,10 +148,7 @@ def _limit_lines(
 ) -> list[Line]:
     shown = [limit for limit in quantity.limits if y_range[0] < limit[0] < y_range[1]]
     ends = np.array(x_range)
-    return [
-        Line(x=ends, y=np.array([at, at]), label=label, colour=Meaning.LIMIT, style=_STYLES[label])
-        for at, label in shown
-    ]
+    return [across(ends, at, label, style=_STYLES[label]) for at, label in shown]
 
 
 def _envelope_lines(
@@ -188,35 +162,7 @@ def _envelope_lines(
     # A stall far below the grid would push the curves to the edge.
     reach = x_range[0] - 0.5 * (x_range[1] - x_range[0])
     return [
-        Line(x=np.array([at, at]), y=np.array(y_range), label=label, colour="grey", style=style)
+        upright(at, y_range, label, "grey", style)
         for at, label, style in marks
         if at is not None and at >= reach
     ]
-
-
-def _climb_chart(design: Record, climbs: Sequence[Record]) -> Chart:
-    trims = [{**t, "climb_deg": math.degrees(t["climb_angle_rad"])} for t in climbs]
-
-    def panel(quantity: _Quantity) -> Panel:
-        lines = [_line(trims, "climb_deg", quantity, "equilibria", "blue", "solid")]
-        at_limit = [t for t in trims if t.get("limits")]
-        if at_limit:
-            lines.append(
-                _line(at_limit, "climb_deg", quantity, "at a limit", Meaning.LIMIT, "diamonds")
-            )
-        y_range = _limits_of(lines, quantity)
-        lines += _limit_lines(quantity, y_range, (trims[0]["climb_deg"], trims[-1]["climb_deg"]))
-        return Panel(
-            x_label="Climb angle [deg]", y_label=quantity.label, lines=lines, y_range=y_range
-        )
-
-    return Chart(
-        name="climbs",
-        caption=f"Straight climbs and descents at {speed(design['design_airspeed_mps'])}.",
-        panels=[
-            panel(quantity)
-            for quantity in (_ALPHA, _control(design, "elevator"), _control(design, "throttle"))
-        ],
-        columns=3,
-        panel_height=0.28,
-    )

@@ -5,6 +5,7 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -15,8 +16,12 @@ _FAR = 10_000.0
 """Distances from which axes are in kilometres [m]."""
 
 _MANTISSAS: tuple[tuple[float, ...], ...] = (
-    (1,), (1, 3), (1, 2, 5), (1, 2, 3, 4, 5, 6, 7, 8, 9), tuple(tenth / 10.0 for tenth in range(10, 100))
-)  # fmt: skip
+    (1,),
+    (1, 3),
+    (1, 2, 5),
+    (1, 2, 3, 4, 5, 6, 7, 8, 9),
+    tuple(tenth / 10.0 for tenth in range(10, 100)),
+)
 """Figures at which a logarithmic axis is marked, the fewest first."""
 
 _MARKS_MIN, _MARKS_MAX = 3, 8
@@ -44,16 +49,16 @@ def in_kilometres(panel: Panel) -> Panel:
     y = _reach([np.array(panel.y_range)] if panel.y_range else [line.y for line in panel.lines])
     if panel.equal:
         x = y = max(x, y)
-    if x >= _FAR and not panel.log_x and panel.x_label.endswith("[m]"):
-        lines = [replace(line, x=line.x / 1000.0) for line in panel.lines]
-        notes = [replace(note, x=note.x / 1000.0) for note in panel.notes]
-        label, limits = panel.x_label.replace("[m]", "[km]"), _thousandth(panel.x_range)
-        panel = replace(panel, lines=lines, notes=notes, x_label=label, x_range=limits)
-    if y >= _FAR and not panel.log_y and panel.y_label.endswith("[m]"):
-        lines = [replace(line, y=line.y / 1000.0) for line in panel.lines]
-        notes = [replace(note, y=note.y / 1000.0) for note in panel.notes]
-        label, limits = panel.y_label.replace("[m]", "[km]"), _thousandth(panel.y_range)
-        panel = replace(panel, lines=lines, notes=notes, y_label=label, y_range=limits)
+    for axis, reach, log in (("x", x, panel.log_x), ("y", y, panel.log_y)):
+        label, limits = getattr(panel, f"{axis}_label"), getattr(panel, f"{axis}_range")
+        if reach >= _FAR and not log and label.endswith("[m]"):
+            lines = [replace(of, **{axis: getattr(of, axis) / 1000.0}) for of in panel.lines]
+            notes = [replace(of, **{axis: getattr(of, axis) / 1000.0}) for of in panel.notes]
+            new: dict[str, Any] = {
+                f"{axis}_label": label.replace("[m]", "[km]"),
+                f"{axis}_range": limits and (limits[0] / 1000.0, limits[1] / 1000.0),
+            }
+            panel = replace(panel, lines=lines, notes=notes, **new)
     return panel
 
 
@@ -134,7 +139,9 @@ def wrapped(label: str, room: float) -> list[str]:
 
 
 def mark_text(value: float) -> str:
-    """Return a mark of a logarithmic axis in digits, or as a power of ten where it would have many."""
+    """Return a mark of a logarithmic axis in digits, or as a power of ten where it would have
+    many.
+    """
     if 1e-4 < value < 1e5:
         return f"{value:g}"
     mantissa, _, exponent = f"{value:.0e}".partition("e")
@@ -167,7 +174,3 @@ def cut_words(panels: Sequence[Panel]) -> str:
 def _reach(curves: list[Array]) -> float:
     known = [np.abs(curve[np.isfinite(curve)]) for curve in curves]
     return max((float(curve.max()) for curve in known if len(curve)), default=0.0)
-
-
-def _thousandth(limits: tuple[float, float] | None) -> tuple[float, float] | None:
-    return (limits[0] / 1000.0, limits[1] / 1000.0) if limits else None

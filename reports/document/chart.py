@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from reports.document.palette import FILL_OPACITY
+from reports.document.palette import FILL_OPACITY, Meaning
 from reports.run.columns import Array
 
 Style = Literal[
@@ -200,3 +200,44 @@ def circle(radius: float) -> tuple[Array, Array]:
 def constant(x: Array, value: float) -> Array:
     """Return ``value`` at every x."""
     return np.full(len(x), value)
+
+
+def across(
+    ends: Array, value: float, label: str, colour: str = Meaning.LIMIT, style: Style = "dash"
+) -> Line:
+    """Return a level line between two abscissae."""
+    return Line(x=ends, y=np.full(2, value), label=label, colour=colour, style=style)
+
+
+def upright(
+    value: float,
+    ends: Sequence[float],
+    label: str,
+    colour: str = Meaning.LIMIT,
+    style: Style = "dash",
+) -> Line:
+    """Return an upright line between two ordinates."""
+    y = np.asarray(ends, dtype=np.float64)
+    return Line(x=np.full(2, value), y=y, label=label, colour=colour, style=style)
+
+
+def between(
+    x: Array,
+    low: Array,
+    high: Array,
+    label: str,
+    colour: str,
+    style: Style = "thin",
+    *,
+    opacity: float = FILL_OPACITY,
+) -> Line:
+    """Return what lies between two curves, tinted."""
+    return Line(
+        x=np.append(x, x[::-1]),
+        y=np.append(low, high[::-1]),
+        label=label,
+        colour=colour,
+        style=style,
+        fill=True,
+        opacity=opacity,
+    )

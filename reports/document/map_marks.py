@@ -49,8 +49,8 @@ _BAR = 0.18
 
 
 def hull_line(hull: Hull, angle: float, x: float = 0.0, y: float = 0.0) -> Line:
-    """Return a ship, her funnel at a place and her bow at an angle: to scale, or pale and dotted
-    where her size is not known.
+    """Return a ship, its funnel at a place and its bow at an angle: to scale, or pale and dotted
+    where its size is not known.
     """
     right, ahead = (np.array(side) for side in zip(*(*_HULL, _HULL[0]), strict=True))
     across, along = hull.beam * right + hull.aside, hull.length * (ahead - hull.funnel)

@@ -69,7 +69,10 @@ def missing_sections(run: RunData) -> list[Section]:
         ]
         for name in names[:_LISTED_MAX]
     ]
-    text = f"{len(names)} {'files' if len(names) > 1 else 'file'} of this directory cannot be shown; {_remedy(run)} again."
+    text = (
+        f"{len(names)} {'files' if len(names) > 1 else 'file'} of this directory cannot be shown;"
+        f" {_remedy(run)} again."
+    )
     table = Table(
         caption="Files that are gone or cannot be read.",
         head=["File", "State", "What is not shown"],

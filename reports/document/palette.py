@@ -44,7 +44,7 @@ class Meaning(StrEnum):
     GUARD_LOST = "plum"
     """The keep-out guard could not hold its own radius."""
     SHIP = "black"
-    """The ship, and where she went."""
+    """The ship, and where it went."""
     PLUME = "grey"
     """The plume: its axis and its width."""
 

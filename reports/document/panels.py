@@ -1,21 +1,17 @@
 """Panels with a marker per flight, or of the flights counted."""
 
-import itertools
 import math
 from collections.abc import Sequence
 
 import numpy as np
 
-from reports.document.chart import Line, Panel
+from reports.document.chart import Line, Panel, across, upright
 from reports.document.palette import Meaning
 from reports.document.tables import limit
 from reports.run.columns import Array, Mask
 
 Group = tuple[Mask, str, str]
 """Which flights have markers of a name and a colour."""
-
-CLASS_COLOURS = ("sky", "blue", "plum", "black")
-"""From the least to the most, ever darker."""
 
 COUNTED_MIN = 5
 """Flights that are counted at least: fewer are seen one by one in a table."""
@@ -35,38 +31,6 @@ _NAMED = 3
 
 _SPARE = 1.15
 """Largest ordinate that is shown, over the highest marker, where none is cut."""
-
-
-def classes(values: Array, bounds: Sequence[float], what: str, unit: str) -> list[Group]:
-    """Return which values lie in each class, its name and its colour. What is not a number lies in
-    none.
-
-    Parameters
-    ----------
-    values, bounds : three bounds make four classes
-    what, unit : for the names
-    """
-    names = [
-        f"{what} below {bounds[0]:g} {unit}",
-        *(f"{low:g} to {high:g} {unit}" for low, high in itertools.pairwise(bounds)),
-        f"above {bounds[-1]:g} {unit}",
-    ]
-    place = np.where(np.isfinite(values), np.searchsorted(bounds, values, side="right"), -1)
-    return [
-        (place == i, name, colour)
-        for i, (name, colour) in enumerate(zip(names, CLASS_COLOURS, strict=True))
-    ]
-
-
-def quartiles(values: Array, step: float) -> list[float]:
-    """Return three rising bounds that part the values into four about equal shares, each a multiple
-    of ``step``.
-    """
-    known = values[np.isfinite(values)]
-    found = np.round(np.quantile(known, [0.25, 0.5, 0.75]) / step) if len(known) else np.zeros(3)
-    first, second, third = (float(v) for v in found)
-    second = max(second, first + 1.0)
-    return [step * first, step * second, step * max(third, second + 1.0)]
 
 
 def points(x: Array, y: Array, groups: Sequence[Group]) -> list[Line]:
@@ -125,13 +89,7 @@ def beyond_label(values: Array, unit: str, what: str = "") -> str:
 
 def level(x: Array, value: float, label: str, colour: str = Meaning.LIMIT) -> Line:
     """Return a dashed line across a panel whose abscissae are ``x``."""
-    return Line(
-        x=np.array(around(x) or (0.0, 1.0)),
-        y=np.array([value, value]),
-        label=label,
-        colour=colour,
-        style="dash",
-    )
+    return across(np.array(around(x) or (0.0, 1.0)), value, label, colour)
 
 
 def around(x: Array) -> tuple[float, float] | None:
@@ -149,8 +107,8 @@ def around(x: Array) -> tuple[float, float] | None:
 def histogram(
     series: Sequence[tuple[Array, str, str]],
     x_label: str,
-    upright: Sequence[tuple[float, str]] = (),
-    upright_colour: str = Meaning.LIMIT,
+    marked: Sequence[tuple[float, str]] = (),
+    marked_colour: str = Meaning.LIMIT,
 ) -> Panel | None:
     """Return a panel that counts flights by a figure, or None if fewer than ``COUNTED_MIN`` have
     it.
@@ -159,32 +117,21 @@ def histogram(
     ----------
     series : figures of the same flights, name and colour
     x_label : of the figure
-    upright, upright_colour : values to be marked, by name, and their colour
+    marked, marked_colour : values to be marked, by name, and their colour
     """
     known = [values[np.isfinite(values)] for values, _, _ in series]
     if max(map(len, known), default=0) < COUNTED_MIN:
         return None
     every = np.concatenate(known)
     edges = np.histogram_bin_edges(every, bins=min(_BINS, math.ceil(2.0 * math.sqrt(len(every)))))
-    marked = np.array([value for value, _ in upright])
     lines, most = [], 1
     for values, label, colour in series:
         counts, _ = np.histogram(values[np.isfinite(values)], edges)
         most = max(most, int(counts.max()))
         outline = np.concatenate([[0.0], np.repeat(counts, 2), [0.0]])
         lines.append(Line(x=np.repeat(edges, 2), y=outline, label=label, colour=colour, fill=True))
-    for value, label in upright:
-        mark = np.array([value, value])
-        lines.append(
-            Line(
-                x=mark,
-                y=np.array([0.0, 1.05 * most]),
-                label=label,
-                colour=upright_colour,
-                style="dash",
-            )
-        )
-    x_range, y_range = around(np.append(edges, marked)), (0.0, 1.08 * most)
+    lines += [upright(value, (0.0, 1.05 * most), label, marked_colour) for value, label in marked]
+    x_range, y_range = around(np.append(edges, [value for value, _ in marked])), (0.0, 1.08 * most)
     return Panel(
         x_label=x_label,
         y_label="Flights",
@@ -201,7 +148,7 @@ def strips(
     x_label: str,
     y_label: str,
     groups: Sequence[Group],
-    upright: Sequence[tuple[float, str]],
+    marked: Sequence[tuple[float, str]],
     *,
     named: bool,
 ) -> Panel:
@@ -212,7 +159,7 @@ def strips(
     values, kinds : of each flight
     x_label, y_label : of the figure, and of the kinds where these are named
     groups : as in ``points``
-    upright : values to be marked, by name
+    marked : values to be marked, by name
     named : whether the rows have their names, which a panel to the right of one that has needs not
     """
     rows = list(dict.fromkeys(kinds))
@@ -221,17 +168,14 @@ def strips(
         members = np.flatnonzero(place == row)
         place[members] += np.linspace(-_SPREAD, _SPREAD, len(members)) if len(members) > 1 else 0.0
     lines = points(values, place, groups)
-    reach = np.array([-0.6, len(rows) - 0.4])
-    lines += [
-        Line(x=np.array([value, value]), y=reach, label=label, colour=Meaning.LIMIT, style="dash")
-        for value, label in upright
-    ]
+    reach = (-0.6, len(rows) - 0.4)
+    lines += [upright(value, reach, label) for value, label in marked]
     names = [(len(rows) - 1.0 - i, row if named else "") for i, row in enumerate(rows)]
     return Panel(
         x_label=x_label,
         y_label=y_label if named else "",
         lines=lines,
-        x_range=around(np.append(values, [value for value, _ in upright])),
-        y_range=(float(reach[0]), float(reach[1])),
+        x_range=around(np.append(values, [value for value, _ in marked])),
+        y_range=reach,
         y_names=names,
     )

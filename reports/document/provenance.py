@@ -89,7 +89,10 @@ def _vehicle(run: RunData) -> list[list[str]]:
     ):
         rows.append(["Aircraft", str(config.get("aircraft", "unknown"))])
     if config.get("fidelity") in ("kinematic", "both"):
-        words = "Equation (1) of the paper: it has the commanded speed at once, and is steered by its heading rate."
+        words = (
+            "Equation (1) of the paper: it has the commanded speed at once, and is steered by its"
+            " heading rate."
+        )
         rows.append(["Kinematic vehicle", words])
     return rows
 

@@ -9,8 +9,10 @@ from reports.run.columns import Array
 from reports.run.ship import Hull
 
 COLUMNS = (
-    "north", "east", "altitude", "airspeed", "heading", "pitch", "roll", "reference_north", "reference_east", "vessel_north",
-    "vessel_east", "vessel_heading", "plume_axis", "wind_north", "wind_east", "apparent_drift", "gas",
+    "north", "east", "altitude", "airspeed", "heading", "pitch", "roll", "reference_north",
+    "reference_east", "vessel_north",
+    "vessel_east", "vessel_heading", "plume_axis", "wind_north", "wind_east", "apparent_drift",
+    "gas",
 )  # fmt: skip
 """What a scene knows at each of its times."""
 
@@ -23,8 +25,8 @@ class Event(NamedTuple):
 
 
 class OtherTrack(NamedTuple):
-    """Another ship: her name, the radius that is kept from her [m], her place at each sample, north
-    and east, shape (n,) [m], her heading [rad], and the samples between which her track is known.
+    """Another ship: its name, the radius that is kept from it [m], its place at each sample, north
+    and east, shape (n,) [m], its heading [rad], and the samples between which its track is known.
     """
 
     name: str
@@ -82,7 +84,8 @@ class Scene:
     keepout_shape : "sphere" or "cylinder", or one of ``HULL_SHAPES``
     outline : of the hull, where the keep-out area is about it
     source_height : of the stack's mouth above the sea [m]
-    plume_length, plume_rise : how far a plume without smoke is drawn [m], and how much it climbs [-]
+    plume_length, plume_rise : how far a plume without smoke is drawn [m], and how much it climbs
+        [-]
     hull : its shape
     gas : what the track is coloured by, or None
     estimate : of the fuel's sulphur, or None

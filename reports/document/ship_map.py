@@ -1,4 +1,6 @@
-"""Maps about a ship: her hull to scale, her plume up the page, the keep-out area, wind and north."""
+"""Maps about a ship: its hull to scale, its plume up the page, the keep-out area, wind and
+north.
+"""
 
 import math
 from collections.abc import Sequence
@@ -12,58 +14,13 @@ from reports.run.columns import Array
 from reports.run.ship import Hull
 from reports.run.surroundings import Surroundings
 
-AREA, SHIP, PLUME = "keep-out area", "ship", "plume"
-"""What a map is about, as legends begin and as captions name it."""
-
-_SEEN = 0.03
-"""Size of what a caption names at least, over the width of its panel: some five points, as of the
-marks on a track.
-"""
-
-_POINTS = 500
-"""Points of a line that are looked at."""
-
-
 _EDGE_POINTS = 181
 """Points of the edge of a keep-out area about a hull."""
 
 
-def seen(panels: Sequence[Panel]) -> list[str]:
-    """Return which of ship, keep-out area and plume are large enough on any of some maps to be seen
-    there.
-    """
-    return [
-        what
-        for what in (SHIP, AREA, PLUME)
-        if any(_large(line, of) for of in panels for line in of.lines if _is(line, what))
-    ]
-
-
-def _is(line: Line, what: str) -> bool:
-    """Return whether a line is of the ship, the area or the plume: not the track of the ship, nor a
-    place on the plume's axis.
-    """
-    return line.label.startswith((f"{what}, ", *(["plume's axis"] if what == PLUME else [])))
-
-
-def _large(line: Line, panel: Panel) -> bool:
-    """Return whether the part of a line that lies within its panel is large enough to be seen."""
-    # Between its points, too: an axis has two.
-    at, every = np.arange(len(line.x)), np.linspace(0.0, len(line.x) - 1.0, _POINTS)
-    x, y = np.interp(every, at, line.x), np.interp(every, at, line.y)
-    (left, right), (bottom, top) = (
-        panel.x_range or (x.min(), x.max()),
-        panel.y_range or (y.min(), y.max()),
-    )
-    inside = (left <= x) & (x <= right) & (bottom <= y) & (y <= top)
-    return bool(
-        inside.any() and max(np.ptp(x[inside]), np.ptp(y[inside])) >= _SEEN * (right - left)
-    )
-
-
 def ship_lines(about: Surroundings, up: float, x: float = 0.0, y: float = 0.0) -> list[Line]:
     """Return keep-out area, plume and ship, on a page on which the course ``up`` [rad] is up, with
-    her funnel at a place.
+    its funnel at a place.
     """
     right, along = area_outline(about, about.heading - up)
     plume = about.plume
@@ -99,7 +56,7 @@ def ship_panel(
     shown: Sequence[Line] = (),
     aspect: float = 1.0,
 ) -> Panel:
-    """Return a map about the ship with her plume up the page.
+    """Return a map about the ship with its plume up the page.
 
     Parameters
     ----------
@@ -111,8 +68,8 @@ def ship_panel(
     """
     every = [*ship_lines(about, about.axis), *lines]
     panel = Panel(
-        x_label="Right of the plume's axis [m]",
-        y_label="Along it [m]",
+        x_label="Across the plume [m]",
+        y_label="Behind the stack [m]",
         title=title,
         lines=every,
         notes=notes,
@@ -123,38 +80,29 @@ def ship_panel(
     )
 
 
-def ship_words(*about: Surroundings, panels: Sequence[Panel] | None = None) -> str:
-    """Return what maps about the ship show, one or several side by side, for a caption.
-
-    Parameters
-    ----------
-    about : of each
-    panels : the maps, where some of ship, keep-out area and plume may lie outside of them; None
-        where all is inside
+def ship_words(*about: Surroundings) -> str:
+    """Return what maps about the ship show, one or several side by side, for a caption, given what
+    was about each.
     """
-    shown = (SHIP, AREA, PLUME) if panels is None else seen(panels)
     hulls = "; or ".join(hull_words(hull) for hull in dict.fromkeys(of.hull for of in about))
-    smoke, changing = (
-        PLUME in shown and any(of.plume.smoke for of in about),
-        any(of.changing for of in about),
-    )
-    width = (
-        " Its width is two standard deviations of the mean smoke to either side." if smoke else ""
-    )
-    told = "; ".join([_area_words(about)] * (AREA in shown) + [hulls] * (SHIP in shown))
-    still = "Ship, north and wind are" if SHIP in shown else "North and wind are"
-    moved = f" {still} as they were at the closest approach." if changing else ""
+    area = _area_words(about)
     return (
-        f"Seen from the ship, with the axis of her plume up the page.{width}"
-        + (f" {told[0].upper()}{told[1:]}." if told else "")
-        + moved
+        f"{SEEN_FROM}{_SMOKE * any(of.plume.smoke for of in about)}"
+        f" {area[0].upper()}{area[1:]}; {hulls}.{_CHANGING * any(of.changing for of in about)}"
     )
+
+
+SEEN_FROM = "Seen from the ship, with the axis of its plume up the page."
+"""What a caption says of maps on which neither ship nor keep-out area need be in sight."""
+
+_SMOKE = " Its width is two standard deviations of the mean smoke to either side."
+_CHANGING = " Ship, north and wind are as they were at the closest approach."
 
 
 def _area_words(about: Sequence[Surroundings]) -> str:
     """Return what the keep-out area is about."""
     shapes = " or ".join(dict.fromkeys(of.shape for of in about if of.outline is None))
-    words = [f"the keep-out {shapes} is about the funnel"] if shapes else []
+    words = [f"the keep-out {shapes} is about the stack"] if shapes else []
     if any(of.outline is not None for of in about):
         words.append(
             "the keep-out area is what is within r_min of the hull, the rectangle about the ship"
@@ -166,7 +114,7 @@ def hull_words(hull: Hull) -> str:
     """Return how large a ship is drawn, and why."""
     size = f"{hull.length:g} m by {hull.beam:g} m"
     if hull.given:
-        return f"her hull is {size}"
+        return f"its hull is {size}"
     if hull.known:
         return f"the scenario gives no hull: that of {hull.title}, {size}, is drawn"
     return f"the scenario gives no hull: {hull.title} of {size} is drawn"

@@ -2,7 +2,13 @@
 
 
 def state_words(
-    what: str, done: int, planned: int, *, is_done: bool, interrupted: bool
+    what: str,
+    done: int,
+    planned: int,
+    *,
+    is_done: bool,
+    interrupted: bool,
+    missing: str = "its end",
 ) -> list[str]:
     """Return the state of a run as the first sentence of its headline; nothing where all is done.
 
@@ -12,10 +18,11 @@ def state_words(
     done, planned : numbers of items
     is_done : whether everything that was planned is done
     interrupted : whether the run ended before
+    missing : what is, where all items are done
     """
     if is_done:
         return []
     word = "INTERRUPTED" if interrupted else "INCOMPLETE"
     if done == planned:
-        return [f"{word} before its end"]
+        return [f"{word} before {missing}"]
     return [f"{word} after {done:,} of {planned:,} {what}"]

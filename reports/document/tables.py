@@ -2,14 +2,13 @@
 
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
 
-from common.provenance import without_folders
-from reports.document.blocks import Block, Card, Fold, Table
+from reports.document.blocks import Card, Table
 from reports.run.columns import Array
 from reports.run.run_data import RunData
 
@@ -61,51 +60,6 @@ def pairs_table(
     """
     return Table(
         head=["", ""], rows=rows, widths=list(widths), left_columns=2, prose=True, **others
-    )
-
-
-def parameter_blocks(run: RunData, sampled: Mapping[str, str] | None = None) -> list[Block]:
-    """Return the parameters of the run that differ from their defaults, and behind a fold all; of
-    those that are ``sampled`` how, by their keys.
-    """
-    known = sampled or {}
-    every = [
-        [
-            p["key"],
-            known.get(p["key"]) or parameter_value(p["value"], p["key"]),
-            p["unit"],
-            in_symbols(p["meaning"]),
-        ]
-        for p in run.manifest["parameters"]
-    ]
-    own = [
-        row
-        for row, p in zip(every, run.manifest["parameters"], strict=True)
-        if p["key"] in known or "default" not in p or p["value"] != p["default"]
-    ]
-    brief = [row[:-1] for row in own]
-    return [
-        _parameter_table("Parameters that differ from their defaults.", brief),
-        Fold(
-            title="Every parameter",
-            blocks=[_parameter_table("Every parameter, with its unit and meaning.", every)],
-        ),
-    ]
-
-
-def _parameter_table(caption: str, rows: list[list[str]]) -> Table:
-    """Return parameters with their units and, where rows have them, their meanings."""
-    head, widths = ["Parameter", "Value", "Unit", "Meaning and equation"], [2.7, 1.9, 0.7, 3.6]
-    is_brief = all(len(row) < len(head) for row in rows)
-    shown = head[:-1] if is_brief else head
-    return Table(
-        caption=caption,
-        head=shown,
-        rows=rows,
-        widths=[2.6, 5.0, 0.7] if is_brief else widths,
-        left_columns=len(shown),
-        prose=True,
-        breakable=True,
     )
 
 
@@ -183,13 +137,6 @@ def beside_limit(value: float, bound: float, digits: int = 3) -> str:
     return minus(text)
 
 
-_RANGES = {
-    "start.distance_m", "reports.interval_s", "fault.at_s", "criteria.crossing_interval_s", "criteria.crossing_distance_m",
-    "following.source_height_m", "following.load", "speed_ratio", "search.mutation",
-}  # fmt: skip
-"""Keys with a lower and an upper limit; other lists of two figures are two values, or a place."""
-
-
 def vehicle_flown(run: RunData) -> str:
     """Return the vehicle of a run, to go on a sentence with."""
     fidelity = run_config(run).get("fidelity")
@@ -260,40 +207,3 @@ def ending(row: "pd.Series[Any]") -> str:
     return (
         words if row["outcome"] == "completed" else re.split(f";|{_ADVICE}", words, maxsplit=1)[0]
     )
-
-
-def parameter_value(value: Any, key: str = "") -> str:
-    """Return the value of a parameter in words; some lists mean a range, which their key tells."""
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    if isinstance(value, list):
-        # The entries of a list have the keys of one.
-        between = " to " if re.sub(r"\.\d+\.", ".", key) in _RANGES else ", "
-        return between.join(_entry_in_words(entry) for entry in value) or "none"
-    if isinstance(value, Mapping):
-        return ", ".join(f"{name} = {_in_braces(of, name)}" for name, of in value.items()) or "none"
-    return (
-        "not set"
-        if value is None
-        else f"{value:g}"
-        if isinstance(value, float)
-        else without_folders(str(value)) or "none"
-    )
-
-
-def _in_braces(value: Any, key: str) -> str:
-    """Return a value in a table in words, of a table in braces: they show where it ends."""
-    words = parameter_value(value, key)
-    return f"{{ {words} }}" if isinstance(value, Mapping) and value else words
-
-
-def _entry_in_words(entry: Any) -> str:
-    """Return an entry of a list: of a table by its name, of a draw by the key that is drawn and
-    how.
-    """
-    if not isinstance(entry, Mapping):
-        return parameter_value(entry)
-    if "name" in entry:
-        return str(entry["name"]).replace("_", " ")
-    settings = (f"{name} {parameter_value(of)}" for name, of in entry.items() if name != "key")
-    return " ".join([str(entry.get("key", "")), *settings]).strip()

@@ -93,7 +93,7 @@ class GeographicFlight:
     readings : of the sniffer at each sample, by the name of their column of ``READINGS``; none
         without a sniffer
     history, row : everything that was recorded at each sample, and its row of the summary
-    vessel, vessel_heading : the ship, or none, and where her bow points from true north, at rest as
+    vessel, vessel_heading : the ship, or none, and where its bow points from true north, at rest as
         before [deg]
     plume_end : a point of the plume's axis, ``PLUME_LENGTH`` from the funnel, or none
     source_height : of the funnel above mean sea level, as ``Body.altitude`` [m]

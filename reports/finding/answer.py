@@ -1,5 +1,5 @@
-"""The answer to a search for the plume: in how many flights it was found, how soon, and how often it
-was hit, beside flights that were told where it is and those that stayed at the predicted height.
+"""The answer to a search for the plume: in how many flights it was found, how soon, and how often
+it was hit, beside flights that were told where it is and those that stayed at the predicted height.
 """
 
 import numpy as np
@@ -35,7 +35,7 @@ def search_cards(run: RunData) -> list[Card]:
     if not variants:
         return []
     own, *others = variants
-    flown, latest = _flown(run), float(np.quantile(own.times, 0.95, method="inverted_cdf"))
+    flown = _flown(run)
     criterion = run.verdict.whole.criterion("time_to_find_s")
     judged = (f"within {criterion.limits[0]:g} s", criterion.met) if criterion.judged else ()
     beside = ", ".join(f"{of.name} {hits_words(of)}" for of in others)
@@ -44,7 +44,7 @@ def search_cards(run: RunData) -> list[Card]:
         Card(
             "Time to find it, median",
             f"{_median(own)} s",
-            note=f"95 % quantile {seconds_words(latest)} s",
+            note=f"95 % quantile {seconds_words(own.latest)} s",
         ),
         Card("Passes that hit it, once found", hits_words(own), note=beside),
     ]

@@ -3,7 +3,7 @@
 import numpy as np
 
 from measurement.estimate.verdict import COVERAGE
-from reports.document.chart import Chart, Line, Panel, circle
+from reports.document.chart import Chart, Line, Panel, between, circle
 from reports.document.palette import Meaning
 from reports.finding.search_view import ESTIMATED, Ellipse, SearchView
 from reports.run.columns import column
@@ -29,20 +29,32 @@ def height_chart(view: SearchView, name: str) -> Chart:
     )
     known = np.isfinite(height)
     time, height, reach = time[known], height[known], COVERAGE * deviation[known]
+    crossed = view.time[view.crossings], view.axis_height[view.crossings]
     lines = [
-        Line(x=np.append(time, time[::-1]), y=np.append(height - reach, (height + reach)[::-1]), label="believed, 95 %",
-             colour="black", style="thin", fill=True),
-        Line(x=column(rows, "time_s"), y=column(rows, "altitude_m"), label="flown", colour=Meaning.FLOWN),
+        between(time, height - reach, height + reach, "believed, 95 %", "black"),
+        Line(
+            x=column(rows, "time_s"),
+            y=column(rows, "altitude_m"),
+            label="flown",
+            colour=Meaning.FLOWN,
+        ),
         Line(x=time, y=height, label="believed, mean", colour="black", style="dash"),
-        Line(x=view.time[view.crossings], y=view.axis_height[view.crossings], label="plume's mean axis, where it was crossed",
-             colour=Meaning.PLUME, style="diamonds"),
-    ]  # fmt: skip
+        Line(
+            x=crossed[0],
+            y=crossed[1],
+            label="plume's mean axis, where it was crossed",
+            colour=Meaning.PLUME,
+            style="diamonds",
+        ),
+    ]
     panel = Panel(
         x_label="Time [s]", y_label="Height above the sea [m]", lines=lines, bands=view.modes()
     )
     caption = (
-        "Height of the plume's axis as it was believed after each pass, with its 95 % interval, and as it was; the altitude that"
-        " was flown. Tinted: what the guidance was doing; untinted it had found the plume, was on its way to the orbit, or was in a"
+        "Height of the plume's axis as it was believed after each pass, with its 95 % interval, and"
+        " as it was; the altitude that"
+        " was flown. Tinted: what the guidance was doing; untinted it had found the plume, was on"
+        " its way to the orbit, or was in a"
         " mode without a part in the search."
     )
     return Chart(name=f"search-height-{name}", caption=caption, panels=[panel], panel_height=0.42)
@@ -75,14 +87,16 @@ def section_chart(view: SearchView, name: str) -> Chart | None:
         *_outline(believed, "believed, ±σ", "black", dashed=True),
     ]
     panel = Panel(
-        x_label="Right of the plume's axis, seen from the ship [m]",
+        x_label="Across the plume, seen from the ship [m]",
         y_label="Height above the sea [m]",
         lines=lines,
         x_range=(true[0] - reach, true[0] + reach),
     )
     caption = (
-        "Readings in the plume's cross-section, seen from the ship along the apparent wind, each where its air was taken in:"
-        " earlier by the sensor's delay and mean lag. Ellipses: the mean axis where it was crossed last and the spread of the plume"
+        "Readings in the plume's cross-section, seen from the ship along the apparent wind, each"
+        " where its air was taken in:"
+        " earlier by the sensor's delay and mean lag. Ellipses: the mean axis where it was crossed"
+        " last and the spread of the plume"
         " at one moment, and what was believed of both at the end."
     )
     return Chart(

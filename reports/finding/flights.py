@@ -54,7 +54,10 @@ def _whole(trial: Trial, name: Name, *, only: bool) -> list[Block]:
         return []
     heights = height_table(variants)
     missed = variants[0].rows[variants[0].times > FOUND_WITHIN]
-    unfound = f"Not found within {FOUND_WITHIN:g} s: {'; '.join(name(row) for _, row in missed[:_NAMED_MAX].iterrows())}"
+    unfound = (
+        f"Not found within {FOUND_WITHIN:g} s:"
+        f" {'; '.join(name(row) for _, row in missed[:_NAMED_MAX].iterrows())}"
+    )
     more = f" and {len(missed) - _NAMED_MAX} more" if len(missed) > _NAMED_MAX else ""
     return [
         *([] if only else [Heading(trial.title)]),
@@ -115,7 +118,8 @@ def _told(row: "pd.Series[Any]") -> str:
         believed = f"believed {abs(error):.1f} m too {'high' if error > 0.0 else 'low'}"
         sure = f"± {COVERAGE * row['axis_height_deviation_3min_m']:.1f} m (95 %)"
         words.append(
-            f"after 3 minutes its height of {row['axis_height_3min_m']:.1f} m was {believed}, {sure}"
+            f"after 3 minutes its height of {row['axis_height_3min_m']:.1f} m was {believed},"
+            f" {sure}"
         )
     if np.isfinite(hits := float(row.get("hit_rate_found", np.nan))):
         words.append(f"{100.0 * hits:.0f} % of the passes since then hit it")

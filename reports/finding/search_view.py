@@ -22,8 +22,12 @@ ESTIMATED = "axis_height_estimated_m"
 """Column of the time history that a flight has if it searched."""
 
 _MODES = {
-    "searching": "orange", "lost again": "plum", "sensor failed": "black", "departing": "green", "holding off": "grey",
-}  # fmt: skip
+    "searching": "orange",
+    "lost again": "plum",
+    "sensor failed": "black",
+    "departing": "green",
+    "holding off": "grey",
+}
 """Modes of a search other than that it has found the plume, and their colours: categories, and none
 that of the flight.
 """
@@ -127,9 +131,11 @@ class SearchView:
         )
         offset, height, across, up = estimate
         _, along = about_the_plume(self.history)
-        expected = math.atan2(*(
-            float((column(rows, f"wind_{of}_mps") - column(rows, f"vessel_velocity_{of}_mps"))[0]) for of in ("east", "north")
-        ))  # fmt: skip
+        east, north = (
+            float(column(rows, f"wind_{of}_mps")[0] - column(rows, f"vessel_velocity_{of}_mps")[0])
+            for of in ("east", "north")
+        )
+        expected = math.atan2(east, north)
         turned = expected - float(column(rows, "plume_axis_rad")[0])
         return offset + float(along[self.crossings[-1]]) * math.sin(turned), height, across, up
 

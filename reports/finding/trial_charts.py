@@ -1,14 +1,10 @@
-"""Figures of the searches of a trial: how soon plumes were found, how often they were hit, and how
-well their height was known.
-"""
+"""Figures of the searches of a trial: how soon plumes were found, and how often they were hit."""
 
 import numpy as np
 import pandas as pd
 
-from measurement.estimate.verdict import COVERAGE
 from measurement.plume.fluctuating_plume import FOUND_WITHIN, HIT, passes
 from reports.document.chart import Chart, Line, Panel
-from reports.document.panels import histogram
 from reports.finding.variants import Variant
 from reports.run.columns import Array, column
 from reports.run.trials import Trial
@@ -19,42 +15,19 @@ _HISTORIES_MAX = 40
 _STRETCH = 30.0
 """Time over which the hits of all flights are counted together [s]."""
 
-_ERROR_TOLD = (
-    "Error of the axis' height after 3 minutes over its stated standard deviation: between the dashed lines the 95 % interval holds"
-    " the truth."
-)
-
 
 def finding_charts(trial: Trial, variants: list[Variant]) -> list[Chart]:
-    """Return the figures of the searches of a trial, of those that have something to show."""
-    panels = [_found_panel(variants), _hits_panel(trial, variants)]
-    shown = [panel for panel in panels if panel is not None]
-    charts = [
-        Chart(
-            name=f"{trial.name}-detection",
-            caption="Share of flights that have found their plume over the time since they reached their orbit, and share of the"
-            f" passes that hit it, peak above {HIT:g} of the plume's axis, in stretches of {_STRETCH:g} s.",
-            panels=shown,
-            columns=len(shown),
-            panel_height=0.38,
-        )
-    ]
-    times, error = _times_panel(variants[0]), _error_panel(variants)
-    known = [panel for panel in (times, error) if panel is not None]
-    if known:
-        told = ["Time to find the plume."] if times is not None else []
-        told += [_ERROR_TOLD] if error is not None else []
-        name = f"{trial.name}-search-errors"
-        charts.append(
-            Chart(
-                name=name,
-                caption=" ".join(told),
-                panels=known,
-                columns=len(known),
-                panel_height=0.38,
-            )
-        )
-    return charts
+    """Return how soon plumes were found, and how often they were hit from then on."""
+    panels = [_found_panel(variants), *_hits_panel(trial, variants)]
+    name = f"{trial.name}-detection"
+    return [Chart(name=name, caption=_FOUND, panels=panels, columns=len(panels), panel_height=0.38)]
+
+
+_FOUND = (
+    "Share of flights that have found their plume over the time since they reached their orbit, and"
+    f" share of the passes that hit it, peak above {HIT:g} of the plume's axis, in stretches of"
+    f" {_STRETCH:g} s."
+)
 
 
 def _found_panel(variants: list[Variant]) -> Panel:
@@ -84,7 +57,7 @@ def _found_panel(variants: list[Variant]) -> Panel:
     )
 
 
-def _hits_panel(trial: Trial, variants: list[Variant]) -> Panel | None:
+def _hits_panel(trial: Trial, variants: list[Variant]) -> list[Panel]:
     lines = []
     for variant in variants:
         times, hits = hits_over_time(trial, variant.rows)
@@ -99,16 +72,13 @@ def _hits_panel(trial: Trial, variants: list[Variant]) -> Panel | None:
             lines.append(
                 Line(x=x, y=y, label=variant.name, colour=variant.colour, style=variant.style)
             )
-    return (
-        Panel(
-            x_label="Time since the orbit was reached [s]",
-            y_label="Passes that hit [-]",
-            lines=lines,
-            y_range=(0.0, 1.03),
-        )
-        if lines
-        else None
+    panel = Panel(
+        x_label="Time since the orbit was reached [s]",
+        y_label="Passes that hit [-]",
+        lines=lines,
+        y_range=(0.0, 1.03),
     )
+    return [panel] if lines else []
 
 
 def hits_over_time(trial: Trial, rows: pd.DataFrame) -> tuple[Array, Array]:
@@ -130,44 +100,3 @@ def hits_over_time(trial: Trial, rows: pd.DataFrame) -> tuple[Array, Array]:
             times.append(float(time[(at.start + at.stop) // 2 if at.stop < len(time) else -1]))
             hits.append(float(np.max(fraction[at]) > HIT))
     return np.array(times), np.array(hits)
-
-
-def _times_panel(variant: Variant) -> Panel | None:
-    times = variant.times
-    return histogram(
-        [(times[np.isfinite(times)], variant.name, variant.colour)], "Time to find the plume [s]"
-    )
-
-
-def _error_panel(variants: list[Variant]) -> Panel | None:
-    lines, most = [], 0.0
-    for variant in variants:
-        error, deviation = (
-            column(variant.rows, f"axis_height_{of}_3min_m") for of in ("error", "deviation")
-        )
-        known = np.isfinite(error) & np.isfinite(deviation)
-        if known.any():
-            lines.append(
-                Line(
-                    x=deviation[known],
-                    y=error[known],
-                    label=variant.name,
-                    colour=variant.colour,
-                    style=variant.marker,
-                )
-            )
-            most = max(most, 1.05 * float(np.max(deviation[known])))
-    ends = np.array([0.0, most])
-    interval = [
-        Line(x=ends, y=side * COVERAGE * ends, label="95 % interval", colour="black", style="dash")
-        for side in (1.0, -1.0)
-    ]
-    return (
-        Panel(
-            x_label="Stated standard deviation [m]",
-            y_label="Height believed minus true [m]",
-            lines=[*lines, *interval],
-        )
-        if lines
-        else None
-    )

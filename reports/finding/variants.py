@@ -15,11 +15,6 @@ from reports.run.trials import AS_IN_THE_STUDY, Trial, read_trials
 _SEVERAL = 2
 """Flights of which there is a share that found the plume."""
 
-_MARKERS: tuple[Style, ...] = ("diamonds", "square", "ring")
-"""Markers of comparisons, in their order: told apart in grey. Those of the study's own flights are
-points.
-"""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Variant:
@@ -27,7 +22,7 @@ class Variant:
 
     Attributes
     ----------
-    name, colour, style, marker : in tables and in figures
+    name, colour, style : in tables and in figures
     rows : of the flights that reached their orbit
     """
 
@@ -35,7 +30,6 @@ class Variant:
     colour: str
     rows: pd.DataFrame
     style: Style = "solid"
-    marker: Style = "points"
 
     @property
     def times(self) -> Array:
@@ -48,6 +42,13 @@ class Variant:
     def found(self) -> int:
         """Number of flights that found the plume."""
         return int(np.isfinite(self.times).sum())
+
+    @property
+    def latest(self) -> float:
+        """Time within which 95 % of the flights found the plume [s]: that of a flight, as there is
+        nothing between a time and never.
+        """
+        return float(np.quantile(self.times, 0.95, method="inverted_cdf"))
 
     def share_found(self, within: float) -> float:
         """Return the share of flights that found the plume within a time [s]; at least one flight
@@ -82,7 +83,6 @@ def variants_of(trial: Trial) -> list[Variant]:
             name=name.replace("_", " "),
             colour=VARIANTS[i % len(VARIANTS)],
             style=VARIANT_STYLES[i % len(VARIANT_STYLES)],
-            marker=_MARKERS[i % len(_MARKERS)],
             rows=_on_orbit(compared[compared["variant"] == name]),
         )
         for i, name in enumerate(names)

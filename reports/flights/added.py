@@ -1,4 +1,6 @@
-"""Figures that users' instruments and studies add: tables, and panels over what was swept or counted."""
+"""Figures that users' instruments and studies add: tables, and panels over what was swept or
+counted.
+"""
 
 from collections.abc import Sequence
 from dataclasses import replace

@@ -16,10 +16,9 @@ from reports.flights.answers import kept_out_and_finished
 from reports.flights.comparison import comparison_section
 from reports.flights.first_page import flights_in_words, telling_and_typical
 from reports.flights.names import flight_name, flown_elsewhere, swept_column, told_name
-from reports.flights.parameter_tables import parameter_blocks
+from reports.flights.parameter_tables import trial_parameters
 from reports.flights.selection import flight_section
 from reports.flights.trials.charts import trial_charts
-from reports.flights.trials.crossing_gaps import gap_lines
 from reports.flights.trials.failures import tracking_lines
 from reports.flights.trials.tables import (
     criteria_table,
@@ -62,18 +61,20 @@ def flights_content(run: RunData, answer: Answer = kept_out_and_finished) -> Fin
         *added_sections(run, trials, name),
         comparison_section(run, trials),
     ]
-    of_probabilities = [*monte_carlo_sections(run), *falsification_sections(run)]
+    of_probabilities, of_worst = monte_carlo_sections(run), falsification_sections(run)
     # Whether these flights keep out is then not the question.
     is_search = bool(searching_variants(run))
     asks_otherwise = is_of_the_method(run) or is_search
     if is_search:
         of_fuel = [folded(of) for of in of_fuel]
     if asks_otherwise:
-        of_probabilities, of_flights = (
-            [folded(of) for of in sections] for sections in (of_probabilities, of_flights)
-        )
+        of_probabilities = [folded(of) for of in of_probabilities]
+    # Flights that a search leads are no sample, and say nothing by how they are spread.
+    if asks_otherwise or of_worst:
+        of_flights = [folded(of) for of in of_flights]
     sections = [
         *of_probabilities,
+        *of_worst,
         *of_search,
         *of_fuel,
         _overview(trials),
@@ -89,7 +90,7 @@ def flights_content(run: RunData, answer: Answer = kept_out_and_finished) -> Fin
             anchor="parameters",
             title="Parameters",
             blocks=[
-                *parameter_blocks(run, trials),
+                *trial_parameters(run, trials),
                 *design_words(run),
             ],
         ),
@@ -119,8 +120,10 @@ def _overview(trials: list[Trial]) -> Section:
     if len(trials) == 1:
         return Section(anchor="trials", title="Criteria", blocks=criteria)
     meaning = (
-        "Completed: the aircraft came through, settled, and flew the crossings that were asked for, or one at least. Met: it kept"
-        " out, completed, and met every other criterion. Kept out: known to have kept out to its end. Distances are from the"
+        "Completed: the aircraft came through, settled, and flew the crossings that were asked for,"
+        " or one at least. Met: it kept"
+        " out, completed, and met every other criterion. Kept out: known to have kept out to its"
+        " end. Distances are from the"
         " keep-out sphere's centre, or horizontal where the keep-out area is a cylinder."
     )
     return Section(
@@ -135,13 +138,7 @@ def _trial(trial: Trial, *, only: bool) -> Section:
     # Page 1 says of a flight alone what a table of one row would.
     if len(trial.rows) > 1 and (trial.swept or (only and len(trial.rows) <= _LISTED_MAX)):
         head, name = swept_column(trial) if trial.swept else ("Flight", partial(flight_name, trial))
-        caption = " ".join(
-            [
-                "The flights, a row each, with their outcome.",
-                *tracking_lines(trial),
-                *gap_lines(trial),
-            ]
-        )
+        caption = " ".join(["The flights, a row each, with their outcome.", *tracking_lines(trial)])
         table.append(
             flight_table(
                 trial.run,

@@ -35,7 +35,7 @@ _NAME_MAX = 30
 """Letters of a flight's name that there is room for above its picture."""
 
 _STEADY = 0.005
-"""Change of the speed ratio up to which a vessel keeps her speed and course [-]."""
+"""Change of the speed ratio up to which a vessel keeps its speed and course [-]."""
 
 _MINUTES_MIN = 2.0
 """Time of flight from which on it is told in minutes [min]."""
@@ -48,7 +48,10 @@ def flights_in_words(run: RunData, flown: pd.DataFrame) -> str:
     """Return what was flown: flights and hours, vehicle, vessel and air; without a full stop."""
     if not len(flown):
         return "No flight was flown"
-    flights = f"{len(flown):,} flight{'s' * (len(flown) > 1)} ({simulated(flown)}) of {vehicle_flown(run)}"
+    flights = (
+        f"{len(flown):,} flight{'s' * (len(flown) > 1)} ({simulated(flown)}) of"
+        f" {vehicle_flown(run)}"
+    )
     vessel = column(flown, "vessel_speed_mps")
     if not np.isfinite(vessel).any():
         return f"{flights}, about a circle without a vessel"
@@ -64,7 +67,10 @@ def flights_in_words(run: RunData, flown: pd.DataFrame) -> str:
     some = f", in {len(levels):,} of them," * (len(levels) < len(flown))
     gusty = f" and{some} {' or '.join(map(str, levels.unique()))} turbulence" if len(levels) else ""
     manoeuvres = np.any(column(flown, "nu_max") - column(flown, "nu_min") > _STEADY)
-    return f"{flights}, beside a vessel at {_range(vessel)} m/s{' at the start' * bool(manoeuvres)}, in {air}{gusty}"
+    return (
+        f"{flights}, beside a vessel at {_range(vessel)} m/s{' at the start' * bool(manoeuvres)},"
+        f" in {air}{gusty}"
+    )
 
 
 def simulated(flown: pd.DataFrame) -> str:
@@ -109,26 +115,21 @@ def telling_and_typical(trials: Sequence[Trial]) -> Chart | None:
     chosen = {telling: first} | ({"Typical": typical} if typical != first else {})
     beyond = radii_differ(rows)
     names = {what: told_name(*flown[place]) for what, place in chosen.items()}
-    # Longer names would touch above the panels; a flight that is alone has none there.
-    if len(chosen) == 1 or any(len(name) > _NAME_MAX for name in names.values()):
-        above, below = dict.fromkeys(names, ""), names
-    else:
-        above, below = names, dict.fromkeys(names, "")
     shown = [
-        (*flown[place], _panel_title(flown[place][1], what, above[what], beyond=beyond))
+        (*flown[place], _panel_title(flown[place][1], what, names[what], beyond=beyond))
         for what, place in chosen.items()
     ]
-    told = _told(recorded, below, median=median, beyond=beyond)
+    told = _told(recorded, names, median=median, beyond=beyond)
     return track_picture(shown, told=told * (len(flown) > 1))
 
 
 def _panel_title(row: "pd.Series[Any]", what: str, name: str, *, beyond: bool) -> str:
-    """Return what a flight is shown for, its name unless that is empty, and how near it came."""
+    """Return what a flight is shown for, its name unless that is long, and how near it came."""
     distance, radius = float(row["min_distance_m"]), float(row["keepout_radius_m"])
     nearest = f"{approach(distance, radius)} m"
     if beyond:
         nearest = f"{approach(distance - radius, 0.0)} m beyond r_min"
-    return f"{what}: {name}, {nearest}" if name else f"{what}: {nearest}"
+    return f"{what}: {name}, {nearest}" if len(name) <= _NAME_MAX else f"{what}: {nearest}"
 
 
 def _first_recorded(trials: Sequence[Trial]) -> Chart | None:
@@ -150,9 +151,7 @@ def _first_recorded(trials: Sequence[Trial]) -> Chart | None:
 
 
 def _told(recorded: Mask, names: Mapping[str, str], *, median: bool, beyond: bool) -> str:
-    """Return which flights are shown, with those names that are not empty, whether the typical one
-    is the median, and of what.
-    """
+    """Return which flights are shown, whether the typical one is the median, and of what."""
     of = "" if recorded.all() else " of those with a time history"
     what = "least distance beyond its own r_min" if beyond else "closest approach"
     near = (
@@ -165,6 +164,4 @@ def _told(recorded: Mask, names: Mapping[str, str], *, median: bool, beyond: boo
         "Closest": f"the flight with the {what}{of}",
         "Typical": near,
     }
-    return "".join(
-        f" {what}: {f'{name}, ' if name else ''}{meanings[what]}." for what, name in names.items()
-    )
+    return "".join(f" {what}: {name}, {meanings[what]}." for what, name in names.items())

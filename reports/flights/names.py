@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from reports.document.tables import parameter_value
+from reports.document.parameters import manoeuvre_name, parameter_value
 from reports.monte_carlo.names import input_name, input_unit
 from reports.run.columns import column
 from reports.run.trials import Trial
@@ -158,22 +158,9 @@ def _swept(trial: Trial, key: str, value: Any) -> str:
     words = _value(key, value, _numbers(trial, key))
     if key == "nu":
         return f"ν = {words}"
-    # Of words some say nothing by themselves, nor does one that another key of the sweep has too.
-    return (
-        f"{input_name(key)} {words}"
-        if _is_number(value) or words in _BARE or _shared(trial, key, words)
-        else words
-    )
-
-
-def _shared(trial: Trial, key: str, words: str) -> bool:
-    """Return whether another key is swept over these words, too."""
-    return any(
-        words == _value(of, value)
-        for of, values in trial.swept.items()
-        if of not in (key, "nu")
-        for value in values
-    )
+    # A word may be that of another key, or say nothing by itself.
+    bare = _is_number(value) or len(trial.swept) > 1 or words in _BARE
+    return f"{input_name(key)} {words}" if bare else words
 
 
 def _value(key: str, value: Any, among: tuple[float, ...] = ()) -> str:
@@ -208,11 +195,6 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, Number) and not isinstance(value, bool)
 
 
-def manoeuvre_name(manoeuvres: list[dict[str, Any]]) -> str:
-    """Return what a vessel does, in a few words."""
-    return ", then ".join(_one_manoeuvre(manoeuvre) for manoeuvre in manoeuvres) or "none"
-
-
 def manoeuvres_flown(trial: Trial) -> list[str] | None:
     """Return what the vessel did in each flight that was flown, in a few words; None where no table
     says all of it.
@@ -228,18 +210,3 @@ def manoeuvres_flown(trial: Trial) -> list[str] | None:
         return None
     cells = trial.input(key).reindex(trial.flown["flight_id"])
     return [manoeuvre_name(json.loads(cell) if isinstance(cell, str) else []) for cell in cells]
-
-
-def _one_manoeuvre(manoeuvre: dict[str, Any]) -> str:
-    parts = []
-    turn, speed = float(manoeuvre.get("turn_deg", 0.0)), manoeuvre.get("speed_mps")
-    if turn:
-        rate = (
-            f" at {float(manoeuvre['turn_rate_deg_s']):g}°/s"
-            if "turn_rate_deg_s" in manoeuvre
-            else ""
-        )
-        parts.append(f"{abs(turn):g}° to {'starboard' if turn > 0.0 else 'port'}{rate}")
-    if speed is not None:
-        parts.append("stops" if speed == 0.0 else f"to {float(speed):g} m/s")
-    return " and ".join(parts) or "keeps course and speed"

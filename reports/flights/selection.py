@@ -197,7 +197,9 @@ def _rank(why: str) -> int:
 
 
 def _candidates(trial: Trial) -> Iterator[tuple["pd.Series[Any]", str]]:
-    """Yield a trial's flights to look at, the most important first: one of each sort, none twice."""
+    """Yield a trial's flights to look at, the most important first: one of each sort, none
+    twice.
+    """
     rows, near = trial.rows, beside_vessel(trial.rows)
     severe = [rows[severity(rows) == place] for place in range(len(SEVERE))]
     failed = rows[~met(rows) & (severity(rows) == len(SEVERE))]

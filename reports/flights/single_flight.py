@@ -7,12 +7,11 @@ import numpy as np
 
 from common.run_layout import FLIGHTS
 from reports.document.axes import in_kilometres
-from reports.document.chart import Chart, Line, Panel, Style
+from reports.document.chart import Chart, Line, Panel, Style, across, between, upright
 from reports.document.palette import Meaning
 from reports.flights.flight_view import FlightView
 from reports.flights.names import flight_name
 from reports.flights.tracks import track_chart
-from reports.flights.trials.crossing_gaps import crossing_gap, gap_words
 from reports.run.columns import NOTICEABLE, Array, column, is_figure
 from reports.run.faults import fault_marks
 from reports.run.flight_config import keepout_shape, source_height
@@ -41,7 +40,7 @@ turns long [s], and its tint.
 _TIME = "Time [s]"
 
 _VESSEL_ERROR = "Vessel error [m]"
-_VESSEL_WORDS = " Vessel error: from where the vessel is to where the guidance takes her to be."
+_VESSEL_WORDS = " Vessel error: from where the vessel is to where the guidance takes it to be."
 
 
 def flight_charts(view: FlightView | None) -> list[Chart]:
@@ -58,9 +57,16 @@ class _Histories:
     def chart(self) -> Chart:
         """Return its time histories, of what it has."""
         makers = [
-            self._distance_panel, self._tracking_panel, self._wind_panel, self._vessel_panel, self._rate_panel,
-            self._bank_panel, self._airspeed_panel, self._altitude_panel, self._mode_panel,
-        ]  # fmt: skip
+            self._distance_panel,
+            self._tracking_panel,
+            self._wind_panel,
+            self._vessel_panel,
+            self._rate_panel,
+            self._bank_panel,
+            self._airspeed_panel,
+            self._altitude_panel,
+            self._mode_panel,
+        ]
         trial, bands = self._view.trial, self._view.bands()
         own = (make() for make in makers)
         panels = [
@@ -73,8 +79,9 @@ class _Histories:
         vessel = _VESSEL_WORDS * any(panel.y_label == _VESSEL_ERROR for panel in panels)
         return Chart(
             name="histories",
-            caption=f"{flight_name(trial, self._view.row)}: time histories.{self._distance_words()}{small}{vessel}"
-            f"{self._gap_words()} Dashed in the panel of the heading rate: ω_max."
+            caption=f"{flight_name(trial, self._view.row)}: time"
+            f" histories.{self._distance_words()}{small}{vessel}"
+            " Dashed in the panel of the heading rate: ω_max."
             + (
                 f" Rate and bank: the range of the values within each {_WITHIN_S:g} s."
                 if self._long
@@ -102,33 +109,22 @@ class _Histories:
     def _column(self, name: str) -> Array:
         return column(self._view.samples, name)
 
-    def _level(self, value: float, label: str, colour: str, style: Style = "dash") -> Line:
-        return Line(
-            x=self._view.ends, y=np.array([value, value]), label=label, colour=colour, style=style
-        )
-
     def _distance_panel(self) -> Panel | None:
         if not self._view.vessel:
             return None
         low, high = self._distance_range()
-        upright = {
+        told = {
             **fault_marks(self._view.row),
             "manoeuvre ends": self._view.row.get("manoeuvre_end_s"),
         }
         marks = [
-            Line(
-                x=np.array([time, time]),
-                y=np.array([low, high]),
-                label=label,
-                colour="black",
-                style="dot",
-            )
-            for label, time in upright.items()
+            upright(time, (low, high), label, "black", "dot")
+            for label, time in told.items()
             if time is not None and 0.0 < time <= self._view.ends[1]
         ]
         lines = [
             self._line(self._view.distance),
-            self._level(self._view.radius, "limit", Meaning.LIMIT),
+            across(self._view.ends, self._view.radius, "limit"),
             *marks,
         ]
         lines += self._view.marks(
@@ -142,17 +138,9 @@ class _Histories:
             return ""
         far, farthest = self._distance_range()[1], float(np.nanmax(self._view.distance))
         where = measured_from(keepout_shape(self._view.config))
-        return f" Distance is {where}, dashed r_min.{f' Distances above {far:.0f} m are not shown.' if farthest > far else ''}"
-
-    def _gap_words(self) -> str:
-        """Return how long the flight did not cross the plume though it had settled; nothing where
-        that was not long.
-        """
-        gap = crossing_gap(self._view.trial, self._view.row)
         return (
-            f" No crossing for {gap_words(gap)}, before the vessel's last manoeuvre had ended."
-            if gap
-            else ""
+            f" Distance is {where}, dashed"
+            f" r_min.{f' Distances above {far:.0f} m are not shown.' if farthest > far else ''}"
         )
 
     def _distance_range(self) -> tuple[float, float]:
@@ -199,7 +187,7 @@ class _Histories:
 
     def _rate_panel(self) -> Panel:
         limit = float(self._view.row["heading_rate_limit_rad_s"])
-        lines = [self._level(side * limit, "limit", Meaning.LIMIT) for side in (1.0, -1.0)]
+        lines = [across(self._view.ends, side * limit, "limit") for side in (1.0, -1.0)]
         # What is flown lies over its command: of many turns the one that is above hides the other.
         lines += self._fast("heading_rate_command_rad_s", "command", Meaning.ASKED, 1.0)
         lines += self._fast("heading_rate_rad_s", "flown", Meaning.FLOWN, 1.0)
@@ -217,18 +205,8 @@ class _Histories:
         least, most = np.minimum.reduceat(known, starts), np.maximum.reduceat(known, starts)
         edges = np.append(time[starts], time[-1])
         x, low, high = np.repeat(edges, 2)[1:-1], np.repeat(least, 2), np.repeat(most, 2)
-        outline = np.concatenate([x, x[::-1]]), np.concatenate([high, low[::-1]])
-        return [
-            Line(
-                x=outline[0],
-                y=outline[1],
-                label=label,
-                colour=colour,
-                style="thin",
-                fill=label == "flown",
-                opacity=_TINT,
-            )
-        ]
+        stretch = between(x, low, high, label, colour, opacity=_TINT)
+        return [replace(stretch, fill=label == "flown")]
 
     def _bank_panel(self) -> Panel:
         return Panel(
@@ -249,7 +227,7 @@ class _Histories:
         oscillation.
         """
         row, funnel = self._view.row, source_height(self._view.config)
-        levels = {"funnel": (funnel, Meaning.SHIP)}
+        levels = {"stack": (funnel, Meaning.SHIP)}
         rise = float(row.get("r_co_m", 0.0)) * math.sin(
             math.radians(float(row.get("plume_elevation_deg", 0.0)))
         )
@@ -259,7 +237,7 @@ class _Histories:
         # The true wind is dashed. A level that nearly all of the flight lies upon would be in the
         # legend alone.
         lines = [
-            self._level(height, label, colour, "thin")
+            across(self._view.ends, height, label, colour, "thin")
             for label, (height, colour) in levels.items()
             if np.nanquantile(np.abs(altitude - height), 0.95) > _HIDDEN
         ]

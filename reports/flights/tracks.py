@@ -1,4 +1,4 @@
-"""Tracks of flights: about the ship with her plume up the page, at the plume from near, and over
+"""Tracks of flights: about the ship with its plume up the page, at the plume from near, and over
 the ground.
 """
 
@@ -14,7 +14,7 @@ from reports.document.axes import in_kilometres
 from reports.document.chart import Chart, Line, Note, Panel
 from reports.document.map_marks import on_map
 from reports.document.palette import Meaning
-from reports.document.ship_map import seen, ship_lines, ship_panel, ship_words
+from reports.document.ship_map import ship_lines, ship_panel, ship_words
 from reports.flights.flight_view import FlightView, Place, flight_view
 from reports.flights.other_ships import other_ship_lines, other_ship_words, other_ships
 from reports.flights.time_marks import marks_beside, marks_in_a_row
@@ -47,7 +47,7 @@ _ABOVE = 0.08
 """Height of words above what is drawn over the ground, over the height of the panel."""
 
 _AWAY = 1.0
-"""Way of the ship over the size of the track about her, from which there is a panel over the
+"""Way of the ship over the size of the track about its, from which there is a panel over the
 ground.
 """
 
@@ -68,7 +68,7 @@ _PICTURE = "picture"
 
 
 def track_chart(view: FlightView) -> Chart:
-    """Return where one flight went: about the ship, her plume up the page, from near, and over the
+    """Return where one flight went: about the ship, its plume up the page, from near, and over the
     ground.
     """
     return _Tracks(view).chart()
@@ -100,7 +100,7 @@ def track_picture(
         chart = found[0][0].chart(_LARGE)
         return replace(chart, name=_PICTURE, caption=chart.caption + told)
     panels = [tracks.picture(title) for tracks, title in found]
-    words = _words([tracks.about for tracks, _ in found], panels)
+    words = _words([tracks.about for tracks, _ in found])
     return Chart(
         name=_PICTURE, caption=words + told, panels=panels, columns=len(panels), panel_height=0.42
     )
@@ -125,7 +125,7 @@ class _Tracks:
         if about is None:
             return Chart(
                 name="tracks",
-                caption=_words([about], []) + other_ship_words(self._others),
+                caption=_words([about]) + other_ship_words(self._others),
                 panels=[in_kilometres(self.ground())],
                 panel_height=0.42,
             )
@@ -136,9 +136,7 @@ class _Tracks:
         ]
         return Chart(
             name="tracks",
-            caption=_words([about], panels)
-            + (_ground_words(ground) if ground else "")
-            + other_ship_words(self._others),
+            caption=_words([about]) + _GROUND_WORDS * bool(ground) + other_ship_words(self._others),
             panels=[in_kilometres(panel) for panel in [*panels, *([ground] if ground else [])]],
             columns=len(panels),
             panel_height=0.28,
@@ -152,7 +150,7 @@ class _Tracks:
         )
 
     def _whole(self, about: Surroundings, title: str, aspect: float) -> Panel:
-        """Return the whole flight, seen from the ship with her plume up the page."""
+        """Return the whole flight, seen from the ship with its plume up the page."""
         view = self.view
         lines = [
             *view.guarded(about_the_plume),
@@ -266,7 +264,7 @@ class _Tracks:
         )
 
     def _goes_far(self) -> bool:
-        """Return whether there is a ship that goes farther than the track about her is wide."""
+        """Return whether there is a ship that goes farther than the track about it is wide."""
         if not self.view.vessel:
             return False
         (north, east), size = (
@@ -276,7 +274,7 @@ class _Tracks:
         return bool(np.hypot(north, east) >= _AWAY * size)
 
     def _way(self) -> float | None:
-        """Return the course that puts the ship's way across the page [rad]; None where she does not
+        """Return the course that puts the ship's way across the page [rad]; None where it does not
         go far, or turns.
         """
         if not self._goes_far():
@@ -314,24 +312,13 @@ class _Tracks:
         return marks_in_a_row(x, y, words, top + _ABOVE * length / _FLAT, length)
 
 
-def _words(about: Sequence[Surroundings | None], panels: Sequence[Panel]) -> str:
-    """Return what the tracks of flights are seen from, for a caption, given what was about each,
-    and the maps about the ship.
-    """
+def _words(about: Sequence[Surroundings | None]) -> str:
+    """Return what the tracks of flights are seen from, for a caption, given what was about each."""
     beside = [of for of in about if of is not None]
-    return ship_words(*beside, panels=panels) if beside else "Over the ground."
+    return ship_words(*beside) if beside else "Over the ground."
 
 
-def _ground_words(panel: Panel) -> str:
-    """Return what a map over the ground shows below those about the ship."""
-    still = seen([panel])
-    names = f"{', '.join(still[:-1])} and {still[-1]}" if len(still) > 1 else "".join(still)
-    shown = (
-        f", with {names} as {'they were' if len(still) > 1 else 'it was'} at the closest approach"
-        if still
-        else ""
-    )
-    return f" Below, over the ground{shown}."
+_GROUND_WORDS = " Below, over the ground, with the ship as it was at the closest approach."
 
 
 def _reference_of(samples: pd.DataFrame) -> pd.DataFrame:

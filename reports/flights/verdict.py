@@ -12,6 +12,7 @@ from common.intervals import percent
 from common.premises import UNEXPLAINED
 from common.verdict import MET, Criterion, RunVerdict
 from reports.document.blocks import Card, LossCard, Verdict
+from reports.document.state import state_words
 from reports.document.tables import approach
 from reports.finding.answer import search_answer, search_cards
 from reports.flights.answers import kept_out_and_finished
@@ -27,7 +28,6 @@ from reports.flights.criteria import (
     worst_words,
 )
 from reports.flights.names import told_name
-from reports.flights.trials.crossing_gaps import gap_lines
 from reports.flights.trials.failures import failure_lines, noteworthy, tracking_lines
 from reports.measurement.flights import sulphur_below, sulphur_cards, sulphur_headline
 from reports.run.columns import (
@@ -40,7 +40,6 @@ from reports.run.columns import (
     kept_out,
     largest,
     radii_differ,
-    total,
 )
 from reports.run.run_data import RunData
 from reports.run.trials import SHAPES, Trial, measured_from
@@ -69,8 +68,6 @@ there are such fractions.
 _BESIDE = 1.0
 """How much nearer the funnel is horizontally than in space, from which on both are told [m]."""
 
-_STATE = "{state} after {done:,} of {planned:,} flights"
-_STATE_OF_COMPARISONS = "{state} before all comparisons were flown"
 _NOTHING_FLOWN = "Nothing was flown: of {planned:,}, {outcomes}"
 _GUARD_IS_WRONG = "The keep-out guard is wrong in {flights:,} of {done:,} flights: {unexplained}"
 
@@ -108,7 +105,6 @@ def flight_verdict(
             *_warnings(run),
             *(line for trial in trials for line in failure_lines(trial)),
             *(line for trial in trials for line in tracking_lines(trial, only=only)),
-            *(line for trial in trials for line in gap_lines(trial, only=only)),
             *noteworthy(run.verdict, flown),
         ],
         figures=[*(search_cards(run) or sulphur_cards(run)), *_figures(trials, flown)],
@@ -123,7 +119,14 @@ def _headline(run: RunData, answer: Answer) -> Iterator[str]:
     was measured.
     """
     verdict, counts = run.verdict, run.verdict.counts
-    yield from _state(verdict)
+    yield from state_words(
+        "flights",
+        counts.done,
+        counts.planned,
+        is_done=verdict.is_done,
+        interrupted=verdict.interrupted,
+        missing="all comparisons were flown",
+    )
     if not counts.flown:
         ends = counted(run.summary["outcome"].astype(str).str.replace("_", " "))
         yield _NOTHING_FLOWN.format(planned=counts.planned, outcomes=ends or "none was begun")
@@ -140,16 +143,6 @@ def _headline(run: RunData, answer: Answer) -> Iterator[str]:
         yield answer(run) or kept_out_and_finished(run)
     if sulphur:
         yield sulphur
-
-
-def _state(verdict: RunVerdict) -> Iterator[str]:
-    """Yield that a run was interrupted or is incomplete."""
-    if verdict.is_done:
-        return
-    counts = verdict.counts
-    words = _STATE if counts.left else _STATE_OF_COMPARISONS
-    state = "INTERRUPTED" if verdict.interrupted else "INCOMPLETE"
-    yield words.format(state=state, done=counts.done, planned=counts.planned)
 
 
 def _warnings(run: RunData) -> list[str]:
@@ -191,7 +184,9 @@ def _figures(trials: Sequence[Trial], flown: pd.DataFrame) -> list[Card]:
 
 
 def _loss_is_allowed(verdict: RunVerdict) -> bool:
-    """Return whether a flight did what is required of it, which was to stay outside, and no more."""
+    """Return whether a flight did what is required of it, which was to stay outside, and no
+    more.
+    """
     counts = verdict.counts
     return bool(counts.required.get("keep_out")) and counts.passed > counts.met
 
@@ -259,7 +254,7 @@ def _closest_card(trials: Sequence[Trial], beside: pd.DataFrame) -> Card | None:
     distance, radius = closest.distance_m, closest.radius_m
     horizontal = float(row.get("horizontal_distance_min_m", math.nan))
     if closest.shape == "sphere" and horizontal < distance - _BESIDE:
-        note += f", {horizontal:.1f} m horizontally from the funnel"
+        note += f", {horizontal:.1f} m horizontally from the stack"
     kept = distance >= radius
     if radii_differ(beside):
         name = "Closest approach, beyond the flight's own r_min"
@@ -316,7 +311,9 @@ def _worst_card(trials: Sequence[Trial], key: str) -> Card | None:
 
 
 def _is_within(value: float | str, limit: object) -> bool:
-    """Return whether the worst of all flights is within the limit of those that are judged by it."""
+    """Return whether the worst of all flights is within the limit of those that are judged by
+    it.
+    """
     return isinstance(value, float | int) and isinstance(limit, float | int) and value <= limit
 
 
@@ -325,7 +322,9 @@ def _noted(*notes: str) -> str:
 
 
 def _nearly_all(run: RunData, key: str) -> str:
-    """Return what nearly all of many flights stay below, of the tracking error; no word of others."""
+    """Return what nearly all of many flights stay below, of the tracking error; no word of
+    others.
+    """
     if key != TRACKING:
         return ""
     errors = column(run.summary, TRACKING)
@@ -353,8 +352,6 @@ def _further(trials: Sequence[Trial], flown: pd.DataFrame) -> Iterator[Card]:
     if premises.measured:
         value = f"{premises.exceeded:,} of {premises.measured:,}"
         yield Card("Flights with a premise of the guard exceeded", value)
-    if crossings := total(flown, "crossing_count"):
-        yield Card("Plume crossings after settling", f"{crossings:,}")
     yield from _commands(trials, flown)
 
 

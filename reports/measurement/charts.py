@@ -7,7 +7,7 @@ import pandas as pd
 
 from measurement.gases import ASSUMED_LEAST, CARBON_FRACTION, MASS_PERCENT, fsc_factor, limit_words
 from reports.document.axes import in_kilometres
-from reports.document.chart import Chart, Line, Note, Panel
+from reports.document.chart import Chart, Line, Note, Panel, between
 from reports.document.map_marks import on_map
 from reports.document.palette import Meaning
 from reports.document.panels import around, level
@@ -63,16 +63,8 @@ def over_time_chart(record: Record, since: str = SINCE) -> Chart | None:
         column(table, name) for name in ("elapsed_s", "low_percent", "high_percent", "fsc_percent")
     )
     limits = [float(verdict["limit_percent"]) for verdict in record["estimate"]["verdicts"]]
-    around_it = np.concatenate([time, time[::-1]])
     lines = [
-        Line(
-            x=around_it,
-            y=np.concatenate([low, high[::-1]]),
-            label="95 % interval",
-            colour=Meaning.FLOWN,
-            style="thin",
-            fill=True,
-        ),
+        between(time, low, high, "95 % interval", Meaning.FLOWN),
         Line(x=time, y=found, label="estimate", colour=Meaning.FLOWN),
     ]
     top = 1.25 * max(

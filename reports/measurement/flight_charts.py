@@ -6,10 +6,10 @@ import numpy as np
 import pandas as pd
 
 from measurement.gases import MASS_PERCENT
-from reports.document.chart import Chart, Line, Panel, Style
+from reports.document.chart import Chart, Line, Panel, Style, between, upright
 from reports.document.palette import Meaning, series_colour
 from reports.document.panels import level
-from reports.document.ship_map import ship_panel, ship_words
+from reports.document.ship_map import SEEN_FROM, ship_panel
 from reports.measurement.data import Record, measured_minutes, share_read
 from reports.run.columns import Array, Mask, column
 from reports.run.run_data import RunData
@@ -140,15 +140,8 @@ def operating_curve(statistics: Record) -> Chart | None:
         called = f"{sensor}, {limit:g} %" if len(limits) > 1 else str(sensor)
         fuel = column(group, "fsc_fuel_percent")
         bounds = np.array(group["above_interval"].tolist(), dtype=np.float64)
-        around = np.concatenate([bounds[:, 0], bounds[::-1, 1]])
         lines += [
-            Line(
-                x=np.concatenate([fuel, fuel[::-1]]),
-                y=around,
-                label="",
-                colour=series_colour(number),
-                fill=True,
-            ),
+            between(fuel, bounds[:, 0], bounds[:, 1], "", series_colour(number), "solid"),
             Line(
                 x=fuel,
                 y=column(group, "above"),
@@ -164,16 +157,7 @@ def operating_curve(statistics: Record) -> Chart | None:
             ),
         ]
     fuels = column(entries, "fsc_fuel_percent")
-    for limit in limits:
-        lines.append(
-            Line(
-                x=np.array([limit, limit]),
-                y=np.array([0.0, 1.0]),
-                label="limit",
-                colour=Meaning.LIMIT,
-                style="dash",
-            )
-        )
+    lines += [upright(limit, (0.0, 1.0), "limit") for limit in limits]
     lines.append(level(np.array([fuels.min(), fuels.max()]), 0.05, "5 %", "grey"))
     panel = Panel(
         x_label=f"Sulphur in the fuel [{MASS_PERCENT}]",
@@ -295,7 +279,7 @@ def sulphur_track_chart(history: pd.DataFrame, about: Surroundings) -> Chart:
     ]
     caption = (
         "The true CO2 concentration, as the colour of the track; in height with the plume's mean"
-        f" axis where it was crossed. {ship_words(about, panels=panels)}"
+        f" axis where it was crossed. {SEEN_FROM}"
     )
     return Chart(
         name="sulphur-track",

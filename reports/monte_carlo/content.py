@@ -7,7 +7,7 @@ from typing import Any
 
 from common.intervals import CONFIDENCE, clopper_pearson, percent
 from reports.document.blocks import Block, Heading, Section, Text
-from reports.monte_carlo.driver_charts import driver_charts, scatter_charts
+from reports.monte_carlo.driver_charts import driver_charts
 from reports.monte_carlo.names import documented_units
 from reports.monte_carlo.spread_charts import spread_charts
 from reports.monte_carlo.subset import subset_headline, subset_sections
@@ -15,10 +15,6 @@ from reports.monte_carlo.tables import ending_table, left_out_rows, quantile_tab
 from reports.run.columns import radii_differ
 from reports.run.run_data import RunData
 from reports.run.trials import measured_from, shape_words
-
-_RARE = 0.5
-"""Probability below which it is told as one flight in so many."""
-
 
 _PROBABILITIES = (
     "Probability of violation {violation}, of loss {loss}, of not finishing {unfinished},"
@@ -97,47 +93,33 @@ def monte_carlo_sections(run: RunData) -> list[Section]:
 
 
 def _shown(statistics: dict[str, Any]) -> list[Block]:
+    looks = statistics["look_number"]
+    looked = [] if looks is None else [Text(_LOOKED.format(looks=looks, **_levels(statistics)))]
     return [
-        Text(bound_in_words(statistics)),
+        Text(_BOUND),
+        *looked,
         violation_table(statistics),
         Heading("How the flights ended"),
         ending_table(statistics),
     ]
 
 
-def bound_in_words(statistics: dict[str, Any]) -> str:
-    """Return the bound on the probability of a keep-out violation, with its confidence and what it
-    assumes.
-    """
-    confidence = percent(statistics["confidence"])
-    measured, worst = statistics["violation"]["measured"], statistics["violation"]["pessimistic"]
-    unknown = sum(found["flights"] for found in statistics["flights"]["unknown"].values())
-    if not measured["flights"]:
-        return "No flight was measured, so that no bound on the probability of a keep-out violation is known."
-    flights = f"{measured['flights']:,} flight{'s' * (measured['flights'] != 1)}"
-    rare = (
-        f", about one flight in {round(1.0 / measured['upper']):,}"
-        if measured["upper"] < _RARE
-        else ""
-    )
-    words = (
-        f"{measured['events']:,} of {flights} violated the keep-out area. With {confidence} confidence a flight of this study does"
-        f" so with a probability of at most {percent(measured['upper'])}{rare} (one-sided bound of Clopper and Pearson)."
-    )
-    if unknown:
-        words += (
-            f" {unknown:,} {'flight is' if unknown == 1 else 'flights are'} of unknown end, without a measurement or out of"
-            f" control; with each of them as a violation the bound is {percent(worst['upper'])}."
-        )
-    if statistics["look_number"] is not None:
-        words += (
-            f" The study was evaluated up to {statistics['look_number']} times, to stop once it knew enough: for all evaluations"
-            f" together to hold with {confidence}, bounds and intervals are made with {percent(statistics['interval_confidence'])}."
-        )
-    return words + (
-        " The bound is on flights sampled as these were, in this simulation; it says nothing of what the simulation leaves out. It"
-        " is that of independent flights; for inputs from a low-discrepancy design it is too high as a rule."
-    )
+_BOUND = (
+    "The one-sided bound is that of Clopper and Pearson. It is on flights sampled as these were, in"
+    " this simulation, and says nothing of what the simulation leaves out. It is that of"
+    " independent flights; for inputs from a low-discrepancy design it is too high as a rule."
+    " Flights of unknown end are those without a measurement or out of control."
+)
+_LOOKED = (
+    "The study was evaluated up to {looks} times, to stop once it knew enough: for all evaluations"
+    " together to hold with {confidence}, bounds and intervals are made with"
+    " {interval_confidence}."
+)
+
+
+def _levels(statistics: dict[str, Any]) -> dict[str, str]:
+    """Return the confidences of a study in words."""
+    return {name: percent(statistics[name]) for name in ("confidence", "interval_confidence")}
 
 
 def _spread(run: RunData, statistics: dict[str, Any]) -> list[Block]:
@@ -147,12 +129,7 @@ def _spread(run: RunData, statistics: dict[str, Any]) -> list[Block]:
         if several
         else measured_from(shape_words(run.summary) or "sphere")
     )
-    text = (
-        f"Quantiles of the flights' figures. The interval in brackets contains the quantile of all such flights with"
-        f" {percent(statistics['interval_confidence'])} confidence, whatever the distribution (from order statistics); a dash where"
-        " there are too few flights for that side. Keep-out figures count from a flight's first second, the others from settling."
-        f" Distances are {where}."
-    )
+    text = _QUANTILES.format(where=where, **_levels(statistics))
     return [
         Text(text),
         quantile_table(run, statistics, several_radii=several),
@@ -160,18 +137,29 @@ def _spread(run: RunData, statistics: dict[str, Any]) -> list[Block]:
     ]
 
 
+_QUANTILES = (
+    "Quantiles of the flights' figures. The interval in brackets contains the quantile of all such"
+    " flights with {interval_confidence} confidence, whatever the distribution (from order"
+    " statistics); a dash where there are too few flights for that side. Keep-out figures count"
+    " from a flight's first second, the others from settling. Distances are {where}."
+)
+
+
 def _drivers(run: RunData, statistics: dict[str, Any]) -> list[Block]:
-    text = (
-        "Borgonovo's δ says how much the distribution of a figure changes once an input is known: 0 not at all, 1 completely."
-        " The first-order index S₁ is the fraction of the figure's variance that the input explains by itself. Of a finite number"
-        " of flights neither is 0 for an input that does nothing: the noise floor is the largest index of some that do nothing, and"
-        f" what matters has an interval above it. The interval of S₁ holds the true index with {percent(statistics['confidence'])}; it"
-        " is wide where few flights decide on the index. The interval of δ is that of as many resamples of the flights, and holds"
-        " the true index less often, as δ comes out a tenth too low of some hundred flights."
-    )
     return [
-        Text(text),
+        Text(_INDICES.format(**_levels(statistics))),
         *(Text(line) for line in left_out_rows(run, statistics["sensitivity"])),
         *driver_charts(run, statistics),
-        *scatter_charts(run, statistics),
     ]
+
+
+_INDICES = (
+    "Borgonovo's δ says how much the distribution of a figure changes once an input is known: 0"
+    " not at all, 1 completely. The first-order index S₁ is the fraction of the figure's variance"
+    " that the input explains by itself. Of a finite number of flights neither is 0 for an input"
+    " that does nothing: the noise floor is the largest index of some that do nothing, and what"
+    " matters has an interval above it. The interval of S₁ holds the true index with {confidence};"
+    " it is wide where few flights decide on the index. The interval of δ is that of as many"
+    " resamples of the flights, and holds the true index less often, as δ comes out a tenth too"
+    " low of some hundred flights."
+)

@@ -8,30 +8,35 @@ import numpy as np
 
 from common.columns import Column
 from common.intervals import percent
-from reports.document.chart import Chart, Line, Panel
+from reports.document.chart import Chart, Line, Panel, upright
 from reports.document.palette import Meaning
 from reports.document.panels import histogram
-from reports.document.tables import number
-from reports.monte_carlo.names import FROM_THE_CENTRE
-from reports.run.columns import Array, clearance, figure, radii_differ
+from reports.run.columns import Array, clearance
 from reports.run.run_data import RunData
 
 CURVE_POINTS = 400
 """Points of a cumulative curve at most."""
 
-_SHOWN = 0.005
-"""Fraction of flights at an end that go into the outermost bars of a histogram."""
+_FARTHEST = 0.005
+"""Fraction of flights, the farthest, that go into the last bar of a histogram."""
 
 _NEARER = 0.9
 """Fraction of flights that the curve of the nearest goes up to."""
 
 
+_KEPT = (
+    "Flights by their closest approach beyond r_min, the farthest half per cent in the last bar;"
+    " and the share that came as near, log scale, with intervals of its quantiles, cut at {nearer}."
+    " The farthest came to {farthest:.0f} m."
+)
+
+
 def spread_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
-    """Return how the clearance and the other figures of the flights are spread."""
+    """Return how the clearances of the flights are spread."""
     rows = run.summary
     near = clearance(rows)
     counted_near = histogram(
-        [(_within(near, lowest=0.0), "flights", Meaning.FLOWN)],
+        [(_gathered(near), "flights", Meaning.FLOWN)],
         run.column("clearance_m").label,
         [(0.0, "r_min")],
     )
@@ -39,53 +44,18 @@ def spread_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
         return []
     kept = Chart(
         name="clearance",
-        caption="Closest approach of each flight beyond r_min: flights counted, the farthest half per cent in the last bar;"
-        " and the fraction of flights that came as near or nearer, with the intervals of its quantiles. The latter's ordinate is"
-        f" logarithmic to show the few nearest, and its abscissa ends at the nearest {percent(_NEARER)} of the flights:"
-        f" the farthest came to {number(np.nanmax(near), '{:.0f} m')}.",
+        caption=_KEPT.format(nearer=percent(_NEARER), farthest=np.nanmax(near)),
         panels=[counted_near, _tail(near, statistics, run.column("clearance_m"))],
         columns=2,
         panel_height=0.4,
     )
-    without = FROM_THE_CENTRE if radii_differ(rows) else ("min_distance_m", "crossing_clearance_m")
-    counted = [
-        _counted(run.column(name), figure(rows, name), found["quantiles"])
-        for name, found in statistics["figures"].items()
-        if name not in (*without, "clearance_m")
-    ]
-    panels = [panel for panel in counted if panel is not None]
-    others = Chart(
-        name="spread",
-        caption="Flights counted by their other figures, of those that have them. The lowest and the highest half per cent are"
-        " in the outermost bars.",
-        panels=panels,
-        columns=2,
-        panel_height=0.34,
-    )
-    return [kept, *([others] if panels else [])]
+    return [kept]
 
 
-def _within(values: Array, lowest: float = _SHOWN) -> Array:
-    """Return known values, a fraction of the ``lowest`` and ``_SHOWN`` of the highest moved to
-    where the others end.
-    """
+def _gathered(values: Array) -> Array:
+    """Return known values with the farthest few moved to where the others end."""
     known = values[np.isfinite(values)]
-    return np.clip(known, *np.quantile(known, [lowest, 1.0 - _SHOWN])) if len(known) else known
-
-
-def _counted(of: Column, values: Array, quantiles: list[dict[str, Any]]) -> Panel | None:
-    label = "quantiles 5 %, 50 %, 95 %"
-    marks = [
-        (of.scale * q["value"], label)
-        for q in quantiles
-        if q["probability"] in (0.05, 0.5, 0.95) and q["value"] is not None
-    ]
-    return histogram(
-        [(of.scale * _within(values), "flights", Meaning.FLOWN)],
-        of.label,
-        marks,
-        upright_colour="black",
-    )
+    return np.minimum(known, np.quantile(known, 1.0 - _FARTHEST)) if len(known) else known
 
 
 def _tail(near: Array, statistics: dict[str, Any], of: Column) -> Panel:
@@ -110,13 +80,7 @@ def _tail(near: Array, statistics: dict[str, Any], of: Column) -> Panel:
         lines=[
             Line(x=x, y=100.0 * fraction, label="flights", colour=Meaning.FLOWN),
             Line(x=ends, y=heights, label="interval of a quantile", colour="black"),
-            Line(
-                x=np.zeros(2),
-                y=np.array([0.7 * least, 100.0]),
-                label="r_min",
-                colour=Meaning.LIMIT,
-                style="dash",
-            ),
+            upright(0.0, (0.7 * least, 100.0), "r_min"),
         ],
         log_y=True,
         x_range=(nearest - 0.04 * (far - nearest), far),

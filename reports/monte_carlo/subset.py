@@ -4,13 +4,16 @@ the inputs near it.
 
 from typing import Any
 
+import numpy as np
+
 from common.columns import Column
 from common.intervals import percent
 from reports.document.blocks import Block, Heading, Section, Table, Text
-from reports.document.tables import number
+from reports.document.chart import Chart, Line, Panel, between, upright
+from reports.document.tables import Cell, number, rows_table
 from reports.monte_carlo.names import Units, input_name, input_unit
-from reports.monte_carlo.subset_charts import curve_chart, distance_chart, input_charts
 from reports.monte_carlo.tables import Record, ending_table
+from reports.run.columns import Array
 
 FEW_RENEWALS = 0.05
 """Fraction of accepted renewals below which the seed decides: intervals were too narrow in tests
@@ -26,7 +29,7 @@ def subset_sections(statistics: Record, units: Units, clearance: Column) -> list
             title="Probability of a keep-out violation",
             nav_title="Probability",
             blocks=[
-                Text(probability_in_words(statistics)),
+                Text(method_words(statistics)),
                 _probability_table(statistics),
                 *curve_chart(statistics, clearance),
                 Heading("How the flights ended"),
@@ -55,58 +58,88 @@ def subset_headline(statistics: Record) -> str:
     found, confidence = statistics["violation"], percent(statistics["confidence"])
     bound = f"at most {percent(found['pessimistic']['upper'])} at {confidence} confidence"
     if found["reached"]:
-        return f"Keep-out violation with a probability of {percent(found['estimate'])} in a flight, {bound}, by subset simulation"
+        return (
+            f"Keep-out violation with a probability of {percent(found['estimate'])} in a flight,"
+            f" {bound}, by subset simulation"
+        )
     return f"Subset simulation reached no keep-out violation: a probability of {bound} in a flight"
 
 
-def probability_in_words(statistics: Record) -> str:
-    """Return the probability of a keep-out violation, with its confidence and what it assumes."""
-    confidence, found = percent(statistics["confidence"]), statistics["violation"]
-    repeats, reached = found["repeats"], found["reached"]
-    if reached:
-        words = (
-            f"A flight of this study violates the keep-out area with a probability of {percent(found['estimate'])}: with"
-            f" {confidence} confidence {percent(found['low'])} to {percent(found['high'])}, and at most {percent(found['upper'])}."
-            f" {repeats} independent subset simulations estimate it"
-        )
-        words += (
-            "." if reached == repeats else f"; {repeats - reached} of them reached no violation."
-        )
-        words += (
-            " The interval is that of the mean of a log-normal distribution (Cox, with Student's t), from the scatter of the"
-            " simulations, or from the correlation within their chains (Au and Beck), whichever is larger."
-        )
-    else:
-        nearest = _range(
-            [simulation["levels"][-1]["nearest_m"] for simulation in statistics["simulations"]],
-            "{:.1f}",
-        )
-        words = (
-            f"None of {repeats} independent subset simulations reached a keep-out violation. With {confidence} confidence its"
-            f" probability in a flight is at most {percent(found['upper'])}, if chains find the way to it. Their nearest flights"
-            f" stayed {nearest} m beyond r_min; the more these differ, the less the chains have seen."
-        )
-    if outside := sum(
-        simulation["levels"][0]["outside"] for simulation in statistics["simulations"]
-    ):
-        words += f" For the first levels {outside:,} points outside of the declared speed ratios were sampled again."
-    if unknown := found["first_levels_unknown"]:
-        words += (
-            f" Of the flights of the first levels {unknown:,} {'is' if unknown == 1 else 'are'} of unknown end; with each of them"
-            f" as a violation the bound is {percent(found['pessimistic']['upper'])}."
-        )
-    return words + (
-        " What lies apart from all flights of a level, in a corner to which nothing leads that comes closer, is not found by"
-        " chains; a search (falsify) is the other way to look for it. The figures are of flights sampled as these were, in this"
-        " simulation. Flights of further levels are led towards violations: their share is no probability."
+def curve_chart(statistics: dict[str, Any], clearance: Column) -> list[Chart]:
+    """Return the probability of coming closer than a distance, over that distance; none if no
+    distance was reached by all.
+    """
+    points = statistics["curve"]
+    if len(points) < 2:
+        return []
+    x, estimate, low, high = (
+        _column(points, name) for name in ("clearance_m", "estimate", "low", "high")
     )
+    floor = 0.5 * float(low.min())
+    panel = Panel(
+        x_label=clearance.label,
+        y_label="Probability of a flight that comes closer [-]",
+        lines=[
+            between(x, low, high, "interval", "sky", "solid"),
+            Line(x=x, y=estimate, label="estimate", colour="blue"),
+            upright(0.0, (floor, 1.5), "r_min"),
+        ],
+        log_y=True,
+        y_range=(floor, 1.5),
+    )
+    caption = (
+        "Probability that the closest approach of a flight lies below a distance beyond r_min, from"
+        " all levels, with its two-sided interval at each distance. The curve ends where a"
+        " simulation has nothing nearer."
+    )
+    return [Chart(name="rare-curve", caption=caption, panels=[panel], panel_height=0.42)]
+
+
+_METHOD = (
+    "The interval is that of the mean of a log-normal distribution (Cox, with Student's t), from"
+    " the scatter of the simulations, or from the correlation within their chains (Au and Beck),"
+    " whichever is larger. What lies apart from all flights of a level is not found by chains; a"
+    " search (falsify) is the other way to look for it. Flights of further levels are led towards"
+    " violations: their share is no probability."
+)
+_REACHED = "{reached} of {repeats} independent subset simulations reached a violation."
+_NEAREST = "Their nearest flights stayed {nearest} m beyond r_min."
+_OUTSIDE = "{outside:,} points outside of the declared speed ratios were sampled again."
+_UNKNOWN = (
+    "The end of {unknown:,} flights of the first levels is unknown; with each as a violation the"
+    " bound is {upper}."
+)
+
+
+def method_words(statistics: Record) -> str:
+    """Return what the probability of a keep-out violation rests on."""
+    simulations, found = statistics["simulations"], statistics["violation"]
+    nearest = _range([of["levels"][-1]["nearest_m"] for of in simulations], "{:.1f}")
+    outside = sum(of["levels"][0]["outside"] for of in simulations)
+    unknown, upper = found["first_levels_unknown"], percent(found["pessimistic"]["upper"])
+    sentences = [
+        (_REACHED, True),
+        (_NEAREST, not found["reached"]),
+        (_OUTSIDE, outside),
+        (_UNKNOWN, unknown),
+    ]
+    told = " ".join(words for words, holds in sentences if holds).format(
+        reached=found["reached"],
+        repeats=found["repeats"],
+        nearest=nearest,
+        outside=outside,
+        unknown=unknown,
+        upper=upper,
+    )
+    return f"{told} {_METHOD}"
 
 
 def _probability_table(statistics: Record) -> Table:
     found, plain = statistics["violation"], statistics["violation"]["first_levels"]
     level = percent(statistics["confidence"])
     return Table(
-        caption="The probability of a keep-out violation, by subset simulation and by its first levels alone.",
+        caption="The probability of a keep-out violation, by subset simulation and by its first"
+        " levels alone.",
         head=[
             "By",
             "Flights",
@@ -137,55 +170,55 @@ def _probability_table(statistics: Record) -> Table:
     )
 
 
+_LEVELS = (
+    "The first level is a plain random sample. The flights of each further level grow in Markov"
+    " chains from the nearest of the level before, and stay at least as near; the probability is"
+    " the product of the fractions that passed. Inputs and noise move by small steps, the seed of"
+    " the turbulence is renewed as a whole: the last three columns say how many moves were"
+    " accepted. Where simulations differ, the smallest and the largest figure are shown."
+)
+
+
 def _levels(statistics: Record) -> list[Block]:
     simulations = statistics["simulations"]
-    text = (
-        "The first level is a plain random sample. The flights of each further level grow in Markov chains from the nearest of the"
-        " level before, and stay at least as near. The probability is the product of the fractions that passed. Inputs and noise"
-        " (reports, sensor errors, gusts) move by small steps; the seed of the turbulence is renewed as a whole. The last three"
-        " columns say how many of these moves were accepted. Where simulations differ, the smallest and the largest figure are"
-        " shown."
-    )
     deepest = max(len(simulation["levels"]) for simulation in simulations)
-    rows = [
-        _level_row(i, [s["levels"][i] for s in simulations if len(s["levels"]) > i])
-        for i in range(deepest)
+    levels = [
+        [of["levels"][i] for of in simulations if len(of["levels"]) > i] for i in range(deepest)
     ]
-    head = [
-        "Level", "Simulations", "Within r_min plus [m]", "Nearest flight beyond r_min [m]", "Flights", "Fraction that passed",
-        "Inputs", "Noise", "Seed",
-    ]  # fmt: skip
-    return [
-        Text(text),
-        Table(
-            caption="The levels of the subset simulations.",
-            head=head,
-            rows=rows,
-            widths=[0.5, 0.8, 1.2, 1.3, 0.7, 1.1, 0.6, 0.6, 0.6],
+    cells = [
+        Cell("Level", lambda of: str(levels.index(of) + 1), width=0.5),
+        Cell("Simulations", lambda of: str(len(of)), width=0.8),
+        Cell("Within r_min plus [m]", _below, width=1.2),
+        Cell(
+            "Nearest flight beyond r_min [m]",
+            lambda of: _range([level["nearest_m"] for level in of], "{:.1f}"),
+            width=1.3,
         ),
+        Cell("Flights", lambda of: f"{sum(level['flights'] for level in of):,}", width=0.7),
+        Cell("Fraction that passed [%]", _passed, width=1.1),
+        Cell("Inputs", lambda of: _accepted(of, "accepted", "moved"), width=0.6),
+        Cell("Noise", lambda of: _accepted(of, "blended_accepted", "blended"), width=0.6),
+        Cell("Seed", lambda of: _accepted(of, "renewed_accepted", "renewed"), width=0.6),
+    ]
+    return [
+        Text(_LEVELS),
+        rows_table(levels, cells, caption="The levels of the subset simulations."),
         *(Text(line) for line in _warnings(simulations)),
     ]
 
 
-def _level_row(number: int, levels: list[Record]) -> list[str]:
-    return [
-        str(number + 1),
-        str(len(levels)),
-        "any" if number == 0 else _range([level["below_m"] for level in levels], "{:.1f}"),
-        _range([level["nearest_m"] for level in levels], "{:.1f}"),
-        f"{sum(level['flights'] for level in levels):,}",
-        _range([100.0 * level["probability"] for level in levels], "{:.3g}")
-        + "\N{NO-BREAK SPACE}%",
-        _accepted(levels, "accepted", "moved"),
-        _accepted(levels, "blended_accepted", "blended"),
-        _accepted(levels, "renewed_accepted", "renewed"),
-    ]
+def _below(levels: list[Record]) -> str:
+    return _range([level.get("below_m") for level in levels], "{:.1f}", none="any")
 
 
-def _range(values: list[Any], form: str) -> str:
+def _passed(levels: list[Record]) -> str:
+    return _range([100.0 * level["probability"] for level in levels], "{:.3g}")
+
+
+def _range(values: list[Any], form: str, none: str = "–") -> str:
     known = [value for value in values if value is not None]
     if not known:
-        return "–"
+        return none
     least, most = form.format(min(known)), form.format(max(known))
     return least if least == most else f"{least} to {most}"
 
@@ -195,22 +228,24 @@ def _accepted(levels: list[Record], accepted: str, tried: str) -> str:
     return percent(sum(level[accepted] for level in levels) / count) if count else "–"
 
 
+_STALLED = "{stalled} of {all} simulations ended early: all flights of a level were equally near."
+_FEW_RENEWED = (
+    "Only {share} of the renewals of the seed were accepted in the last levels: the turbulence's"
+    " seed decides which flights come near, and the interval may be too narrow. Use more flights"
+    " per level (subset.flights_per_level)."
+)
+
+
 def _warnings(simulations: list[Record]) -> list[str]:
     lines = []
     if stalled := sum(simulation["stalled"] for simulation in simulations):
-        lines.append(
-            f"{stalled} of {len(simulations)} simulations ended early: all flights of a level were equally near."
-        )
+        lines.append(_STALLED.format(stalled=stalled, all=len(simulations)))
     last = [simulation["levels"][-1] for simulation in simulations]
     tried, accepted = (
         sum(level[name] for level in last) for name in ("renewed", "renewed_accepted")
     )
     if tried and accepted < FEW_RENEWALS * tried:
-        lines.append(
-            f"Only {percent(accepted / tried)} of the renewals of the seed were accepted in the last levels: the turbulence's seed"
-            " decides which flights come near, chains depend on the few seeds that they began with, and the interval may be too"
-            " narrow. Use more flights per level (subset.flights_per_level)."
-        )
+        lines.append(_FEW_RENEWED.format(share=percent(accepted / tried)))
     return lines
 
 
@@ -222,19 +257,17 @@ def _near(statistics: Record) -> str:
     )
 
 
+_INPUTS = (
+    "How the inputs of flights {which} are distributed, against how they are declared: the distance"
+    " is the largest difference of the two cumulative distributions (Kolmogorov). The noise floor,"
+    " {floor:.2f}, is the largest distance of some inputs without any effect that moved too."
+)
+
+
 def _inputs(statistics: Record, units: Units) -> list[Block]:
     which = "with a violation" if statistics["violation"]["reached"] else "of the last level"
-    text = (
-        f"How the inputs of flights {which} are distributed, against how they are declared: the distance is the largest difference"
-        " of the two cumulative distributions (Kolmogorov), 0 for an input that does not matter, 1 for one that decides alone. The"
-        f" noise floor, {statistics['noise_floor']:.2f}, is the largest distance of some inputs without any effect that moved too."
-    )
-    return [
-        Text(text),
-        *distance_chart(statistics),
-        input_table(statistics, units),
-        *input_charts(statistics, units),
-    ]
+    text = _INPUTS.format(which=which, floor=statistics["noise_floor"])
+    return [Text(text), input_table(statistics, units)]
 
 
 def input_table(statistics: Record, units: Units) -> Table:
@@ -270,3 +303,7 @@ def _values(entry: Record) -> tuple[str, str]:
         for which in ("declared", "near")
     ]
     return shares[0], shares[1]
+
+
+def _column(entries: list[dict[str, Any]], name: str) -> Array:
+    return np.array([entry[name] for entry in entries], dtype=np.float64)

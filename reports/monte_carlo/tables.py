@@ -107,7 +107,10 @@ def _quantile(figure: Column, quantile: Record | None) -> str:
     if quantile is None or quantile["value"] is None:
         return "–"
     # The interval stands below its quantile: beside it there is no room for most.
-    return f"{figure.text(quantile['value'])}\n({figure.text(quantile['low'])} to {figure.text(quantile['high'])})"
+    return (
+        f"{figure.text(quantile['value'])}\n({figure.text(quantile['low'])} to"
+        f" {figure.text(quantile['high'])})"
+    )
 
 
 def left_out_rows(run: RunData, sensitivity: Record) -> list[str]:

@@ -2,16 +2,12 @@
 
 from typing import Any
 
-import numpy as np
-
-from reports.document.blocks import Fold, Heading, Section, Table, Text
-from reports.document.chart import Chart, Line, Panel
+from reports.document.blocks import Heading, Section, Table, Text
 from reports.document.tables import Cell, rows_table
 
 
 def bounds_section(record: dict[str, Any]) -> Section:
     """Return the section on a record of bounds: how tight they are, and what a guarantee costs."""
-    paid = any("bound_rad_s" in row for row in record["guaranteed"])
     return Section(
         anchor="bounds",
         title="Actuation bounds: the largest demand of the law, over all states",
@@ -26,8 +22,7 @@ def bounds_section(record: dict[str, Any]) -> Section:
                 if record["guaranteed_for"]
                 else []
             ),
-            *([_cost_chart(record["guaranteed"])] if paid else []),
-            Fold(title="The cost of each reserve", blocks=[_cost_table(record["guaranteed"])]),
+            _cost_table(record["guaranteed"]),
         ],
     )
 
@@ -97,30 +92,3 @@ def _cost_table(rows: list[dict[str, Any]]) -> Table:
 
 def _settling(row: dict[str, Any]) -> object:
     return row.get("convergence_time_s") if "bound_rad_s" in row else "no such parameters"
-
-
-def _cost_chart(rows: list[dict[str, Any]]) -> Chart:
-    kept = [row for row in rows if "bound_rad_s" in row and row["reserve"] >= 0.05]
-    reserve = np.array([100.0 * row["reserve"] for row in kept])
-
-    def panel(key: str, label: str) -> Panel:
-        y = np.array([row[key] for row in kept])
-        return Panel(
-            x_label="Reserve of ω_max left to feedback [%]",
-            y_label=label,
-            lines=[Line(x=reserve, y=y, label="", colour="black")],
-        )
-
-    return Chart(
-        name="boundcost",
-        caption=(
-            "What it costs that the demand of the law stays within ω_max in every state, at ν ="
-            f" {rows[0]['nu']:g}."
-        ),
-        panels=[
-            panel("convergence_time_s", "Estimated time to settle [s]"),
-            panel("crossing_interval_s", "Crossing interval [s]"),
-        ],
-        columns=2,
-        panel_height=0.24,
-    )

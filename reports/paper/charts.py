@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from reports.document.chart import Chart, Line, Panel, Style
+from reports.document.chart import Chart, Line, Panel, Style, across
 from reports.document.map_marks import on_map
 from reports.document.palette import Meaning
 from reports.document.ship_map import ship_lines
@@ -118,7 +118,7 @@ def sim_3_charts(run: RunData) -> list[Chart]:
             "horizontal_distance_m" if is_level(keepout_shape(config)) else "distance_m",
         )
         return [
-            _level(flown.time, float(flown.row["keepout_radius_m"]), "r_min"),
+            across(flown.time[[0, -1]], float(flown.row["keepout_radius_m"]), "r_min"),
             Line(x=flown.time, y=distance, label="flown", colour=Meaning.FLOWN),
             _crossings(times, crossed),
         ]
@@ -138,7 +138,7 @@ def sim_3_charts(run: RunData) -> list[Chart]:
             run, ["sim3"], figure_9, name="fig9", labels=("Time [s]", "Distance to the vessel [m]"),
             shown_after=math.inf,
             caption="The paper's figure 9: "
-            "distance between the vessel, at its funnel, and the UAV; dashed the radius of the"
+            "distance between the vessel, at its stack, and the UAV; dashed the radius of the"
             " keep-out area.",
         ),
     ]  # fmt: skip
@@ -290,7 +290,7 @@ def _figure_7(flights: dict[str, Flown]) -> list[Line]:
     ]
     first = next(iter(flights.values()))
     limit = float(first.row["heading_rate_limit_rad_s"])
-    return [*commands, *(_level(first.time, value, "±ω_max") for value in (limit, -limit))]
+    return [*commands, *(across(first.time[[0, -1]], value, "±ω_max") for value in (limit, -limit))]
 
 
 def _distances(flights: dict[str, Flown]) -> list[Line]:
@@ -330,9 +330,3 @@ def _starts(flights: list[Flown]) -> Line:
 
 def _crossings(x: Array, y: Array) -> Line:
     return Line(x=x, y=y, label="plume crossing", colour=Meaning.CROSSING, style="diamonds")
-
-
-def _level(time: Array, value: float, label: str, colour: str = Meaning.LIMIT) -> Line:
-    return Line(
-        x=time[[0, -1]], y=np.array([value, value]), label=label, colour=colour, style="dash"
-    )

@@ -6,7 +6,6 @@ import json
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
 import pandas as pd
 
 from common.run_layout import BOUNDS
@@ -15,20 +14,16 @@ from reports.document.blocks import (
     Findings,
     FlightContent,
     FlightPicker,
-    Fold,
     Heading,
     Section,
     Table,
     Text,
 )
 from reports.document.chart import Chart
+from reports.document.parameters import parameter_blocks
 from reports.document.tables import (
     Cell,
-    approach,
     kinematic,
-    length,
-    outcome,
-    parameter_blocks,
     rows_table,
 )
 from reports.flights.flight_view import flight_view
@@ -36,9 +31,8 @@ from reports.flights.single_flight import flight_charts
 from reports.flights.tracks import track_picture
 from reports.paper.bounds import bounds_section
 from reports.paper.charts import sim_1_charts, sim_2_charts, sim_3_charts
-from reports.paper.flown import VEHICLES, find_flight, vehicle_name
+from reports.paper.flown import VEHICLES, vehicle_name
 from reports.paper.statements import (
-    NEAR,
     SHORT,
     Statement,
     paper_statements,
@@ -61,7 +55,6 @@ def paper_content(run: RunData) -> Findings:
             blocks=[
                 Text(_NUMBERS),
                 statement_table(run),
-                Fold(title="The flights, one by one", blocks=[_flight_table(run)]),
             ],
         ),
         *_simulations(run),
@@ -176,32 +169,6 @@ def _detail(picker: FlightPicker) -> Section:
     )
 
 
-def _flight_table(run: RunData) -> Table:
-    cells = [
-        Cell("Flight", "flight_id", width=1.9),
-        Cell("Settled [s]", "settling_time_s", "{:.1f}", 0.9),
-        Cell("Distance at the end", lambda row: _length(row["tracking_error_end_m"]), width=1.1),
-        Cell("Demand [rad/s]", "heading_rate_demand_max_rad_s", "{:.3f}", 1.1),
-        Cell("η [rad]", "eta", "{:.6f}", 0.9),
-        Cell("Interval [s]", "crossing_interval_mean_s", "{:.4f}", 0.9),
-        Cell("Crossing [m]", "crossing_distance_mean_m", "{:.2f}"),
-        Cell("Closest [m]", _closest),
-        Cell(f"Within {NEAR:g} m for good", lambda row: _near_for_good(run, row["flight_id"])),
-        Cell("Outcome", outcome, width=1.6),
-    ]
-    return rows_table(
-        rows_by_id(run).values(), cells, caption="The flights, a row each, with their outcome."
-    )
-
-
-def _length(metres: float) -> str:
-    return "–" if pd.isna(metres) else length(float(metres))
-
-
-def _closest(row: "pd.Series[Any]") -> str:
-    return approach(float(row["min_distance_m"]), float(row["keepout_radius_m"]))
-
-
 def statement_table(run: RunData) -> Table:
     """Return what section V of the paper says, and what each vehicle showed."""
     cells = [
@@ -221,14 +188,6 @@ def statement_table(run: RunData) -> Table:
 
 def _shown_by(vehicle: str) -> Callable[[Statement], str]:
     return lambda statement: statement.values[vehicle]
-
-
-def _near_for_good(run: RunData, flight_id: str) -> str:
-    """Return the time after which a flight stays near its reference."""
-    flown = find_flight(run, flight_id)
-    if flown is None or flown.distance[-1] >= NEAR:
-        return "never"
-    return f"after {float(np.max(flown.time[flown.distance >= NEAR], initial=0.0)):.0f} s"
 
 
 def _case_table(run: RunData) -> Table:

@@ -29,9 +29,6 @@ END_DISTANCE_MAX = 0.1
 RISE_MAX = 1e-6
 """Rise of the distance from one sample to the next that is rounding [m]."""
 
-NEAR = 30.0
-"""Distance to the reference within which the line of sight is near it [m]."""
-
 SHORT = {"kinematic": "kinematic", "six_dof": "six degrees of freedom"}
 
 

@@ -1,7 +1,6 @@
 """The report as one self-contained HTML file."""
 
 import re
-from dataclasses import replace
 from itertools import product
 from pathlib import Path
 
@@ -9,7 +8,6 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from reports.document.blocks import Content, FlightPicker
-from reports.document.chart import Chart
 from reports.render import replay
 from reports.render.plotly_charts import draw
 from reports.render.script_data import for_script
@@ -17,12 +15,6 @@ from reports.render.words import unbroken
 
 PLOTLY = Path(__file__).parent / "bundle" / "plotly-cartesian.min.js"
 """Library that draws the charts of every page; ``bundle/README.md`` says where it comes from."""
-
-
-_PANEL_HEIGHT = 0.64
-"""Height of panels of page 1 that stand beside each other, all rows together, over the width of the
-page [-].
-"""
 
 
 _PAPER = 1040
@@ -49,7 +41,6 @@ def write_html(report: Content, path: Path) -> None:
         plotly=PLOTLY.read_text(encoding="utf-8"),
         kind=lambda block: type(block).__name__,
         figure=lambda chart: for_script(draw(chart)),
-        panels=_panels,
         flights=_flights,
         replay=replay,
         cards=report.verdict.cards,
@@ -81,28 +72,6 @@ def _is_figures(cell: str) -> bool:
     return len(cell) <= _LONG or not re.search(r"[^\W\d_]{2}", cell.replace(" to ", " "))
 
 
-def _panels(picture: Chart) -> list[Chart]:
-    """Return a chart for each panel of page 1's picture: beside each other in a wide window, below
-    each other in a narrow one.
-    """
-    height = (
-        picture.panel_height
-        if picture.columns == 1
-        else (_PANEL_HEIGHT - picture.last_height) / picture.rows
-    )
-    return [
-        replace(
-            picture,
-            name=f"{picture.name}{i}",
-            panels=[panel],
-            columns=1,
-            panel_height=picture.last_height if picture.is_wide(i) else height,
-            last_height=0.0,
-        )
-        for i, panel in enumerate(picture.panels)
-    ]
-
-
 def _flights(picker: FlightPicker) -> tuple[str, str]:
     """Return the figures of all flights, with their captions, and, once each, the curves in them.
 
@@ -114,7 +83,13 @@ def _flights(picker: FlightPicker) -> tuple[str, str]:
         for flight in picker.flights
     }
     for trace, axis in product(
-        (trace for drawn in figures.values() for figure in drawn for trace in figure["data"]),
+        (
+            trace
+            for drawn in figures.values()
+            for figure in drawn
+            for panel in figure["panels"]
+            for trace in panel["data"]
+        ),
         ("x", "y"),
     ):
         if trace[axis]:

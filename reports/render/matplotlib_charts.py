@@ -1,11 +1,13 @@
 """Draw charts with matplotlib, for print."""
 
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from matplotlib import rc_context
-from matplotlib.figure import Figure, SubFigure
+from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
+from matplotlib.textpath import TextPath
 from matplotlib.ticker import MaxNLocator, NullLocator
 
 from reports.document.axes import about_values, log_axis, mark_text, with_one_abscissa, wrapped
@@ -24,6 +26,17 @@ _TITLE_SIZE, _SMALL_TITLE_SIZE = 8.5, 7.0
 
 _LEGEND_ROW = 0.16
 """Height of a row of a legend [inches]."""
+
+_LABELS = 0.35
+"""Height of a figure beyond its panels and the second row of its legend [inches]."""
+
+_EDGE, _RIGHT, _TITLE, _TICKS, _LINE = 0.06, 0.14, 0.2, 0.28, 0.14
+"""Room about a panel [inches]: where nothing is, to its right, for its title, for the marks of its
+abscissa, and for a line of a label.
+"""
+
+_SCALE, _BAR = 0.75, 0.13
+"""Room for a colour scale with its marks and label, and its own width [inches]."""
 
 _LETTER = 0.058
 """Width of a letter of a label [inches]."""
@@ -89,30 +102,22 @@ Limits = tuple[float, float] | None
 def draw(*charts: Chart) -> Figure:
     """Return a chart as a matplotlib figure; of several, each below the one before."""
     with rc_context(_STYLE):
-        heights = [
-            WIDTH_INCHES * chart.height + 0.35 + _LEGEND_ROW * _legend_rows(chart)
-            for chart in charts
-        ]
-        figure = Figure(figsize=(WIDTH_INCHES, sum(heights)), layout="constrained")
-        parts = (
-            [figure]
-            if len(charts) == 1
-            else figure.subfigures(len(charts), squeeze=False, height_ratios=heights).flat
-        )
-        for part, chart in zip(parts, charts, strict=True):
-            _draw_on(part, chart)
-        if any(panel.equal for chart in charts for panel in chart.panels) and (
-            layout := figure.get_layout_engine()
-        ):
-            # Room for labels is found where the last layout has put the panels: a map that becomes
-            # higher by it has them cut off.
-            layout.execute(figure)
+        heights = [_height(chart) for chart in charts]
+        figure = Figure(figsize=(WIDTH_INCHES, sum(heights)))
+        top = sum(heights)
+        for chart, height in zip(charts, heights, strict=True):
+            _draw_on(figure, with_one_abscissa(chart), top, height)
+            top -= height
         return figure
 
 
-def _draw_on(figure: Figure | SubFigure, chart: Chart) -> None:
-    """Draw a chart on a figure, or on a part of one."""
-    chart = with_one_abscissa(chart)
+def _height(chart: Chart) -> float:
+    """Return the height of a chart with its legend [inches]."""
+    return WIDTH_INCHES * chart.height + _LABELS + _LEGEND_ROW * max(0, _legend_rows(chart) - 1)
+
+
+def _draw_on(figure: Figure, chart: Chart, top: float, height: float) -> None:
+    """Draw a chart on the stretch of a figure that begins at ``top`` above its foot [inches]."""
     axes = _axes(figure, chart)
     handles: dict[str, Any] = {}
     shaded = None
@@ -120,36 +125,104 @@ def _draw_on(figure: Figure | SubFigure, chart: Chart) -> None:
         shaded = _draw_marks(axes[i], panel, handles, chart.scale) or shaded
         _dress(axes[i], panel)
         _label(axes[i], chart, i)
-    for ax in axes[len(chart.panels) :]:
-        ax.set_axis_off()
-    for ax in axes[max(0, len(chart.panels) - chart.columns) : len(chart.panels)]:
-        # The last of a column may not be in the last row, where figures are written beside a shared
-        # axis.
-        ax.tick_params(labelbottom=True)
+    scale = _SCALE if shaded is not None else 0.0
+    legend = _EDGE + _LEGEND_ROW * _legend_rows(chart)
+    # The marks of an axis depend on its length, and the room for them on the marks.
+    for _ in range(2):
+        below = _place(figure, axes, chart, (top - legend, height - legend), WIDTH_INCHES - scale)
     if shaded is not None:
-        figure.colorbar(shaded, ax=axes, label=chart.scale_label, shrink=0.85, pad=0.015)
+        bar = (WIDTH_INCHES - scale + _EDGE, below + 0.1 * height, _BAR, 0.8 * (height - legend))
+        figure.colorbar(shaded, cax=figure.add_axes(_shares(figure, *bar)), label=chart.scale_label)
     if len(handles) > 1:
-        columns = _legend_columns(list(handles))
         figure.legend(
             list(handles.values()),
             list(handles),
-            loc="outside upper center",
-            ncols=columns,
+            loc="upper center",
+            bbox_to_anchor=(0.5, top / figure.get_figheight()),
+            borderaxespad=0.2,
+            ncols=_legend_columns(list(handles)),
             fontsize=7.5,
         )
 
 
-def _axes(figure: Figure | SubFigure, chart: Chart) -> list[Any]:
-    """Return the axes of the panels in their order, and those that no panel needs."""
-    if not chart.last_height:
-        axes = figure.subplots(
-            chart.rows, chart.columns, squeeze=False, sharex="col" if chart.share_x else "none"
-        )
-        return list(axes.flat)
-    ratios = [*([chart.panel_height] * chart.rows), chart.last_height]
-    grid = figure.add_gridspec(chart.rows + 1, chart.columns, height_ratios=ratios)
-    places = [grid[i // chart.columns, i % chart.columns] for i in range(len(chart.panels) - 1)]
-    return [figure.add_subplot(place) for place in (*places, grid[-1, :])]
+def _axes(figure: Figure, chart: Chart) -> list[Any]:
+    """Return the axes of the panels, in their order; those of a column may share the abscissa."""
+    axes: list[Any] = []
+    for i in range(len(chart.panels)):
+        above = axes[i % chart.columns] if chart.share_x and i >= chart.columns else None
+        axes.append(figure.add_axes((0.1, 0.1, 1.0 / chart.columns, 0.2), sharex=above))
+    return axes
+
+
+def _place(
+    figure: Figure, axes: list[Any], chart: Chart, down: tuple[float, float], width: float
+) -> float:
+    """Give each panel its place, with room for titles, marks and labels about it; return where the
+    lowest begins [inches].
+
+    Parameters
+    ----------
+    figure, axes, chart : what is drawn
+    down : where the panels begin above the foot of the figure, and the height for all [inches]
+    width : for all [inches]
+    """
+    top, height = down
+    rows = [
+        axes[first : first + chart.columns]
+        for first in range(0, len(axes) - bool(chart.last_height), chart.columns)
+    ]
+    shares = [chart.panel_height] * len(rows)
+    if chart.last_height:
+        rows, shares = [*rows, axes[-1:]], [*shares, chart.last_height]
+    lefts = [max(map(_beside, axes[i :: chart.columns]), default=0.0) for i in range(chart.columns)]
+    wide = (width - sum(lefts) - chart.columns * _RIGHT) / chart.columns
+    above, below = ([max(map(room, row)) for row in rows] for room in (_above, _below))
+    scale = (height - sum(above) - sum(below)) / sum(shares)
+    for row, share, title, labels in zip(rows, shares, above, below, strict=True):
+        top -= title + scale * share
+        left = 0.0
+        for ax, margin in zip(row, lefts, strict=False):
+            alone = width - margin - _RIGHT if chart.last_height and ax is axes[-1] else wide
+            ax.set_position(_shares(figure, left + margin, top, alone, scale * share))
+            left += margin + wide + _RIGHT
+        top -= labels
+    return top
+
+
+def _shares(
+    figure: Figure, left: float, bottom: float, width: float, height: float
+) -> tuple[float, float, float, float]:
+    """Return a rectangle in shares of a figure, given in inches."""
+    wide, high = figure.get_size_inches()
+    return left / wide, bottom / high, width / wide, height / high
+
+
+def _beside(ax: Any) -> float:
+    """Return the room for the marks and the label of an ordinate [inches]."""
+    low, high = sorted(ax.get_ylim())
+    marks = [mark for mark in ax.yaxis.get_majorticklocs() if low <= mark <= high]
+    words = ax.yaxis.get_major_formatter().format_ticks(marks)
+    lines = ax.get_ylabel().count("\n") + 1 if ax.get_ylabel() else 0
+    return 3.0 * _EDGE + max(map(_wide, words), default=0.0) + _LINE * lines
+
+
+def _above(ax: Any) -> float:
+    return _TITLE if ax.get_title() else _EDGE
+
+
+def _below(ax: Any) -> float:
+    """Return the room for the marks and the label of an abscissa [inches]."""
+    if not ax.xaxis.get_tick_params()["labelbottom"]:
+        return _EDGE
+    return _TICKS + (_LINE * (ax.get_xlabel().count("\n") + 1) if ax.get_xlabel() else 0.0)
+
+
+@lru_cache(maxsize=1024)
+def _wide(words: str) -> float:
+    """Return the width of words in the letters of marks [inches]."""
+    if not words.strip():
+        return 0.0
+    return float(TextPath((0.0, 0.0), words, size=_STYLE["font.size"]).get_extents().width) / 72.0
 
 
 def _draw_marks(ax: Any, panel: Panel, handles: dict[str, Any], scale: Limits) -> Any:
@@ -175,8 +248,9 @@ def _legend_columns(labels: list[str]) -> int:
 
 
 def _legend_rows(chart: Chart) -> int:
-    """Return how many rows a legend has beyond the first."""
-    return -(-len(chart.labels) // _legend_columns(chart.labels)) - 1 if chart.labels else 0
+    """Return how many rows a legend has; none where a single entry would say nothing."""
+    labels = chart.labels
+    return -(-len(labels) // _legend_columns(labels)) if len(labels) > 1 else 0
 
 
 def _draw_line(ax: Any, line: Line) -> Any:
@@ -212,7 +286,9 @@ def _label(ax: Any, chart: Chart, index: int) -> None:
     height = WIDTH_INCHES * (chart.last_height if wide else chart.panel_height) - _MARKS / (
         chart.rows if chart.share_x else 1
     )
-    if index + chart.columns >= len(chart.panels) or not chart.share_x:
+    lowest = index + chart.columns >= len(chart.panels) or not chart.share_x
+    ax.tick_params(labelbottom=lowest)
+    if lowest:
         ax.set_xlabel("\n".join(wrapped(panel.x_label, width / _LETTER)))
     ax.set_ylabel("\n".join(wrapped(panel.y_label, height / _LETTER)))
 

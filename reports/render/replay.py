@@ -137,7 +137,7 @@ def draw_scene(scene: Scene) -> Data:
 
 
 def _hull(hull: Hull, others: Sequence[OtherTrack] = ()) -> Data:
-    """Return a hull's size, what the legend calls her, and what is said of her size and of other
+    """Return a hull's size, what the legend calls it, and what is said of its size and of other
     ships.
     """
     name = "ship" if hull.known else f"ship, {SIZE_NOT_KNOWN}"
@@ -149,12 +149,12 @@ def _hull(hull: Hull, others: Sequence[OtherTrack] = ()) -> Data:
         "known": hull.known,
     }
     named = "; ".join(f"{other.name}, r = {other.radius:g} m" for other in others)
-    told = f" Other ships, pale, each in the area about her: {named}." if others else ""
+    told = f" Other ships, pale, each in the area about it: {named}." if others else ""
     return size | {"name": name, "words": f"Of the ship: {hull_words(hull)}.{told}"}
 
 
 def _other(ship: OtherTrack) -> Data:
-    """Return another ship as the replay reads her."""
+    """Return another ship as the replay reads it."""
     return {
         "name": ship.name,
         "radius": ship.radius,

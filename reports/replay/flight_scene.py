@@ -29,7 +29,9 @@ _PLUME_LENGTH = 3.0
 """Length of a plume without smoke that is drawn, over r_min [-]."""
 
 _GASES = (("co2_reading_ppm", "CO2", "ppm"), ("co2_ppm", "CO2", "ppm"))
-"""Columns that may colour the track, their gas and unit: CO2 is read fast enough to show a crossing."""
+"""Columns that may colour the track, their gas and unit: CO2 is read fast enough to show a
+crossing.
+"""
 
 _STRONGEST = 0.99
 """Quantile of a gas that has the strongest colour [-]."""
@@ -142,7 +144,7 @@ def flight_scene(trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame | No
 
 
 def _other_track(ship: dict[str, Any], time: Array) -> OtherTrack | None:
-    """Return another ship at the samples' times [s]; None where her track is not known then."""
+    """Return another ship at the samples' times [s]; None where its track is not known then."""
     times, north, east = (np.asarray(ship[name], np.float64) for name in ("time", "north", "east"))
     known = np.flatnonzero((time >= times[0]) & (time <= times[-1]))
     if len(known) < 2 or len(times) < 2:

@@ -112,7 +112,9 @@ SEVERE = ("lost its aircraft", "diverged", "violated the keep-out area")
 
 
 def severity(rows: pd.DataFrame) -> npt.NDArray[np.int64]:
-    """Return of each flight its place in ``SEVERE``; ``len(SEVERE)`` of one that did none of these."""
+    """Return of each flight its place in ``SEVERE``; ``len(SEVERE)`` of one that did none of
+    these.
+    """
     outcomes = rows["outcome"]
     did = [outcomes == LOST, outcomes == DIVERGED, violated(rows)]
     places = np.select([np.asarray(of) for of in did], range(len(SEVERE)), len(SEVERE))
@@ -120,8 +122,8 @@ def severity(rows: pd.DataFrame) -> npt.NDArray[np.int64]:
 
 
 def by_severity(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return flights with the one that matters most first: by ``severity``, and by how near to their
-    keep-out area they came.
+    """Return flights with the one that matters most first: by ``severity``, and by how near to
+    their keep-out area they came.
     """
     return rows.iloc[np.lexsort((clearance(rows), severity(rows)))]
 
@@ -177,7 +179,8 @@ _DERIVED: Mapping[str, Callable[[pd.DataFrame], Array]] = {
         column(rows, "fsc_percent") - column(rows, "fsc_expected_percent")
     ),
 }
-"""Figures that follow from the summary, as the run's ``columns.json`` has them under ``derived``."""
+"""Figures that follow from the summary, as the run's ``columns.json`` has them under ``derived``.
+"""
 
 
 def figure(rows: pd.DataFrame, name: str) -> Array:

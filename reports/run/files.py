@@ -91,13 +91,15 @@ def written(path: Path, write: Callable[[Path], object]) -> Path:
         write(part)
         if not part.exists():
             raise ReportError(
-                f"'{path}': what was to write it wrote no file; an exporter writes to the path that it is given"
+                f"'{path}': what was to write it wrote no file; an exporter writes to the path that"
+                " it is given"
             )
 
     try:
         if not path.parent.is_dir():
             raise ReportError(
-                f"'{path}' cannot be written: there is no directory '{path.parent}'; make it, or give another path"
+                f"'{path}' cannot be written: there is no directory '{path.parent}'; make it, or"
+                " give another path"
             )
         write_whole(path, whole)
     except OSError as error:

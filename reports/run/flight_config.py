@@ -51,7 +51,9 @@ def flight_configs(run: RunData, rows: pd.DataFrame) -> list[Config]:
 
 
 def source_height(config: Config) -> float:
-    """Return the height of the funnel's mouth, the centre of a keep-out sphere, above the sea [m]."""
+    """Return the height of the funnel's mouth, the centre of a keep-out sphere, above the sea
+    [m].
+    """
     return stack_height_of(
         config["plume"]["source_height_m"], config.get("emission", {}).get("ship")
     )

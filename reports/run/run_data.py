@@ -96,7 +96,8 @@ class RunData:
         """
         if self.judgement is None:
             raise ReportError(
-                f"'{self.path}' has no {VERDICT} that can be read: its run did not end, or the file was"
+                f"'{self.path}' has no {VERDICT} that can be read: its run did not end, or the file"
+                " was"
                 " changed; continue the run with --resume, which writes it anew"
             )
         return self.judgement
@@ -119,7 +120,9 @@ class RunData:
         return self.parquet(time_history_path(flight_id)) if is_file_name(flight_id) else None
 
     def evaluation(self, flight_id: str) -> dict[str, Any] | None:
-        """Return what an instrument made of a flight, or None if there is nothing that can be read."""
+        """Return what an instrument made of a flight, or None if there is nothing that can be
+        read.
+        """
         return (
             _record(self.path / evaluation_path(flight_id), self.unread)
             if is_file_name(flight_id)
@@ -223,7 +226,8 @@ def refuse_other_version(run: RunData, needed: Sequence[str] = FLIGHT_ENTRIES) -
     """
     if missing := [entry for entry in needed if entry not in run.manifest]:
         raise ReportError(
-            f"'{run.path}' was flown by another version: its {MANIFEST} has no '{missing[0]}'; report on it with that version, or"
+            f"'{run.path}' was flown by another version: its {MANIFEST} has no '{missing[0]}';"
+            " report on it with that version, or"
             " run the scenario again in another --out"
         )
 
@@ -255,11 +259,13 @@ def read_run(path: Path) -> RunData:
         )
     if "trials" in manifest and not (isinstance(manifest["trials"], dict) and manifest["trials"]):
         raise ReportError(
-            f"'{path}': {MANIFEST} names no trials, whose flights these are; run the scenario again in another --out"
+            f"'{path}': {MANIFEST} names no trials, whose flights these are; run the scenario again"
+            " in another --out"
         )
     if (version := manifest.get("format")) != FORMAT:
         raise ReportError(
-            f"'{path}' is a run of format {version!r}, and this version reads {FORMAT}; use the version that made it"
+            f"'{path}' is a run of format {version!r}, and this version reads {FORMAT}; use the"
+            " version that made it"
         )
     if manifest.get("study") not in WITHOUT_SUMMARY and not (path / SUMMARY).is_file():
         raise ReportError(

@@ -1,5 +1,5 @@
-"""How large the ship of a run is drawn: as the scenario or the file of its track says, else as ships
-of its class are.
+"""How large the ship of a run is drawn: as the scenario or the file of its track says, else as
+ships of its class are.
 """
 
 from collections.abc import Mapping
@@ -15,11 +15,11 @@ class Hull:
 
     Attributes
     ----------
-    title : what she is taken to be, in words
+    title : what it is taken to be, in words
     length, beam : [m]
     funnel : from the stern, over the length [-]
-    known : whether it is of her class; of a ship without one it stands for a size that is not known
-    given : whether it is her own, as the scenario or her reports say
+    known : whether it is of its class; of a ship without one it stands for a size that is not known
+    given : whether it is its own, as the scenario or its reports say
     aside : how far to starboard of the funnel the middle of the hull is [m]
     """
 

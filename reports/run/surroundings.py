@@ -1,4 +1,4 @@
-"""What was about the aircraft at one moment of a flight: the ship, her plume, the keep-out area and
+"""What was about the aircraft at one moment of a flight: the ship, its plume, the keep-out area and
 the wind.
 """
 
@@ -36,8 +36,8 @@ class Surroundings:
     Attributes
     ----------
     hull : of the ship
-    heading : of her bow [rad]
-    axis : course along which her plume trails [rad]
+    heading : of its bow [rad]
+    axis : course along which its plume trails [rad]
     plume : its shape
     radius, shape : r_min [m], and the shape of the keep-out area
     outline : of the hull, where the keep-out area is about it

@@ -28,7 +28,6 @@ class Kind(Enum):
     SWEEP = "sweep"
     FAULTS = "faults"
     MANOEUVRES = "manoeuvres"
-    APPROACH = "approach"
     GENERAL = "general"
 
 
@@ -181,7 +180,8 @@ class Trial:
             return draws.set_index("flight_id")[key].reindex(self.rows["flight_id"])
         if key not in self.rows:
             raise ReportError(
-                f"'{self.run.path / DRAWS}' is gone or has no column '{key}', which flights differ in; {REMEDY}"
+                f"'{self.run.path / DRAWS}' is gone or has no column '{key}', which flights differ"
+                f" in; {REMEDY}"
             )
         return self.rows[key].set_axis(self.rows["flight_id"])
 
@@ -203,9 +203,6 @@ class Trial:
             Kind.FAULTS: self._has_faults(),
             Kind.MANOEUVRES: calm
             and (bool(self.setting("vessel.manoeuvres", [])) or self.varies("vessel.manoeuvres")),
-            Kind.APPROACH: calm
-            and self.criteria.get("settles", False)
-            and not self.criteria.get("crossing_interval_error"),
         }
         return next((kind for kind, holds in kinds.items() if holds), Kind.GENERAL)
 

@@ -93,7 +93,11 @@ def numbers_on_page_1(path, folder):
     """Return the numbers in headline, detail and tiles of page 1 of the PDF of a run, as they are
     printed, with no picture drawn; those in names of flights are none.
     """
-    report = content(read_run(path))
+    return numbers_of_page_1(content(read_run(path)), folder)
+
+
+def numbers_of_page_1(report, folder):
+    """Return the same of a report."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("reports.render.figure_files.draw", lambda _: Figure(figsize=(1.0, 1.0)))
         write_pdf(replace(report, sections=report.sections[-1:]), folder / "report.pdf")

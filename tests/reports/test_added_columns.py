@@ -1,12 +1,9 @@
 """What a user's instrument declares in its one file stands in every report, without another line."""
 
 import json
-import re
-from html import unescape
 
 import numpy as np
 import pandas as pd
-import pypdfium2
 import pytest
 
 from common.columns import Column
@@ -16,7 +13,6 @@ from reports.compare.runs import read_runs
 from reports.compare.table_of_pairs import write_differences
 from reports.document.blocks import FlightPicker, Table
 from reports.document.chart import Chart
-from reports.output import write_report
 from reports.registry import content
 from reports.run.run_data import read_run
 from scenarios.api.results import Run
@@ -135,21 +131,6 @@ def test_what_is_read_has_a_panel_among_the_time_histories_of_a_flight(run):
     charts = [chart for flight in picker.flights for chart in flight.charts]
     labels = [panel.y_label for chart in charts for panel in chart.panels]
     assert labels.count("Glow of the exhaust [ppb]") == 2
-
-
-@pytest.mark.parametrize("suffix", [".html", ".pdf"])
-def test_the_report_that_is_read_has_both(run, suffix, tmp_path):
-    path = tmp_path / f"report{suffix}"
-    write_report(run, path)
-    if suffix == ".pdf":
-        document = pypdfium2.PdfDocument(path)
-        text = " ".join(page.get_textpage().get_text_bounded() for page in document)
-    else:
-        text = unescape(path.read_text(encoding="utf-8"))
-    text = re.sub(r"\s+", " ", text)
-    assert "Figures of meter.py:Meter" in text
-    assert "Peak of the glow [ppb]" in text
-    assert f"{run.summary['glow_peak_ppb'].max():.3f}" in text
 
 
 def test_a_figure_is_compared_between_runs(paths, tmp_path):

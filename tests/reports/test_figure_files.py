@@ -2,15 +2,23 @@
 
 import os
 
+import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from reports.document.chart import Chart, Line, Panel
 from reports.render import figure_files
 from reports.render.figure_files import write_figures
-from tests.reports.test_blocks import a_chart
 
 COUNT = 4
 """Charts that are drawn."""
+
+
+def a_chart(name):
+    x = np.array([1.0, 2.0])
+    line = Line(x=x, y=x, label="curve", colour="blue")
+    panel = Panel(x_label="Time [s]", y_label="Distance [m]", lines=[line])
+    return Chart(name=name, caption=f"Caption of {name}.", panels=[panel])
 
 
 def drawn_by(folder, processes, monkeypatch):

@@ -2,11 +2,10 @@
 
 import math
 
-import pandas as pd
 import pytest
 
-from reports.document.tables import approach, beside_limit, ending, parameter_value
-from reports.flights.parameter_tables import value_in_words
+from reports.document.parameters import parameter_value
+from reports.document.tables import approach, beside_limit
 
 
 @pytest.mark.parametrize(
@@ -38,7 +37,7 @@ def test_a_parameter_is_written_in_words(value, words):
     ],
 )
 def test_two_figures_are_a_range_where_their_key_has_limits(key, words):
-    assert value_in_words([100.0, 250.0], key) == words
+    assert parameter_value([100.0, 250.0], key) == words
 
 
 @pytest.mark.parametrize(
@@ -64,25 +63,3 @@ def test_a_distance_is_written_on_the_side_of_the_radius_on_which_it_lies(distan
 )
 def test_a_figure_is_written_on_the_side_of_its_limit_on_which_it_lies(value, bound, words):
     assert beside_limit(value, bound) == words
-
-
-@pytest.mark.parametrize(
-    ("outcome", "message", "words"),
-    [
-        (
-            "not_settled",
-            "did not settle within 20 s: allow more time (flight.duration_max_s), or",
-            "not settled: did not settle within 20 s",
-        ),
-        ("infeasible", "nu is 1.5; it must be below 1: slow the vessel", "infeasible: ν is 1.5"),
-        (
-            "completed",
-            "rms tracking error 2.00 m, above the limit of 1.5 m; ended outrun",
-            "completed: rms tracking error 2.00 m, above the limit of 1.5 m; ended outrun",
-        ),
-    ],
-)
-def test_an_ending_is_without_its_advice(outcome, message, words):
-    assert (
-        ending(pd.Series({"criteria_met": False, "outcome": outcome, "message": message})) == words
-    )

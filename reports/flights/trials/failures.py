@@ -106,13 +106,19 @@ def _by_criterion(trial: Trial, failed: int) -> str:
         if c.failed and c.key not in ("keep_out", "mission")
     ]
     why = f" ({'; '.join(parts)})" if parts else ""
-    return f"{trial.title}: {failed} of {counts.flown} flights{' flown' * (counts.not_flown > 0)} failed a criterion{why}"
+    return (
+        f"{trial.title}: {failed} of {counts.flown} flights{' flown' * (counts.not_flown > 0)}"
+        f" failed a criterion{why}"
+    )
 
 
 def _not_flown(trial: Trial, flights: pd.DataFrame) -> str:
     """Return how many flights were not flown, and why the first of them was not."""
     first = flights.iloc[0]
-    return f"{trial.title}: {len(flights)} of {trial.planned} not flown; the first, {told_name(trial, first)}: {ending(first)}"
+    return (
+        f"{trial.title}: {len(flights)} of {trial.planned} not flown; the first,"
+        f" {told_name(trial, first)}: {ending(first)}"
+    )
 
 
 def _reason(row: "pd.Series[Any]") -> str:
@@ -130,12 +136,14 @@ def noteworthy(verdict: RunVerdict, flown: pd.DataFrame) -> list[str]:
     unable = column(flown, "guard_lost_s")
     if without := count(unable > 0.0):
         lines.append(
-            f"{_in_flights(without, len(flown))} the guard could not hold its own radius, for up to {np.nanmax(unable):.1f} s."
+            f"{_in_flights(without, len(flown))} the guard could not hold its own radius, for up to"
+            f" {np.nanmax(unable):.1f} s."
         )
     if unflown := count(column(flown, "manoeuvres_unflown") > 0.0):
         flights = f"{unflown:,} flight{'s' * (unflown > 1)}"
         lines.append(
-            f"In {flights} a manoeuvre of the vessel begins after the end of the flight, and was never flown."
+            f"In {flights} a manoeuvre of the vessel begins after the end of the flight, and was"
+            " never flown."
         )
     begun = flown[column(flown, "fault_time_s") <= column(flown, "duration_s")]
     if len(begun):
@@ -149,7 +157,8 @@ def noteworthy(verdict: RunVerdict, flown: pd.DataFrame) -> list[str]:
         times = span(np.array([at for _, at in faults]), "{:.0f}")
         kind = kinds.iloc[0] if kinds.nunique() == 1 else counted(kinds)
         lines.append(
-            f"{_in_flights(len(begun), len(flown))} a fault began, as the scenario has it: {kind}, at {times} s."
+            f"{_in_flights(len(begun), len(flown))} a fault began, as the scenario has it: {kind},"
+            f" at {times} s."
         )
     return lines
 

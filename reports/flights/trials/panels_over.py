@@ -165,7 +165,7 @@ class PanelsOver:
                 "min_distance_m", closest, Meaning.FLOWN, "square" if self._parted else "points"
             ),
         ]
-        return self._panel("Distance from the funnel [m]", lines)
+        return self._panel("Distance from the stack [m]", lines)
 
     def margin(self) -> Panel | None:
         """Return what of the planned margin was left, over the margin if flights differ in it by

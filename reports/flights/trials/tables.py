@@ -1,7 +1,7 @@
 """Tables of trials and of their flights."""
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ from common.intervals import CONFIDENCE, percent
 from common.run_layout import SUMMARY
 from common.verdict import Criterion
 from reports.document.blocks import Block, Table, Text
-from reports.document.tables import approach, ending, number, outcome, span
+from reports.document.tables import Cell, approach, ending, number, outcome, rows_table, span
 from reports.flights.bounds import trial_bound
 from reports.flights.criteria import (
     MEASURED,
@@ -33,22 +33,20 @@ from reports.run.columns import (
     met,
     radii_differ,
     total,
-    was_flown,
 )
 from reports.run.faults import names_of_faults
 from reports.run.run_data import RunData
 from reports.run.time_history import keepout_distance
-from reports.run.trials import Trial
+from reports.run.trials import Name, Trial
 
 _FAILED = (
-    "Flights that did not meet every criterion: {failed:,}, of which {listed:,} are listed, lost ones,"
-    " diverged ones and keep-out violations first. {summary} has all, with what to do about each."
+    "{failed:,} flights did not meet every criterion; {listed:,} are listed, lost ones, diverged"
+    " ones"
+    " and keep-out violations first. {summary} has all, with what to do about each."
 )
 
 FAILED_MAX = 8
 """Flights that failed a criterion and are listed."""
-
-_NOTHING = "–"
 
 _BEYOND = "beyond r_min [m]"
 """Head of the column beside that of the closest approach where flights have different r_min."""
@@ -63,9 +61,6 @@ _FLIGHT_COLUMNS = (
     "settling_time_s",
     "tracking_error_rms_m",
 )
-
-
-OSCILLATION_COLUMNS = ("eta", "omega_0_rad_s", "crossing_interval_predicted_s", "r_co_m")
 
 
 _APART = 1.25
@@ -83,8 +78,7 @@ def flight_table(
     run: RunData,
     rows: pd.DataFrame,
     head: str,
-    name: Callable[["pd.Series[Any]"], str],
-    columns: Sequence[str] = _FLIGHT_COLUMNS,
+    name: Name,
     caption: str = "The flights, a row each, with their outcome.",
     *,
     flown_ratio: bool = False,
@@ -95,48 +89,42 @@ def flight_table(
     ----------
     run, rows : the run, and the rows of some of its flights
     head, name : of the first column, and what it says of a flight
-    columns : of the summary, after the outcome
     caption : what the table shows
     flown_ratio : whether a column says the speed ratio that was flown, where that is not the one
         that was swept
     """
-    shown = {column: (run.column(column).head, run.column(column)) for column in columns}
-    if columns is _FLIGHT_COLUMNS and radii_differ(rows):
+    keys = list(_FLIGHT_COLUMNS)
+    if radii_differ(rows):
         rows = rows.assign(clearance_m=clearance(rows))
-        beyond = {"clearance_m": (_BEYOND, run.column("clearance_m"))}
-        first = list(shown.items())
-        shown = dict(first[:2]) | beyond | dict(first[2:])
-    if flown_ratio:
-        rows = rows.assign(flown_ratio=rows["nu"].where(was_flown(rows)))
-        shown = {"flown_ratio": ("ν flown [-]", run.column("nu"))} | shown
-        caption += " ν is swept as the ratio of the speeds over the ground; as flown, in wind, it is that through the air."
-    cells = [
-        [name(row), outcome(row), *(_cell(row, key, of) for key, (_, of) in shown.items())]
-        for _, row in rows.iterrows()
-    ]
-    words = [
-        min(_WORDS_MAX, max(1.0, 0.1 * max((len(row[i]) for row in cells), default=0)))
-        for i in (0, 1)
-    ]
+        keys.insert(2, "clearance_m")
+    names, outcomes = ([words(row) for _, row in rows.iterrows()] for words in (name, outcome))
     # A name goes on over the next line where a word of it ends.
-    parts = (part for row in cells for part in re.split(r" |(?<=_)(?=[a-z])", row[0]))
-    words[0] = max(words[0], _NAME_LETTER * max(map(len, parts), default=0))
-    # The longest word of a heading has to fit.
-    widths = [
-        *words,
-        *(
-            max(_APART if title == _BEYOND else _NUMBER, _LETTER * max(map(len, title.split())))
-            for title, _ in shown.values()
-        ),
+    parts = [part for words in names for part in re.split(r" |(?<=_)(?=[a-z])", words)]
+    least = _NAME_LETTER * max(map(len, parts), default=0)
+    cells = [
+        Cell(head, name, width=max(least, _words_width(names))),
+        Cell("Outcome", outcome, width=_words_width(outcomes)),
     ]
-    return Table(
-        caption=caption,
-        head=[head, "Outcome", *(title for title, _ in shown.values())],
-        rows=cells,
-        widths=widths,
-        left_columns=2,
-        breakable=True,
-    )
+    if flown_ratio:
+        caption += _FLOWN_RATIO
+        cells.append(Cell("ν flown [-]", _ratio_flown, "{:.2f}", _NUMBER))
+    for key in keys:
+        of = _figure_cell(run, key, _APART if key == "clearance_m" else _NUMBER)
+        # The longest word of a heading has to fit.
+        longest = _LETTER * max(map(len, of.head.split()))
+        cells.append(of._replace(width=max(of.width, longest)))
+    shown = [row for _, row in rows.iterrows()]
+    return rows_table(shown, cells, caption=caption, left_columns=2, breakable=True)
+
+
+_FLOWN_RATIO = (
+    " ν is swept as the ratio of the speeds over the ground; as flown, in wind, it is that through"
+    " the air."
+)
+
+
+def _words_width(words: Sequence[str]) -> float:
+    return min(_WORDS_MAX, max(1.0, 0.1 * max(map(len, words), default=0)))
 
 
 def _cell(row: "pd.Series[Any]", key: str, of: Column) -> str:
@@ -168,35 +156,44 @@ def trial_table(trials: list[Trial]) -> Table:
     """Return a row per trial: flights as planned, flown, completed and met, how they kept out, and
     how they ended.
     """
-    rows = []
-    for trial in trials:
-        flown, counts = trial.flown, trial.verdict.counts
-        rows.append([
-            trial.title,
-            f"{counts.planned}",
-            f"{counts.flown}",
-            f"{counts.completed}",
-            f"{counts.met}",
-            f"{counts.lost}",
-            f"{counts.kept_out}",
-            _NOTHING if (bound := trial_bound(trial)) is None else percent(bound),
-            f"{counts.keepout_violations}",
-            *nearest_cells(flown),
-            f"{count(column(flown, 'guard_interventions') > 0.0)}",
-            counted(flown["mode_at_end"]) if "mode_at_end" in flown else _NOTHING,
-        ])  # fmt: skip
-    closest = trials[0].run.column("min_distance_m").head
-    head = [
-        "Trial", "Planned", "Flown", "Completed", "Met", "Aircraft lost", "Kept out", f"Violate, at most ({percent(CONFIDENCE)})",
-        "Keep-out violations", closest, _BEYOND, "With guard", "Mode at the end",
-    ]  # fmt: skip
-    return Table(
+    cells = [
+        Cell("Trial", lambda of: of.title, width=2.0),
+        Cell("Planned", lambda of: of.verdict.counts.planned, "{:.0f}", 0.8),
+        Cell("Flown", lambda of: of.verdict.counts.flown, "{:.0f}", 0.7),
+        Cell("Completed", lambda of: of.verdict.counts.completed, "{:.0f}"),
+        Cell("Met", lambda of: of.verdict.counts.met, "{:.0f}", 0.6),
+        Cell("Aircraft lost", lambda of: of.verdict.counts.lost, "{:.0f}", 0.8),
+        Cell("Kept out", lambda of: of.verdict.counts.kept_out, "{:.0f}", 0.7),
+        Cell(f"Violate, at most ({percent(CONFIDENCE)})", _bound, width=0.9),
+        Cell("Keep-out violations", lambda of: of.verdict.counts.keepout_violations, "{:.0f}"),
+        Cell(
+            trials[0].run.column("min_distance_m").head,
+            lambda of: nearest_cells(of.flown)[0],
+            width=0.8,
+        ),
+        Cell(_BEYOND, lambda of: nearest_cells(of.flown)[1], width=0.8),
+        Cell("With guard", _guarded, "{:.0f}", 0.7),
+        Cell("Mode at the end", _modes, width=1.4),
+    ]
+    return rows_table(
+        trials,
+        cells,
         caption="The trials: flights as planned, flown, completed and met, and how they ended.",
-        head=head,
-        rows=rows,
-        widths=[2.0, 0.8, 0.7, 1.0, 0.6, 0.8, 0.7, 0.9, 1.0, 0.8, 0.8, 0.7, 1.4],
         print_size_pt=6.0,
     )
+
+
+def _bound(trial: Trial) -> str | None:
+    bound = trial_bound(trial)
+    return None if bound is None else percent(bound)
+
+
+def _guarded(trial: Trial) -> int:
+    return count(column(trial.flown, "guard_interventions") > 0.0)
+
+
+def _modes(trial: Trial) -> str | None:
+    return counted(trial.flown["mode_at_end"]) if "mode_at_end" in trial.flown else None
 
 
 def criteria_table(trials: list[Trial]) -> Table:
@@ -206,30 +203,37 @@ def criteria_table(trials: list[Trial]) -> Table:
     What every flight has to meet, as keeping out, has a row where one of several trials failed it:
     of a trial that is alone the tiles of page 1 say it.
     """
-    rows = [
-        [
-            trial.title,
-            criterion_title(trial.run, of),
-            limits_words(trial, of),
-            worst_words(trial.run, of, of.worst),
-            _whose(trial, of),
-            f"{of.judged} of {trial.verdict.counts.done}",
-            f"{of.failed}",
-        ]
+    several = len(trials) > 1
+    judged = [
+        {"trial": trial, "of": of}
         for trial in trials
         for of in trial.verdict.criteria
-        if of.judged and (of.key in MEASURED or (of.failed and len(trials) > 1))
+        if of.judged and (of.key in MEASURED or (of.failed and several))
     ]
-    head = ["Trial", "Criterion", "Limit", "Worst judged", "Worst of all", "Judged", "Not met"]
-    widths = [1.6, 2.2, 1.0, 1.0, 1.8, 0.8, 0.6]
-    first = len(trials) == 1
-    return Table(
-        caption="The criteria, with the worst measured values of the flights that they judge, and of all flights.",
-        head=head[first:],
-        rows=[row[first:] for row in rows],
-        widths=widths[first:],
-        left_columns=5 - first,
+    cells = [
+        Cell("Trial", lambda row: row["trial"].title, width=1.6),
+        Cell("Criterion", lambda row: criterion_title(row["trial"].run, row["of"]), width=2.2),
+        Cell("Limit", lambda row: limits_words(row["trial"], row["of"])),
+        Cell("Worst judged", _worst),
+        Cell("Worst of all", lambda row: _whose(row["trial"], row["of"]), width=1.8),
+        Cell("Judged", _judged, width=0.8),
+        Cell("Not met", lambda row: row["of"].failed, "{:.0f}", 0.6),
+    ]
+    return rows_table(
+        judged,
+        cells if several else cells[1:],
+        caption="The criteria, with the worst measured values of the flights that they judge, and"
+        " of all flights.",
+        left_columns=4 + several,
     )
+
+
+def _worst(row: dict[str, Any]) -> str:
+    return worst_words(row["trial"].run, row["of"], row["of"].worst)
+
+
+def _judged(row: dict[str, Any]) -> str:
+    return f"{row['of'].judged} of {row['trial'].verdict.counts.done}"
 
 
 def _whose(trial: Trial, of: Criterion) -> str:
@@ -239,8 +243,8 @@ def _whose(trial: Trial, of: Criterion) -> str:
 
 
 def fault_table(trial: Trial) -> Table:
-    """Return a row per kind of fault: how the flights ended, and how close they came from the fault,
-    of several from the first, on.
+    """Return a row per kind of fault: how the flights ended, and how close they came from the
+    fault, of several from the first, on.
     """
     flown = trial.flown
     differ = radii_differ(flown)
@@ -248,35 +252,40 @@ def fault_table(trial: Trial) -> Table:
         str(row["flight_id"]): _closest_after(trial, row, beyond=differ)
         for _, row in flown.iterrows()
     }
-    rows = []
-    for kind, members in flown.groupby(names_of_faults(flown), sort=False):
-        closest = [after[str(flight_id)] for flight_id in members["flight_id"]]
-        known = [value for value in closest if value is not None]
-        rows.append([
-            str(kind),
-            f"{len(members)}",
-            f"{count(kept_out(members))}",
-            f"{count(completed(members))}",
-            f"{count(lost(members))}",
-            f"{total(members, 'keepout_violations')}",
-            *nearest_cells(members)[: 2 if differ else 1],
-            number(min(known, default=None), "{:+.1f}" if differ else "{:.1f}")
-            + (f" (of {len(known)})" if known and len(known) < len(closest) else ""),
-            span(column(members, "end_distance_m"), "{:.0f}"),
-            counted(members["mode_at_end"]),
-        ])  # fmt: skip
-    approach_head = trial.run.column("min_distance_m").head
-    head = [
-        "Fault", "Flights", "Kept out", "Completed", "Aircraft lost", "Keep-out violations", approach_head,
-        *([_BEYOND, f"after the fault, {_BEYOND}"] if differ else ["Closest after the fault [m]"]),
-        "At the end [m]", "Mode at the end",
-    ]  # fmt: skip
-    return Table(
+    kinds = [
+        {"kind": str(kind), "rows": rows, "after": [after[str(of)] for of in rows["flight_id"]]}
+        for kind, rows in flown.groupby(np.array(names_of_faults(flown)), sort=False)
+    ]
+    since = f"after the fault, {_BEYOND}" if differ else "Closest after the fault [m]"
+    cells = [
+        Cell("Fault", "kind", width=1.5),
+        Cell("Flights", lambda of: len(of["rows"]), "{:.0f}", 0.7),
+        Cell("Kept out", lambda of: count(kept_out(of["rows"])), "{:.0f}", 0.7),
+        Cell("Completed", lambda of: count(completed(of["rows"])), "{:.0f}", 1.1),
+        Cell("Aircraft lost", lambda of: count(lost(of["rows"])), "{:.0f}", 0.8),
+        Cell("Keep-out violations", lambda of: total(of["rows"], "keepout_violations"), "{:.0f}"),
+        Cell(
+            trial.run.column("min_distance_m").head,
+            lambda of: nearest_cells(of["rows"])[0],
+            width=0.8,
+        ),
+        Cell(_BEYOND, lambda of: nearest_cells(of["rows"])[1], width=0.8),
+        Cell(since, lambda of: _least_words(of["after"], signed=differ), width=1.2),
+        Cell("At the end [m]", lambda of: span(column(of["rows"], "end_distance_m"), "{:.0f}")),
+        Cell("Mode at the end", lambda of: counted(of["rows"]["mode_at_end"]), width=1.8),
+    ]
+    return rows_table(
+        kinds,
+        [cell for cell in cells if differ or cell.head != _BEYOND],
         caption="The faults: how the flights ended, and how close they came from the fault on.",
-        head=head,
-        rows=rows,
-        widths=[1.5, 0.7, 0.7, 1.1, 0.8, 1.0, 0.8, *([0.8] if differ else []), 1.2, 1.1, 1.8],
     )
+
+
+def _least_words(distances: Sequence[float | None], *, signed: bool) -> str:
+    """Return the least of the known distances, and how many are known where that is not all."""
+    known = [distance for distance in distances if distance is not None]
+    words = number(min(known, default=None), "{:+.1f}" if signed else "{:.1f}")
+    return f"{words} (of {len(known)})" if 0 < len(known) < len(distances) else words
 
 
 def _closest_after(trial: Trial, row: "pd.Series[Any]", *, beyond: bool) -> float | None:
@@ -298,51 +307,43 @@ def failed_blocks(trials: Sequence[Trial]) -> list[Block]:
     """Return the flights that failed a criterion, the most severe first, ``FAILED_MAX`` at most,
     each with its reason.
     """
-    run = trials[0].run
-    by_key, summary = (
-        {trial.key: trial for trial in trials},
-        pd.concat([trial.rows for trial in trials]),
-    )
+    run, by_key = trials[0].run, {trial.key: trial for trial in trials}
+    summary = pd.concat([trial.rows for trial in trials])
     failed = summary.assign(clearance_m=clearance(summary))[~met(summary)]
     if not len(failed):
         return []
-    differ = radii_differ(summary)
-    rows = [
-        [
-            told_name(by_key[row["trial"]], row),
-            number(row["nu"] if pd.notna(row.get("duration_s")) else None, "{:.2f}"),
-            number(row["keepout_violations"], "{:.0f}"),
-            _cell(row, "min_distance_m", run.column("min_distance_m")),
-            *([_cell(row, "clearance_m", run.column("clearance_m"))] if differ else []),
-            ending(row),
-        ]
-        for _, row in by_severity(failed).iloc[:FAILED_MAX].iterrows()
+    shown = [row for _, row in by_severity(failed).iloc[:FAILED_MAX].iterrows()]
+    names = [told_name(by_key[row["trial"]], row) for row in shown]
+    distances = ["min_distance_m", *(["clearance_m"] if radii_differ(summary) else [])]
+    cells = [
+        Cell(
+            "Flight",
+            lambda row: told_name(by_key[row["trial"]], row),
+            width=min(2.4, 0.12 * max(map(len, names))),
+        ),
+        Cell("ν flown [-]", _ratio_flown, "{:.2f}", 0.5),
+        Cell("Keep-out violations", "keepout_violations", "{:.0f}", 0.9),
+        *(_figure_cell(run, key, 0.8) for key in distances),
+        Cell("How it ended, and the criteria that it failed", ending, width=4.4),
     ]
-    margin = [_BEYOND] if differ else []
-    ended = "How it ended, and the criteria that it failed"
-    head = [
-        "Flight",
-        "ν flown [-]",
-        "Keep-out violations",
-        run.column("min_distance_m").head,
-        *margin,
-        ended,
-    ]
-    table = Table(
+    table = rows_table(
+        shown,
+        cells,
         caption="Flights that failed a criterion, each with its reason.",
-        head=head,
-        rows=rows,
-        widths=[
-            min(2.4, 0.12 * max(len(row[0]) for row in rows)),
-            0.5,
-            0.9,
-            0.8,
-            *([0.8] if differ else []),
-            4.4,
-        ],
         prose=True,
-        left_columns=len(head),
+        left_columns=len(cells),
         breakable=True,
     )
-    words = _FAILED.format(failed=len(failed), listed=len(rows), summary=SUMMARY)
+    words = _FAILED.format(failed=len(failed), listed=len(shown), summary=SUMMARY)
     return [Text(words), table]
+
+
+def _ratio_flown(row: "pd.Series[Any]") -> float | None:
+    return float(row["nu"]) if pd.notna(row.get("duration_s")) else None
+
+
+def _figure_cell(run: RunData, key: str, width: float) -> Cell:
+    """Return the column of a figure of flights."""
+    of = run.column(key)
+    head = _BEYOND if key == "clearance_m" else of.head
+    return Cell(head, lambda row: _cell(row, key, of), width=width)

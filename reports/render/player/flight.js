@@ -89,7 +89,7 @@ class Flight {
     return ["vessel_north", "vessel_east"].map((name) => this.value(name, time) + (early ? early * this.rate(name, this.start) : 0));
   }
 
-  // Where another ship is at a time: north, east [m] and heading [rad]; null while her track is not known.
+  // Where another ship is at a time: north, east [m] and heading [rad]; null while its track is not known.
   otherAt({columns, known: [first, last]}, time) {
     const place = (time - this.start) / this.interval;
     if (place < first || place > last) return null;

@@ -54,7 +54,7 @@ function block(width, height, length, x, y, z, colour) {
   return mesh;
 }
 
-// A ship about her funnel, of whose mouth the height above the sea is given, and the share of her length that is aft of it.
+// A ship about its funnel, of whose mouth the height above the sea is given, and the share of its length that is aft of it.
 // One whose size is not known is pale.
 function shipShape({length, beam, funnel: share, aside, known}, height, colour) {
   const group = new THREE.Group(), aft = share * length, fore = aft - length, half = beam / 2, deck = 0.22 * height;

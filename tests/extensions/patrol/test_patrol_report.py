@@ -3,14 +3,21 @@ one that cannot be.
 """
 
 import math
+from dataclasses import replace
 
 import pandas as pd
 import pytest
+from snapshots import assert_reads_as_before
 
 from extensions.patrol.report import (
+    _matters,
+    counts_of,
+    oracle_table,
     patrol_content,
+    read_patrols,
 )
 from reports.document.blocks import CARDS_MAX
+from reports.registry import content
 from reports.run.run_data import read_run
 from tests.reports.report_parts import flown, numbers_on_page_1
 
@@ -40,6 +47,100 @@ def test_the_verdict_compares_with_the_oracle(run):
     assert 4 <= len(found.figures) <= CARDS_MAX
 
 
+def of_row(run, **values):
+    """Return the verdict on a run whose only row has other values."""
+    return patrol_content(replace(run, summary=run.summary.assign(**values))).verdict
+
+
+@pytest.mark.parametrize("oracle", [0, 2])
+def test_patrols_that_served_no_ship_are_red_and_claim_no_share(run, oracle):
+    none = dict.fromkeys(
+        ("served", "verdicts", "correct", "wrong", "open", "keepout_violations"), 0
+    )
+    found = of_row(run, **none, oracle_verdicts=oracle, kept_out=True, criteria_met=True)
+    words = f"No ship was served; an oracle reaches {oracle} right verdicts"
+    assert (found.headline, found.tone) == (words, "bad")
+    figures = {card.name: card.met for card in found.figures}
+    assert figures["Ships served per hour"] is False
+    assert figures["Keep-out violations"] is False
+    assert figures["Right verdicts"] is (False if oracle else None)
+    assert figures["Wrong verdicts"] is None
+
+
+def test_verdicts_without_any_of_an_oracle_show_nothing(run):
+    found = of_row(run, correct=0, wrong=1, verdicts=1, open=0, oracle_verdicts=0)
+    assert found.headline.endswith("0 right, 1 wrong, 0 open, of the 0 that an oracle reaches")
+    # Without a wrong one, too, nothing was shown.
+    assert of_row(run, correct=0, wrong=0, verdicts=0, open=1, oracle_verdicts=0).tone != "good"
+
+
+def test_a_violation_and_a_lost_aircraft_stand_on_page_1(run):
+    found = of_row(run, keepout_violations=2, aircraft_lost=True, criteria_met=False)
+    assert found.headline.startswith("2 keep-out violations. ")
+    assert found.tone == "bad"
+    assert {card.name: card.value for card in found.cards}["Aircraft lost"] == "1"
+
+
+def test_the_patrol_that_is_drawn_is_the_one_with_a_wrong_verdict(run):
+    rows = run.summary.to_dict("records")
+    patrols = [
+        replace(patrol, number=i, row=pd.Series(rows[0] | {"wrong": wrong}))
+        for i, wrong in enumerate((0, 1))
+        for patrol in read_patrols(run)
+    ]
+    assert [patrol.number for patrol in sorted(patrols, key=_matters)] == [1, 0]
+
+
+@pytest.mark.parametrize(
+    ("name", "figure"),
+    [
+        ("Closest approach to a ship that was served", "min_distance_m"),
+        ("Closest approach to any other ship", "others_distance_min_m"),
+    ],
+)
+def test_the_closest_approach_to_each_ship_is_judged_by_the_keep_out_radius(run, name, figure):
+    for distance, value, met in ((199.99, "199.9 m", False), (200.0, "200.0 m", True)):
+        (card,) = [card for card in of_row(run, **{figure: distance}).figures if card.name == name]
+        assert (card.value, card.limit, card.met) == (value, "≥ 200 m", met)
+
+
+def test_names_that_a_spreadsheet_would_compute_are_found_in_every_table(run, tmp_path):
+    for name in ("ships.csv", "phases.csv"):
+        table = pd.read_csv(run.path / name)
+        named = table.assign(patrol="'=p_00000", flight_id="'=p_00000_" + table["ship"].astype(str))
+        named.to_csv(tmp_path / name, index=False)
+    renamed = replace(run, path=tmp_path, summary=run.summary.assign(flight_id="=p_00000"))
+    (patrol,) = read_patrols(renamed)
+    assert (len(patrol.ships), len(patrol.phases)) == (2, len(pd.read_csv(run.path / "phases.csv")))
+
+
+def test_a_patrol_that_failed_is_a_row_of_dashes_with_its_reason(run):
+    failed = pd.DataFrame(
+        [
+            {
+                "flight_id": "patrol_00001",
+                "criteria_met": False,
+                "outcome": "failed",
+                "message": "no room",
+            }
+        ]
+    )
+    both = replace(run, summary=pd.concat([run.summary, failed], ignore_index=True))
+    assert oracle_table(read_patrols(both)).rows[1][1:] == ["–"] * 13
+    found = patrol_content(both)
+    assert found.verdict.failures == ["patrol_00001: no room"]
+    assert not found.verdict.complete
+
+
+def test_the_report_is_judged_as_the_study_is(run):
+    found = of_row(run, correct=1, wrong=0, verdicts=1, oracle_verdicts=1)
+    assert "verdicts: 1 right, 0 wrong" in found.headline
+    assert found.complete
+    # The study's exit status is of the same sums: a patrol that did not come through fails both.
+    fallen = replace(run, summary=run.summary.assign(criteria_met=False))
+    assert (patrol_content(fallen).verdict.holds, counts_of(fallen).met) == (False, False)
+
+
 def test_every_number_on_page_1_is_that_of_the_tables(run, tmp_path):
     rows = pd.read_csv(run.path / "summary.csv")
     sums = rows[["served", "correct", "wrong", "open", "verdicts", "oracle_verdicts"]].sum()
@@ -54,3 +155,7 @@ def test_every_number_on_page_1_is_that_of_the_tables(run, tmp_path):
         *("0", "80", "5", "200"),
     }
     assert numbers_on_page_1(run.path, tmp_path) <= expected
+
+
+def test_patrols_read_as_before(run):
+    assert_reads_as_before("patrol", content(run))

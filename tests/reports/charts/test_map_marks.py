@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 
 from measurement.emission import ship_of
-from reports.document.chart import Line, Note, Panel
+from reports.document.chart import Line, Panel
 from reports.document.map_marks import arrow, hull_line, on_map, plume_lines
-from reports.document.palette import Meaning
-from reports.document.ship_map import area_outline, hull_words, seen
+from reports.document.ship_map import area_outline, hull_words
 from reports.run.ship import ANY, HULLS, Hull, hull_of, outline_of
 from reports.run.time_history import turned
 
@@ -44,72 +43,11 @@ def test_an_arrow_points_where_its_angle_says():
     assert (head.x.max(), head.y[0]) == pytest.approx((3.0, 2.0))
 
 
-def test_a_map_shows_every_line_below_its_strip_whatever_its_aspect():
-    for aspect in (0.6, 1.0, 4.5):
-        panel = a_map(north=0.0, wind=(5.0, 1.0), aspect=aspect)
-        (left, right), (bottom, top) = panel.x_range, panel.y_range
-        assert (right - left) / (top - bottom) == pytest.approx(aspect)
-        assert panel.equal
-        track, strip = panel.lines[0], panel.lines[1]
-        assert left < track.x.min() < track.x.max() < right
-        assert bottom < track.y.min() < track.y.max() < strip.y.min()
-        # Bar, arrows and words lie in the strip.
-        assert all(line.y.min() >= strip.y.min() for line in panel.lines[2:])
-        assert all(strip.y.min() < note.y < top for note in panel.notes)
-
-
-@pytest.mark.parametrize("align", ["left", "center", "right"])
-def test_a_word_at_the_edge_of_a_map_has_room_for_its_letters(align):
-    x = np.array([-300.0, 500.0])
-    lines = [Line(x=x, y=np.array([0.0, 400.0]), label="track", colour="blue")]
-    # Ten letters of 4 points each in a map that is some 170 points high take a quarter of its
-    # height.
-    for at in x.tolist():
-        notes = [Note(x=at, y=200.0, text="10 minutes", align=align)]
-        panel = on_map(
-            Panel(x_label="", y_label="", lines=lines, notes=notes), north=None, aspect=1.5
-        )
-        (left, right), height = panel.x_range, float(np.ptp(panel.y_range))
-        begin, end = {"left": (0.0, 1.0), "center": (-0.5, 0.5), "right": (-1.0, 0.0)}[align]
-        assert left < at + begin * 0.2 * height
-        assert at + end * 0.2 * height < right
-
-
-def test_a_caption_names_what_is_large_enough_to_be_seen():
-    def names(size):
-        lines = [
-            hull_line(Hull(title="a ship", length=150.0, beam=23.0), 0.0),
-            *plume_lines(np.array([0.0, 600.0]), None),
-            Line(x=np.array([0.0, size]), y=np.zeros(2), label="ship's track", colour="black"),
-        ]
-        return seen([on_map(Panel(x_label="", y_label="", lines=lines), north=None)])
-
-    assert names(1000.0) == ["ship", "plume"]
-    # A ship of 150 m over 12 km of the page is smaller than the marks of the track.
-    assert names(12_000.0) == ["plume"]
-    assert names(40_000.0) == []
-
-
 def test_the_scale_bar_is_as_long_as_it_says():
     panel = a_map(north=None)
     bar, text = panel.lines[2], panel.notes[0].text
     assert text == " 100 m"
     assert np.ptp(bar.x) == pytest.approx(100.0)
-
-
-def test_calm_air_has_no_arrow_and_what_is_not_known_no_word():
-    assert [note.text for note in a_map(north=0.0, wind=(0.0, 0.0)).notes] == [
-        " 100 m",
-        "calm air",
-        "N",
-    ]
-    assert [note.text for note in a_map(north=None).notes] == [" 100 m"]
-    assert [note.text for note in a_map(north=0.0, wind=(7.04, 0.3)).notes][1] == "wind 7.0 m/s"
-    # An arrow is a shaft and a head.
-    for wind, lines in (((0.0, 0.0), 0), ((7.04, 0.3), 2), (None, 0)):
-        assert (
-            sum(line.colour == Meaning.WIND for line in a_map(north=0.0, wind=wind).lines) == lines
-        )
 
 
 def test_a_plume_begins_at_the_funnel_and_is_as_wide_as_given():
@@ -162,14 +100,14 @@ GIVEN = {
 }
 
 
-def test_a_ship_of_a_given_size_is_drawn_so_about_her_funnel():
+def test_a_ship_of_a_given_size_is_drawn_so_about_its_stack():
     hull = hull_of(GIVEN)
     line = hull_line(hull, 0.0, x=10.0, y=-5.0)
     assert (line.label, line.style) == ("ship, to scale", "thin")
     # 90 m ahead of the funnel and 30 m astern; 12 m to port and 6 m to starboard.
     assert (line.y.min(), line.y.max()) == pytest.approx((-35.0, 85.0))
     assert (line.x.min(), line.x.max()) == pytest.approx((-2.0, 16.0))
-    assert hull_words(hull) == "her hull is 120 m by 18 m"
+    assert hull_words(hull) == "its hull is 120 m by 18 m"
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.7, math.pi])

@@ -3,30 +3,9 @@
 import numpy as np
 import pytest
 
-from reports.document.panels import beyond_label, capped, histogram
+from reports.document.panels import histogram
 from reports.document.tables import in_symbols
 from reports.monte_carlo.names import input_label
-
-
-def test_a_marker_beyond_its_panel_has_its_value_in_the_legend():
-    values = np.array([80.0, 82.0, 84.0, 900.0])
-    lines, top = capped(
-        np.arange(4.0), values, [(np.ones(4, dtype=bool), "flight", "blue")], float("nan"), unit="s"
-    )
-    assert top < 900.0
-    assert lines[-1].label == "beyond the panel: 900 s"
-
-
-def test_values_beyond_panels_that_share_a_legend_are_told_with_their_figure():
-    assert (
-        beyond_label(np.array([190.0]), "s", "settling time")
-        == "settling time beyond the panel: 190 s"
-    )
-
-
-def test_of_many_values_beyond_a_panel_the_largest_is_told():
-    assert beyond_label(np.array([3.0, 2.0]), "m") == "beyond the panel: 2, 3 m"
-    assert beyond_label(np.arange(100.0, 110.0), "m") == "beyond the panel: up to 109 m"
 
 
 @pytest.mark.parametrize(
@@ -49,14 +28,6 @@ def test_symbols_of_messages_and_documents_are_those_of_figures():
     )
     # Keys of a file stay what they are.
     assert in_symbols("omega_0_rad_s, sweep.nu=[0.3]") == "omega_0_rad_s, sweep.nu=[0.3]"
-
-
-@pytest.mark.parametrize(("flights", "bars"), [(6, 5), (32, 12), (1000, 24)])
-def test_few_flights_are_counted_in_few_bars(flights, bars):
-    panel = histogram([(np.linspace(0.0, 1.0, flights), "flights", "blue")], "Settling time [s]")
-    # An outline has two points for each end of a bar.
-    assert panel is not None
-    assert len(panel.lines[0].x) == 2 * (bars + 1)
 
 
 def test_two_figures_of_three_flights_are_not_enough_for_a_histogram():

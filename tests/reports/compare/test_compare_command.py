@@ -53,26 +53,6 @@ def test_out_names_the_directory_and_is_made(first, same, tmp_path):
     assert (tmp_path / "a" / "b" / "compare.html").is_file()
 
 
-def test_other_runs_have_another_directory_where_names_are_cut_or_lie_elsewhere(
-    first, same, tmp_path, monkeypatch
-):
-    # Where it is written is what is asked for, not what.
-    for writer in ("html.write_html", "pdf.write_pdf"):
-        monkeypatch.setattr(f"reports.render.{writer}", lambda _, path: path.touch())
-    name = "a_scenario_with_a_name_of_more_than_forty_letters"
-    one, two, three = (shutil.copytree(first, tmp_path / f"{name}_{i}") for i in range(3))
-    elsewhere = shutil.copytree(same, tmp_path / "other" / one.name)
-    folders = set()
-    for pair in ((one, two), (one, three), (one, elsewhere), (one, two)):
-        ended = compared(*pair)
-        assert ended.status == 0, ended
-        folders.add(
-            next(line for line in ended.out.splitlines() if line.startswith("comparison: "))
-        )
-    assert len(folders) == 3
-    assert all(f"{tmp_path}/compare-{name[:38]}-{name[:38]}-" in folder for folder in folders)
-
-
 def test_runs_of_other_seeds_have_no_flight_in_common(copies):
     summary = copies[1] / "summary.csv"
     rows = pd.read_csv(summary)

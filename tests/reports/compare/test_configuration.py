@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from reports.compare.configuration import configuration_table, software_table, trials_apart
+from reports.compare.configuration import configuration_table, software_table
 from reports.compare.runs import read_runs
 
 
@@ -62,64 +62,6 @@ def test_a_key_without_effect_that_an_aircraft_scales_has_its_unit_and_meaning(t
     assert row == ["guidance.bound_speed_margin_mps", "0.5", "2", "m/s", "A margin."]
 
 
-def test_titles_are_no_difference_of_what_is_flown(two):
-    config_of(two[1])["title"] = "Another"
-    assert configuration_table(two) is None
-
-
-def test_values_that_would_be_written_alike_are_written_in_full(two):
-    config_of(two[1])["wind"]["speed_mps"] = 1e-9 + config_of(two[0])["wind"]["speed_mps"] + 3.0
-    config_of(two[0])["wind"]["speed_mps"] = 3.0
-    assert cells(two) == {"wind.speed_mps": ("3.0", "3.000000001")}
-
-
-def test_long_lists_are_written_by_their_range_unless_that_is_the_same(two):
-    values = [round(0.05 * i, 2) for i in range(20)]
-    config_of(two[0])["sweep"]["nu"], config_of(two[1])["sweep"]["nu"] = values, [*values, 0.97]
-    assert cells(two) == {"sweep.nu": ("20 values, 0 to 0.95", "21 values, 0 to 0.97")}
-    config_of(two[1])["sweep"]["nu"] = [0.0, 0.06, *values[2:]]
-    before, after = cells(two)["sweep.nu"]
-    assert before.startswith("0, 0.05, 0.1")
-    assert after.startswith("0, 0.06, 0.1")
-
-
-def test_random_variables_cases_and_variants_are_told_by_their_names(two):
-    draw = {
-        "key": "wind.speed_mps",
-        "uniform": [2.0, 4.0],
-        "choice": None,
-        "weights": None,
-        "normal": None,
-        "weibull": None,
-    }
-    for run, high in zip(two, (4.0, 5.0), strict=True):
-        config_of(run)["draws"] = [draw | {"uniform": [2.0, high], "within": None}]
-        config_of(run)["cases"] = [
-            {"name": "near", "set": {"keepout.radius_m": 100.0 * high}, "comparison": False}
-        ]
-    assert cells(two) == {
-        "wind.speed_mps": ("uniform from 2 to 4", "uniform from 2 to 5"),
-        "cases.near.set.keepout.radius_m": ("400", "500"),
-    }
-
-
-def test_a_key_that_one_run_samples_is_told_by_its_distribution_there(two):
-    draw = {
-        "key": "wind.speed_mps",
-        "uniform": [2.0, 4.0],
-        "choice": None,
-        "weights": None,
-        "normal": None,
-        "weibull": None,
-    }
-    config_of(two[0])["draws"], config_of(two[0])["wind"]["speed_mps"] = (
-        [draw | {"within": None}],
-        0.0,
-    )
-    config_of(two[1])["wind"]["speed_mps"] = 3.0
-    assert cells(two) == {"wind.speed_mps": ("uniform from 2 to 4", "3")}
-
-
 def test_a_key_that_one_version_does_not_have_is_said_to_be_none(two):
     del config_of(two[0])["guidance"]["preview"]
     parameters_of(two[0])[:] = [
@@ -144,51 +86,10 @@ def test_a_key_of_a_part_that_one_run_leaves_out_has_its_default(two):
     assert row == ["payload.sensor", "electrochemical", "fast", "", "Sniffer."]
 
 
-def test_keys_of_lists_of_trials_name_the_trials(two):
-    for run in two:
-        run.manifest["trials"] = {
-            name: copy.deepcopy(config_of(run)) for name in ("one", "two", "three")
-        }
-    two[1].manifest["trials"]["one"]["wind"]["speed_mps"] = 7.0
-    two[1].manifest["trials"]["three"]["wind"]["speed_mps"] = 7.0
-    two[1].manifest["trials"]["four"] = two[1].manifest["trials"].pop("two")
-    runs = [
-        replace(
-            run,
-            trials=[
-                replace(run.trials[0], key=key, config=config)
-                for key, config in run.manifest["trials"].items()
-            ],
-        )
-        for run in two
-    ]
-    runs = [replace(run, trials=[_quiet(trial) for trial in run.trials]) for run in runs]
-    assert cells(runs) == {"wind.speed_mps (one, three)": ("0", "7")}
-    assert trials_apart(runs) == [
-        "Not in every run are, of A: first, the trials two.",
-        "Not in every run are, of B: same, the trials four.",
-    ]
-
-
-def _quiet(trial):
-    """Return a trial whose parameters are listed, as far as meanings need it."""
-    manifest = trial.run.manifest | {"trial_parameters": {trial.key: []}}
-    return replace(trial, run=replace(trial.run, manifest=manifest))
-
-
 def software(runs):
     table = software_table(runs)
     bold = {table.rows[i][0] for i, _ in table.bold}
     return {row[0]: row[1:] for row in table.rows}, bold
-
-
-def test_of_runs_alike_nothing_but_what_they_are_called_stands_out(two):
-    rows, bold = software(two)
-    assert rows["State"] == ["complete, 3 of 3 flights"] * 2
-    assert rows["Packages"][1] == "the same"
-    # Kinematic flights have no autopilot.
-    assert rows["Autopilot’s design"] == ["none", "none"]
-    assert not bold
 
 
 def test_versions_files_and_hashes_that_differ_stand_out(two):
@@ -204,20 +105,3 @@ def test_versions_files_and_hashes_that_differ_stand_out(two):
     assert rows["File mylaw.py:MyLaw"] == ["not used", "0123"]
     assert rows["State"][1] == "interrupted, 3 of 3 flights"
     assert bold == {"Version of jsbsim", "Hash of the source", "File mylaw.py:MyLaw", "State"}
-
-
-def test_designs_are_compared_part_by_part(two):
-    design = {"aircraft": "x8", "title": "Skywalker X8", "poles": [1.0], "heading_rate_lag_s": 0.3}
-    others = (
-        design,
-        design | {"heading_rate_lag_s": 0.4},
-        design | {"aircraft": "T37", "title": "T37"},
-    )
-    for other, words in zip(
-        others, ("the same", "differs in heading rate lag s", "T37, "), strict=True
-    ):
-        runs = [
-            replace(run, data=replace(run.data, innerloop=of))
-            for run, of in zip(two, (design, other), strict=True)
-        ]
-        assert words in software(runs)[0]["Autopilot’s design"][1]

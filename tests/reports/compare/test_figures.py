@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from reports.compare.figures import PAIRS_MIN, differences, measures
+from reports.compare.figures import PAIRS_MIN, differences
 from reports.compare.pairs import paired
-from reports.compare.tables import difference_table, signed
+from reports.compare.tables import difference_table
 from tests.reports.compare.compared_runs import made_run, rows_of
 
 
@@ -101,48 +101,6 @@ def test_the_table_counts_lower_and_higher_and_marks_an_interval_without_0():
         "0, 8",
     ]
     assert (row, 5) in table.bold
-
-
-def test_values_that_are_nearly_0_are_written_with_as_many_digits_as_their_difference():
-    pairs = pairs_of([0.003] * 8, [0.006] * 8)
-    (row,) = (
-        cells
-        for cells in difference_table(pairs, differences(pairs)).rows
-        if cells[0].startswith("Tracking error")
-    )
-    assert row[2:5] == ["0.0030", "0.0060", "+0.0030"]
-
-
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [
-        (0.0, "0"),
-        (-0.0, "0"),
-        (1234.56, "+1,234.6"),
-        (-0.04, "−0.04"),
-        (-0.06, "−0.1"),
-        (1.5e-7, "+1.5·10⁻⁷"),
-    ],
-)
-def test_a_difference_that_digits_would_hide_is_written_with_two(value, text):
-    assert signed(value, 1) == text
-
-
-def test_the_median_of_counts_may_lie_between_two_of_them():
-    assert (signed(-6.5, 0), signed(1234.0, 0)) == ("−6.5", "+1,234")
-
-
-def test_every_figure_has_a_unit_and_a_name_of_its_own():
-    compared = measures([made_run("A", rows_of([0])).data])
-    names = [figure.title for figure in compared.values()]
-    assert len(set(names)) == len(names)
-    assert all(figure.unit for figure in compared.values())
-
-
-def test_the_uncertainty_of_the_sulphur_content_says_that_it_is_one_sigma():
-    # Reports on flights give it at 95 %.
-    compared = measures([made_run("A", rows_of([0])).data])
-    assert compared["fsc_uncertainty_percent"].title == "Uncertainty of the sulphur content, 1σ"
 
 
 def test_pairs_that_share_their_random_sample_count_as_one():

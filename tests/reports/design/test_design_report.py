@@ -7,25 +7,24 @@ from types import SimpleNamespace
 import numpy as np
 import pypdfium2
 import pytest
-from design_runs import AIRSPEEDS, BANKS_DEG, CASES, LOOPS, REVERSALS, record, write_design
+from design_runs import AIRSPEEDS, BANKS_DEG, LOOPS, record, write_design
 from report_parts import (
-    assert_axes_read_quantity_and_unit,
     blocks_of,
     built,
     numbers_on_page_1,
 )
+from snapshots import assert_reads_as_before
 
 from reports.build import build_reports
 from reports.design.console import print_summary
-from reports.design.data import complete, excess_overshoot, reversal_sentences, where
+from reports.design.data import complete, excess_overshoot, where
 from reports.design.loop_charts import disk_region, turned
-from reports.design.margin_charts import margin_charts
+from reports.design.margin_charts import margin_chart
 from reports.design.section import design_words
-from reports.document.blocks import Table, Text
+from reports.document.blocks import Table
 from reports.document.chart import Chart
 from reports.errors import ReportError
 from reports.registry import content
-from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import read_run
 
 pytestmark = pytest.mark.slow
@@ -46,70 +45,6 @@ def test_both_reports_are_built_from_disk_alone_and_print_takes_six_pages(path):
     document = pypdfium2.PdfDocument(path / "report.pdf")
     assert len(document) <= 6
     document.close()
-
-
-def test_everything_is_in_its_place(report):
-    shown = {
-        section.anchor: [chart.name for chart in blocks_of(report, Chart, section.anchor)]
-        for section in report.sections
-    }
-    assert shown == {
-        "margins": ["classicalmargins", "diskmargins"],
-        "loops": ["nichols", "bode"],
-        "responses": ["turnresponse", "climbresponse"],
-        "equilibria": ["trims", "climbs"],
-        "poles": ["gridpoles"],
-        "linearisation": [],
-        "weights": [],
-        "elsewhere": [],
-        "provenance": [],
-    }
-
-
-def test_axes_have_units_and_every_curve_is_drawn_on_screen_and_in_print(report):
-    assert_axes_read_quantity_and_unit(blocks_of(report, Chart))
-    for chart in blocks_of(report, Chart):
-        lines = [line for panel in chart.panels for line in panel.lines]
-        assert len(plotly_charts.draw(chart)["data"]) == len(lines), chart.name
-        assert sum(len(ax.lines) for ax in matplotlib_charts.draw(chart).axes) == len(lines), (
-            chart.name
-        )
-        for panel in chart.panels:
-            assert any(np.isfinite(line.y).any() for line in panel.lines), (
-                chart.name,
-                panel.y_label,
-            )
-
-
-def test_a_design_with_every_margin_is_called_good(report):
-    verdict = report.verdict
-    assert (verdict.holds, verdict.complete, verdict.failures) == (True, True, [])
-    assert (
-        verdict.headline
-        == "Every loop has at least 6 dB and 45° of margin at every point of the grid and between"
-    )
-    assert "45 points of the grid and 20 points between them" in verdict.detail
-    # Four of the five cases change the aircraft, and one delays its autopilot.
-    assert "4 perturbed aircraft and with one more period of delay." in verdict.detail
-    assert "1 of 45 equilibria are at a limit" in verdict.detail
-    # At the corner of the grid: 11 dB less 2.2 dB for each of airspeed and bank.
-    assert verdict.figures[0] == (
-        "Worst gain margin",
-        "6.6 dB",
-        "≥ 6 dB",
-        True,
-        "elevator, 45 m/s, −33°",
-    )
-    # Of the cases the last has the least margins, 8.5 - 0.5 x 4 dB less 1 dB for each of airspeed
-    # and bank.
-    worst = (
-        "Worst gain margin, perturbed",
-        "4.5 dB",
-        "≥ 4 dB",
-        True,
-        "elevator, 45 m/s, −33°, one more period of delay",
-    )
-    assert verdict.figures[2] == worst
 
 
 def test_the_margin_table_has_the_worst_of_each_loop_and_where(report):
@@ -137,8 +72,8 @@ def test_curves_of_margins_are_the_worst_over_the_other_axis():
     row = next(
         m for m in design["margins"] if m["loop"] == "aileron" and where(m) == "60 m/s, +21°"
     )
-    row["disk_gain_db"] = 0.5
-    chart = margin_charts(design)[0]
+    row["gain_db"] = 0.5
+    chart = margin_chart(design)
     by_airspeed, by_bank = (
         next(line for line in chart.panels[i].lines if line.label == "aileron") for i in (0, 2)
     )
@@ -195,42 +130,10 @@ def test_the_overshoot_is_counted_beyond_that_of_the_reference_model():
     assert excess_overshoot(design) > 0.0
 
 
-def test_perturbations_and_checks_of_the_linear_model_are_listed(report):
-    robustness = blocks_of(report, Table, "margins")[1]
-    assert [row[0] for row in robustness.rows] == [case.replace("-", "−") for case in CASES]
-    assert {row[-1] for row in robustness.rows} == {"yes"}
-    (verification,) = blocks_of(report, Table, "linearisation")
-    assert verification.head == ["Input", "airspeed [%]", "q [%]", "p [%]"]
-    assert verification.rows[0] == ["elevator", "0.20", "0.50", "0.80"]
-
-
-def test_how_to_fly_it_elsewhere_names_the_files_that_are_there(report, tmp_path):
-    files, order = (text.text for text in blocks_of(report, Text, "elsewhere"))
-    assert (
-        "aircraft/c172x/c172x.xml; its autopilot, systems/c172x_autopilot.xml; a script, scripts/c172x.xml"
-        in files
-    )
-    assert (
-        "from the directory of this report: JSBSim --root=model --script=scripts/c172x.xml."
-        in order
-    )
-    assert "writes model/c172x.csv" in order
-    path = write_design(tmp_path / "run")
-    (path / "model" / "scripts" / "c172x.xml").unlink()
-    assert len(blocks_of(content(read_run(path)), Text, "elsewhere")) == 1
-
-
 def test_a_report_of_flights_says_where_the_design_is_and_no_more():
     (line,) = design_words(SimpleNamespace(innerloop=record()))
     assert "innerloop.json; plume-flight design c172x" in line.text
     assert design_words(SimpleNamespace(innerloop=None)) == []
-
-
-def test_a_limit_is_drawn_only_for_margins_of_which_something_is_required():
-    disk, classical = margin_charts(complete(record()))
-    assert [panel.lines[0].label for panel in classical.panels] == ["required"] * 4
-    # The verdict asks nothing of disk margins: nor does a line.
-    assert "required" not in {line.label for panel in disk.panels for line in panel.lines}
 
 
 def test_brackets_in_a_title_are_printed_as_they_are(capsys):
@@ -269,38 +172,6 @@ def test_a_damaged_design_is_refused_in_one_line(damage, words, tmp_path):
     assert str(refusal.value).startswith("'")
 
 
-def test_how_far_reversals_stray_is_said():
-    said = reversal_sentences(record())
-    assert "a dead time of 0.25 s and a lag of 0.25 s. In 100 reversals" in said
-    assert said.endswith(
-        "up to 4.39 m nearer to what it turned away from than predicted. In the 64 others at most"
-        " 2.37 m."
-    )
-    more = {
-        "reversals": 10000,
-        "deviation_max_m": 7.21,
-        "worst_command_before": 1.0,
-        "worst_airspeed_before_mps": 18.2,
-    }
-    repeated = record() | {"turn_reversal": REVERSALS | {"repeated_search": more}}
-    assert (
-        reversal_sentences(repeated)
-        == f"{said} A second search of 10000 reversals came up to 7.21 m nearer."
-    )
-
-
-def test_the_report_and_the_console_say_how_far_reversals_stray(tmp_path, capsys):
-    write_design(tmp_path)
-    (section,) = (
-        section for section in content(read_run(tmp_path)).sections if section.anchor == "responses"
-    )
-    assert reversal_sentences(record()) in [
-        block.text for block in section.blocks if isinstance(block, Text)
-    ]
-    print_summary(record())
-    assert "4.39 m nearer" in " ".join(capsys.readouterr().out.split())
-
-
 def test_every_number_on_page_1_is_that_of_the_record(path, tmp_path):
     design = json.loads((path / "innerloop.json").read_text(encoding="utf-8"))
     margins = [
@@ -337,3 +208,7 @@ def test_every_number_on_page_1_is_that_of_the_record(path, tmp_path):
         "20",
     }
     assert numbers_on_page_1(path, tmp_path) <= expected
+
+
+def test_a_design_reads_as_before(report):
+    assert_reads_as_before("design", report)

@@ -14,6 +14,7 @@ from report_parts import (
     named_charts,
     numbers_on_page_1,
 )
+from snapshots import assert_reads_as_before
 
 from reports.document.blocks import Text
 from reports.finding.flights import _picked
@@ -181,3 +182,7 @@ def test_every_number_on_page_1_is_that_of_the_flights(several, tmp_path):
     failures = " ".join(content(run).verdict.failures)
     told = set(re.findall(r"\d+(?:\.\d+)?", failures))
     assert numbers_on_page_1(several, tmp_path) <= known | told
+
+
+def test_a_search_for_the_plume_reads_as_before(several):
+    assert_reads_as_before("search", content(read_run(several)))

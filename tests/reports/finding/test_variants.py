@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from reports.finding.tables import height_table, search_table
-from reports.finding.trial_charts import finding_charts, hits_over_time
+from reports.finding.trial_charts import hits_over_time
 from reports.finding.variants import Variant, variants_of
 from reports.run.run_data import RunData
 from reports.run.trials import Trial
@@ -135,15 +135,6 @@ def test_the_height_is_covered_where_its_error_is_within_two_standard_deviations
         ]
     ]
     assert height_table(variants_of(trial)[1:]) is None
-
-
-def test_the_share_found_steps_up_at_each_flight_and_stays_below_one(trial):
-    (detection, errors) = finding_charts(trial, variants_of(trial))
-    found = detection.panels[0].lines[0]
-    assert found.x.tolist() == [0.0, 10.0, 10.0, 50.0, 50.0, 300.0]
-    assert found.y.tolist() == pytest.approx([0.0, 0.0, 1 / 3, 1 / 3, 2 / 3, 2 / 3])
-    # Too few for a distribution of the times.
-    assert [panel.y_label for panel in errors.panels] == ["Height believed minus true [m]"]
 
 
 def test_hits_count_from_the_orbit_on(trial):

@@ -24,7 +24,7 @@ def test_error_bars_are_the_intervals_and_not_symmetric_where_these_are_cut():
     chart = flight_charts.error_chart(rows)
     bars = [panel.lines[0].error.ravel() for panel in chart.panels]
     np.testing.assert_allclose(bars, [[0.01, 0.02], [0.0, 0.03]], atol=1e-12)
-    drawn = plotly_charts.draw(chart)["data"][0]["error_y"]
+    drawn = plotly_charts.draw(chart)["panels"][0]["data"][0]["error_y"]
     assert [
         np.frombuffer(base64.b64decode(drawn[end]["bdata"]), dtype="<f4")[0]
         for end in ("arrayminus", "array")

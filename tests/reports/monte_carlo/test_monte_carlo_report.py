@@ -11,18 +11,15 @@ import numpy as np
 import pandas as pd
 import pytest
 from judged_runs import judged
-from report_parts import assert_axes_read_quantity_and_unit
+from snapshots import assert_reads_as_before
 
 from reports.document.blocks import Table
 from reports.document.chart import Chart
 from reports.document.tables import minus
-from reports.monte_carlo.content import bound_in_words, monte_carlo_sections
-from reports.monte_carlo.driver_charts import NEAREST, SCATTER_MAX, scatter_charts, thinned
-from reports.monte_carlo.names import documented_units, input_label, input_name, input_unit
-from reports.monte_carlo.spread_charts import cumulative
+from reports.monte_carlo.content import monte_carlo_sections
+from reports.monte_carlo.names import documented_units, input_label, input_unit
 from reports.monte_carlo.tables import percent
 from reports.registry import content
-from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import RunData, read_run
 from scenarios.scenario.documentation import documented_keys
 from scenarios.scenario.files import load_study
@@ -30,7 +27,7 @@ from scenarios.statistics.estimates import study_statistics
 from scenarios.studies.manifest import initial_manifest, parameters
 from tests.reports.run_columns import RUN_COLUMNS
 from tests.run_tables import write_manifest
-from tests.scenarios.study_rows import RADIUS, few_indices, study_rows
+from tests.scenarios.study_rows import RADIUS, study_rows
 
 FLIGHTS = 250
 
@@ -69,15 +66,6 @@ def run_of(rows, inputs, **changes):
         draws=inputs,
     )
     return judged(run)
-
-
-@pytest.fixture(scope="module", autouse=True)
-def quick_statistics():
-    """Ask of two figures what drives them, with 3 bootstraps: they take nearly all of the time, and
-    a report shows any alike.
-    """
-    with few_indices("clearance_m", "settling_time_s"):
-        yield
 
 
 @pytest.fixture(scope="module")
@@ -145,65 +133,6 @@ def test_page_1_of_a_search_names_the_nearest_flight_and_counts_what_must_not_ha
     assert tone == "bad"
 
 
-def test_the_bound_is_said_in_words_with_its_confidence_and_what_is_not_known(run):
-    words = bound_in_words(run.statistics)
-    found = run.statistics["violation"]
-    assert "With 95 % confidence" in words.replace("\N{NO-BREAK SPACE}", " ")
-    assert f"at most {percent(found['measured']['upper'])}" in words
-    assert words.startswith("1 of 249 flights violated the keep-out area. With ")
-    assert f", about one flight in {round(1.0 / found['measured']['upper'])} (" in words
-    assert "1 flight is of unknown end" in words
-    assert f"the bound is {percent(found['pessimistic']['upper'])}" in words
-    assert "looks" not in words
-
-
-def test_a_study_that_was_looked_at_says_how_often_and_what_that_makes_of_the_confidence(run):
-    statistics = run.statistics | {"look_number": 3, "interval_confidence": 1.0 - 0.05 / 12.0}
-    words = bound_in_words(statistics).replace("\N{NO-BREAK SPACE}", " ")
-    assert "up to 3 times" in words
-    # 1 - 0.05/12 is 0.99583.
-    assert "are made with 99.58 %" in words
-
-
-def test_of_a_study_without_any_measurement_nothing_is_claimed():
-    rows, inputs = study_rows(5)
-    rows["outcome"] = "failed"
-    measured = [
-        "min_distance_m",
-        "crossing_interval_mean_s",
-        "crossing_distance_min_m",
-        "tracking_error_rms_m",
-        "settling_time_s",
-    ]
-    rows[[*measured, "crossing_clearance_min_m", "keepout_violations"]] = np.nan
-    run = run_of(rows, inputs)
-    assert bound_in_words(run.statistics).startswith("No flight was measured")
-    assert not any(charts_of(section) for section in monte_carlo_sections(run))
-    assert content(run).verdict.headline == "Nothing was flown: of 5, 5 failed"
-
-
-def test_distances_of_flights_with_several_keep_out_radii_are_beyond_their_own():
-    rows, inputs = study_rows(FLIGHTS)
-    rows["keepout_radius_m"] = np.where(np.arange(FLIGHTS) % 2, RADIUS, RADIUS - 50.0)
-    rows["crossing_clearance_min_m"] = rows["crossing_distance_min_m"] - rows["keepout_radius_m"]
-    run = run_of(rows, inputs)
-    spread = next(section for section in monte_carlo_sections(run) if section.anchor == "spread")
-    assert "Distances are beyond each flight's own r_min." in spread.blocks[0].text
-    (table,) = (block for block in spread.blocks if isinstance(block, Table))
-    named = {row[0]: dict(zip(table.head, row, strict=True)) for row in table.rows}
-    assert {
-        name
-        for name in named
-        if "Closest" in name or ("crossing" in name.split(",")[0] and "[m]" in name)
-    } == {"Nearest crossing, beyond r_min [m]"}
-    median = np.median(rows["crossing_clearance_min_m"])
-    assert named["Nearest crossing, beyond r_min [m]"][percent(0.5)].startswith(f"{median:.1f}\n")
-    assert any(
-        panel.x_label == "Nearest crossing, beyond r_min [m]"
-        for panel in charts_of(spread)["spread"].panels
-    )
-
-
 def test_every_figure_has_its_quantiles_with_intervals_and_counts_who_has_none(run, sections):
     (table,) = (block for block in sections["spread"].blocks if isinstance(block, Table))
     rows = {row[0]: dict(zip(table.head, row, strict=True)) for row in table.rows}
@@ -222,30 +151,9 @@ def test_every_figure_has_its_quantiles_with_intervals_and_counts_who_has_none(r
     assert table.head[2:] == [percent(p) for p in (0.01, 0.05, 0.5, 0.95, 0.99)]
 
 
-def test_every_axis_of_a_study_reads_quantity_and_unit_and_both_drawers_draw_all_charts(sections):
-    charts = [chart for section in sections.values() for chart in charts_of(section).values()]
-    assert {chart.name for chart in charts} >= {
-        "clearance",
-        "spread",
-        "drivers-clearancem",
-        "over-figures",
-        "over-words",
-    }
-    assert_axes_read_quantity_and_unit(charts)
-    for chart in charts:
-        assert len(matplotlib_charts.draw(chart).axes) >= len(chart.panels)
-        assert len(plotly_charts.draw(chart)["data"]) == sum(
-            len(panel.lines) for panel in chart.panels
-        )
-
-
 def test_the_nearest_flight_is_in_the_histogram_and_at_the_foot_of_the_curve(run, sections):
     chart = charts_of(sections["spread"])["clearance"]
     counted, tail = chart.panels
-    far = np.nanmax(run.summary["min_distance_m"] - run.summary["keepout_radius_m"])
-    assert chart.caption.endswith(
-        f"ends at the nearest 90\N{NO-BREAK SPACE}% of the flights: the farthest came to {far:.0f} m."
-    )
     # The first edge of the first bar, and the first point of the curve: one flight in 249.
     assert lines_of(counted)["flights"].x[0] == pytest.approx(-0.5, abs=1e-9)
     curve = lines_of(tail)["flights"]
@@ -273,54 +181,10 @@ def test_bars_are_as_long_as_the_indices_and_coloured_by_the_noise_floor(run, se
     ]
 
 
-def test_the_clearance_is_drawn_over_figures_and_words_alike(sections):
-    charts = charts_of(sections["drivers"])
-    (wind,), (level,) = charts["over-figures"].panels, charts["over-words"].panels
-    assert wind.x_label == "Wind speed [m/s]"
-    assert lines_of(wind)["flight with a keep-out violation"].y == pytest.approx([-0.5], abs=1e-9)
-    assert sorted(name for _, name in level.y_names) == ["moderate", "none"]
-
-
-def test_a_flight_far_from_all_others_does_not_squeeze_them_whatever_they_are_drawn_over(run):
-    far = run.summary.copy()
-    far.loc[20, "min_distance_m"] = RADIUS + 500.0
-    section = monte_carlo_sections(replace(run, summary=far))[2]
-    (wind,), (level,) = (charts_of(section)[name].panels for name in ("over-figures", "over-words"))
-    # Medians lie at some 5 m, and all others within 8 m (study_rows).
-    assert wind.y_range[1] < 30.0
-    assert level.x_range[1] < 30.0
-    assert [len(lines_of(panel)["beyond the panel: 500 m"].x) for panel in (wind, level)] == [1, 1]
-
-
 def test_of_too_few_flights_for_indices_there_is_no_section_on_them():
     rows, inputs = study_rows(50)
     anchors = [section.anchor for section in monte_carlo_sections(run_of(rows, inputs))]
     assert anchors == ["study", "spread"]
-
-
-def test_of_ten_thousand_flights_so_many_are_drawn_as_is_said_and_always_the_nearest():
-    near = np.random.default_rng(2).exponential(size=10_000)
-    chosen = thinned(near)
-    assert len(chosen) == len(set(chosen)) == SCATTER_MAX
-    assert set(np.argsort(near)[:NEAREST]) <= set(chosen)
-    assert np.array_equal(chosen, thinned(near))
-    # Few flights are all drawn.
-    assert list(thinned(near[:7])) == list(range(7))
-    x, share = cumulative(near)
-    assert len(x) < 400
-    # All of the nearest ten, and the last, which is all flights.
-    assert np.array_equal(x[:10], np.sort(near)[:10])
-    assert share[-1] == 1.0
-
-
-def test_inputs_are_called_by_their_keys_without_the_unit_which_the_axis_has():
-    assert input_label("wind.speed_mps") == "Wind speed [m/s]"
-    assert input_label("guidance.roll_rate_max_deg_s") == "Guidance roll rate max [deg/s]"
-    assert (
-        input_label("following.vessel_acceleration_mps2") == "Following vessel acceleration [m/s2]"
-    )
-    assert input_label("reports.missing") == "Reports missing [-]"
-    assert input_name("turbulence.level") == "Turbulence level"
 
 
 def test_keys_that_name_their_unit_have_the_one_that_is_documented():
@@ -346,17 +210,6 @@ def test_units_are_those_of_the_parameters_of_a_run_parts_of_its_scenario_among_
     assert input_label("vessel.manoeuvres.0.turn_deg", units) == "Vessel manoeuvre 1 turn [deg]"
 
 
-def test_a_scatter_has_the_documented_unit_of_its_input(run):
-    inputs = run.draws.rename(columns={"wind.speed_mps": "plume.age_max"})
-    drawn = run_of(run.summary, inputs)
-    of = [{"key": "plume.age_max", "unit": "s"}]
-    drawn = replace(drawn, manifest=drawn.manifest | {"trial_parameters": {"study": of}})
-    labels = [
-        panel.x_label for chart in scatter_charts(drawn, drawn.statistics) for panel in chart.panels
-    ]
-    assert "Plume age max [s]" in labels
-
-
 def test_statistics_and_inputs_are_read_from_the_run_directory(run, tmp_path):
     write_manifest(tmp_path, {"format": 1, "config": {}})
     run.summary.to_csv(tmp_path / "summary.csv", index=False)
@@ -370,3 +223,7 @@ def test_statistics_and_inputs_are_read_from_the_run_directory(run, tmp_path):
     (tmp_path / "statistics.json").write_text("{", encoding="utf-8")
     assert read_run(tmp_path).statistics is None
     assert read_run(tmp_path).missing() == ["statistics.json"]
+
+
+def test_a_monte_carlo_study_reads_as_before(run):
+    assert_reads_as_before("monte_carlo", content(run))

@@ -5,20 +5,17 @@ writes them.
 import numpy as np
 import pandas as pd
 import pytest
-from report_parts import assert_axes_read_quantity_and_unit
 
-from reports.document.blocks import Table, Text
+from reports.document.blocks import Table
 from reports.document.chart import Chart
 from reports.monte_carlo.subset import (
-    probability_in_words,
     subset_headline,
     subset_sections,
 )
 from reports.monte_carlo.tables import percent
-from reports.render import matplotlib_charts, plotly_charts
 from scenarios.measures.columns import DERIVED_COLUMNS
 from scenarios.statistics.subset_simulation import input_shifts, near_event, subset_statistics
-from tests.scenarios.statistics.rare_events import DIMENSION, linear, noisy, simulated
+from tests.scenarios.statistics.rare_events import DIMENSION, linear, simulated
 from tests.scenarios.study_rows import study_rows
 
 REPEATS = 3
@@ -63,17 +60,6 @@ def blocks_of(statistics, kind):
     ]
 
 
-def test_the_probability_is_said_with_its_interval_and_how_it_was_made(reached):
-    words, found = probability_in_words(reached), reached["violation"]
-    assert (
-        f"{percent(found['low'])} to {percent(found['high'])}, and at most {percent(found['upper'])}"
-        in words
-    )
-    assert "3 independent subset simulations estimate it." in words
-    assert "log-normal" in words
-    assert "is not found by chains" in words
-
-
 def test_the_headline_is_about_what_the_simulation_bounds(reached, unreached):
     found = reached["violation"]
     assert subset_headline(reached) == (
@@ -94,18 +80,6 @@ def test_the_headline_is_about_what_the_simulation_bounds(reached, unreached):
     assert percent(plain["upper"]).startswith("0.994")
 
 
-def test_where_nothing_was_reached_only_an_upper_bound_is_claimed(unreached):
-    words = probability_in_words(unreached)
-    assert words.startswith(
-        "None of 3 independent subset simulations reached a keep-out violation."
-    )
-    assert f"at most {percent(unreached['violation']['upper'])}" in words
-    assert "m beyond r_min" in words
-    assert "Inputs of the nearest flights" in [
-        section.title for section in subset_sections(unreached, {}, CLEARANCE)
-    ]
-
-
 def test_tiny_probabilities_are_powers_of_ten():
     assert percent(3.14e-7) == "3.1·10⁻⁷"
     assert percent(2e-5) == "0.002\N{NO-BREAK SPACE}%"
@@ -124,22 +98,6 @@ def test_every_level_has_a_row_with_the_flights_of_all_simulations(reached):
     assert levels.rows[0][levels.head.index("Within r_min plus [m]")] == "any"
 
 
-def test_every_axis_reads_quantity_and_unit_and_both_drawers_draw_all_charts(reached, unreached):
-    for statistics in (reached, unreached):
-        charts = blocks_of(statistics, Chart)
-        assert [chart.name for chart in charts] == [
-            "rare-curve",
-            "rare-inputs",
-            "rare-distributions",
-        ]
-        for chart in charts:
-            assert len(matplotlib_charts.draw(chart).axes) >= len(chart.panels)
-            assert len(plotly_charts.draw(chart)["data"]) == sum(
-                len(panel.lines) for panel in chart.panels
-            )
-        assert_axes_read_quantity_and_unit(charts)
-
-
 def test_the_curve_rises_with_the_distance_and_lies_within_its_band(reached):
     (curve,) = (chart for chart in blocks_of(reached, Chart) if chart.name == "rare-curve")
     lines = {line.label: line for line in curve.panels[0].lines}
@@ -151,22 +109,3 @@ def test_the_curve_rises_with_the_distance_and_lies_within_its_band(reached):
     # nearly all flights.
     assert 1e-8 < estimate.y[0] < 1e-4
     assert estimate.y[-1] > 0.5
-
-
-def test_words_are_in_the_table_of_inputs_and_numbers_have_their_medians(reached):
-    (table,) = (block for block in blocks_of(reached, Table) if block.head[0] == "Input")
-    rows = {row[0]: row for row in table.rows}
-    assert "median" in rows["Wind speed [m/s]"][2]
-    assert "none" in rows["Turbulence level"][3]
-    assert len(rows) == DIMENSION
-
-
-def test_a_seed_that_decides_is_warned_of():
-    statistics = statistics_of(noisy(1e-5, seed_share=0.95, blend_share=0.02), noise=True)
-    last = [simulation["levels"][-1] for simulation in statistics["simulations"]]
-    share = sum(level["renewed_accepted"] for level in last) / sum(
-        level["renewed"] for level in last
-    )
-    texts = [block.text for block in blocks_of(statistics, Text)]
-    assert share < 0.05
-    assert any("the interval may be too narrow" in text.replace("\n", " ") for text in texts)

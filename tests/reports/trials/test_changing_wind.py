@@ -9,9 +9,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from common.physics import wind_velocity
-from reports.flights.first_page import flights_in_words
 from reports.flights.flight_view import flight_view
-from reports.flights.selection import flight_section
 from reports.flights.single_flight import flight_charts
 from reports.run.run_data import read_run
 from reports.run.surroundings import surroundings
@@ -82,9 +80,3 @@ def test_a_map_has_the_wind_of_its_moment(flown):
     assert surroundings(config, row, older).wind == pytest.approx(
         (2.0, math.atan2(*wind_velocity(2.0, 270.0)[::-1]))
     )
-
-
-def test_words_say_that_the_wind_is_that_of_the_start(flown):
-    trial, _ = flown
-    assert flights_in_words(trial.run, trial.flown).endswith("in wind of 2 m/s at the start")
-    assert "wind 2.0 m/s at the start".replace(" ", r"\xa0") in repr(flight_section([trial]))

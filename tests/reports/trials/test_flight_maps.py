@@ -11,7 +11,7 @@ from reports.flights.single_flight import flight_charts
 from reports.flights.time_marks import TIMES
 from reports.flights.tracks import track_chart, track_picture
 from reports.run.surroundings import surroundings
-from reports.run.time_history import about_the_plume, flight_points, guard_stretches, vessel_heading
+from reports.run.time_history import about_the_plume, guard_stretches, vessel_heading
 from reports.run.trials import read_trials
 
 
@@ -77,42 +77,6 @@ def test_the_panel_of_the_distance_shows_the_orbit_also_where_that_is_far_off_th
     assert f"Distances above {panel.y_range[1]:.0f} m are not shown." in chart.caption
 
 
-def test_of_a_long_flight_rate_and_bank_are_shown_by_their_range_and_what_is_flown_lies_over_its_command(
-    flight,
-):
-    trial, row = flight
-    history = trial.run.history(str(row["flight_id"]))
-    shown = {}
-    for factor in (1.0, 20.0):
-        chart = flight_charts(
-            FlightView(trial, row, history.assign(time_s=factor * history["time_s"]))
-        )[1]
-        shown[factor] = {
-            panel.y_label: [line for line in panel.lines if line.label in ("flown", "command")]
-            for panel in chart.panels
-        }
-        assert ("within each 30 s" in chart.caption) == (factor > 1.0)
-    for panels in shown.values():
-        assert [line.label for line in panels["Rate [rad/s]"]] == ["command", "flown"]
-    (bank,), degrees = shown[20.0]["Bank [deg]"], np.degrees(history["roll_rad"].to_numpy())
-    assert (bank.y.min(), bank.y.max()) == pytest.approx((degrees.min(), degrees.max()))
-    # In the third half minute, to the right and back to the left.
-    within = (history["time_s"] * 20.0).between(60.0, 90.0, inclusive="left").to_numpy()
-    assert set(bank.y[(bank.x > 60.0) & (bank.x < 90.0)]) <= {
-        degrees[within].min(),
-        degrees[within].max(),
-    }
-    assert len(shown[1.0]["Bank [deg]"][0].x) > len(bank.x)
-
-
-def test_many_stretches_become_few_that_hold_them_all(flight):
-    view = guarded_view(flight, np.tile([0, 1, 1, 0, 0], 60))
-    bands = view.bands()
-    time, guard = (view.whole[name].to_numpy() for name in ("time_s", "guard"))
-    assert 1 <= len(bands) <= 30
-    assert all(any(band.start <= t <= band.end for band in bands) for t in time[guard > 0.0])
-
-
 def test_the_track_begins_and_ends_where_the_flight_does_and_the_reference_lies_over_it(flight):
     chart = flight_charts(flight_view(*flight))[0]
     whole = chart.panels[0]
@@ -154,14 +118,6 @@ def test_a_ship_at_rest_heads_as_configured_and_one_that_stops_as_before():
         {"vessel_velocity_north_mps": [0.0, 0.0, 0.0], "vessel_velocity_east_mps": [0.0, 5.0, 0.0]}
     )
     assert vessel_heading(stops, 0.0) == pytest.approx(math.pi / 2)
-
-
-def test_from_near_only_the_marks_of_the_time_shown_are_seen(flight):
-    view = flight_view(*flight)
-    times = view.crossings["time_s"].to_numpy()
-    late = view.since(float(times[-1]) - 0.05)
-    assert late.crossings["time_s"].tolist() == [times[-1]]
-    assert view.since(float(view.ends[1])) is None
 
 
 def test_a_picture_has_a_panel_for_each_flight_with_a_time_history(run, flight):
@@ -231,8 +187,3 @@ def test_north_is_up_over_the_ground_where_the_ship_turns(flight, turn_deg, labe
         assert sum(len(line.x) for line in marks) == sum(
             note.text.endswith((" s", " min")) for note in panel.notes
         )
-
-
-@pytest.mark.parametrize(("duration", "points"), [(400.0, 1300), (3000.0, 3000), (7200.0, 4000)])
-def test_a_long_flight_has_a_point_a_second_and_its_turns_are_no_corners(duration, points):
-    assert flight_points(pd.DataFrame({"time_s": np.array([0.0, duration])})) == points

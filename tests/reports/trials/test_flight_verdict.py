@@ -1,19 +1,13 @@
 """The verdict on flights claims what was flown, and the bound that follows: no more, and no less."""
 
-import json
 import re
-from dataclasses import replace
 
-import numpy as np
 import pandas as pd
 import pytest
-from judged_runs import changed, judged
-from report_parts import blocks_of
+from judged_runs import changed
 from trial_runs import rows_of, with_criterion, with_values
 
-from reports.document.blocks import Table
 from reports.registry import content
-from reports.run.columns import interval_error
 
 pytestmark = pytest.mark.usefixtures("without_single_flights")
 
@@ -70,28 +64,6 @@ def test_the_closest_approach_as_shown_agrees_with_its_judgement(
     assert report.verdict.tone == ("good" if met else "bad")
 
 
-def test_a_limit_that_is_scaled_to_the_aircraft_says_so_on_page_1_and_in_the_table(run):
-    key = "criteria.tracking_error_rms_m"
-    limited = with_criterion(run, "steady", "tracking_error_rms_m", 2.5)
-    (parameter,) = [of for of in limited.manifest["trial_parameters"]["steady"] if of["key"] == key]
-    for scaled, value, words in (
-        ([key], 2.5, "≤ 2.5 m, scaled to the aircraft"),
-        ([], 2.5, "≤ 2.5 m"),
-        ([key], 1.5, "≤ 2.5 m"),
-    ):
-        parameter["value"] = value
-        limited.manifest["scaled_parameters"] = {"steady": scaled}
-        report = content(limited)
-        (tile,) = [
-            card
-            for card in report.verdict.figures
-            if card.name.startswith("Tracking error, rms after settling, worst")
-        ]
-        assert tile.limit == words
-        (table,) = [table for table in blocks_of(report, Table, "trials") if "Limit" in table.head]
-        assert words in [row[2] for row in table.rows]
-
-
 LOST = {
     "outcome": "aircraft_lost",
     "mode_at_end": "ditched",
@@ -135,81 +107,6 @@ def test_a_mission_that_was_not_completed_is_not_met_and_said(run):
     assert report.verdict.failures == ["steady_00000: incomplete; flew 1 of 3 crossings"]
 
 
-def test_of_a_flight_alone_the_headline_says_what_it_failed_and_no_figure_is_told_twice(run):
-    failed = with_values(
-        run,
-        0,
-        outcome="incomplete",
-        message="flew 1 of 3 crossings",
-        criteria_met=False,
-        duration_s=64.0,
-    )
-    limited = with_criterion(failed, "steady", "tracking_error_rms_m", 2.5)
-    alone = changed(
-        limited,
-        summary=limited.summary.iloc[:1],
-        manifest=limited.manifest | {"flights_planned": 1},
-    )
-    verdict = content(alone).verdict
-    # Keeping out, and completing.
-    assert verdict.headline == (
-        "The flight kept out and did not finish; it met 1 of the 2 criteria that judge it"
-    )
-    # It did not complete, and is not judged by its tracking error.
-    names = [card.name for card in verdict.figures if card.name.startswith("Tracking error")]
-    assert names == ["Tracking error, rms after settling"]
-
-
-def test_faults_that_began_are_named_on_page_1(run):
-    report = content(
-        with_values(
-            with_values(run, 0, fault="sniffer_dead", fault_time_s=20.0),
-            1,
-            fault="engine",
-            fault_time_s=1e9,
-        )
-    )
-    # The other one begins after the end of its flight.
-    assert report.verdict.failures == [
-        "In 1 of 4 flights a fault began, as the scenario has it: sniffer dead, at 20 s."
-    ]
-
-
-def test_a_figure_whose_criterion_is_switched_off_keeps_its_row_with_a_dash_for_the_limit(run):
-    off = with_criterion(
-        with_criterion(run, "steady", "crossing_interval_error", False),
-        "turns",
-        "crossing_interval_error",
-        False,
-    )
-    (figure,) = [
-        card
-        for card in content(off).verdict.figures
-        if card.name.startswith("Mean crossing interval off")
-    ]
-    worst = np.nanmax(np.abs(interval_error(run.summary)))
-    assert (figure.value, figure.required, figure.result) == (f"{100.0 * worst:.3g} %", "–", "–")
-
-
-def test_of_a_single_flight_the_words_are_of_one(run):
-    manifest = run.manifest | {
-        "flights_planned": 1,
-        "trials": {"steady": run.manifest["trials"]["steady"]},
-    }
-    alone = changed(run, manifest=manifest, summary=run.summary.iloc[:1].copy())
-    assert re.fullmatch(
-        r"The flight kept out and finished; it met (\d) of the \1 criteria that judge it",
-        content(alone).verdict.headline,
-    )
-    lost = content(with_values(alone, 0, fault="engine", fault_time_s=20.0, **LOST)).verdict
-    assert lost.headline.startswith(
-        "The flight stayed outside of the keep-out area and lost its aircraft; "
-    )
-    assert (
-        lost.failures[-1] == "In the flight a fault began, as the scenario has it: engine, at 20 s."
-    )
-
-
 NOT_FLOWN = {
     "outcome": "infeasible", "message": "too fast a vessel", "criteria_met": False, "kept_out": False,
     "duration_s": float("nan"), "min_distance_m": float("nan"), "tracking_error_rms_m": float("nan"),
@@ -238,24 +135,6 @@ def test_a_flight_that_could_not_be_flown_is_told_and_makes_no_other_flights_fig
     assert row[-2:] == ["1 of 2", "0"]
 
 
-def test_flights_that_were_not_flown_are_counted_apart_from_those_that_failed_a_criterion(run):
-    rows, failed = (
-        run.summary.iloc[[0]],
-        {"criteria_met": False, "crossing_interval_mean_s": 99.0, "message": "off"},
-    )
-    judged = [NOT_FLOWN] * 5 + [failed] * 4 + [{}]
-    many = [rows.assign(flight_id=f"steady_{i:05}", **values) for i, values in enumerate(judged)]
-    manifest = json.loads(json.dumps(run.manifest)) | {
-        "flights_planned": 10,
-        "trial_flights": {"steady": 10, "turns": 0},
-    }
-    report = content(changed(run, summary=pd.concat(many, ignore_index=True), manifest=manifest))
-    assert report.verdict.failures == [
-        "Steady: 4 of 5 flights flown failed a criterion (4: Mean crossing interval off π/ω₀, ≤ 3.21 %)",
-        "Steady: 5 of 10 not flown; the first, steady_00000: infeasible: too fast a vessel",
-    ]
-
-
 def test_of_a_run_in_which_nothing_was_flown_no_figure_is_met_and_no_picture_shown(run):
     nothing = changed(run, summary=run.summary.assign(**NOT_FLOWN))
     report = content(nothing)
@@ -265,33 +144,6 @@ def test_of_a_run_in_which_nothing_was_flown_no_figure_is_met_and_no_picture_sho
     ]
     assert report.picture is None
     assert report.verdict.tone == "bad"
-
-
-def test_flights_of_one_reason_share_a_line(run):
-    values = {
-        "outcome": "not_settled",
-        "message": "did not settle within 300 s",
-        "criteria_met": False,
-    }
-    report = content(with_values(with_values(run, 0, **values), 1, **values))
-    assert report.verdict.failures == ["steady_00000, steady_00001: did not settle within 300 s"]
-
-
-def test_flights_that_are_not_flown_yet_are_not_failed_ones(run):
-    manifest = json.loads(json.dumps(run.manifest)) | {
-        "flights_planned": 200,
-        "state": "interrupted",
-    }
-    manifest["trial_flights"] = {"steady": 198, "turns": 2}
-    report = content(judged(replace(run, manifest=manifest), interrupted=True))
-    assert report.verdict.headline.startswith(
-        "INTERRUPTED after 4 of 200 flights. 4 of 4 flights kept out, 4 finished. "
-    )
-    assert report.verdict.failures == ["Steady: 196 of 198 not flown yet"]
-    assert report.verdict.detail == "The run did not end; continue it with --resume."
-    assert report.verdict.tone == "warn"
-    assert rows_of(report, "Steady")[0][:4] == ["198", "2", "2", "2"]
-    assert "failed" not in {section.anchor for section in report.sections}
 
 
 def test_the_verdict_claims_what_was_flown_and_the_bound_that_follows(run):
@@ -350,63 +202,6 @@ def test_a_handful_of_flights_states_no_bound_as_it_would_say_nothing(run):
     assert rows_of(report, "Steady")[0][6] == "–"
 
 
-def test_what_no_criterion_asks_for_is_on_the_first_page_too(run):
-    report = content(
-        with_values(
-            run,
-            2,
-            tracking_error_rms_m=107.0,
-            guard_lost_s=3.2,
-            guard_interventions=1,
-            manoeuvres_unflown=1,
-        )
-    )
-    largest = "Tracking error, rms after settling, worst"
-    (tracking,) = (card for card in report.verdict.cards if card.name == largest)
-    assert (tracking.value, tracking.note) == ("107 m", "turns_00000")
-    assert report.verdict.failures[0].startswith(
-        "Turns: 1 of the 2 settled flights lost their track again, by up to 107 m rms"
-    )
-    assert report.verdict.failures[1:] == [
-        "In 1 of 4 flights the guard could not hold its own radius, for up to 3.2 s.",
-        "In 1 flight a manoeuvre of the vessel begins after the end of the flight, and was never flown.",
-    ]
-
-
-@pytest.mark.parametrize(("flights", "told"), [(100, "99 % of flights below 99 m"), (99, "")])
-def test_what_nearly_all_tracking_errors_are_below_is_told_of_a_hundred_flights_at_least(
-    run, flights, told
-):
-    # Of 100 values 1 to 100 the quantile is between the 99th and the 100th.
-    rows = pd.concat([run.summary.iloc[:1]] * flights, ignore_index=True).assign(
-        flight_id=[f"steady_{i:05}" for i in range(flights)],
-        tracking_error_rms_m=np.arange(1.0, flights + 1.0),
-    )
-    report = content(changed(run, summary=rows))
-    (card,) = (of for of in report.verdict.figures if of.name.startswith("Tracking error, rms"))
-    assert card.value == f"{flights} m"
-    # The flight that has the largest one is named.
-    assert card.note == "; ".join(
-        filter(None, [f"steady_{flights - 1:05}", told.replace(" %", "\N{NO-BREAK SPACE}%")])
-    )
-
-
-def test_the_shape_of_the_keep_out_area_is_said_where_a_distance_is_printed(run):
-    def closest(changed_run):
-        figures = content(changed_run).verdict.figures
-        return next(card for card in figures if card.name.startswith("Closest approach"))
-
-    assert closest(run).name == "Closest approach, from the keep-out sphere's centre"
-    cylinder = closest(changed(run, summary=run.summary.assign(keepout_shape="cylinder")))
-    assert cylinder.name == "Closest approach, horizontal, from the keep-out cylinder's axis"
-    # Beside the funnel, far above it: a sphere is narrower there.
-    rising = closest(with_values(run, 0, min_distance_m=200.5, horizontal_distance_min_m=80.2))
-    assert (rising.value, rising.note) == (
-        "200.5 m",
-        "steady_00000, 80.2 m horizontally from the funnel",
-    )
-
-
 def test_a_flight_that_was_flown_before_an_instrument_failed_counts_with_its_violation(run):
     # An instrument is evaluated after the flight: where that fails, so is the flight's outcome, and
     # its distances are known.
@@ -451,10 +246,3 @@ def test_a_violation_that_no_premise_explains_comes_before_anything_else(run):
     assert ("Violations with every premise of the guard held", "1", "0", False) in [
         (figure.name, figure.value, figure.limit, figure.met) for figure in report.verdict.figures
     ]
-
-
-def test_reports_of_a_ship_that_were_dropped_are_said_first(run):
-    dropped = "ais.csv: 30% of the reports of MMSI 219999001 were dropped"
-    files = {"ais.csv 219999001": {"rows": 10, "used": 7, "warning": dropped}}
-    told = content(replace(run, manifest=run.manifest | {"vessel_files": files})).verdict
-    assert told.failures[0] == dropped

@@ -13,10 +13,6 @@ from hypothesis import strategies as st
 from report_parts import blocks_of
 
 from common.text import as_json_cell, cell, from_json_cell
-from reports.compare.figures import differences
-from reports.compare.pairs import Pairs
-from reports.compare.runs import Run
-from reports.compare.tracks import most_changed
 from reports.document.blocks import FlightPicker
 from reports.export.geographic import recorded_flights
 from reports.flights.flight_view import flight_view
@@ -96,7 +92,7 @@ def test_the_time_history_of_a_flight_has_the_closest_approach_of_its_row_and_it
         caption = flight_charts(view)[1].caption
         assert ("from the keep-out sphere's centre" in caption) == (shape == "sphere")
         assert ("from the keep-out cylinder's axis" in caption) == (shape == "cylinder")
-        funnel = next(line for line in panel_of(view, "Height").lines if line.label == "funnel")
+        funnel = next(line for line in panel_of(view, "Height").lines if line.label == "stack")
         assert set(funnel.y) == {height}
 
 
@@ -138,7 +134,7 @@ def test_a_trial_of_both_shapes_says_so_and_page_1_says_which_the_closest_flight
     # Without height a distance is shorter.
     (closest,) = [card for card in report.verdict.figures if card.name == "Closest approach"]
     assert closest.note.endswith(", horizontal, from the keep-out cylinder's axis")
-    assert "The keep-out cylinder or sphere is about the funnel" in report.picture.caption
+    assert "The keep-out cylinder or sphere is about the stack" in report.picture.caption
     (picker,) = blocks_of(report, FlightPicker)
     assert [flight.scene.keepout_shape for flight in picker.flights] == [shape for shape, _ in OWN]
 
@@ -156,24 +152,6 @@ def test_the_closest_approach_after_a_fault_is_measured_as_the_flights_own_is(tr
         table = fault_table(alone)
         after = float(table.rows[0][table.head.index("Closest after the fault [m]")])
         assert after == pytest.approx(row["min_distance_m"], abs=0.1)
-
-
-def test_two_runs_are_compared_by_the_distances_of_their_own_areas(apart):
-    runs = [Run(letter=letter, data=apart, trials=read_trials(apart)) for letter in "AB"]
-    sphere, cylinder = apart.summary.iloc[[0]], apart.summary.iloc[[2]]
-    pairs = Pairs(first=runs[0], other=runs[1], before=sphere, after=cylinder, same_name=0)
-    panel = next(
-        panel
-        for panel in most_changed(pairs, differences(pairs)).panels
-        if panel.y_label == "Distance [m]"
-    )
-    nearest = [
-        float(np.nanmin(line.y)) for line in panel.lines if line.label.startswith(("A:", "B:"))
-    ]
-    # Every fifth sample or so is shown; the shapes differ by 11 m.
-    assert nearest == pytest.approx(
-        [sphere["min_distance_m"].iloc[0], cylinder["min_distance_m"].iloc[0]], abs=1.0
-    )
 
 
 def test_a_comparisons_flight_has_what_the_comparison_sets(apart):

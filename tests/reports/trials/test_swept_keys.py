@@ -2,7 +2,6 @@
 for each.
 """
 
-import re
 from dataclasses import replace
 
 import numpy as np
@@ -13,16 +12,11 @@ from report_parts import blocks_of
 from reports.document.blocks import FlightPicker, Table
 from reports.errors import ReportError
 from reports.flights.names import (
-    _swept,
-    changes_flights,
     flight_name,
     flown_elsewhere,
     swept_column,
-    words_together,
 )
 from reports.flights.trials.charts import trial_charts
-from reports.flights.trials.panels_over import LIMIT_LABEL
-from reports.flights.trials.tables import failed_blocks, fault_table, flight_table
 from reports.registry import content
 from reports.run.columns import column
 from reports.run.run_data import read_run
@@ -65,43 +59,11 @@ def trial(tmp_path_factory):
     return read_trials(read_run(folder / "run"))[0]
 
 
-def test_several_numbers_have_a_column_each_in_two_figures_and_words_have_one_of_their_own(trial):
-    charts = trial_charts(trial)
-    assert [chart.name.rpartition("-")[2] for chart in charts] == ["crossings", "errors", "law3"]
-    for chart in charts[:2]:
-        assert chart.columns == 2
-        # Speed ratio and radius side by side, twice.
-        assert [panel.x_label for panel in chart.panels] == [
-            "Speed ratio ν [-]",
-            "Keep-out radius [m]",
-        ] * 2
-    assert [panel.y_label for panel in charts[1].panels[::2]] == [
-        "Tracking error, rms after settling [m]",
-        "Settling time [s]",
-    ]
-
-
-def test_words_that_change_nothing_in_the_flights_are_no_groups_of_markers(trial):
-    assert changes_flights(trial, "guidance.law")
-    assert set(words_together(trial)) == {"cascade", "line of sight"}
-    # As of sensors that only listen: each flight twice.
-    rows = trial.rows.assign(
-        min_distance_m=trial.rows.groupby(["nu", "keepout_radius_m"])["min_distance_m"].transform(
-            "first"
-        )
-    )
-    alike = replace(trial, rows=rows)
-    assert not changes_flights(alike, "guidance.law")
-    assert changes_flights(alike, "keepout.radius_m")
-    assert words_together(alike) == []
-    assert [chart.name.rpartition("-")[2] for chart in trial_charts(alike)] == [
-        "crossings",
-        "errors",
-    ]
-
-
 def test_a_flight_is_called_by_all_that_was_swept(trial):
-    assert flight_name(trial, trial.rows.iloc[0]) == "ν = 0.20, keep-out radius 150 m, cascade"
+    assert (
+        flight_name(trial, trial.rows.iloc[0])
+        == "ν = 0.20, keep-out radius 150 m, guidance law cascade"
+    )
 
 
 def test_a_flight_that_was_lost_with_its_process_is_called_as_in_the_files(trial):
@@ -142,41 +104,6 @@ def test_page_1_tells_of_flights_with_different_radii_how_far_each_stayed_beyond
     ]
 
 
-def test_tables_of_failed_flights_and_of_faults_have_the_distance_beyond_each_flights_own_radius(
-    trial,
-):
-    kept = column(trial.rows, "min_distance_m") - column(trial.rows, "keepout_radius_m")
-    faulty = trial.rows.assign(
-        fault="rudder", fault_time_s=0.0, end_distance_m=300.0, criteria_met=False
-    )
-    _, failed = failed_blocks([replace(trial, rows=faulty)])
-    assert [row[failed.head.index("beyond r_min [m]")] for row in failed.rows] == [
-        f"{value:+.1f}" for value in np.sort(kept)
-    ]
-    faults = fault_table(replace(trial, rows=faulty))
-    (row,) = faults.rows
-    assert row[faults.head.index("beyond r_min [m]")] == f"{kept.min():+.1f}"
-    assert float(row[faults.head.index("after the fault, beyond r_min [m]")]) == pytest.approx(
-        kept.min(), abs=0.1
-    )
-    for table in (failed, faults):
-        assert len(table.head) == len(table.widths) == len(table.rows[0])
-    # With one radius for all, the closest approach says it.
-    one = faulty[faulty["keepout_radius_m"] == 150.0]
-    for table in (
-        failed_blocks([replace(trial, rows=one)])[1],
-        fault_table(replace(trial, rows=one)),
-    ):
-        assert "beyond" not in " ".join(table.head)
-
-
-def test_page_1_tells_of_flights_with_one_radius_how_close_they_came(windy):
-    assert "Closest approach, from the keep-out sphere's centre" in [
-        card.name for card in windy.verdict.figures
-    ]
-    assert "r_min" not in windy.verdict.detail + windy.picture.caption.partition("Closest:")[2]
-
-
 def test_the_speed_ratio_that_was_swept_is_in_a_table_of_the_run_beside_the_one_that_was_flown(
     windy_run,
 ):
@@ -184,43 +111,6 @@ def test_the_speed_ratio_that_was_swept_is_in_a_table_of_the_run_beside_the_one_
     assert list(drawn["vessel.speed_ratio"]) == [0.3, 0.3, 0.6, 0.6]
     # As in the column of flown ratios below; of what was not flown it is that over the ground.
     assert list(drawn["nu"].round(2)[:3]) == [0.3, 0.81, 0.6]
-
-
-def test_words_that_were_swept_are_told_apart_by_colour_and_a_file_is_named_without_its_folders(
-    trial,
-):
-    laws = trial.run.draws["guidance.law"].replace("line_of_sight", "/home/me/laws/mylaw.py:MyLaw")
-    own = replace(
-        trial, run=replace(trial.run, draws=trial.run.draws.assign(**{"guidance.law": laws}))
-    )
-    *charts, by_word = trial_charts(own)
-    assert [name for _, name in by_word.panels[0].y_names] == ["cascade", "mylaw.py:MyLaw"]
-    for panel in (panel for chart in charts for panel in chart.panels):
-        colours = {
-            line.label.partition(":")[0]: line.colour
-            for line in panel.lines
-            if line.label.startswith(("cascade", "mylaw"))
-        }
-        assert len(set(colours.values())) == len(colours) == 2
-    # Of every flight there is one marker in each panel of a figure.
-    assert sum(len(line.x) for line in charts[1].panels[0].lines if line.style == "points") == len(
-        own.flown
-    )
-
-
-def test_the_limit_of_any_path_is_told_where_it_is_drawn_and_nowhere_else(trial):
-    over_ratio = {"sweep": {"nu": [0.2, 0.4]}}
-    alone = replace(trial, config=trial.config | over_ratio)
-    shown = trial_charts(alone)[0]
-    drawn = any(line.label == LIMIT_LABEL for line in shown.panels[0].lines)
-    assert ("The limit is" in shown.caption) == drawn
-    theory = {"limit_nu": [0.0, 0.9], "crossing_interval_limit_s": [5.0, 9.0]}
-    with_limit = replace(
-        alone, run=replace(alone.run, manifest=alone.run.manifest | {"theory": {alone.key: theory}})
-    )
-    assert "The limit is" in trial_charts(with_limit)[0].caption
-    without = replace(alone, run=replace(alone.run, manifest=alone.run.manifest | {"theory": {}}))
-    assert "The limit is" not in trial_charts(without)[0].caption
 
 
 WINDY = f"""
@@ -281,95 +171,15 @@ def test_each_swept_value_has_its_name_and_unit_and_a_flight_one_name_everywhere
 
 
 def test_where_the_flown_speed_ratio_is_not_the_swept_one_a_column_says_it(windy, trial):
-    for anchor in ("trial1", "parameters"):
-        flights = next(
-            table for table in blocks_of(windy, Table, anchor) if "ν flown [-]" in table.head
-        )
-        ratios = [row[flights.head.index("ν flown [-]")] for row in flights.rows]
-        # (0.3 * 19.42 + 10)/19.42 = 0.815: head wind on a vessel on course north, at the X8's
-        # airspeed.
-        assert ratios[:3] == ["0.30", "0.81", "0.60"]
-        # What was not flown has none.
-        assert ratios[3:] in ([], ["–"])
+    (flights,) = (of for of in blocks_of(windy, Table, "trial1") if "ν flown [-]" in of.head)
+    # (0.3 * 19.42 + 10)/19.42 = 0.815: head wind on a vessel on course north, at the X8's airspeed.
+    # What was not flown has none.
+    ratios = [row[flights.head.index("ν flown [-]")] for row in flights.rows]
+    assert ratios == ["0.30", "0.81", "0.60", "–"]
     (picker,) = blocks_of(windy, FlightPicker)
     assert "flown at ν = 0.81" in picker.flights[1].title.replace("\N{NO-BREAK SPACE}", " ")
     assert ": not flown, infeasible: " in picker.flights[3].title
     assert not flown_elsewhere(trial)
-
-
-@pytest.mark.parametrize(
-    ("key", "values", "names"),
-    [
-        ("nu", [0.95, 0.953], ["ν = 0.950", "ν = 0.953"]),
-        ("nu", [0.2, 0.4], ["ν = 0.20", "ν = 0.40"]),
-        (
-            "keepout.radius_m",
-            [1000.1, 1000.2],
-            ["Keep-out radius 1000.1 m", "Keep-out radius 1000.2 m"],
-        ),
-        ("keepout.radius_m", [150.0, 1000.2], ["Keep-out radius 150 m", "Keep-out radius 1000 m"]),
-    ],
-)
-def test_names_have_as_many_digits_as_tell_swept_values_apart(trial, key, values, names):
-    rows = trial.rows.iloc[: len(values)].reset_index(drop=True)
-    draws = pd.DataFrame(
-        {"flight_id": rows["flight_id"], "vessel.speed_ratio" if key == "nu" else key: values}
-    )
-    config = trial.config | {"sweep": {key: values}, "flights": 1}
-    planned = {"trial_flights": {trial.key: len(values)}}
-    run = replace(trial.run, draws=draws, manifest=trial.run.manifest | planned)
-    own = replace(trial, run=run, config=config, rows=rows)
-    assert [flight_name(own, row) for _, row in own.rows.iterrows()] == names
-    cell = swept_column(own)[1]
-    assert [cell(row) for _, row in own.rows.iterrows()] == [
-        name.split("= ")[-1].split("radius ")[-1] for name in names
-    ]
-
-
-def test_a_value_that_says_nothing_by_itself_has_the_name_of_its_key(trial):
-    mine = "/home/me/laws/mylaw.py:MyLaw"
-    sweep = {
-        "turbulence.level": ["none", "severe"],
-        "guidance.preview": [True, False],
-        "guidance.law": ["cascade", mine],
-    }
-    own = replace(trial, config=trial.config | {"sweep": sweep})
-    assert _swept(own, "turbulence.level", "none") == "Turbulence level none"
-    assert _swept(own, "guidance.preview", np.bool_(False)) == "Guidance preview no"
-    assert _swept(own, "turbulence.level", "severe") == "severe"
-    assert _swept(own, "guidance.law", mine) == "mylaw.py:MyLaw"
-
-
-def test_words_that_two_swept_keys_have_in_common_have_the_names_of_their_keys_in_titles_and_legends(
-    trial,
-):
-    sweep = {
-        "guidance.law": ["cascade", "line_of_sight"],
-        "following.margin_law": ["cascade", "line_of_sight", "lyapunov"],
-    }
-    draws = pd.DataFrame({
-        "flight_id": trial.rows["flight_id"][:2],
-        "guidance.law": ["cascade", "line_of_sight"],
-        "following.margin_law": ["line_of_sight", "lyapunov"],
-    })  # fmt: skip
-    run = replace(
-        trial.run, draws=draws, manifest=trial.run.manifest | {"trial_flights": {trial.key: 6}}
-    )
-    own = replace(
-        trial,
-        run=run,
-        config=trial.config | {"sweep": sweep, "flights": 1},
-        rows=trial.rows.iloc[:2],
-    )
-    names = [
-        "Guidance law cascade, Following margin law line of sight",
-        "Guidance law line of sight, lyapunov",
-    ]
-    assert words_together(own) == names
-    assert (
-        flight_name(own, own.rows.iloc[0])
-        == "Guidance law cascade, following margin law line_of_sight"
-    )
 
 
 def test_a_sweep_whose_values_are_gone_names_the_table_that_had_them(trial):
@@ -379,15 +189,3 @@ def test_a_sweep_whose_values_are_gone_names_the_table_that_had_them(trial):
         match=r"draws\.csv' is gone or has no column 'keepout\.radius_m', .*; repeat the run's",
     ):
         trial_charts(gone)
-
-
-@pytest.mark.parametrize("name", ["rmin_00000", "sea_faults_00000"])
-def test_the_name_of_a_flight_does_not_reach_into_its_outcome_in_print(trial, name):
-    rows = trial.rows.assign(
-        message="it came down on the sea, after the fault 'engine'", outcome="aircraft_lost"
-    )
-    table = flight_table(trial.run, rows, "Flight", lambda _: name)
-    # A4 leaves some 500 pt for a table, in which a letter of a name takes 3.9 pt; names may go on
-    # after a stroke.
-    room = 500.0 * table.widths[0] / sum(table.widths)
-    assert room >= 3.9 * max(map(len, re.split(r"(?<=_)(?=[a-z])", name)))

@@ -6,28 +6,24 @@ import json
 import math
 import re
 import shutil
-import tomllib
 from dataclasses import replace
 
-import numpy as np
-import pandas as pd
 import pytest
 from judged_runs import changed, judged
-from report_parts import assert_axes_read_quantity_and_unit, blocks_of, draw_all_but
-from trial_runs import charts_of, rows_of, with_criterion, with_values
+from report_parts import blocks_of, draw_all_but, numbers_on_page_1
+from snapshots import assert_reads_as_before
+from trial_runs import rows_of, with_criterion, with_values
 
 from reports.build import build_reports
-from reports.document.blocks import FlightPicker, Table, Text
+from reports.document.blocks import Table
 from reports.errors import ReportError
+from reports.flights.criteria import MEASURED
 from reports.flights.trials.panels_over import PanelsOver, by_violation
-from reports.flights.trials.tables import FAILED_MAX
 from reports.output import write_report
 from reports.registry import content
 from reports.run.run_data import read_run
 from reports.run.trials import Kind, Trial, read_trials
-from scenarios.scenario.files import OPERATIONAL, bases, load_study
-from scenarios.scenario.overrides import given_keys
-from scenarios.studies.manifest import parameters
+from scenarios.scenario.files import load_study
 from tests.reports.run_columns import RUN_COLUMNS
 
 pytestmark = pytest.mark.slow
@@ -51,18 +47,6 @@ def test_trials_are_reported_on_screen_and_in_print(run_path, report, tmp_path, 
     # The kinematic vehicle is no aircraft, and of a list of trials each has a seed of its own.
     assert "of the kinematic vehicle, eq. (1)" in report.flown
     assert dict(blocks_of(report, Table, "provenance")[0].rows)["Seed"] == "each trial's own"
-
-
-def test_every_axis_of_trials_reads_quantity_and_unit_and_every_chart_shows_something(report):
-    names = [chart.name for chart in charts_of(report) if chart.name not in ("tracks", "histories")]
-    assert len(set(names)) == len(names)
-    for chart in charts_of(report):
-        for panel in chart.panels:
-            assert any(np.isfinite(line.y).any() for line in panel.lines), (
-                chart.name,
-                panel.y_label,
-            )
-    assert_axes_read_quantity_and_unit(charts_of(report))
 
 
 @BRIEF
@@ -234,7 +218,7 @@ def test_a_run_without_any_history_and_with_a_trial_not_begun_is_reported_on(run
         ("sea_wind", Kind.GENERAL),
         ("sea_turbulence_light", Kind.GENERAL),
         ("sea_manoeuvres", Kind.MANOEUVRES),
-        ("sea_approach", Kind.APPROACH),
+        ("sea_approach", Kind.GENERAL),
         ("sea_together", Kind.GENERAL),
         ("sea_faults", Kind.FAULTS),
         ("sweep_nu", Kind.SWEEP),
@@ -243,51 +227,6 @@ def test_a_run_without_any_history_and_with_a_trial_not_begun_is_reported_on(run
 def test_a_trial_is_known_by_what_it_holds_not_by_its_name(run, name, kind):
     config = load_study(name, []).model_dump(mode="json")
     assert Trial(run=run, key="any", name="trial1", config=config, rows=run.summary).kind is kind
-
-
-@BRIEF
-def test_a_long_list_of_failed_flights_is_cut_and_says_so(run):
-    count = FAILED_MAX + 7
-    row = run.summary.iloc[[0]].assign(criteria_met=False)
-    many = changed(run, summary=pd.concat([row] * count, ignore_index=True))
-    report = content(many)
-    (table,) = blocks_of(report, Table, "failed")
-    (text,) = blocks_of(report, Text, "failed")
-    assert len(table.rows) == FAILED_MAX
-    assert f"criterion: {count}, of which {FAILED_MAX} are listed" in text.text
-    assert "summary.csv has all" in text.text
-
-
-def test_parameters_say_what_a_trial_sets_and_samples_and_nothing_else(report):
-    *tables, defaults = blocks_of(report, Table, "parameters")
-    steady, turns = ({row[0]: row[1:3] for row in table.rows} for table in tables)
-    assert steady["wind.speed_mps"] == ["uniform from 2 to 4", "0"]
-    assert steady["criteria.crossing_interval_error"] == ["0.0321", "0.01"]
-    assert turns["vessel.manoeuvres"] == [
-        "in turn one of: 20° to starboard at 0.5°/s; 10° to port at 0.5°/s",
-        "none",
-    ]
-    assert turns["reports.interval_s"] == ["2 to 10", "0 to 0"]
-    # Its own keys, and those that the base which it extends sets otherwise than the schema.
-    own = {
-        "flights, seed",
-        "wind.speed_mps",
-        "flight.crossings",
-        "criteria.crossing_interval_error",
-    }
-    own |= {"guidance.rate_hz"}
-    base = given_keys(tomllib.loads(bases()[OPERATIONAL].read_text(encoding="utf-8")))
-    assert own <= set(steady) <= own | base
-    assert ["wind.speed_mps", "0"] in [row[:2] for row in defaults.rows]
-
-
-def test_a_scenario_with_manoeuvres_of_its_own_has_a_manifest(run):
-    scenario = load_study("sea_wind", ["vessel.manoeuvres=[{at_s = 10.0, turn_deg = 20.0}]"])
-    listed = {
-        parameter["key"]: parameter for parameter in json.loads(json.dumps(parameters(scenario)))
-    }
-    assert listed["vessel.manoeuvres"]["value"][0]["turn_deg"] == 20.0
-    assert listed["vessel.manoeuvres"]["default"] == []
 
 
 def test_a_criterion_that_is_just_failed_is_not_written_as_its_limit(run):
@@ -319,18 +258,21 @@ def test_altitudes_that_have_to_be_kept_are_a_criterion_on_the_time_outside(run)
     assert [*row[1:3], row[-1]] == ["≤ 0 s", "1.5 s", "2"]
 
 
-def test_a_flight_has_one_name_in_a_report_which_is_that_of_its_files(report, run):
-    text = json.dumps(
-        [
-            [card.note for card in report.verdict.figures],
-            report.verdict.failures,
-            report.picture.caption,
-            *(p.title for p in report.picture.panels),
-        ]
-    )
-    assert '"steady_0000' in text or '"turns_0000' in text
-    (picker,) = blocks_of(report, FlightPicker)
-    assert {flight.label.partition(" · ")[0] for flight in picker.flights} <= set(
-        run.summary["flight_id"]
-    )
-    assert "Flight 0" not in text + str(picker)
+def test_trials_read_as_before(report):
+    assert_reads_as_before("trials", report)
+
+
+def test_every_number_on_page_1_is_that_of_the_verdict(run_path, run, tmp_path):
+    whole, counts = run.verdict.whole, run.verdict.counts
+    distance, radius = whole.closest.distance_m, whole.closest.radius_m
+    assert distance == run.summary["min_distance_m"].min()
+    judged = [of for of in whole.criteria if of.key in MEASURED and of.worst_of_all]
+    scales = {of.key: run.column(of.column).scale for of in judged}
+    known = {
+        f"{number}" for number in (counts.planned, counts.flown, counts.kept_out, counts.completed)
+    }
+    known |= {f"{distance:.1f}", f"{distance - radius:.1f}", f"{radius:g}"}
+    for of in judged:
+        known |= {f"{float(f'{scales[of.key] * of.worst_of_all.value:.3g}'):g}"}
+        known |= {f"{float(f'{scales[of.key] * limit:.3g}'):g}" for limit in of.limits}
+    assert numbers_on_page_1(run_path, tmp_path) <= known

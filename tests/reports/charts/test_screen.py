@@ -1,0 +1,65 @@
+"""Charts as data for the library in the page, and that library itself."""
+
+import base64
+import re
+
+import numpy as np
+
+from reports.document.chart import Band, Chart, Line, Note, Panel
+from reports.render.html import PLOTLY
+from reports.render.plotly_charts import draw
+
+
+def test_the_bundled_library_is_the_version_that_its_page_names_under_its_licence():
+    head = PLOTLY.read_text(encoding="utf-8")[:400]
+    version = re.search(r"plotly\.js \(cartesian - minified\) v([\d.]+)", head)[1]
+    page = (PLOTLY.parent / "README.md").read_text(encoding="utf-8")
+    assert f"plotly.js {version}" in page
+    assert f"npm pack plotly.js-cartesian-dist-min@{version}" in page
+    assert "MIT" in (PLOTLY.parent / "plotly-LICENSE").read_text(encoding="utf-8")
+
+
+def drawn(**kinds):
+    """Return a chart of one panel as the page reads it."""
+    x = np.array([1.0, 10.0])
+    line = Line(x=x, y=x, label="curve", colour="blue")
+    panel = Panel(**{"x_label": "Time [s]", "y_label": "Distance [m]", "lines": [line]} | kinds)
+    return draw(Chart(name="chart", caption="", panels=[panel]))
+
+
+def test_numbers_come_back_to_single_precision():
+    line = Line(
+        x=np.array([0.1, np.nan, 3.0]),
+        y=np.array([]),
+        label="",
+        colour="blue",
+        error=np.array([1.0, 2.0, 3.0]),
+    )
+    (trace,) = drawn(lines=[line])["panels"][0]["data"]
+    found = np.frombuffer(base64.b64decode(trace["x"]["bdata"]), dtype=trace["x"]["dtype"])
+    np.testing.assert_array_equal(found, np.array([0.1, np.nan, 3.0], dtype=np.float32))
+    assert trace["y"] == []
+    bars = base64.b64decode(trace["error_y"]["array"]["bdata"])
+    assert np.frombuffer(bars, dtype="<f4").tolist() == [1.0, 2.0, 3.0]
+
+
+def test_axes_are_logarithmic_equally_long_or_named_where_a_panel_asks_for_it():
+    layout = drawn(log_y=True, y_range=(0.01, 100.0))["panels"][0]["layout"]
+    assert (layout["yaxis"]["type"], layout["yaxis"]["range"]) == ("log", [-2.0, 2.0])
+    layout = drawn(equal=True)["panels"][0]["layout"]
+    assert (layout["yaxis"]["scaleanchor"], layout["yaxis"]["scaleratio"]) == ("x", 1)
+    layout = drawn(y_names=[(0.0, "approach"), (1.0, "tracking")])["panels"][0]["layout"]
+    assert layout["yaxis"]["tickvals"] == [0.0, 1.0]
+    assert layout["yaxis"]["ticktext"] == ["approach", "tracking"]
+
+
+def test_words_and_bands_stand_where_a_panel_has_them():
+    found = drawn(
+        notes=[Note(x=2.0, y=3.0, text="1 min", align="left")],
+        bands=[Band(start=4.0, end=5.0, label="guard changed commands", colour="purple")],
+    )
+    layout = found["panels"][0]["layout"]
+    (note,), (band,) = layout["annotations"], layout["shapes"]
+    assert (note["x"], note["y"], note["text"], note["xanchor"]) == (2.0, 3.0, "1 min", "left")
+    assert (band["x0"], band["x1"]) == (4.0, 5.0)
+    assert list(found["bands"]) == ["guard changed commands"]
