@@ -3,6 +3,7 @@
 ``UPDATE_SNAPSHOTS=1 pytest ...`` writes them anew: read the difference before it is committed.
 """
 
+import difflib
 import os
 import re
 from collections.abc import Iterator
@@ -31,7 +32,9 @@ def assert_reads_as_before(name, report):
     if os.environ.get("UPDATE_SNAPSHOTS"):
         FOLDER.mkdir(exist_ok=True)
         path.write_text(words, encoding="utf-8")
-    assert words == path.read_text(encoding="utf-8")
+    before = path.read_text(encoding="utf-8").splitlines()
+    difference = list(difflib.unified_diff(before, words.splitlines(), lineterm="", n=0))
+    assert not difference, "\n".join(difference)
 
 
 def _without_numbers(line):

@@ -63,15 +63,8 @@ class Browser:
         self._session = self.send("Target.attachToTarget", targetId=page["targetId"], flatten=True)[
             "sessionId"
         ]
-        for domain in ("Page", "Runtime", "Log", "Network"):
+        for domain in ("Page", "Runtime", "Log"):
             self.send(f"{domain}.enable")
-        self.send(
-            "Network.emulateNetworkConditions",
-            offline=True,
-            latency=0,
-            downloadThroughput=-1,
-            uploadThroughput=-1,
-        )
 
     def send(self, method, **parameters):
         """Send a command and return its answer; what the page complains of meanwhile is kept in

@@ -139,7 +139,6 @@ def test_the_time_slider_takes_the_aircraft_to_where_it_was(kind, browser, runs,
 def test_nothing_is_asked_of_a_network_and_what_is_drawn_is_not_blank(browser, page):
     show(browser, page)
     assert browser.run("performance.getEntriesByType('resource').map((entry) => entry.name)") == []
-    assert browser.run("navigator.onLine") is False
     shades = browser.run(
         "(() => { const {world, camera, renderer} = window.replay, {width, height} = renderer.domElement;"
         " window.replay.place(); renderer.render(world.scene, camera.camera); const gl = renderer.getContext(),"
