@@ -81,12 +81,12 @@ def test_a_flight_at_every_limit_has_met_them():
         (
             {"heading_rate_demand_max_rad_s": 0.51},
             {"law_within_heading_rate_max": True},
-            "asked for 0.5100 rad/s, above omega_max",
+            "demanded 0.5100 rad/s, above omega_max",
         ),
         (
             {"heading_rate_demand_max_rad_s": 0.5},
             {"law_beyond_heading_rate_max": True},
-            "asked for 0.5000 rad/s, within omega_max",
+            "demanded 0.5000 rad/s, within omega_max",
         ),
         (
             {"resume_periods": 2.1},
