@@ -6,7 +6,6 @@ from common.run_layout import DESIGN_RECORD, MODEL
 from reports.design.data import Record, complete, reversal_sentences, speed_range
 from reports.design.loop_charts import nichols_chart
 from reports.design.margin_charts import margin_chart
-from reports.design.pole_chart import pole_chart
 from reports.design.response_charts import first_chart
 from reports.design.tables import (
     envelope_table,
@@ -51,7 +50,7 @@ def design_content(run: RunData) -> Findings:
             blocks=[step_table(design), Text(reversal_sentences(design))],
         ),
         _equilibria(design),
-        Section(anchor="poles", title="Poles", blocks=[pole_chart(design), pole_table(design)]),
+        Section(anchor="poles", title="Poles", blocks=[pole_table(design)]),
         Section(
             anchor="linearisation",
             title="Verification of the linear model",

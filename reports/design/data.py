@@ -13,9 +13,6 @@ Record = dict[str, Any]
 TOGETHER = "all controls"
 """The loop break at all controls at once, which has disk margins only."""
 
-FAST = 45.0
-"""Poles farther out [rad/s] belong to servos and delays, and would hide those of the flight."""
-
 _MARGINS = ("gain_db", "phase_deg", "disk_gain_db", "disk_phase_deg")
 
 _HUNDRED = 100
