@@ -17,7 +17,6 @@ from reports.document.palette import Meaning
 from reports.document.ship_map import ship_lines, ship_panel, ship_words
 from reports.flights.flight_view import FlightView, Place, flight_view
 from reports.flights.other_ships import other_ship_lines, other_ship_words, other_ships
-from reports.flights.time_marks import marks_beside, marks_in_a_row
 from reports.run.columns import Array, column
 from reports.run.surroundings import Surroundings, surroundings
 from reports.run.time_history import about_the_plume, turned
@@ -45,6 +44,14 @@ its own page, alone, and over the ground."""
 
 _ABOVE = 0.08
 """Height of words above what is drawn over the ground, over the height of the panel."""
+
+_APART, _UNDER = 0.12, 0.012
+"""Distance of these words at least, and of a word from the end of the line that leads to it from
+its mark, over the length of the row.
+"""
+
+TIMES = "time since the start"
+"""What the legend calls the marks."""
 
 _AWAY = 1.0
 """Way of the ship over the size of the track about its, from which there is a panel over the
@@ -117,7 +124,6 @@ class _Tracks:
             surroundings(view.config, view.row, view.whole, nearest) if view.vessel else None
         )
         self._others = other_ships(view)
-        self._step = next((s for s in _STEPS if view.ends[1] / s <= _MARKS_MAX), _STEPS[-1])
 
     def chart(self, aspect: float = _BESIDE) -> Chart:
         """Return where it went; of two panels beside each other each has an aspect."""
@@ -163,11 +169,7 @@ class _Tracks:
         lines += other_ship_lines(
             self._others, lambda north, east: turned(north, east, about.axis), relative=True
         )
-        marked, notes = self._times(about_the_plume, [*ship, *lines], until=view.settled_at)
-        lines += marked
-        return ship_panel(
-            about, lines, title=title, notes=notes, shown=[*ship, *lines], aspect=aspect
-        )
+        return ship_panel(about, lines, title=title, shown=[*ship, *lines], aspect=aspect)
 
     def _near(self, about: Surroundings, aspect: float) -> Panel | None:
         """Return the last of the flight from near; None where it never settled, or where the whole
@@ -235,9 +237,7 @@ class _Tracks:
         lines += other_ship_lines(
             self._others, lambda north, east: turned(north, east, up), relative=False
         )
-        marked, notes = self._times(
-            place, lines, until=float(view.ends[1]), in_a_row=way is not None
-        )
+        marked, notes = ([], []) if way is None else self._times(place, lines)
         labels = (
             ("East [m]", "North [m]")
             if way is None
@@ -295,21 +295,27 @@ class _Tracks:
         x, y = place(_reference_of(samples))
         return Line(x=x, y=y, label="reference", colour=Meaning.ASKED, style="thin")
 
-    def _times(
-        self, place: Place, drawn: Sequence[Line], *, until: float, in_a_row: bool = False
-    ) -> tuple[list[Line], list[Note]]:
-        """Return marks at round times up to some [s]: beside a track among what is drawn, or in a
-        row above all of it.
+    def _times(self, place: Place, drawn: Sequence[Line]) -> tuple[list[Line], list[Note]]:
+        """Return marks at round times along a track that goes across the page, and their words in a
+        row above all that is drawn, as many as there is room for; a thin line leads to each.
         """
-        times = np.arange(self._step, until - 0.3 * self._step, self._step)
+        end = float(self.view.ends[1])
+        step = next((s for s in _STEPS if end / s <= _MARKS_MAX), _STEPS[-1])
+        times = np.arange(step, end - 0.3 * step, step)
         (x, y), flown = place(self.view.at_times(times)), place(self.view.samples)
-        words = [_duration(time) for time in times.tolist()]
         wide, high = (float(np.ptp(of)) for of in flown)
-        if not in_a_row:
-            return marks_beside(x, y, words, drawn, max(wide, high) + self.view.radius)
         length = max(wide, _FLAT * (high + 2.0 * self.view.radius))
-        top = max(float(np.nanmax(line.y)) for line in drawn)
-        return marks_in_a_row(x, y, words, top + _ABOVE * length / _FLAT, length)
+        top = max(float(np.nanmax(line.y)) for line in drawn) + _ABOVE * length / _FLAT
+        lines = [Line(x=x, y=y, label=TIMES, colour=Meaning.SHIP, style="dots")] * bool(len(x))
+        notes: list[Note] = []
+        for right, above, time in zip(x.tolist(), y.tolist(), times.tolist(), strict=True):
+            if all(abs(right - of.x) > _APART * length for of in notes):
+                notes.append(Note(x=right, y=top, text=_duration(time)))
+                leads = np.array([above, top - _UNDER * length])
+                lines.append(
+                    Line(x=np.full(2, right), y=leads, label="", colour=Meaning.SHIP, style="thin")
+                )
+        return lines, notes
 
 
 def _words(about: Sequence[Surroundings | None]) -> str:

@@ -15,7 +15,7 @@ from reports.measurement.data import Record, read_estimate, read_samples
 from reports.measurement.facts import logged_facts
 from reports.measurement.gases import gas_sections, gas_verdict, samples_chart
 from reports.measurement.instrument_tables import assumption_table, instrument_table
-from reports.measurement.tables import over_time_table, record_table, result_table
+from reports.measurement.tables import record_table, result_table
 from reports.measurement.verdict import measurement_verdict
 from reports.run.run_data import RunData
 
@@ -32,9 +32,7 @@ def measurement_content(run: RunData) -> Findings:
             regression_chart(samples, record), logged_track_chart(samples), channels_chart(samples)
         )
     )
-    result = _there(
-        result_table(record), over_time_chart(record), over_time_table(record), budget_chart(record)
-    )
+    result = _there(result_table(record), over_time_chart(record), budget_chart(record))
     sections = [
         Section(anchor="result", title="Result", blocks=result),
         *gas_sections(record),

@@ -9,12 +9,8 @@ from common.intervals import percent
 from measurement.gases import MASS_PERCENT
 from reports.document.blocks import Table
 from reports.document.tables import Cell, number, rows_table
-from reports.measurement.data import METHODS, Record, measured_minutes, share_read
-from reports.run.run_data import RunData
+from reports.measurement.data import METHODS, Record
 from reports.run.trials import Name
-
-_BEST = 3
-"""Trajectories that are listed for each sensor."""
 
 _SENSOR = Cell("Sensor", "sensor", width=1.4)
 
@@ -136,31 +132,3 @@ def hit_table(rows: pd.DataFrame) -> Table:
         Cell("Flights", lambda name: rows[name].notna().sum(), "{:,.0f}", 0.8),
     ]
     return rows_table([name for name in _HITS if name in rows], cells)
-
-
-def best_table(run: RunData, rows: pd.DataFrame) -> Table:
-    """Return the trajectories that leave the least noise after a minute, for each sensor, and what
-    each method reads on them.
-    """
-    noise = (rows["fsc_noise_percent"] * measured_minutes(run, rows) ** 0.5).rename("minute")
-    ranked = pd.concat([rows, noise], axis=1).sort_values("minute")
-    best = pd.concat([group.head(_BEST) for _, group in ranked.groupby("sensor")])
-
-    def reads(column: str) -> Any:
-        return lambda row: share_read(row[column], row["fsc_expected_percent"])
-
-    cells = [
-        Cell("Sensor", "sensor", width=1.6),
-        Cell("ν", "nu", "{:.2f}", 0.6),
-        Cell("Interval [s]", "crossing_interval_mean_s", "{:.1f}", 0.9),
-        Cell("Distance [m]", "crossing_distance_mean_m", "{:.0f}", 0.9),
-        Cell(f"1σ in a minute [{MASS_PERCENT}]", "minute", "{:.4f}", 1.3),
-        Cell("Regression reads", reads("fsc_percent"), "{:.2f}", 1.1),
-        Cell("Areas read", reads("areas_fsc_percent"), "{:.2f}", 0.9),
-    ]
-    return rows_table(
-        best.to_dict("records"),
-        cells,
-        caption="Trajectories that leave the least noise after a minute, by sensor, and what each"
-        " method reads on them.",
-    )

@@ -19,7 +19,7 @@ from measurement.estimate.verdict import (
     verdict_words,
 )
 from measurement.gases import MASS_PERCENT, limit_words
-from reports.document.blocks import Block, Card, Fold, Section, Text
+from reports.document.blocks import Block, Card, Section, Text
 from reports.document.chart import Chart
 from reports.document.tables import number
 from reports.measurement.charts import (
@@ -37,7 +37,7 @@ from reports.measurement.method import (
     method_cards,
     method_headline,
 )
-from reports.measurement.tables import over_time_table, result_table
+from reports.measurement.tables import result_table
 from reports.measurement.verdict import CONTENT_NAME, fuel_card
 from reports.run.columns import column, flights_flown
 from reports.run.flight_config import flight_config
@@ -60,10 +60,6 @@ _ONE_RESULT = (
 )
 _WITHOUT_VERDICT = (
     "No verdict, as quality C gives none: fuel sulphur {content} % ({low} to {high}), limit {limit}"
-)
-_TRUTH = (
-    "The simulated fuel holds {fuel:.3f} %; a perfect instrument would read {expected:.3f} %,"
-    " because some sulphur leaves as sulphate."
 )
 
 
@@ -166,13 +162,11 @@ def _flight(run: RunData, measured: pd.DataFrame, name: Name) -> Section | None:
         record, history = run.evaluation(flight_id), run.history(flight_id)
         if record is not None and history is not None:
             samples, since = _samples(record, history), _since(run, row)
-            table = over_time_table(record, since)
             blocks: list[Block | None] = [
                 Text(_told(row) if len(measured) == 1 else f"{name(row)}. {_told(row)}"),
                 result_table(record),
                 _track(run, row, history),
                 over_time_chart(record, since),
-                Fold(title="The same as a table", blocks=[table]) if table else None,
                 budget_chart(record),
                 channels_chart(samples, "Time since the start of the flight [s]"),
                 regression_chart(samples, record),

@@ -16,7 +16,6 @@ from reports.measurement.data import share_read
 from reports.measurement.flight_charts import error_chart, operating_curve, trajectory_chart
 from reports.measurement.flight_tables import (
     accuracy_table,
-    best_table,
     calls_table,
     flight_table,
     hit_table,
@@ -159,11 +158,7 @@ def method_blocks(run: RunData, name: Name) -> list[Block]:
     if len(rows) < _FEW or statistics is None:
         return [verdict_table(rows), flight_table(rows, name)]
     trajectories = trajectory_chart(run, rows)
-    designed: list[Block] = (
-        []
-        if trajectories is None
-        else [Heading("Trajectories"), trajectories, best_table(run, rows)]
-    )
+    designed: list[Block] = [] if trajectories is None else [Heading("Trajectories"), trajectories]
     curve = operating_curve(statistics)
     return [
         verdict_table(rows),

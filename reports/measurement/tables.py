@@ -2,19 +2,13 @@
 
 from typing import Any
 
-import pandas as pd
-
-from measurement.estimate.passes import SNR_LEAST
-from measurement.gases import MASS_PERCENT, limit_words
+from measurement.gases import MASS_PERCENT
 from measurement.log.analysis import Gaps
 from reports.document.blocks import Table
 from reports.document.tables import number, pairs_table
-from reports.measurement.data import METHODS, SINCE, Record
+from reports.measurement.data import METHODS, Record
 
 _PERCENT = "{:.3f}"
-
-REPORTED_S = (60.0, 120.0, 300.0, 600.0)
-"""Elapsed times that the table over time has, with the end of the flight [s]."""
 
 
 def result_table(record: Record) -> Table:
@@ -49,51 +43,6 @@ def result_table(record: Record) -> Table:
             f" {'; '.join(other['quality_reasons'])}."
         )
     return Table(caption=caption, head=head, rows=rows, widths=[1.8, 1.2, 0.8, 1.9, 1.5, 0.7])
-
-
-def over_time_table(record: Record, since: str = SINCE) -> Table | None:
-    """Return what was known after each of ``REPORTED_S``, and at the end; ``since`` says what the
-    time is counted from.
-    """
-    table = pd.DataFrame(record["over_time"])
-    if not len(table):
-        return None
-    end = table["elapsed_s"].max()
-    table = table[table["elapsed_s"].isin([*REPORTED_S, end])]
-    limits = [f"{verdict['limit_percent']:g}" for verdict in record["estimate"]["verdicts"]]
-    rows = [
-        [
-            f"{row['elapsed_s']:.0f} s",
-            f"{int(row['passes'])}",
-            number(row["fsc_percent"], _PERCENT),
-            number(row["total_percent"], _PERCENT),
-            str(row["quality"]),
-            *(
-                "none" if row["quality"] == "C" else f"{row[f'verdict_{limit}']}"
-                for limit in limits
-            ),
-        ]
-        for row in table.to_dict("records")
-    ]
-    head = [
-        "After",
-        "Passes",
-        f"Sulphur content [{MASS_PERCENT}]",
-        f"Standard uncertainty, 1σ [{MASS_PERCENT}]",
-        "Quality",
-        *(f"Limit {limit_words(float(v))}" for v in limits),
-    ]
-    caption = (
-        f"Result after each time since {since}. A pass is a peak of CO2 of {SNR_LEAST:g} times"
-        " its noise: where smoke meanders, not every crossing of the plume's axis meets it. With"
-        " quality C there is no verdict."
-    )
-    return Table(
-        caption=caption,
-        head=head,
-        rows=rows,
-        widths=[0.8, 0.8, 1.3, 1.6, 0.8, *(1.0 for _ in limits)],
-    )
 
 
 def record_table(record: Record) -> Table:

@@ -127,10 +127,6 @@ def test_quality_c_is_not_called_open_and_says_what_to_do_next(tmp_path, capsys)
     assert {card.value for card in report.verdict.figures if card.name.startswith("Time to")} == {
         "none: quality C"
     }
-    over_time = next(
-        table for table in blocks_of(report, Table, "result") if table.head[0] == "After"
-    )
-    assert over_time.rows[-1][-3:] == ["C", "none", "none"]
 
 
 def test_a_result_with_a_verdict_on_every_limit_needs_no_next_step(report):
