@@ -46,8 +46,8 @@ def flight_figure(run: RunData, flight_id: str, *, tracks_alone: bool = False) -
 def _charts(run: RunData, flight_id: str) -> "list[Chart]":
     import pandas as pd
 
-    from reports.flights.flight_view import flight_view
     from reports.flights.single_flight import flight_charts
+    from reports.flights.tracks import flight_view
     from reports.run.trials import read_trials
 
     rows = pd.concat([table for table in (run.summary, run.comparison) if len(table)])

@@ -26,8 +26,8 @@ from reports.document.numbering import numbered
 from reports.document.provenance import provenance_section
 from reports.document.tables import figure_table
 from reports.errors import ReportError
-from reports.flights.answers import premises_exceeded
 from reports.flights.content import flights_content
+from reports.flights.verdict import premises_exceeded
 from reports.measurement.content import measurement_content
 from reports.monte_carlo.content import probabilities
 from reports.monte_carlo.falsification import nearest_found

@@ -19,14 +19,13 @@ from reports.design.section import design_words
 from reports.document.axes import in_kilometres
 from reports.document.blocks import Card, Findings, Fold, Heading, Section, Table, Text, Verdict
 from reports.document.chart import Chart, Line, Note, Panel, Style
-from reports.document.map_marks import on_map
 from reports.document.palette import Meaning
 from reports.document.parameters import distribution, parameter_blocks
+from reports.document.ship_map import on_map
 from reports.document.state import state_words
 from reports.document.tables import Cell, approach, rows_table, vehicle_flown
 from reports.run.columns import column, least
-from reports.run.run_data import RunData
-from reports.run.table_file import read_table
+from reports.run.run_data import RunData, read_table
 
 _FOLDED = 11
 """Patrols whose map and ships the screen shows, beside the one that is printed."""

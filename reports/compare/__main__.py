@@ -14,7 +14,7 @@ from common.run_layout import MANIFEST
 
 if TYPE_CHECKING:
     from reports.compare.content import Compared
-    from reports.compare.runs import Run
+    from reports.compare.pairs import Run
 
 _NAME_MAX = 38
 """Letters of a run's name in that of the directory that is made beside it: six of them fit into the
@@ -42,7 +42,7 @@ def compare_runs(paths: list[Path], out: Path | None) -> list[Path]:
         written there
     """
     from reports.compare.content import compare, comparison_content
-    from reports.compare.runs import read_runs
+    from reports.compare.pairs import read_runs
     from reports.compare.table_of_pairs import write_differences
     from reports.render.html import write_html
     from reports.render.pdf import write_pdf
@@ -99,8 +99,7 @@ def _make(directory: Path) -> None:
 def _print(runs: "Sequence[Run]", compared: "Sequence[Compared]") -> None:
     """Print what differs: keys, figures of whole runs, and of pairs of flights."""
     from reports.compare.configuration import configuration_table
-    from reports.compare.content import headline, pairing_sentences
-    from reports.compare.tables import difference_table, side_by_side
+    from reports.compare.content import difference_table, headline, pairing_sentences, side_by_side
     from reports.document.console import console_table, wide_console
 
     console = wide_console()

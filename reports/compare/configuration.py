@@ -5,7 +5,7 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from reports.compare.runs import Run
+from reports.compare.pairs import Run
 from reports.document.blocks import Table
 from reports.document.parameters import distribution, parameter_value
 from reports.run.trials import Trial, leaves

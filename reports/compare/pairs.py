@@ -1,18 +1,118 @@
-"""Which flights of two runs are the same: of the same point or case, with the same number and the
-same seed.
+"""The runs that are compared, which flights of two of them are the same (of the same point or case,
+with the same number and the same seed), and how far the figures of these differ.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
-from reports.compare.runs import Run
+from common.columns import Column
+from common.intervals import CONFIDENCE, quantile_interval
+from common.run_layout import SUMMARY
 from reports.errors import ReportError
-from reports.run.columns import Mask, completed, kept_out, met
+from reports.run.columns import Array, Mask, completed, is_figure, judged, kept_out, met
+from reports.run.files import damage_named
+from reports.run.run_data import FLIGHT_ENTRIES, RunData, read_run, refuse_other_version
+from reports.run.trials import Trial, read_trials
+
+RUNS_MAX = 6
+"""Runs that fit side by side."""
+
+_NOT_COMPARED = {
+    **dict.fromkeys(("design", "measurement"), "which has no flights to compare"),
+}
+"""Studies whose runs are not compared, and why; a study that others add says it in its manifest."""
+
+_ENTRIES = (
+    *FLIGHT_ENTRIES, "name", "overrides", "config_hash", "fingerprint", "packages", "git_revision",
+    "python", "platform",
+    "flights_planned",
+)  # fmt: skip
+_COLUMNS = (
+    "flight_id", "trial", "seed", "outcome", "message", "criteria_met", "kept_out",
+    "keepout_violations", "keepout_radius_m",
+    "min_distance_m", "settling_time_s", "duration_s",
+)  # fmt: skip
+"""What a comparison needs of a manifest, and of a summary."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Run:
+    """A run of a comparison.
+
+    Attributes
+    ----------
+    letter : "A" for the first
+    data : as read from disk
+    trials : of the run
+    """
+
+    letter: str
+    data: RunData
+    trials: Sequence[Trial]
+
+    @property
+    def name(self) -> str:
+        """Name of its directory."""
+        return self.data.path.resolve().name
+
+    @property
+    def title(self) -> str:
+        """Its letter and the name of its directory."""
+        return f"{self.letter}: {self.name}"
+
+    @property
+    def manifest(self) -> dict[str, Any]:
+        """Its manifest."""
+        return self.data.manifest
+
+    @property
+    def state(self) -> str:
+        """How it ended, in words."""
+        return "complete" if self.data.verdict.is_done else "interrupted"
+
+
+def read_runs(paths: Sequence[Path]) -> list[Run]:
+    """Read the runs to be compared.
+
+    Raises
+    ------
+    ReportError : there are too few or too many, one is named twice, or one is none with flights of
+        this version that has ended
+    """
+    if not 2 <= len(paths) <= RUNS_MAX:
+        raise ReportError(
+            f"{len(paths)} run{'s' if len(paths) != 1 else ''} given; 2 to {RUNS_MAX} can be"
+            " compared: name so many"
+        )
+    resolved = [path.resolve() for path in paths]
+    for i, path in enumerate(resolved):
+        if path in resolved[:i]:
+            raise ReportError(f"'{paths[i]}' is given twice; name another run")
+    return [_read(chr(ord("A") + i), path) for i, path in enumerate(paths)]
+
+
+def _read(letter: str, path: Path) -> Run:
+    data = read_run(path)
+    study = str(data.manifest.get("study"))
+    if reason := data.manifest.get("not_compared") or _NOT_COMPARED.get(study):
+        raise ReportError(f"'{path}' is of the study '{study}', {reason}; name a run of flights")
+    refuse_other_version(data, _ENTRIES)
+    if missing := [name for name in _COLUMNS if name not in data.summary]:
+        raise ReportError(
+            f"'{path}' was flown by another version: its {SUMMARY} has no '{missing[0]}'; run the"
+            " scenario again in another --out"
+        )
+    # A run that did not end has no verdict, and is refused.
+    _ = data.verdict
+    with damage_named(path):
+        return Run(letter=letter, data=data, trials=read_trials(data))
+
 
 SPEED_RATIO = "nu"
 """Input that follows from speeds of vessel, UAV and air."""
@@ -231,3 +331,127 @@ def _differs(before: "pd.Series[Any]", after: "pd.Series[Any]") -> Mask:
     equal = np.asarray(before.to_numpy() == after.to_numpy(), dtype=np.bool_)
     differs: Mask = ~(equal | (before.isna().to_numpy() & after.isna().to_numpy()))
     return differs
+
+
+PAIRS_MIN = 6
+"""Pairs from which on a median has an interval: of fewer, all lie on one side of it more often than
+in 5 %.
+"""
+
+
+JUDGED = ("clearance_m", "tracking_error_rms_m", "crossing_interval_error", "settling_time_s")
+"""Figures that most reports judge: by them a flight differs much or little."""
+
+COMPARED = (
+    "min_distance_m",
+    "clearance_m",
+    "keepout_violations",
+    "crossing_interval_mean_s",
+    "crossing_interval_error",
+    "crossing_distance_mean_m",
+    "crossing_count",
+    "tracking_error_rms_m",
+    "settling_time_s",
+    "airspeed_error_rms_mps",
+    "altitude_error_max_m",
+    "bank_max_deg",
+    "guard_interventions",
+    "guard_time_s",
+    "duration_s",
+    "fsc_percent",
+    "fsc_error_percent",
+    "fsc_uncertainty_percent",
+)
+"""Figures of the flight itself that are compared, in the order they are shown."""
+
+
+def measures(runs: Iterable[RunData]) -> dict[str, Column]:
+    """Return the figures that are compared, by the names of the columns of ``differences.csv``: the
+    flight's own, and those of users' instruments and studies that hold numbers in every run that
+    has them.
+    """
+    runs = list(runs)
+    added = {name: of for run in reversed(runs) for name, of in run.added(SUMMARY).items()}
+    numbers = [
+        name
+        for name in added
+        if all(is_figure(run.summary, name) for run in runs if name in run.summary)
+    ]
+    return {name: runs[0].column(name) for name in COMPARED} | {
+        name: added[name] for name in numbers
+    }
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Difference:
+    """How a figure differs between the flights of each pair.
+
+    Attributes
+    ----------
+    figure : which one
+    before, after : of each flight, in the first run and in the other, in the figure's unit
+    median, low, high : of the differences, and the exact interval of their median; not a number of
+        fewer than ``PAIRS_MIN``. Pairs that share their random sample, such as those at the points
+        of a sweep, count as one, with the mean of their differences
+    """
+
+    figure: Column
+    before: Array
+    after: Array
+    median: float
+    low: float
+    high: float
+
+    @property
+    def change(self) -> Array:
+        """Return the difference of each pair; not a number where a flight does not have the
+        figure.
+        """
+        change: Array = self.after - self.before
+        return change
+
+    @property
+    def known(self) -> Array:
+        """Return the differences of the pairs of which both flights have the figure."""
+        change = self.change
+        return change[np.isfinite(change)]
+
+    @property
+    def is_none(self) -> bool:
+        """Return whether the figure is the same in both flights of every pair."""
+        return not np.any(self.known)
+
+    @property
+    def excludes_zero(self) -> bool:
+        """Return whether the median differs from 0 by more than its interval."""
+        return self.low > 0.0 or self.high < 0.0
+
+
+def differences(pairs: Pairs) -> dict[str, Difference]:
+    """Return how each figure differs that both flights of some pair have, and that is not 0 in all
+    of them.
+    """
+    found = {}
+    for name, figure in measures((pairs.first.data, pairs.other.data)).items():
+        before, after = (
+            figure.scale * judged(rows, name, figure) for rows in (pairs.before, pairs.after)
+        )
+        change = after - before
+        known = np.isfinite(change)
+        if known.any() and np.any(before[known] != 0.0) | np.any(after[known] != 0.0) | (
+            name == "keepout_violations"
+        ):
+            means = pd.Series(change[known]).groupby(pairs.samples[known]).mean()
+            samples = np.asarray(means, dtype=np.float64)
+            # The exact interval of order statistics: for any distribution, however few flights and
+            # many ties.
+            interval = quantile_interval(samples, 0.5, CONFIDENCE)
+            found[name] = Difference(
+                figure=figure,
+                before=before,
+                after=after,
+                median=float(np.median(samples)),
+                low=interval.low,
+                high=interval.high,
+            )
+    return found

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from common.text import cell
 from reports.compare.content import Compared
-from reports.compare.figures import measures
+from reports.compare.pairs import measures
 from reports.run.columns import met
 
 _NAMES = ("run", "directory", "flight_id", "trial", "seed", "criteria_met_first", "criteria_met")

@@ -7,9 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from reports.compare.figures import JUDGED, Difference
-from reports.compare.pairs import Pairs
-from reports.compare.runs import Run
+from reports.compare.pairs import JUDGED, Difference, Pairs, Run
 from reports.document.axes import in_kilometres
 from reports.document.chart import Chart, Line, Panel, circle
 from reports.document.ship_map import ship_panel, ship_words

@@ -3,10 +3,8 @@
 from pathlib import Path
 
 from common.run_layout import DESIGN_RECORD, MODEL
+from reports.design.charts import first_chart, margin_chart, nichols_chart, trim_map
 from reports.design.data import Record, complete, reversal_sentences, speed_range
-from reports.design.loop_charts import nichols_chart
-from reports.design.margin_charts import margin_chart
-from reports.design.response_charts import first_chart
 from reports.design.tables import (
     envelope_table,
     pole_table,
@@ -16,7 +14,6 @@ from reports.design.tables import (
     weight_table,
     worst_margin_table,
 )
-from reports.design.trim_charts import trim_map
 from reports.design.verdict import design_verdict
 from reports.document.blocks import Block, Findings, Heading, Section, Text
 from reports.errors import ReportError

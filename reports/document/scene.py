@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from common.hull import ShipHull
 from reports.run.columns import Array
-from reports.run.ship import Hull
+from reports.run.flight_config import Hull
 
 COLUMNS = (
     "north", "east", "altitude", "airspeed", "heading", "pitch", "roll", "reference_north",

@@ -16,9 +16,8 @@ from common.text import moment, utc_text
 from measurement.gases import GASES, UNITS
 from reports.errors import ReportError
 from reports.run.columns import Array, column
-from reports.run.flight_config import flight_config, keepout_shape, source_height
+from reports.run.flight_config import flight_config, keepout_shape, outline_of, source_height
 from reports.run.run_data import RunData
-from reports.run.ship import outline_of
 from reports.run.time_history import vessel_heading
 
 PLUME_LENGTH = 1000.0

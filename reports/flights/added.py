@@ -17,7 +17,7 @@ from reports.document.palette import Meaning
 from reports.document.panels import histogram
 from reports.document.tables import number
 from reports.flights.names import swept_words
-from reports.flights.trials.panels_over import PanelsOver, by_violation
+from reports.flights.trials.charts import PanelsOver, by_violation
 from reports.run.columns import column, is_figure, judged, worst
 from reports.run.run_data import RunData
 from reports.run.trials import Name, Trial

@@ -9,26 +9,24 @@ from reports.design.section import design_words
 from reports.document.blocks import Block, Findings, Section, Text, folded
 from reports.document.chart import Chart
 from reports.document.panels import COUNTED_MIN
-from reports.finding.flights import finding_sections
-from reports.finding.variants import searching_variants
+from reports.finding.searches import finding_sections, searching_variants
 from reports.flights.added import added_sections
-from reports.flights.answers import kept_out_and_finished
 from reports.flights.comparison import comparison_section
 from reports.flights.first_page import flights_in_words, telling_and_typical
 from reports.flights.names import flight_name, flown_elsewhere, swept_column, told_name
 from reports.flights.parameter_tables import trial_parameters
 from reports.flights.selection import flight_section
 from reports.flights.trials.charts import trial_charts
-from reports.flights.trials.failures import tracking_lines
 from reports.flights.trials.tables import (
     criteria_table,
     failed_blocks,
     fault_table,
     flight_table,
+    tracking_lines,
     trial_table,
 )
-from reports.flights.verdict import Answer, flight_verdict
-from reports.measurement.facts import flown_facts
+from reports.flights.verdict import Answer, flight_verdict, kept_out_and_finished
+from reports.measurement.data import flown_facts
 from reports.measurement.flights import sulphur_sections
 from reports.measurement.method import is_of_the_method
 from reports.monte_carlo.content import monte_carlo_sections

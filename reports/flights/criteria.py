@@ -1,4 +1,6 @@
-"""The criteria of the verdict in words: what each is about, its limit, the worst of its figure."""
+"""The criteria of the verdict in words: what each is about, its limit, the worst of its figure, and
+the bound on the rate of keep-out violations.
+"""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -7,6 +9,7 @@ from typing import Any
 import pandas as pd
 
 from common.columns import Column
+from common.intervals import TELLING, percent
 from common.verdict import Criterion, Worst
 from reports.document.tables import approach, beside_limit, limit
 from reports.run.run_data import RunData
@@ -134,3 +137,44 @@ def counted(values: "Iterable[Any] | pd.Series[Any]") -> str:
     """Return how often each value occurs, in words, the most frequent first."""
     counts = pd.Series(values).dropna().value_counts()
     return ", ".join(f"{count} {value}" for value, count in counts.items())
+
+
+def violation_bound(run: RunData) -> tuple[float, float] | None:
+    """Return the bound on the probability of a keep-out violation and its confidence; none where
+    flights are no random sample, or too few.
+
+    That of a subset simulation is in its statistics; any other is in the verdict.
+    """
+    statistics = run.statistics
+    if statistics is not None and statistics.get("method") == "subset":
+        upper, confidence = (
+            statistics["violation"]["pessimistic"]["upper"],
+            statistics["confidence"],
+        )
+        return (upper, confidence) if upper <= TELLING else None
+    bound = run.verdict.whole.bound
+    return (bound.upper, bound.confidence) if bound and bound.upper <= TELLING else None
+
+
+def bound_note(run: RunData, trials: Sequence[Trial]) -> list[str]:
+    """Return what bound on the rate of keep-out violations follows from the flights, as small print
+    of how many kept out; nothing where the headline has it.
+    """
+    if run.statistics is not None:
+        return []
+    if not all(trial.sampled_at_random for trial in trials):
+        return ["no random sample, so no bound on the rate"]
+    if (found := violation_bound(run)) is None:
+        return ["too few for a bound on the rate"]
+    upper, confidence = found
+    words = f"rate of violations below {percent(upper)} at {percent(confidence)}"
+    bound = run.verdict.whole.bound
+    if bound and bound.unknown:
+        words += f", with {bound.unknown:,} unknown as violated"
+    return [words]
+
+
+def trial_bound(trial: Trial) -> float | None:
+    """Return the bound that follows from the flights of one trial."""
+    bound = trial.verdict.bound
+    return bound.upper if bound and bound.upper <= TELLING else None

@@ -11,9 +11,9 @@ import pandas as pd
 from reports.document.blocks import Block, FlightContent, FlightPicker, Section, Text
 from reports.document.tables import approach, ending, number, outcome
 from reports.flights.first_page import CALM
-from reports.flights.flight_view import flight_view
 from reports.flights.names import flown_elsewhere, told_name
 from reports.flights.single_flight import flight_charts
+from reports.flights.tracks import flight_view
 from reports.replay.flight_scene import flight_scene
 from reports.run.columns import (
     SEVERE,

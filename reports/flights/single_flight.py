@@ -9,12 +9,10 @@ from common.run_layout import FLIGHTS
 from reports.document.axes import in_kilometres
 from reports.document.chart import Chart, Line, Panel, Style, across, between, upright
 from reports.document.palette import Meaning
-from reports.flights.flight_view import FlightView
 from reports.flights.names import flight_name
-from reports.flights.tracks import track_chart
+from reports.flights.tracks import FlightView, track_chart
 from reports.run.columns import NOTICEABLE, Array, column, is_figure
-from reports.run.faults import fault_marks
-from reports.run.flight_config import keepout_shape, source_height
+from reports.run.flight_config import fault_marks, keepout_shape, source_height
 from reports.run.time_history import (
     ERROR_MIN,
     floor_words,

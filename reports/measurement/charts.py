@@ -8,9 +8,9 @@ import pandas as pd
 from measurement.gases import ASSUMED_LEAST, CARBON_FRACTION, MASS_PERCENT, fsc_factor, limit_words
 from reports.document.axes import in_kilometres
 from reports.document.chart import Chart, Line, Note, Panel, between
-from reports.document.map_marks import on_map
 from reports.document.palette import Meaning
 from reports.document.panels import around, level
+from reports.document.ship_map import on_map
 from reports.measurement.data import (
     SINCE,
     Record,

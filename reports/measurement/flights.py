@@ -29,13 +29,13 @@ from reports.measurement.charts import (
     regression_chart,
 )
 from reports.measurement.data import Record, share_read
-from reports.measurement.flight_charts import sulphur_track_chart
-from reports.measurement.flight_tables import interval_words
 from reports.measurement.method import (
+    interval_words,
     measured_flights,
     method_blocks,
     method_cards,
     method_headline,
+    sulphur_track_chart,
 )
 from reports.measurement.tables import result_table
 from reports.measurement.verdict import CONTENT_NAME, fuel_card

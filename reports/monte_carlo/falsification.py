@@ -13,7 +13,7 @@ from reports.document.chart import Chart, Line, Panel, Style, across
 from reports.document.palette import series_colour
 from reports.document.tables import Cell, approach, rows_table
 from reports.run.columns import beside_vessel, clearance, least, violated
-from reports.run.faults import faults_name
+from reports.run.flight_config import faults_name
 from reports.run.run_data import RunData
 
 _POINTS_MAX = 4000

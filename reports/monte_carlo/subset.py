@@ -8,12 +8,14 @@ import numpy as np
 
 from common.columns import Column
 from common.intervals import percent
+from common.run_layout import SUMMARY
 from reports.document.blocks import Block, Heading, Section, Table, Text
 from reports.document.chart import Chart, Line, Panel, between, upright
-from reports.document.tables import Cell, number, rows_table
+from reports.document.tables import Cell, number, pairs_table, rows_table
 from reports.monte_carlo.names import Units, input_name, input_unit
-from reports.monte_carlo.tables import Record, ending_table
 from reports.run.columns import Array
+
+Record = dict[str, Any]
 
 FEW_RENEWALS = 0.05
 """Fraction of accepted renewals below which the seed decides: intervals were too narrow in tests
@@ -167,6 +169,33 @@ def _probability_table(statistics: Record) -> Table:
             ],
         ],
         widths=[2.2, 0.7, 0.8, 1.0, 1.9, 1.5],
+    )
+
+
+def ending_table(statistics: Record) -> Table:
+    """Return how flights ended, and which are of unknown end."""
+    unknown = statistics["flights"]["unknown"]
+    rows = [
+        ["Outcomes", _counted(statistics["outcomes"])],
+        ["Modes at the end", _counted(statistics["modes_at_end"])],
+        *(
+            [f"Of unknown end: {outcome.replace('_', ' ')}", _flights(found)]
+            for outcome, found in unknown.items()
+        ),
+    ]
+    return pairs_table(rows)
+
+
+def _counted(counts: dict[str, int]) -> str:
+    return (
+        ", ".join(f"{count:,} {word.replace('_', ' ')}" for word, count in counts.items()) or "none"
+    )
+
+
+def _flights(found: Record) -> str:
+    more = found["flights"] - len(found["flight_ids"])
+    return f"{found['flights']:,}: {', '.join(found['flight_ids'])}" + (
+        f" and {more:,} more, in {SUMMARY}" if more else ""
     )
 
 

@@ -11,13 +11,12 @@ import numpy as np
 import numpy.typing as npt
 
 from reports.document.blocks import FlightPicker, Section
-from reports.document.map_marks import SIZE_NOT_KNOWN
 from reports.document.palette import COLOURS, Meaning
 from reports.document.scene import Estimate, Gas, OtherTrack, Scene
-from reports.document.ship_map import hull_words
+from reports.document.ship_map import SIZE_NOT_KNOWN, hull_words
 from reports.render.script_data import for_script
 from reports.run.columns import Array
-from reports.run.ship import ANY, Hull
+from reports.run.flight_config import ANY, Hull
 
 THREE = Path(__file__).parent / "bundle" / "three.min.js"
 """Library that draws in three dimensions; ``bundle/README.md`` says where it comes from."""

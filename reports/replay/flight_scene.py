@@ -10,9 +10,14 @@ import pandas as pd
 from common.hull import HULL_SHAPES
 from reports.document.scene import Estimate, Event, Gas, OtherTrack, Scene
 from reports.run.columns import Array, column
-from reports.run.faults import fault_marks
-from reports.run.flight_config import is_level, keepout_shape, source_height
-from reports.run.ship import hull_of, outline_of
+from reports.run.flight_config import (
+    fault_marks,
+    hull_of,
+    is_level,
+    keepout_shape,
+    outline_of,
+    source_height,
+)
 from reports.run.time_history import (
     guard_stretches,
     keepout_distance,

@@ -9,8 +9,14 @@ import pandas as pd
 from common.hull import HULL_SHAPES, ship_frame
 from common.physics import wind_velocity
 from reports.run.columns import Array, Mask, column
-from reports.run.flight_config import Config, Row, is_level, keepout_shape, source_height
-from reports.run.ship import outline_of
+from reports.run.flight_config import (
+    Config,
+    Row,
+    is_level,
+    keepout_shape,
+    outline_of,
+    source_height,
+)
 
 _AT_REST = 0.01
 """Speed below which a vessel's heading is not that of its motion [m/s]."""

@@ -16,8 +16,7 @@ from common.verdict import Counts, TrialVerdict
 from reports.errors import ReportError
 from reports.run.columns import Array, column, flights_flown
 from reports.run.flight_config import Config, flight_config, keepout_shape
-from reports.run.run_data import RunData, refuse_other_version
-from reports.run.table_file import REMEDY
+from reports.run.run_data import REMEDY, RunData, refuse_other_version
 
 Parameters = dict[str, Any]
 

@@ -228,7 +228,7 @@ def test_its_report_has_every_figure_for_both_vehicles_and_every_published_numbe
 
 
 def test_saddle_points_are_marked_where_the_relative_courses_meet(directory):
-    from reports.paper.charts import coincidences
+    from reports.paper.content import coincidences
     from reports.paper.flown import find_flight
 
     flown = find_flight(read_run(directory), "sim1_kinematic")

@@ -9,7 +9,7 @@ import pytest
 from common.columns import Column
 from common.run_layout import COLUMNS
 from reports.compare.content import compare, comparison_content
-from reports.compare.runs import read_runs
+from reports.compare.pairs import read_runs
 from reports.compare.table_of_pairs import write_differences
 from reports.document.blocks import FlightPicker, Table
 from reports.document.chart import Chart

@@ -8,7 +8,7 @@ import pytest
 from trial_runs import small_trials
 
 from common.run_layout import time_history_path
-from reports.paper.charts import sim_3_charts
+from reports.paper.content import sim_3_charts
 from reports.run.run_data import read_run
 from reports.run.time_history import keepout_distance
 

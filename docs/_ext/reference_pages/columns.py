@@ -4,7 +4,7 @@ from common.columns import Table, described
 from common.registry import announced, load_announced
 from measurement.log.run_files import SAMPLE_MEANINGS
 from reference_pages.markdown import literal, plain, table
-from reports.compare.figures import COMPARED
+from reports.compare.pairs import COMPARED
 from reports.export.tracks_csv import COLUMNS as TRACK_COLUMNS
 from scenarios.flight.guard_belief import GuardBelief
 from scenarios.flight.onboard import BELIEF_COLUMNS

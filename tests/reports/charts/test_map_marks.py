@@ -10,9 +10,15 @@ import pytest
 
 from measurement.emission import ship_of
 from reports.document.chart import Line, Panel
-from reports.document.map_marks import arrow, hull_line, on_map, plume_lines
-from reports.document.ship_map import area_outline, hull_words
-from reports.run.ship import ANY, HULLS, Hull, hull_of, outline_of
+from reports.document.ship_map import (
+    area_outline,
+    arrow,
+    hull_line,
+    hull_words,
+    on_map,
+    plume_lines,
+)
+from reports.run.flight_config import ANY, HULLS, Hull, hull_of, outline_of
 from reports.run.time_history import turned
 
 

@@ -9,7 +9,7 @@ from measurement.emission import emission_of, fuel_preset, ship_of
 from measurement.plume.fluctuating_plume import FluctuatingPlume
 from measurement.plume.spread import MarineAir, PlumeSettings
 from reports.run.flight_config import source_height
-from reports.run.plume_shape import LINE_HALF_WIDTH, SPREADS, plume_shape
+from reports.run.surroundings import LINE_HALF_WIDTH, SPREADS, plume_shape
 
 SPEED, WIND, HEIGHT, LENGTH = 12.0, 7.0, 35.0, 800.0
 LINE = {

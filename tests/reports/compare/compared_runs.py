@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from reports.compare.runs import Run
+from reports.compare.pairs import Run
 from reports.run.run_data import RunData
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.files import load_study

@@ -5,7 +5,7 @@ once more.
 import pytest
 
 from reports.compare.content import compare, comparison_content
-from reports.compare.runs import read_runs
+from reports.compare.pairs import read_runs
 from tests.reports.compare.compared_runs import flown
 
 

@@ -11,7 +11,7 @@ from report_parts import blocks_of, numbers_of_page_1
 from snapshots import assert_reads_as_before
 
 from reports.compare.content import compare, comparison_content, headline
-from reports.compare.runs import read_runs
+from reports.compare.pairs import read_runs
 from reports.compare.table_of_pairs import write_differences
 from reports.document.blocks import Section, Table, Text
 from reports.document.chart import Chart

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from reports.compare.configuration import configuration_table, software_table
-from reports.compare.runs import read_runs
+from reports.compare.pairs import read_runs
 
 
 @pytest.fixture

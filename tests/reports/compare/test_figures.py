@@ -5,9 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from reports.compare.figures import PAIRS_MIN, differences
-from reports.compare.pairs import paired
-from reports.compare.tables import difference_table
+from reports.compare.content import difference_table
+from reports.compare.pairs import PAIRS_MIN, differences, paired
 from tests.reports.compare.compared_runs import made_run, rows_of
 
 

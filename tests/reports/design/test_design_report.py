@@ -16,10 +16,9 @@ from report_parts import (
 from snapshots import assert_reads_as_before
 
 from reports.build import build_reports
+from reports.design.charts import disk_region, margin_chart, turned
 from reports.design.console import print_summary
 from reports.design.data import complete, excess_overshoot, where
-from reports.design.loop_charts import disk_region, turned
-from reports.design.margin_charts import margin_chart
 from reports.design.section import design_words
 from reports.document.blocks import Table
 from reports.document.chart import Chart

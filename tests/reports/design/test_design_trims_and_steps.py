@@ -2,9 +2,9 @@
 
 from design_runs import BANKS_DEG, record
 
+from reports.design.charts import trim_map
 from reports.design.data import complete
 from reports.design.tables import step_table
-from reports.design.trim_charts import trim_map
 
 
 def test_the_trim_map_has_a_curve_per_bank_and_marks_what_is_at_a_limit():

@@ -17,8 +17,8 @@ from report_parts import (
 from snapshots import assert_reads_as_before
 
 from reports.document.blocks import Text
-from reports.finding.flights import _picked
 from reports.finding.search_view import search_view
+from reports.finding.searches import _picked
 from reports.registry import content
 from reports.run.run_data import read_run
 

@@ -7,9 +7,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from reports.finding.tables import height_table, search_table
-from reports.finding.trial_charts import hits_over_time
-from reports.finding.variants import Variant, variants_of
+from reports.finding.searches import (
+    Variant,
+    height_table,
+    hits_over_time,
+    search_table,
+    variants_of,
+)
 from reports.run.run_data import RunData
 from reports.run.trials import Trial
 

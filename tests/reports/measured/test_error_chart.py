@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from reports.measurement import flight_charts
+from reports.measurement import method
 from reports.render import plotly_charts
 
 
@@ -19,9 +19,9 @@ def test_error_bars_are_the_intervals_and_not_symmetric_where_these_are_cut():
             "areas_fsc_percent": [-0.01],
         }
     )
-    for method, low, high in (("fsc", 0.0, 0.03), ("areas_fsc", 0.0, 0.02)):
-        rows = rows.assign(**{f"{method}_low_percent": low, f"{method}_high_percent": high})
-    chart = flight_charts.error_chart(rows)
+    for of, low, high in (("fsc", 0.0, 0.03), ("areas_fsc", 0.0, 0.02)):
+        rows = rows.assign(**{f"{of}_low_percent": low, f"{of}_high_percent": high})
+    chart = method.error_chart(rows)
     bars = [panel.lines[0].error.ravel() for panel in chart.panels]
     np.testing.assert_allclose(bars, [[0.01, 0.02], [0.0, 0.03]], atol=1e-12)
     drawn = plotly_charts.draw(chart)["panels"][0]["data"][0]["error_y"]
@@ -33,17 +33,17 @@ def test_error_bars_are_the_intervals_and_not_symmetric_where_these_are_cut():
 
 def _results(expected, found):
     columns = {"fsc_expected_percent": expected, "sensor": "fast"}
-    for method in ("fsc", "areas_fsc"):
+    for of in ("fsc", "areas_fsc"):
         columns |= {
-            f"{method}_percent": found,
-            f"{method}_low_percent": 0.0,
-            f"{method}_high_percent": np.abs(found) + 0.02,
+            f"{of}_percent": found,
+            f"{of}_low_percent": 0.0,
+            f"{of}_high_percent": np.abs(found) + 0.02,
         }
     return pd.DataFrame(columns)
 
 
 def test_results_below_a_logarithmic_scale_stand_at_its_edge_and_are_counted():
-    chart = flight_charts.error_chart(_results([0.05, 0.1, 1.0], [-0.02, 0.001, 1.0]))
+    chart = method.error_chart(_results([0.05, 0.1, 1.0], [-0.02, 0.001, 1.0]))
     assert "results below the scale, 2 by regression, 2 by areas" in chart.caption
     for panel in chart.panels:
         inside, below, _ = panel.lines
@@ -55,7 +55,7 @@ def test_results_below_a_logarithmic_scale_stand_at_its_edge_and_are_counted():
 
 def test_only_flights_of_one_fuel_are_drawn_beside_each_other():
     once, often = (
-        flight_charts.error_chart(_results(fuels, fuels))
+        method.error_chart(_results(fuels, fuels))
         for fuels in ([0.05, 0.1, 1.0], [0.05, 0.1, 0.1, 1.0])
     )
     assert list(once.panels[0].lines[0].x) == [0.05, 0.1, 1.0]
@@ -66,5 +66,5 @@ def test_only_flights_of_one_fuel_are_drawn_beside_each_other():
 
 @pytest.mark.parametrize("found", [[-0.02, -0.01, -0.3], [np.nan, np.nan, np.nan]])
 def test_where_no_result_is_above_0_the_scale_is_that_of_the_fuels(found):
-    (panel, _) = flight_charts.error_chart(_results([0.05, 0.1, 1.0], found)).panels
+    (panel, _) = method.error_chart(_results([0.05, 0.1, 1.0], found)).panels
     assert panel.y_range == pytest.approx((0.01, 1.5))

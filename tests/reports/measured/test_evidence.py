@@ -16,7 +16,7 @@ from common.text import moment, span_words
 from measurement.log.command import main
 from reports.document.blocks import Table
 from reports.document.provenance import provenance_section
-from reports.measurement.facts import position_words
+from reports.measurement.data import position_words
 from reports.registry import content
 from reports.run.letterhead import letterhead
 from reports.run.run_data import read_run

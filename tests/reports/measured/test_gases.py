@@ -11,7 +11,7 @@ from report_parts import assert_axes_read_quantity_and_unit
 from measurement.log.command import main
 from reports.document.blocks import Table
 from reports.document.chart import Chart
-from reports.measurement.gases import gas_sections, samples_chart, stage_chart
+from reports.measurement.content import gas_sections, samples_chart, stage_chart
 from reports.registry import content
 from reports.run.run_data import read_run
 

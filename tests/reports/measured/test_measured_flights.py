@@ -16,8 +16,8 @@ from report_parts import (
 from scipy.stats import beta
 
 from reports.document.blocks import Fold, Table, Text
-from reports.measurement import flight_charts, flight_tables, flights
-from reports.measurement.facts import flown_facts
+from reports.measurement import flights, method
+from reports.measurement.data import flown_facts
 from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import read_run
@@ -66,7 +66,7 @@ def several(several_path):
     with pytest.MonkeyPatch.context() as patch:
         # Of each fuel and sensor one flight at either bank: too few for a curve that anybody is to
         # read.
-        patch.setattr("reports.measurement.flight_charts._OF_EACH_MIN", 2)
+        patch.setattr("reports.measurement.method._OF_EACH_MIN", 2)
         return content(read_run(several_path))
 
 
@@ -260,7 +260,7 @@ def test_a_content_below_0_is_told_with_the_interval_that_its_verdict_rests_on()
     )
     assert words in flights._told(pd.Series(row))
     assert flights.sulphur_cards(run)[0].note == "95 % interval 0.000 to 0.039 %"
-    table = flight_tables.flight_table(
+    table = method.flight_table(
         pd.DataFrame([{**row, "flight_id": "flight_1", "sensor": "fast"}]),
         lambda of: str(of["flight_id"]),
     )
@@ -305,7 +305,7 @@ def test_noise_of_a_minute_follows_from_the_time_that_was_evaluated(own, minutes
         overrides=swept if own == "swept" else {},
     )
     regression, areas = (
-        panel.lines[0].y for panel in flight_charts.trajectory_chart(run, rows).panels[:2]
+        panel.lines[0].y for panel in method.trajectory_chart(run, rows).panels[:2]
     )
     assert regression == pytest.approx(0.02 * np.sqrt(minutes))
     assert areas == pytest.approx(0.03 * np.sqrt(minutes))
@@ -320,14 +320,14 @@ def test_a_fuel_without_sulphur_beside_others_is_drawn():
         "crossing_interval_mean_s",
     )
     rows = pd.DataFrame(dict.fromkeys(columns, fuels)).assign(sensor="fast")
-    for method in ("fsc", "areas_fsc"):
+    for of in ("fsc", "areas_fsc"):
         rows = rows.assign(
             **{
-                f"{method}_low_percent": np.maximum(0.0, fuels - 0.02),
-                f"{method}_high_percent": fuels + 0.02,
+                f"{of}_low_percent": np.maximum(0.0, fuels - 0.02),
+                f"{of}_high_percent": fuels + 0.02,
             }
         )
-    chart = flight_charts.error_chart(rows)
+    chart = method.error_chart(rows)
     assert {(panel.log_x, panel.log_y) for panel in chart.panels} == {(False, False)}
     entry = {
         "sensor": "fast",
@@ -337,14 +337,14 @@ def test_a_fuel_without_sulphur_beside_others_is_drawn():
         "above_2min": 0.0,
         "above_interval": [0.0, 0.6],
     }
-    curve = flight_charts.operating_curve(
+    curve = method.operating_curve(
         {"operating_curve": [entry | {"fsc_fuel_percent": fuel} for fuel in np.unique(fuels)]}
     )
     assert not curve.panels[0].log_x
     for drawn in (chart, curve):
         matplotlib_charts.draw(drawn)
         plotly_charts.draw(drawn)
-    shares = flight_charts._shares(rows, "crossing_interval_mean_s").lines[0].y
+    shares = method._shares(rows, "crossing_interval_mean_s").lines[0].y
     assert np.isnan(shares[:4]).all()
     assert shares[4:].tolist() == [1.0] * 12
 
@@ -358,7 +358,7 @@ def test_an_operating_curve_of_two_limits_has_a_line_for_each():
         for limit in (0.1, 0.5)
         for fuel in (0.05, 0.3, 2.0)
     ]  # fmt: skip
-    lines = flight_charts.operating_curve({"operating_curve": curve}).panels[0].lines
+    lines = method.operating_curve({"operating_curve": curve}).panels[0].lines
     ends = {line.label: line.y.tolist() for line in lines if line.label.endswith("at the end")}
     assert ends == {
         "fast, 0.1 %, at the end": [0.0, 1.0, 1.0],
@@ -373,7 +373,7 @@ def test_a_share_of_nothing_is_a_dash():
         "share_predicted": None, "spread_percent": 0.01, "stated_percent": 0.01, "stated_noise_percent": 0.01, "coverage": 1.0,
         "coverage_interval": [0.4, 1.0],
     }  # fmt: skip
-    (row,) = flight_tables.accuracy_table({"accuracy": [entry], "confidence": 0.95}).rows
+    (row,) = method.accuracy_table({"accuracy": [entry], "confidence": 0.95}).rows
     assert row[4:6] == ["–", "–"]
 
 

@@ -16,9 +16,8 @@ from snapshots import assert_reads_as_before
 from reports.document.blocks import Table
 from reports.document.chart import Chart
 from reports.document.tables import minus
-from reports.monte_carlo.content import monte_carlo_sections
+from reports.monte_carlo.content import monte_carlo_sections, percent
 from reports.monte_carlo.names import documented_units, input_label, input_unit
-from reports.monte_carlo.tables import percent
 from reports.registry import content
 from reports.run.run_data import RunData, read_run
 from scenarios.scenario.documentation import documented_keys

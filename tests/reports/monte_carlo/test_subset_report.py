@@ -8,11 +8,11 @@ import pytest
 
 from reports.document.blocks import Table
 from reports.document.chart import Chart
+from reports.monte_carlo.content import percent
 from reports.monte_carlo.subset import (
     subset_headline,
     subset_sections,
 )
-from reports.monte_carlo.tables import percent
 from scenarios.measures.columns import DERIVED_COLUMNS
 from scenarios.statistics.subset_simulation import input_shifts, near_event, subset_statistics
 from tests.scenarios.statistics.rare_events import DIMENSION, linear, simulated

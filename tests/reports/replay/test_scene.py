@@ -19,8 +19,8 @@ from reports.document.scene import COLUMNS
 from reports.registry import content
 from reports.render import html, replay
 from reports.replay.flight_scene import INTERVAL, flight_scene
+from reports.run.flight_config import HULLS
 from reports.run.run_data import read_run
-from reports.run.ship import HULLS
 from reports.run.trials import read_trials
 
 pytestmark = pytest.mark.slow

@@ -9,8 +9,8 @@ import pyarrow.parquet as pq
 import pytest
 
 from common.physics import wind_velocity
-from reports.flights.flight_view import flight_view
 from reports.flights.single_flight import flight_charts
+from reports.flights.tracks import flight_view
 from reports.run.run_data import read_run
 from reports.run.surroundings import surroundings
 from reports.run.trials import read_trials

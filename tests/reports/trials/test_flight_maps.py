@@ -6,9 +6,16 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from reports.flights.flight_view import GUARD, GUARD_LOST, FlightView, flight_view
 from reports.flights.single_flight import flight_charts
-from reports.flights.tracks import TIMES, track_chart, track_picture
+from reports.flights.tracks import (
+    GUARD,
+    GUARD_LOST,
+    TIMES,
+    FlightView,
+    flight_view,
+    track_chart,
+    track_picture,
+)
 from reports.run.surroundings import surroundings
 from reports.run.time_history import about_the_plume, guard_stretches, vessel_heading
 from reports.run.trials import read_trials

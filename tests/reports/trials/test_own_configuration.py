@@ -15,14 +15,14 @@ from report_parts import blocks_of
 from common.text import as_json_cell, cell, from_json_cell
 from reports.document.blocks import FlightPicker
 from reports.export.geographic import recorded_flights
-from reports.flights.flight_view import flight_view
 from reports.flights.single_flight import flight_charts
+from reports.flights.tracks import flight_view
 from reports.flights.trials.tables import fault_table
 from reports.registry import content
 from reports.replay.flight_scene import flight_scene
 from reports.run.flight_config import flight_config, flight_configs, with_value
-from reports.run.plume_shape import plume_shape
 from reports.run.run_data import RunData, read_overrides, read_run
+from reports.run.surroundings import plume_shape
 from reports.run.trials import read_trials
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.experiment.requests import Experiment, differing_keys

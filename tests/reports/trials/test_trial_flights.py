@@ -12,9 +12,9 @@ from trial_runs import with_values
 
 from reports.document.blocks import FlightPicker, Table
 from reports.document.chart import Chart
-from reports.flights.flight_view import flight_view
 from reports.flights.selection import PICKED_MAX, picked_flights
 from reports.flights.single_flight import flight_charts
+from reports.flights.tracks import flight_view
 from reports.flights.trials.charts import trial_charts
 from reports.registry import content
 from reports.run.run_data import read_run

@@ -18,7 +18,7 @@ from reports.build import build_reports
 from reports.document.blocks import Table
 from reports.errors import ReportError
 from reports.flights.criteria import MEASURED
-from reports.flights.trials.panels_over import PanelsOver, by_violation
+from reports.flights.trials.charts import PanelsOver, by_violation
 from reports.output import write_report
 from reports.registry import content
 from reports.run.run_data import read_run
