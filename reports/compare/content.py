@@ -349,6 +349,8 @@ def comparison_content(runs: Sequence[Run], compared: Sequence[Compared]) -> Con
         Section(anchor="provenance", title="Provenance", blocks=[software_table(runs)]),
     ]
     described = "; ".join(f"{run.title} ({run.manifest['title']}, {run.state})" for run in runs)
+    keys = [row[0] for table in configuration if isinstance(table, Table) for row in table.rows]
+    differ = ", ".join(keys[:_NAMED_MAX]) + " and others" * (len(keys) > _NAMED_MAX)
     picture, sections = numbered(tracks[0], sections)
     names = (
         " and ".join(run.name for run in runs)
@@ -360,7 +362,7 @@ def comparison_content(runs: Sequence[Run], compared: Sequence[Compared]) -> Con
         letterhead=replace(letterhead(runs[0].data, {}), run=names, done=f"{runs[0].letter} flown"),
         description="",
         changes="",
-        flown=f"{described}.",
+        flown=f"{described}. What was set otherwise: {differ or 'nothing'}.",
         verdict=_verdict(runs, compared),
         picture=picture,
         sections=sections,

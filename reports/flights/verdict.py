@@ -30,7 +30,12 @@ from reports.flights.criteria import (
 )
 from reports.flights.names import told_name
 from reports.flights.trials.tables import failure_lines, noteworthy, tracking_lines
-from reports.measurement.flights import sulphur_below, sulphur_cards, sulphur_headline
+from reports.measurement.flights import (
+    sulphur_below,
+    sulphur_cards,
+    sulphur_headline,
+    sulphur_remarks,
+)
 from reports.run.columns import (
     Mask,
     beside_vessel,
@@ -71,8 +76,8 @@ _ENDED: Mapping[str, str] = MappingProxyType(
 
 _ONE_FLIGHT = "The flight {kept} and {ended}; it met {met} of the {judged} criteria that judge it"
 _SWEEP = (
-    "{kept:,} of {beside:,} {points} kept out, {finished:,} finished. Crossing intervals are up to"
-    " {worst} off the prediction, limit {limit}, missed by {failed:,}"
+    "{kept:,} of {beside:,} {points} kept out, {ended}. Crossing intervals are up to {worst} off"
+    " the prediction, limit {limit}"
 )
 
 _PREMISES = (
@@ -107,17 +112,16 @@ def _flights(run: RunData) -> str:
     counts = run.verdict.counts
     kept = f"{counts.kept_out:,} of {counts.beside:,} flights kept out"
     first = kept if counts.beside else f"{counts.done:,} flights about a circle, without a vessel"
-    troubles = [f"{number:,} {words}" for words, number in _troubles(run, counts).items() if number]
-    said = ", ".join([first, f"{counts.completed:,} finished", *troubles])
+    said = f"{first}, {_ended(run, counts)}"
     worst = ", ".join(_worst(run))
     return f"{said}. Worst: {worst}" if worst else said
 
 
-def _troubles(run: RunData, counts: Counts) -> dict[str, int]:
-    """Return how many flights came to grief, by what they did."""
+def _ended(run: RunData, counts: Counts) -> str:
+    """Return how many flights finished, and how many came to grief, by what they did."""
     rows = run.summary
     missed = completed(rows) & ~met(rows) & ~violated(rows)
-    return {
+    troubles = {
         "violated": counts.violated,
         "lost": counts.lost - counts.diverged,
         "diverged": counts.diverged,
@@ -125,6 +129,8 @@ def _troubles(run: RunData, counts: Counts) -> dict[str, int]:
         "unknown": counts.unknown - counts.not_flown - counts.diverged,
         "missed a limit": count(missed),
     }
+    told = [f"{number:,} {words}" for words, number in troubles.items() if number]
+    return ", ".join([f"{counts.completed:,} finished", *told])
 
 
 def _worst(run: RunData) -> Iterator[str]:
@@ -162,10 +168,9 @@ def _sweep(run: RunData) -> str:
         kept=counts.kept_out,
         beside=counts.beside,
         points="speed ratios" if list(swept[0]) == ["nu"] else "flights",
-        finished=counts.completed,
+        ended=_ended(run, counts),
         worst=worst_words(run, criterion, criterion.worst_of_all),
         limit=limit_words(run, criterion.key, criterion.column, criterion.limits[0]).lstrip("≤ "),
-        failed=criterion.failed,
     )
 
 
@@ -231,6 +236,7 @@ def flight_verdict(
             *(line for trial in trials for line in failure_lines(trial)),
             *(line for trial in trials for line in tracking_lines(trial, only=only)),
             *noteworthy(run.verdict, flown),
+            *sulphur_remarks(run),
         ],
         figures=[*(search_cards(run) or sulphur_cards(run)), *_figures(trials, flown)],
         # A fuel that was not measured, or not surely, has no tile that says so.
@@ -351,14 +357,15 @@ def _finished_card(verdict: RunVerdict) -> Card | None:
 
 
 def _lost_card(verdict: RunVerdict) -> Card | None:
-    """Return how many flights lost their aircraft, and which, where some did."""
+    """Return how many flights lost their aircraft or diverged, and which, where some did."""
+    name = "Aircraft lost or diverged" if verdict.counts.diverged else "Aircraft lost"
     names = verdict.flights.get("lost", ())
     if not names:
         return None
     note = ", ".join(names[:2]) + (f" and {len(names) - 2:,} more" if len(names) > 2 else "")
     if not verdict.lost_against_requirement:
-        return LossCard("Aircraft lost", f"{len(names):,}", _ALLOWED, note=note)
-    return Card("Aircraft lost", f"{len(names):,}", "0", False, note)
+        return LossCard(name, f"{len(names):,}", _ALLOWED, note=note)
+    return Card(name, f"{len(names):,}", "0", False, note)
 
 
 def _unexplained_card(verdict: RunVerdict) -> Card | None:

@@ -115,6 +115,17 @@ def sulphur_below(run: RunData) -> bool:
     )
 
 
+def sulphur_remarks(run: RunData) -> list[str]:
+    """Return why the only flight that measured the fuel says no more of it, in a line."""
+    measured = measured_flights(run)
+    if len(measured) != 1 or "sulphur_reason" not in measured:
+        return []
+    row = measured.iloc[0]
+    reason = row["sulphur_reason"]
+    told = isinstance(reason, str) and bool(reason)
+    return [f"Fuel sulphur, quality {row['sulphur_quality']}: {reason}"] if told else []
+
+
 def sulphur_headline(run: RunData) -> str:
     """Return the verdict on the fuel, with its content and interval, in a sentence; no word of a
     run without a sniffer.

@@ -138,6 +138,16 @@ def met(rows: pd.DataFrame) -> Mask:
     return rows["criteria_met"].to_numpy(dtype=np.bool_)
 
 
+def passed(rows: pd.DataFrame) -> Mask:
+    """Return which flights did what is required of them: met every criterion, or stayed outside of
+    the keep-out area where no more is required.
+    """
+    if "required" not in rows:
+        return met(rows)
+    outside = np.isin(_keep_out(rows), (KeepOut.KEPT_OUT, KeepOut.OUTSIDE))
+    return met(rows) | (outside & np.asarray(rows["required"] == "keep_out", dtype=np.bool_))
+
+
 def recorded_at(values: Array, recorded: Mask, rank: int) -> tuple[int, bool]:
     """Return which flight is at a rank, or else is nearest to it of those with a time history, and
     whether its value is that one.

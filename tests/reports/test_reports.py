@@ -115,7 +115,9 @@ def test_an_infeasible_flight_is_in_the_report_with_its_reason(report):
     (table,) = blocks_of(report, Table, "trial1")
     assert "must be below 1" in table.rows[2][1]
     assert report.verdict.tone == "bad"
-    assert report.verdict.headline.startswith("2 of 3 speed ratios kept out, 2 finished. ")
+    assert report.verdict.headline.startswith(
+        "2 of 3 speed ratios kept out, 2 finished, 1 could not be flown. "
+    )
     assert "must be below 1" in report.verdict.failures[0]
     assert flights_of(report)[2].title.endswith("not flown, infeasible: speed ratio ν is 1")
     assert flights_of(report)[2].charts == []

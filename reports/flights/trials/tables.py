@@ -45,6 +45,7 @@ from reports.run.columns import (
     largest,
     lost,
     met,
+    passed,
     radii_differ,
     total,
     was_flown,
@@ -399,11 +400,11 @@ _WORDS = {"modes": "", "turbulence": "none"}
 
 
 def failure_lines(trial: Trial) -> list[str]:
-    """Return which flights of a trial failed a criterion, each of a few, else by criterion; and
-    which were not flown.
+    """Return which flights of a trial failed what is required of them, each of a few, else by
+    criterion; and which could not be flown.
     """
     rows = trial.rows
-    failed = rows[~met(rows)]
+    failed = rows[~passed(rows)]
     begun = was_flown(failed)
     flown, unflown = failed[begun], failed[~begun]
     lines = (
@@ -455,7 +456,7 @@ def _not_flown(trial: Trial, flights: pd.DataFrame) -> str:
     """Return how many flights were not flown, and why the first of them was not."""
     first = flights.iloc[0]
     return (
-        f"{trial.title}: {len(flights)} of {trial.planned} not flown; the first,"
+        f"{trial.title}: {len(flights)} of {trial.planned} could not be flown; the first,"
         f" {told_name(trial, first)}: {ending(first)}"
     )
 
