@@ -9,6 +9,7 @@ from measurement.estimate.gas import SCREENING, error_words
 from measurement.estimate.verdict import REJECTED
 from reports.document.blocks import Block, Card, Section, Table, Verdict
 from reports.document.chart import Chart, Line, Panel, Style
+from reports.document.palette import Meaning
 from reports.document.tables import number
 from reports.measurement.data import Record, value
 
@@ -133,7 +134,7 @@ def samples_chart(found: list[Record]) -> Chart | None:
                 y_label=f"Excess [{unit}]",
                 title=of["title"],
                 lines=[
-                    Line(x=co2, y=excess, label="sample", colour="blue", style="points"),
+                    Line(x=co2, y=excess, label="sample", colour=Meaning.FLOWN, style="points"),
                     Line(x=ends, y=fitted, label="slope", colour="black"),
                 ],
             )
@@ -169,7 +170,7 @@ def stage_chart(found: list[Record]) -> Chart | None:
         limits = [limit_of(keel, float(rpm), where) for rpm in _RPM]
         curve = np.array([limit.cycle_g_kwh for limit in limits if limit is not None])
         lines.append(
-            Line(x=_RPM, y=curve, label=f"stage {stage}", colour="vermillion", style=style)
+            Line(x=_RPM, y=curve, label=f"stage {stage}", colour=Meaning.LIMIT, style=style)
         )
     for of in measured:
         value_of = value(of, "value")
@@ -179,7 +180,7 @@ def stage_chart(found: list[Record]) -> Chart | None:
                 x=np.array([value(of, "rated_rpm")]),
                 y=np.array([value_of]),
                 label="measured, 95 % interval",
-                colour="blue",
+                colour=Meaning.FLOWN,
                 style="points",
                 error=np.array(error),
             )
@@ -190,7 +191,7 @@ def stage_chart(found: list[Record]) -> Chart | None:
                     x=np.array([value(of, "rated_rpm")]),
                     y=np.array([float(of["verdict"]["limit"])]),
                     label="limit at one load",
-                    colour="vermillion",
+                    colour=Meaning.LIMIT,
                     style="cross",
                 )
             )
