@@ -126,7 +126,9 @@ class FlightPlan:
         period: float,
         **parts: Any,
     ) -> "FlightPlan":
-        """Return the plan of a flight of a scenario; ``parts`` are those that not every flight has."""
+        """Return the plan of a flight of a scenario; ``parts`` are those that not every flight
+        has.
+        """
         flight, g = scenario.flight, scenario.guidance
         return cls(
             flight_id=flight_id,

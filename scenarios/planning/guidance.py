@@ -214,8 +214,8 @@ def slowest_without_thrust(scenario: Scenario, setup: VehicleSetup) -> float:
     failed [m/s].
 
     It falls until the failure is known, for which the engine may have to run down, on to the
-    airspeed of the glide, and below that while it pushes over. A throttle that is stuck takes less of the thrust, and counts as much.
-    Infinite where neither is declared.
+    airspeed of the glide, and below that while it pushes over. A throttle that is stuck takes less
+    of the thrust, and counts as much. Infinite where neither is declared.
 
     Raises
     ------

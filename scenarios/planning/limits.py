@@ -40,7 +40,9 @@ def plan_period(guidance: GuidanceConfig) -> float:
 
 
 def check_flyable(guidance: GuidanceConfig, title: str, envelope: Envelope) -> None:
-    """Raise an InputError for an airspeed or a bank that the aircraft called ``title`` cannot fly."""
+    """Raise an InputError for an airspeed or a bank that the aircraft called ``title`` cannot
+    fly.
+    """
     airspeed = guidance.airspeed_mps
     if not envelope.airspeed_min <= airspeed <= envelope.airspeed_max:
         raise InputError(

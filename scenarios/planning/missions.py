@@ -1,5 +1,5 @@
-"""Plans a flight: from its scenario to the mission, its guidance and its world, all in SI, or to the
-reason why it cannot be flown.
+"""Plans a flight: from its scenario to the mission, its guidance and its world, all in SI, or to
+the reason why it cannot be flown.
 
 There are three kinds of flights. One tracks a circle, without a vessel. One tracks the paper's
 reference, which is known in advance: beside a steady vessel in still air. All others steer their

@@ -1,5 +1,5 @@
-"""What is planned of a plume: how high its axis is expected to be, how it is found, and how far from
-the ship the sulphur is measured best.
+"""What is planned of a plume: how high its axis is expected to be, how it is found, and how far
+from the ship the sulphur is measured best.
 
 The sulphur is measured best where its uncertainty by noise falls fastest with time. A pass at a
 height z off the centre of a Gaussian plume of spreads s_y, s_z, in an apparent wind U, at a speed v

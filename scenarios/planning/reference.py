@@ -30,7 +30,8 @@ RATIO_STEPS = 48
 """Steps of nu at which orbits are tabled."""
 
 _REACH_POINTS = 513
-"""Points of an orbit at which its reach is looked at [-]: what they miss is below 1e-4 of its width.
+"""Points of an orbit at which its reach is looked at [-]: what they miss is below 1e-4 of its
+width.
 """
 
 _REACH_ROUNDING = 1e-6
@@ -58,8 +59,8 @@ def shape_of(reference: ReferenceConfig) -> ReferenceShape:
 def _shape(made: Any) -> Any:
     if not _is_number(getattr(made, "turn_rate_fraction_until_tracked", None)):
         raise TypeError(
-            "a shape with a number turn_rate_fraction_until_tracked, the fraction of its heading rate"
-            " that the reference turns with until it is tracked [-], 1.0 as the sinusoid has"
+            "a shape with a number turn_rate_fraction_until_tracked, the fraction of its heading"
+            " rate that the reference turns with until it is tracked [-], 1.0 as the sinusoid has"
         )
     return made
 

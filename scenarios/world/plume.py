@@ -38,7 +38,9 @@ Array = npt.NDArray[np.float64]
 
 
 class Plume(Protocol):
-    """The axis of a plume: a half-line from the vessel, level or rising at ``plume.elevation_deg``."""
+    """The axis of a plume: a half-line from the vessel, level or rising at
+    ``plume.elevation_deg``.
+    """
 
     def axis(self, time: float) -> float:
         """Return the course along which the plume trails at a time [s], without jumps [rad]."""

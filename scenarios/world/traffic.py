@@ -1,5 +1,5 @@
-"""The ships besides the one that is measured: those that a scenario gives, and those of a file of AIS
-reports.
+"""The ships besides the one that is measured: those that a scenario gives, and those of a file of
+AIS reports.
 """
 
 import math

@@ -1,5 +1,5 @@
-"""Where the vessel really is, at any time: at constant velocity, or through its manoeuvres; and where
-on earth a flight begins.
+"""Where the vessel really is, at any time: at constant velocity, or through its manoeuvres; and
+where on earth a flight begins.
 """
 
 import math

@@ -1,5 +1,5 @@
-"""The air that a flight goes through: its mean wind, constant or from a table or netCDF (such as ERA5
-of the Copernicus Climate Data Store, read by xarray), turbulence and discrete gusts.
+"""The air that a flight goes through: its mean wind, constant or from a table or netCDF (such as
+ERA5 of the Copernicus Climate Data Store, read by xarray), turbulence and discrete gusts.
 """
 
 import math
@@ -189,8 +189,8 @@ def _where_it_blows(found: TabledWind, place: Place, duration: float, name: str)
     if missing:
         more = f" and {len(missing) - 1} more" if len(missing) > 1 else ""
         raise InputError(
-            f"wind.table: {name} has no wind at {utc_text(times[missing[0]])}{more}, which the flight"
-            " needs; give another file, another place or another time (place.utc)"
+            f"wind.table: {name} has no wind at {utc_text(times[missing[0]])}{more}, which the"
+            " flight needs; give another file, another place or another time (place.utc)"
         )
     return replace(
         found, times=tuple(times[known].tolist()), velocity=found.velocity[known], lines=None
@@ -294,7 +294,8 @@ def _rows(path: Path, table: Table) -> Iterator[_Row]:
             )
         raise InputError(
             f"wind.table: {path}, line {table.head_line}: the header is {','.join(names)[:80]!r};"
-            f" it must be {','.join(COLUMNS)}, of which time_utc or height_m may be missing: {remedy}"
+            f" it must be {','.join(COLUMNS)}, of which time_utc or height_m may be missing:"
+            f" {remedy}"
         )
     if twice := [column for column in COLUMNS if names.count(column) > 1]:
         raise InputError(
@@ -318,9 +319,9 @@ def _rows(path: Path, table: Table) -> Iterator[_Row]:
     if not good.all():
         row = int(np.argmin(good))
         raise InputError(
-            f"wind.table: {path}, line {table.lines[row]}: {','.join(table.rows[row])[:80]!r}; every"
-            f" row has its columns: speeds go from 0 to {_SPEED_MAX:g} m/s, directions from 0 to 360"
-            " deg, heights are above 0: correct the line, or delete it"
+            f"wind.table: {path}, line {table.lines[row]}: {','.join(table.rows[row])[:80]!r};"
+            f" every row has its columns: speeds go from 0 to {_SPEED_MAX:g} m/s, directions from"
+            " 0 to 360 deg, heights are above 0: correct the line, or delete it"
         )
     for row, line in enumerate(table.lines):
         wind = wind_velocity(float(speeds[row]), float(directions[row]))
@@ -532,8 +533,8 @@ def _check_wind(path: Path, data: Any, time: str, names: list[str]) -> None:
     )
     if calendar not in _CALENDARS:
         raise InputError(
-            f"wind.table: {path}: its times are of the calendar '{calendar}', and a flight's are of the"
-            " Gregorian one; convert them"
+            f"wind.table: {path}: its times are of the calendar '{calendar}', and a flight's are"
+            " of the Gregorian one; convert them"
         )
     if not np.issubdtype(data[time].dtype, np.datetime64):
         raise InputError(

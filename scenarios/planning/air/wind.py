@@ -1,5 +1,5 @@
-"""The wind that guard and mission have to allow for: at which heights a flight may be, how the filter
-of the wind is set, and by how much the wind changes until its estimate has followed.
+"""The wind that guard and mission have to allow for: at which heights a flight may be, how the
+filter of the wind is set, and by how much the wind changes until its estimate has followed.
 """
 
 import math
@@ -348,7 +348,9 @@ def _wrong_by(scenario: Scenario, airspeed: float, heading_deg: float) -> float:
 
 
 def _measured_noise(scenario: Scenario) -> float:
-    """Return the deviation of a single measurement of the wind by the noise of all sensors [m/s]."""
+    """Return the deviation of a single measurement of the wind by the noise of all sensors
+    [m/s].
+    """
     return math.hypot(wind_noise(scenario), scenario.sensors.velocity_sigma_mps)
 
 

@@ -1,5 +1,5 @@
-"""The keep-out margin of a flight in operational conditions: how far from the keep-out area its orbit
-lies, so that errors hardly ever carry the aircraft into it and the guard leaves it alone.
+"""The keep-out margin of a flight in operational conditions: how far from the keep-out area its
+orbit lies, so that errors hardly ever carry the aircraft into it and the guard leaves it alone.
 
 The margin has three parts.
 

@@ -10,12 +10,12 @@ the hold of the commands and the step by which the last one is late. In axes alo
 reference's course, which turn at omega_r, the error e from aircraft to reference obeys
 e_along' = -dV + omega_r e_right and e_right' = -V dchi - omega_r e_along.
 
-The course swings through air whose gusts do not swing with it. A gust along a fixed direction is one
-along the path times the cosine of the course between them. With exp(i course) as a Fourier series
-of coefficients c_n over the orbit, the mean over the phases of cos(course now - course tau ago) is
-the sum of |c_n|^2 cos(n omega_0 tau): slow gusts come back as sidebands of the orbit's frequency,
-with these weights. For the sinusoid eta cos(omega_0 t + phase) they are J_n(eta)^2, and the mean is
-J_0(2 eta sin(omega_0 tau/2)) by Graf's addition theorem.
+The course swings through air whose gusts do not swing with it. A gust along a fixed direction is
+one along the path times the cosine of the course between them. With exp(i course) as a Fourier
+series of coefficients c_n over the orbit, the mean over the phases of cos(course now - course tau
+ago) is the sum of |c_n|^2 cos(n omega_0 tau): slow gusts come back as sidebands of the orbit's
+frequency, with these weights. For the sinusoid eta cos(omega_0 t + phase) they are J_n(eta)^2, and
+the mean is J_0(2 eta sin(omega_0 tau/2)) by Graf's addition theorem.
 """
 
 import functools

@@ -1,10 +1,10 @@
 """How far turbulence takes an aircraft off a turn away that it is commanded to fly.
 
 In the turn the guidance keeps the speed over the mean air, and commands the heading rate that turns
-the motion over the mean air at omega_max (``gnc.airspeed``). Both loops are closed around the linear
-aircraft, frequency by frequency. What gusts leave is a deviation dV of the speed and one dr of the
-course's rate. From a start at which position, course and speed are measured, and in the complex
-plane of north and east, they displace the vehicle by
+the motion over the mean air at omega_max (``gnc.airspeed``). Both loops are closed around the
+linear aircraft, frequency by frequency. What gusts leave is a deviation dV of the speed and one dr
+of the course's rate. From a start at which position, course and speed are measured, and in the
+complex plane of north and east, they displace the vehicle by
 
     z(t) = integral over s from 0 to t of  exp(i omega s) (dV(s) + i V (X(s) - X(0))),    X' = dr.
 
@@ -114,7 +114,9 @@ _READ = ("speed", "airspeed", "course_rate")
 def _gusts_in_turn(
     turbulence: GustStatistics, airspeed: float, span: float, heading_rate: float
 ) -> Array:
-    """Return the densities of ``GUSTS`` in the axes of a path that turns, shape (frequencies, 6)."""
+    """Return the densities of ``GUSTS`` in the axes of a path that turns, shape (frequencies,
+    6).
+    """
     filters = dryden_filters(turbulence, airspeed=airspeed, span=span)
 
     def density(frequencies: Array) -> Array:

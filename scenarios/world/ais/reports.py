@@ -1,5 +1,5 @@
-"""Reports of one vessel from a file: a table in one of the known layouts, or NMEA sentences as received
-(``!AIVDM,...``, decoded by pyais). Unusable rows are left out and counted.
+"""Reports of one vessel from a file: a table in one of the known layouts, or NMEA sentences as
+received (``!AIVDM,...``, decoded by pyais). Unusable rows are left out and counted.
 """
 
 import math
@@ -144,8 +144,8 @@ class AisReports:
         if self.lost_directions:
             towards = ", ".join(f"{course} deg" for course in self.lost_directions)
             return (
-                f"{self.path.name}: all reports of MMSI {self.mmsi} on the way towards {towards} were"
-                " dropped: its track there is not known"
+                f"{self.path.name}: all reports of MMSI {self.mmsi} on the way towards {towards}"
+                " were dropped: its track there is not known"
             )
         lost = sum(count for why, count in self.dropped.items() if why != DUPLICATE)
         share = lost / self.rows
@@ -162,7 +162,9 @@ class AisReports:
         )
 
     def lines(self) -> list[str]:
-        """Return what a console says of the file: how it was used, and a warning if there is one."""
+        """Return what a console says of the file: how it was used, and a warning if there is
+        one.
+        """
         return [self.described(), *([f"warning: {self.warning}"] if self.warning else [])]
 
     def record(self) -> dict[str, Any]:
@@ -234,8 +236,8 @@ def read_reports(path: str | Path, mmsi: int | None, written: TableFormat) -> Ai
         if jumps:
             why += f"; {jumps[0].described([row.line for row in found.placed])}"
         raise InputError(
-            f"{path}: {len(kept)} of {len(rows)} rows of MMSI {identity} used, two are needed;{f' dropped: {why};' if why else ''}"
-            " correct the rows, or give another file"
+            f"{path}: {len(kept)} of {len(rows)} rows of MMSI {identity} used, two are"
+            f" needed;{f' dropped: {why};' if why else ''} correct the rows, or give another file"
         )
     reports = _reports(path, identity, rows, found, sizes, read)
     mistaken = [jump for jump in reports.jumps() if jump.mistake]
@@ -422,7 +424,9 @@ def _by_their_clock(rows: Sequence[AisRow]) -> list[str]:
 
 
 def _by_their_times(rows: Sequence[AisRow]) -> list[str]:
-    """Return why each row is of no use by its time: of rows at the same time the first one stays."""
+    """Return why each row is of no use by its time: of rows at the same time the first one
+    stays.
+    """
     return [
         DUPLICATE if number and row.time == rows[number - 1].time else ""
         for number, row in enumerate(rows)
@@ -631,8 +635,8 @@ def _from_table(
         plain = LAYOUTS[0].columns
         remedy = other_units(heads, plain) or "rename the columns to these"
         raise InputError(
-            f"{path}, line {table.head_line}: the header is {','.join(table.names)[:_SHOWN]!r}; known"
-            " are those of the Danish Maritime Authority and of Marine Cadastre, and"
+            f"{path}, line {table.head_line}: the header is {','.join(table.names)[:_SHOWN]!r};"
+            " known are those of the Danish Maritime Authority and of Marine Cadastre, and"
             f" {','.join(plain)}: {remedy}"
         )
     lower = [name.lower() for name in table.names]
@@ -743,7 +747,8 @@ def _no_row(path: Path, mmsi: int | None, written: TableFormat) -> InputError:
         counts = Counter(of.mmsi for of in said if of.row is not None)
     if counts:
         return InputError(
-            f"{path}: no row of MMSI {mmsi}; it has {_most(counts)}: check the number (vessel.mmsi; --mmsi of an estimate)"
+            f"{path}: no row of MMSI {mmsi}; it has {_most(counts)}: check the number"
+            " (vessel.mmsi; --mmsi of an estimate)"
         )
     return InputError(
         f"{path}: no row below the header has an MMSI in digits, as 219999001, in the column of its"

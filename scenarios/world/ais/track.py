@@ -1,5 +1,5 @@
-"""A vessel on a smooth track through the reports of a file, and reports of any vessel as they arrive
-on board: every few seconds, noisy, late, or not at all.
+"""A vessel on a smooth track through the reports of a file, and reports of any vessel as they
+arrive on board: every few seconds, noisy, late, or not at all.
 """
 
 import math
@@ -449,7 +449,9 @@ def _in_frame(
 
 
 def _course_of(velocity: Array) -> Array:
-    """Return the course over the ground without jumps; a vessel at rest keeps the last one [rad]."""
+    """Return the course over the ground without jumps; a vessel at rest keeps the last one
+    [rad].
+    """
     moving = np.hypot(velocity[:, 0], velocity[:, 1]) > _AT_REST
     if not moving.any():
         return np.zeros(len(velocity))
