@@ -16,8 +16,8 @@ from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.guidance import GuidanceConfig, law_refusal
 
 TUNING = "tuning"
-"""Name of the trial whose flights the tuner flies: seeds follow from it, and are none of the
-comparison's.
+"""Name of the trial whose flights the tuner flies: seeds follow from it, and differ from those of
+the comparison's.
 """
 
 _NEEDS = {TRACKING: ON_OSCILLATION, STANDOFF: ON_CIRCLE}

@@ -37,8 +37,8 @@ class Estimate:
 
     Attributes
     ----------
-    mean, low, high : mean over the flights, and its interval; not a number where there is none
-    whole : whether it has the figure of every flight of which any entrant has it; otherwise it is
+    mean, low, high : mean over the flights, and its interval; NaN without one
+    whole : whether it has the figure of every flight for which any entrant has it; otherwise it is
         not compared
     best : whether it is compared, and the mean of no other that is compared is better
     behind_low, behind_high : interval of the difference from the best entrant's mean; 0 for the
@@ -166,7 +166,7 @@ def _may_be_best(
         others = np.flatnonzero(np.isfinite(worth) & (np.arange(len(worth)) != i))
         leads = worth[others] - worth[i]
         scatter = (sampled[others] - sampled[i]) - leads[:, np.newaxis]
-        # A resample may have none of the flights of which there is a figure.
+        # A resample may contain no flight that has the figure.
         scatter = scatter[:, np.isfinite(scatter).all(axis=0)]
         if not scatter.size:
             continue

@@ -25,7 +25,7 @@ class AisReceiver:
 
     Parameters
     ----------
-    line : that it is heard on
+    line : on which its sentences arrive
     clock : time of this computer since 1970 [s]
 
     Attributes

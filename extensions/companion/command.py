@@ -260,7 +260,7 @@ def _fly(
     from common.provenance import command_line
     from extensions.companion.ais_line import AisReceiver
     from extensions.companion.flight import Companion, CompanionFlight
-    from extensions.companion.ports import Port, heard, opened
+    from extensions.companion.ports import Port, opened, opened_input
     from extensions.companion.quality import Link
     from extensions.companion.vehicle_link import COMPONENT, VehicleLink
     from scenarios.engine.processes import InProcessExecutor
@@ -274,8 +274,10 @@ def _fly(
     with ExitStack() as held:
         line = opened("--connect", connect, listening=False)
         port = held.enter_context(Port(line, system=_SYSTEM, component=COMPONENT, log=log))
-        readings = held.enter_context(closing(heard("--sniffer", sniffer))) if sniffer else None
-        reports = held.enter_context(closing(heard("--ais", ais))) if ais else None
+        readings = (
+            held.enter_context(closing(opened_input("--sniffer", sniffer))) if sniffer else None
+        )
+        reports = held.enter_context(closing(opened_input("--ais", ais))) if ais else None
         receiver = AisReceiver(reports) if reports else None
         single.companion = Companion(
             link=VehicleLink(

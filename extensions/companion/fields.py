@@ -318,8 +318,8 @@ def roll_target(time: float, system: int, component: int, roll: float) -> Any:
 
 
 def roll_of(message: Any) -> float | None:
-    """Return the roll [rad] that a SET_ATTITUDE_TARGET asks for, by ArduPlane's reading of its
-    mask; none where it asks for none.
+    """Return the roll [rad] that a SET_ATTITUDE_TARGET demands, by ArduPlane's reading of its mask;
+    None where it demands no roll.
     """
     ignored = message.type_mask
     attitude = not ignored & mavlink.ATTITUDE_TARGET_TYPEMASK_ATTITUDE_IGNORE

@@ -25,7 +25,7 @@ _SLOWEST = 1.0
 """Least airspeed in the heading rate of a turn [m/s]."""
 
 _FASTEST_CHANGE = 1000.0
-"""Rate of a change of speed or height for which none is given, as ArduPlane has it [m/s^2, m/s]."""
+"""Default rate of a change of speed or height, as in ArduPlane [m/s^2, m/s]."""
 
 _LEAST_ACCELERATION = 0.05
 """Of a change of heading [m/s^2]."""
@@ -58,7 +58,7 @@ class Loiter:
 
 @dataclass(slots=True)
 class _Guided:
-    """What GUIDED was asked for last; times are of the plane's clock [s]."""
+    """The last demands in GUIDED; times are of the plane's clock [s]."""
 
     roll: float = 0.0
     roll_at: float = -math.inf
@@ -78,7 +78,7 @@ class Plane:
     altitude, airspeed : that it holds at the start [m, m/s]
     parameters : by ArduPlane's names; they may be changed at any time
     mode : at the start
-    say : told what a ground station would read
+    say : shows a message as a ground station would
 
     Attributes
     ----------
@@ -268,7 +268,7 @@ class Plane:
         self.steps += 1
 
     def _roll(self, heading: float, limit: float) -> float:
-        """Return the roll that the mode asks for [rad]."""
+        """Return the roll that the mode demands [rad]."""
         guided, motion = self._guided, self.vehicle.motion()
         if self.mode is PlaneMode.CIRCLE:
             return limit / 3.0

@@ -247,13 +247,13 @@ def opened(option: str, address: str, *, listening: bool) -> Line:
     raise InputError(f"{option} is '{address}'; give {known}{more}, as in tcp://127.0.0.1:5760")
 
 
-def heard(option: str, address: str) -> Line:
-    """Return the line at an address on which others say something and are not answered: a UDP
-    address is listened at.
+def opened_input(option: str, address: str) -> Line:
+    """Return the line at an address on which others send and get no answer; a UDP address is
+    listened at.
 
     Parameters
     ----------
-    option, address : as of ``opened``
+    option, address : as in ``opened``
 
     Raises
     ------
@@ -263,11 +263,11 @@ def heard(option: str, address: str) -> Line:
 
 
 class TextLines:
-    """Lines of text that come over a line, put together from the pieces in which they come.
+    """Lines of text, put together from the pieces in which they arrive.
 
     Parameters
     ----------
-    line : that they come over
+    line : over which they arrive
     """
 
     def __init__(self, line: Line) -> None:
@@ -275,7 +275,7 @@ class TextLines:
         self._rest: dict[Peer, bytes] = {}
 
     def receive(self) -> list[str]:
-        """Return the lines that have come, without waiting."""
+        """Return the lines that have arrived, without waiting."""
         found: list[str] = []
         for peer, data in self._line.receive(0.0):
             *lines, rest = (self._rest.pop(peer, b"") + data).split(b"\n")
@@ -362,7 +362,7 @@ class Port:
                 self._heard.pop(peer, None)
 
     def send(self, message: Any, peer: Peer | None = None) -> None:
-        """Send a message to a peer, or to everybody who has been heard or is connected."""
+        """Send a message to a peer, or to every peer that has sent something or is connected."""
         data = message.pack(self._packer)
         self._packer.seq = (self._packer.seq + 1) % 256
         self._note(data)

@@ -49,7 +49,7 @@ _LEAVING_GAIN = 1.0
 """Heading rate over the angle that is left to the course away [1/s]."""
 
 _LEAVING_STEPS = 5
-"""Least number of times that the vehicle is told to leave [-]: a message may be lost."""
+"""Least number of times that the command to leave is sent [-]: a message may be lost."""
 
 SILENT_AFTER = 1.0
 """Shortest time without telemetry after which the vehicle is given back [s]."""
@@ -113,7 +113,7 @@ class RemoteVehicle:
     by : ``ATTITUDE`` or ``COURSE``
     lockstep : whether the vehicle's clock waits
     antenna : of the measured vessel
-    asked_back : says whether somebody has asked for the vehicle
+    recalled : returns whether the user has recalled the vehicle
 
     Attributes
     ----------
@@ -134,13 +134,13 @@ class RemoteVehicle:
         by: str,
         lockstep: bool,
         antenna: Antenna,
-        asked_back: Callable[[], bool] = lambda: False,
+        recalled: Callable[[], bool] = lambda: False,
     ) -> None:
         if link.state is None:
             raise ValueError("a vehicle without a state cannot be flown")
         self._link, self._frame, self._limits = link, frame, limits
         self._began, self._time_step = began, time_step
-        self._by, self._lockstep, self._asked_back = by, lockstep, asked_back
+        self._by, self._lockstep, self._recalled = by, lockstep, recalled
         self._antenna = antenna
         self._state: AircraftState = link.state
         self._step = 0
@@ -212,7 +212,7 @@ class RemoteVehicle:
         """Return nothing: accelerations are not read."""
 
     def sample(self) -> tuple[float, ...]:
-        """Return ``SAMPLE_COLUMNS``; angles of the air and control surfaces are not told."""
+        """Return ``SAMPLE_COLUMNS``; angles of the air and control surfaces are not reported."""
         state, unknown = self._state, math.nan
         return (
             state.altitude,
@@ -230,7 +230,7 @@ class RemoteVehicle:
         )
 
     def servo_error(self) -> float:
-        """Return 0: control surfaces are not told."""
+        """Return 0: control surfaces are not reported."""
         return 0.0
 
     def hold_elevator(self) -> None:
@@ -414,7 +414,7 @@ class RemoteVehicle:
             self.given_back = "the vehicle no longer answers"
         elif silent > self._limits.silent_after:
             self._leave(f"telemetry was silent for {silent:.1f} s")
-        elif self._asked_back():
+        elif self._recalled():
             self._leave("given back on request")
 
     def give_back(self, reason: str) -> None:

@@ -67,8 +67,8 @@ class Antenna:
         return at_funnel(AntennaReport(report, bow, rate), self._offset)
 
 
-class HeardVessel:
-    """A vessel's track as its reports tell it, by dead reckoning from the last one."""
+class ReceivedVessel:
+    """A vessel's track from its reports, by dead reckoning from the last one."""
 
     manoeuvres_end = math.nan
 
@@ -108,17 +108,17 @@ class HeardVessel:
         return self._courses[self._last(time)] if self._courses else 0.0
 
 
-class HeardPlume:
+class ReceivedPlume:
     """The axis of the plume behind a vessel that is known from reports, in the estimated wind.
 
     Parameters
     ----------
-    vessel : as it is heard
+    vessel : from its reports
     heading : of the plume from the bow, where it does not trail with the wind [rad]; None where it
         does
     """
 
-    def __init__(self, vessel: HeardVessel, heading: float | None) -> None:
+    def __init__(self, vessel: ReceivedVessel, heading: float | None) -> None:
         self._vessel, self._heading = vessel, heading
         self.wind: Callable[[], tuple[float, float]] = lambda: (0.0, 0.0)
         self._axis = 0.0
@@ -152,7 +152,7 @@ class OtherShips:
         self._radius, self._limits = radius, limits
         self.ships: list[OtherShip] = []
         self.reports: list[list[VesselReport]] = []
-        self._tracks: list[HeardVessel] = []
+        self._tracks: list[ReceivedVessel] = []
         self._numbers: dict[int, int] = {}
         self._traffic: Traffic | None = None
 
@@ -186,7 +186,7 @@ class OtherShips:
     def _add(self, mmsi: int, time: float) -> None:
         """Take in a ship that is known from a time on [s]."""
         self._numbers[mmsi] = len(self.ships)
-        self._tracks.append(HeardVessel())
+        self._tracks.append(ReceivedVessel())
         ship = OtherShip(
             name=f"MMSI_{mmsi}",
             radius=self._radius,

@@ -1,4 +1,6 @@
-"""A scenario's aircraft as a MAVLink vehicle: what it tells, what it takes, and its clock."""
+"""A scenario's aircraft as a MAVLink vehicle: the messages that it sends and takes, and its
+clock.
+"""
 
 import itertools
 import math
@@ -42,7 +44,7 @@ MMSI, VESSEL_NAME = 999_999_999, "VESSEL"
 """Of a scenario's vessel; its other ships have the numbers before it."""
 
 _SLOW, _FAST = 1.0, 0.25
-"""Time between messages of a kind, unless another is asked for [s]."""
+"""Default time between messages of a kind [s]."""
 
 _STREAMS = {
     "HEARTBEAT": _SLOW,
@@ -320,7 +322,8 @@ class _Reporting:
     received : its reports as they are received, with the time of each [s]; None of one that is
         known exactly
     every : time between reports of that one [s]
-    antenna : whose place it tells, ahead of where the reports are of and to starboard of it [m]
+    antenna : antenna whose place the vessel reports, ahead of the reports' place and to starboard
+        of it [m]
     """
 
     def __init__(
@@ -504,7 +507,7 @@ class Server:
             self._port.send(mavlink.MAVLink_timesync_message(now, message.ts1), peer)
 
     def _advance_to(self, until: float, peer: Peer) -> None:
-        """Take the time that a companion's clock asks for; say again that one is reached."""
+        """Take the time that a companion's clock requests; confirm again a time that is reached."""
         self._asked_for = max(self._asked_for, until)
         if until <= self._simulation.time + 0.5 * self._plane.time_step:
             if self._told_until == -math.inf:

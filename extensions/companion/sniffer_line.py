@@ -50,12 +50,12 @@ def reading_of(line: str) -> tuple[float, list[float]] | None:
     return age, values + [math.nan] * (len(GASES) - len(values))
 
 
-class HeardSniffer:
+class ReceivedSniffer:
     """A sniffer whose readings come over a line, as ``scenarios.instruments.instrument.GasReader``.
 
     Parameters
     ----------
-    line : that it is heard on
+    line : on which its readings arrive
     scenario : says which instrument it is, and the limit of its verdict
 
     Attributes

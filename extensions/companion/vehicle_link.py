@@ -24,7 +24,7 @@ from extensions.companion.quality import Link, SimulatedLink
 COMPONENT = mavlink.MAV_COMP_ID_ONBOARD_COMPUTER
 
 _HEARTBEAT_INTERVAL = 1.0
-_ASK_AGAIN, _GIVE_UP = 0.5, 60.0
+_REQUEST_AGAIN, _GIVE_UP = 0.5, 60.0
 """After how long a vehicle in lockstep is asked once more for its time, and counts as gone [s]: it
 may have to compute for long.
 """
@@ -55,10 +55,10 @@ class VehicleLink:
     now : time of the vehicle's clock [s]
     system : of the vehicle, 0 before its first heartbeat
     kind, autopilot, mode : of its heartbeat
-    parameters : that it has told, by name
-    state : its motion; None before it was told completely
+    parameters : that it has reported, by name
+    state : its motion; None before it was reported completely
     vessels : last report of each vessel by its MMSI, with the time at which it was true [s]
-    rival : another companion that was heard, as (system, component), or None
+    rival : another companion on the link, as (system, component), or None
     restarted : whether the vehicle's clock has jumped
     """
 
@@ -196,7 +196,7 @@ class VehicleLink:
 
     def _ask(self, until: float) -> None:
         """Have the vehicle's clock go on to a time [s]."""
-        began, asked = time.monotonic(), -math.inf
+        began, requested = time.monotonic(), -math.inf
         milliseconds = round(1e3 * until)
         self._request += 1
         while self._answered < self._request or 1e3 * self._reached < milliseconds - 0.5:
@@ -204,8 +204,8 @@ class VehicleLink:
             if clock - began >= _GIVE_UP:
                 self.gone = True
                 return
-            if clock - asked >= _ASK_AGAIN:
-                asked = clock
+            if clock - requested >= _REQUEST_AGAIN:
+                requested = clock
                 self._port.send(mavlink.MAVLink_system_time_message(self._request, milliseconds))
             for _, message in self._port.receive(_IDLE):
                 self._receive(message, at=until)

@@ -161,8 +161,7 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
 
         Parameters
         ----------
-        seed : of which flight it is, of its start, its air and its errors; further episodes follow
-            from it
+        seed : of the flight, of its start, its air and its errors; further episodes follow from it
         options : ``{"flight_id": ...}`` begins that flight of the scenario with the seed that a run
             of it has, in a simulation of its own, so that it is the run's to the last bit; other
             episodes use one simulation again, which is true to 1e-9 m
@@ -246,7 +245,7 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
             first += experiment.flights
 
     def _begun(self, request: FlightRequest) -> "_Episode":
-        """Begin a flight that was asked for, and refuse one that has no solution in one line."""
+        """Begin a requested flight, and refuse one that has no solution in one line."""
         try:
             return self._begin(request)
         except (InfeasibleError, MeasurementError) as error:

@@ -20,8 +20,8 @@ _LATEST = 10.0
 """End that counts at most, over the endurance: a ship out of reach is never done."""
 
 EXACT_MAX = 8
-"""Ships of which every order is tried: it takes half a second at the most, and for fewer less than
-the insertion.
+"""Largest number of ships for which every order is tried: it takes half a second at most, and for
+fewer ships less than the insertion.
 """
 
 _GAIN = 0.02
