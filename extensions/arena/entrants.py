@@ -32,7 +32,7 @@ class Entrant:
     ----------
     name : of the entrant, part of the names of its flights
     law, task : its steering law, and ``TRACKING`` or ``STANDOFF``
-    inputs : what of the reference and of the air the law makes use of
+    inputs : the data of the reference and of the air that the law uses
     defaults : its parameters that are numbers, whole ones apart, by their keys in ``[guidance]``
     """
 

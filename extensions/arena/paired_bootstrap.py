@@ -1,10 +1,10 @@
 """Means of several entrants over the same flights, and which may be the best: the paired bootstrap.
 
 Every entrant flies the same starts and the same air. Resampled are these, for all entrants
-together, so that what is common to all of them, such as a wind that is hard on everyone, does not
-count as a difference (B. Efron, R. J. Tibshirani, "An Introduction to the Bootstrap", 1993,
-chapters 8 and 13). Resamples of a few flights scatter too little: deviations from the mean of a
-stratum are larger by sqrt(n/(n - 1)) here, and by Student's t over the normal quantile.
+together, so that a common effect, such as a wind that is difficult for all of them, does not count
+as a difference (B. Efron, R. J. Tibshirani, "An Introduction to the Bootstrap", 1993, chapters 8
+and 13). Resamples of a few flights scatter too little: deviations from the mean of a stratum are
+larger by sqrt(n/(n - 1)) here, and by Student's t over the normal quantile.
 
 The best mean is one of the same flights, and one of many. So an entrant counts as worse than the
 best only if some other is ahead of it by more than the largest lead that any would have of it if

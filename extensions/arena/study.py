@@ -109,7 +109,7 @@ class ArenaWork(FlightRunner):
         return {WINDOW_TABLE: [named | figures]}
 
     def _tuned(self, task: Task) -> Entrant | None:
-        """Return the law that a task tunes; none for a flight."""
+        """Return the law that a task tunes; None for a flight."""
         flights = self._ends[-1]
         return self.entrants[task.number - flights] if task.number >= flights else None
 

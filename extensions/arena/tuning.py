@@ -87,7 +87,7 @@ class Tuner:
         }
 
     def _flown(self, entrant: Entrant, parameters: Mapping[str, float]) -> Row:
-        """Return what a setting costs: the mean error of its flights, and what their excess of
+        """Return the cost of a setting: the mean error of its flights, and what their excess of
         effort counts as.
         """
         arena, errors, excesses = self.arena, [], []

@@ -122,8 +122,8 @@ def window_figures(plan: FlightPlan, record: FlightRecord, *, window: float) -> 
 
 
 def measured_figures(row: Row, *, window: float) -> Row:
-    """Return what a minute in the air was worth to the measurement, of what a sniffer has made of
-    ``window`` [s], or of all of a shorter flight.
+    """Return the information of a minute in the air for the measurement, from the sniffer's result
+    of ``window`` [s], or of all of a shorter flight.
 
     The plume's is the time in which the concentration is above exp(-2) of that on its axis. Of the
     fuel's sulphur content it is the information, 1/sigma^2 by noise, the part of the standard

@@ -26,10 +26,10 @@ Single = TypeVar("Single", bound="SingleFlight")
 _PLACE = re.compile(r"(-?[\d.]+),(-?[\d.]+)")
 
 _DEFAULT_HOME = "57.5,11.2"
-"""Where a scenario without a place begins: in the Kattegat. 0/0 would mean that there is no fix."""
+"""Start of a scenario without a place: in the Kattegat. 0/0 would mean that there is no fix."""
 
 _SYSTEM = 1
-"""Number of vehicle and companion."""
+"""System number of vehicle and companion."""
 
 _LATITUDE_MAX, _LONGITUDE_MAX = 90.0, 180.0
 
@@ -334,7 +334,7 @@ def _flight(kind: type[Single], name: str, overrides: Sequence[str], flight: str
 
     Raises
     ------
-    RefusedError : there is none, or several
+    RefusedError : there is no flight, or there are several
     """
     from scenarios.scenario.files import load_study
     from scenarios.studies.base import FlightStudy, study_of

@@ -1,5 +1,5 @@
-"""A flight of a scenario on a vehicle over MAVLink: what is checked before, who has the vehicle,
-and the flight itself, which is recorded as those of a study are.
+"""A flight of a scenario on a vehicle over MAVLink: the checks before it, the takeover of the
+vehicle, and the flight itself, with the record of a study's flight.
 """
 
 import math
@@ -70,39 +70,37 @@ _NEEDED = {
     "least airspeed [m/s]": ("AIRSPEED_MIN", "ARSPD_FBW_MIN"),
     "greatest airspeed [m/s]": ("AIRSPEED_MAX", "ARSPD_FBW_MAX"),
 }
-"""Parameters without which no vehicle is flown, by what they say: their name, and the former one.
+"""Parameters that every vehicle must report, by their meaning: the present name, and the former
+one.
 """
 
 SNIFFER = "sniffer"
 """The instrument whose readings may come on a line."""
 
 _RIVALS_SEEN_IN, _RIVALS_LOOK = 1.2, 0.02
-"""For how long other companions are listened for before a vehicle is taken over, and how often they
-are looked for [s].
-"""
+"""Time of waiting for other companions before a takeover, and interval of the checks [s]."""
 
 _LOITER_RADIUS, _GUIDED_TIMEOUT, _GUIDED_P = "WP_LOITER_RAD", "GUIDED_TIMEOUT", "GUIDED_P"
 _DEFAULTS = {_LOITER_RADIUS: 60.0, _GUIDED_TIMEOUT: 3.0, _GUIDED_P: 5000.0}
 """Parameters that not every vehicle reports, with ArduPlane's values [m, s, 0.01 deg/rad]."""
 
 _ROUNDING = 2e-3
-"""By how much a limit of the vehicle may be below what is needed, for rounding [-]."""
+"""Largest shortfall of a limit of the vehicle, for rounding [-]."""
 
 _PATIENCE = 10.0
 """Time within which a vehicle reports its parameters [s]."""
 
 _REQUEST_INTERVAL, _LOOK = 1.0, 0.1
-"""Time between requests, and between looks at whether something has come [s]."""
+"""Time between requests, and between checks for new messages [s]."""
 
 _FRESH = 1.5
-"""Age up to which a place is of now, over the time step of the guidance [-]."""
+"""Largest age of a present place, over the time step of the guidance [-]."""
 
 _VELOCITY_MAX = 0.3
-"""Difference from the scenario's velocity up to which a steady vessel counts as that one [m/s]."""
+"""Largest difference of a vessel's velocity from that of the scenario's steady vessel [m/s]."""
 
 _ROUNDED = 2.0
-"""By how much a reported size may be larger than the scenario's [m]: both of its parts are rounded.
-"""
+"""Largest excess of a reported size over the scenario's [m]: both of its parts are rounded."""
 
 _STREAMS = (
     mavlink.MAVLINK_MSG_ID_ATTITUDE,
@@ -136,12 +134,12 @@ class Companion:
 
     Attributes
     ----------
-    link, quality : to the vehicle, and how bad it is declared to be
+    link, quality : link to the vehicle, and its declared quality
     by : ``ATTITUDE`` or ``COURSE``
     lockstep : whether the vehicle's clock waits
     mmsi : of the vessel; None for the only one
-    patience : for how long a vehicle, a vessel and GUIDED are waited for [s]
-    sniffer : line that its readings come on, or none
+    patience : longest wait for a vehicle, for a vessel and for GUIDED [s]
+    sniffer : line with its readings, or None
     say : shows a message to the user
     """
 
@@ -250,8 +248,7 @@ class Companion:
 
         Raises
         ------
-        InputError : they are
-        """
+        InputError : they are narrower"""
         ratio = equivalent_over_true(altitude)
         roll, slowest, fastest = (self._parameter(*names) for names in _NEEDED.values())
         turning = min(setup.airspeed_max, setup.turning_airspeed(heading_rate_max))
@@ -272,8 +269,8 @@ class Companion:
     def on_link(self, setup: VehicleSetup, request: FlightRequest) -> VehicleSetup:
         """Return what a flight needs of its vehicle, with the link between them.
 
-        The dead time delays every turn. By what a command may be later than that, the vehicle flies
-        on towards the vessel, at most at the sum of both speeds through the air.
+        The dead time delays every turn. If a command arrives even later, the vehicle flies on
+        towards the vessel in the meantime, at most at the sum of both speeds through the air.
         """
         scenario = request.scenario
         dead = self.dead_time
@@ -417,7 +414,7 @@ class Companion:
         )
 
     def _check_vessel(self, plan: FlightPlan, track: ReceivedVessel) -> None:
-        """Refuse a vessel that is not the one of a scenario that knows it beforehand."""
+        """Refuse a vessel that differs from the known vessel of a scenario."""
         if isinstance(plan.guidance.vessel, ReportedVessel):
             return
         reported, known = track.motion(0.0)[2:], plan.guidance.vessel
@@ -429,7 +426,7 @@ class Companion:
             )
 
     def _check_alone(self, mmsi: int, others: OtherShips | None) -> None:
-        """Refuse other ships in a scenario whose guidance takes no note of them."""
+        """Refuse other ships in a scenario whose guidance does not use them."""
         besides = len(self.link.vessels) - 1
         if others is None and besides:
             raise InputError(
@@ -438,14 +435,14 @@ class Companion:
             )
 
     def _check_size(self, plan: FlightPlan, mmsi: int) -> None:
-        """Refuse a ship that says that it is larger than the scenario takes it to be."""
+        """Refuse a ship whose reported size is larger than that of the scenario."""
         said = self.link.vessels[mmsi][1].size
         if said is None or plan.world is None:
             return
         self.say(f"vessel {mmsi}: {said.described()}")
         hull = plan.world.hull
         if hull is None:
-            # Its outline is then taken to be where it reports itself.
+            # Its outline is then assumed about the place that it reports.
             if _reach(said) >= plan.keepout_radius:
                 raise InputError(
                     f"the vessel says that it is {said.described()}; its hull reaches"
@@ -562,7 +559,7 @@ class Companion:
         )
         return replace(
             plan,
-            # They are passed on to the guidance as they report themselves.
+            # The guidance gets them from their reports.
             guidance=replace(guidance, traffic=replace(known, vessels=())),
             world=replace(world, traffic=others.ships),
             sensing=replace(plan.sensing, traffic=()),
@@ -664,17 +661,17 @@ class CompanionRunner(FlightRunner):
 
     @cached_property
     def columns(self) -> Table:
-        """What the columns of time histories are: any flight may meet other ships."""
+        """Units and meanings of the columns of time histories: any flight may meet other ships."""
         return {**history_columns(self.experiments), **TrafficBelief.COLUMNS}
 
     def _sniffer(self, request: FlightRequest) -> ReceivedSniffer | None:
-        """Return the sniffer whose readings come on a line, in a flight that has one."""
+        """Return the sniffer whose readings arrive on a line; None for a flight without one."""
         line = self.companion.sniffer
         return ReceivedSniffer(line, request.scenario) if line and _has_sniffer(request) else None
 
     @staticmethod
     def _connect(loop: ClosedLoop, taken: TakenOver) -> None:
-        """Have reports of ships come to the guidance and to the record."""
+        """Connect reports of ships to the guidance and to the record."""
         target, own = loop.guidance.target, loop.guidance.own
         plan, track = taken.plan, taken.track
         if taken.others is not None and loop.guidance.traffic is not None:
@@ -698,8 +695,8 @@ def _record(
 ) -> FlightRecord:
     """Fly; the flight ends where the vehicle is given back.
 
-    It is where the guidance takes a fault for certain, before what it commands then is flown: a
-    study's aircraft would glide to the sea. A pilot and the vehicle's own failsafes know better.
+    This is the case where the guidance detects a fault, before its next command is flown: a study's
+    aircraft would glide to the sea. A pilot and the vehicle's failsafes know better.
     """
     monitor = loop.guidance.monitor
     steps = loop.steps()

@@ -1,4 +1,4 @@
-"""ArduPlane's modes over the autopilot of the study, as far as a companion computer meets them.
+"""ArduPlane's modes over the autopilot of the study, as far as a companion computer uses them.
 
 Written from ArduPlane's documented behaviour. In GUIDED a roll by SET_ATTITUDE_TARGET is flown for
 ``GUIDED_TIMEOUT``; without one, a course by GUIDED_CHANGE_HEADING, which is sticky; without that,
@@ -28,7 +28,7 @@ _FASTEST_CHANGE = 1000.0
 """Default rate of a change of speed or height, as in ArduPlane [m/s^2, m/s]."""
 
 _LEAST_ACCELERATION = 0.05
-"""Of a change of heading [m/s^2]."""
+"""Default lateral acceleration of a change of heading [m/s^2]."""
 
 ACCEPTED: int = mavlink.MAV_RESULT_ACCEPTED
 DENIED: int = mavlink.MAV_RESULT_DENIED
@@ -73,7 +73,7 @@ class Plane:
     Parameters
     ----------
     vehicle : under way, advanced by ``time_step`` at a time
-    frame : that its north and east are in
+    frame : of its north and east
     time_step : of the vehicle [s]
     altitude, airspeed : that it holds at the start [m, m/s]
     parameters : by ArduPlane's names; they may be changed at any time
@@ -234,7 +234,7 @@ class Plane:
         return ACCEPTED
 
     def _altitude_of(self, frame: int, height: float) -> float | None:
-        """Return an altitude above the sea [m] by the frame of a command; none of other frames."""
+        """Return an altitude above the sea [m] by the frame of a command; None for other frames."""
         if not math.isfinite(height):
             return None
         if frame in (mavlink.MAV_FRAME_GLOBAL, mavlink.MAV_FRAME_GLOBAL_INT):
@@ -313,7 +313,7 @@ class Plane:
         return Loiter(motion.north, motion.east, abs(self.parameters["WP_LOITER_RAD"]))
 
     def _true(self, equivalent: float) -> float:
-        """Return a true airspeed [m/s] of an equivalent one, at the altitude that is flown."""
+        """Return the true airspeed [m/s] of an equivalent one, at the altitude of the flight."""
         return equivalent / equivalent_over_true(self._altitude)
 
 

@@ -38,7 +38,7 @@ _FLIGHT_ID = "flight_id"
 """Option of a reset."""
 
 _TRIES = 100
-"""Flights that are sampled at random for an episode, at most, until one has a solution."""
+"""Largest number of flights that are sampled at random for an episode until one has a solution."""
 
 
 @dataclass(slots=True)
@@ -87,8 +87,8 @@ class _Episode:
 
 
 class PlumeCrossing(gymnasium.Env[Array, Array]):
-    """A vessel, her plume, and a vehicle that is to cross it near her and to keep out of the area
-    around her.
+    """A vessel, its plume, and a vehicle that is to cross the plume near the vessel and to keep out
+    of the area around it.
 
     Actions are heading rate [rad/s] and airspeed [m/s] that the autopilot is commanded for one step
     of the guidance; observations are those of ``extensions.gym.observation.MEANINGS``,

@@ -13,7 +13,7 @@ from extensions.patrol.route import Air, Mover, straight_leg
 
 _SOONER = 1e-3
 """Verdicts that an end sooner by the whole endurance is worth: of orders with as many verdicts the
-quickest is taken.
+fastest is chosen.
 """
 
 _LATEST = 10.0
@@ -73,8 +73,8 @@ class Prospect:
     endurance: float
 
     def after(self, state: _State, ship: int) -> _State:
-        """Return what one more ship makes of a part of a patrol; its end is infinite where it
-        cannot be reached.
+        """Return a part of a patrol with one more ship; its end is infinite where it cannot be
+        reached.
         """
         leg = straight_leg(state.place, state.time, self.ships[ship], self.radius, self.air)
         if leg is None:
@@ -95,14 +95,14 @@ class Prospect:
         return float(ndtr(left / spread)) if spread > 0.0 else float(left >= 0.0)
 
     def judged(self, start: complex, time: float, ships: Sequence[int]) -> Order:
-        """Return what comes of serving ships in some order, from a place at a time [m, s]."""
+        """Return the result of serving ships in an order, from a place at a time [m, s]."""
         state = _State(start, time, 0, 0.0)
         for ship in ships:
             state = self.after(state, ship)
         return Order(tuple(ships), state.verdicts, state.time)
 
     def score_of(self, order: Order) -> float:
-        """Return what an order is worth: its expected verdicts, and a little for an early end."""
+        """Return the value of an order: its expected verdicts, and a little for an early end."""
         return self.score(order.verdicts, order.ends)
 
     def score(self, verdicts: float, ends: float) -> float:

@@ -173,9 +173,9 @@ def route(
     Parameters
     ----------
     start, time : from where, and when [m, s]
-    goal, radius : what is to be reached, and how near [m]
+    goal, radius : target, and distance from it that has to be reached [m]
     air : wind and airspeed
-    ships, clearance : what is kept clear of, and how far [m]
+    ships, clearance : ships to keep clear of, and the distance to keep [m]
 
     Returns
     -------

@@ -29,7 +29,7 @@ class Ship:
 
     Attributes
     ----------
-    mover : where it is and goes
+    mover : its place and motion
     scenario : of a flight beside it, without random variables and with the seed of its noise
     """
 

@@ -166,7 +166,7 @@ def _given(scenario: Scenario, key: str) -> bool:
 
 
 def _check(scenario: Scenario) -> None:
-    """Refuse what is no patrol."""
+    """Refuse a scenario that is not a patrol."""
     if scenario.vessel.from_file or scenario.vessel.manoeuvres or scenario.wind.table is not None:
         raise InputError(
             "study is 'patrol' beside vessel.manoeuvres, a vessel.track from a file or"
@@ -226,7 +226,7 @@ class _Flown(NamedTuple):
 
 
 class _Uav:
-    """Where the UAV is [m] and when [s], its way so far, and whether it is lost."""
+    """Place of the UAV [m] and time [s], its way so far, and whether it is lost."""
 
     def __init__(self) -> None:
         self.place, self.time = 0j, 0.0
@@ -503,7 +503,7 @@ def _traffic(patrol: Patrol, ship: int, time: float) -> list[dict[str, object]]:
 
 
 def _taken(row: Row) -> Row:
-    """Return what a ship's row takes from that of the flight beside it."""
+    """Return the values of a ship's row that come from the flight beside it."""
     taken = {name: row[name] for name in _TAKEN if name in row} | {"verdict": verdict_of(row)}
     if "keepout_violations" in taken:
         # Those of other ships are counted with the way to this one.

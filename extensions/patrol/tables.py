@@ -1,4 +1,4 @@
-"""Tables of a patrol: their files, their columns, and what a patrol's row says."""
+"""Tables of a patrol: their files, their columns, and the contents of a patrol's row."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -145,7 +145,7 @@ verdict; and away.
 
 
 def ship_row(patrol: Patrol, number: int, limit: float) -> Row:
-    """Return what is known of a ship before the patrol; ``limit`` is the verdict's [% m/m]."""
+    """Return the prior knowledge of a ship; ``limit`` is that of the verdict [% m/m]."""
     ship = patrol.ships[number]
     scenario, place = ship.scenario, ship.mover.place
     return {
@@ -165,7 +165,7 @@ def ship_row(patrol: Patrol, number: int, limit: float) -> Row:
 
 
 def flight_name(patrol: Patrol, number: int) -> str:
-    """Return what the flight beside a ship is called."""
+    """Return the name of the flight beside a ship."""
     return f"{patrol.name}_ship_{number}"
 
 
