@@ -1,4 +1,4 @@
-"""What an arena left behind, as its report needs it."""
+"""The record of an arena, for its report."""
 
 import json
 import math
@@ -65,10 +65,10 @@ class Entrant:
 
     Attributes
     ----------
-    number : by which figures name it, from 1
+    number : its number in figures, from 1
     name, law, task, inputs : same as in ``arena.json``
     defaults, tuned : its parameters
-    cost_default, cost_tuned : to the tuner; not a number if it was not tuned [m]
+    cost_default, cost_tuned : costs in the tuner; NaN if it was not tuned [m]
     rows : its flights
     """
 
@@ -211,7 +211,7 @@ class Arena:
         return self._recorded(figure, entrant, self.together).whole
 
     def flights_of(self, condition: str) -> int:
-        """Return how many flights of each entrant a mean is of, where all were flown."""
+        """Return the number of flights of each entrant in a mean, where all were flown."""
         return self.flights * (len(self.conditions) if condition == ALL else 1)
 
 

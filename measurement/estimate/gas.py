@@ -402,7 +402,7 @@ def _verdict(limit: Limit, value: float, total: float, quality: Quality) -> GasV
     )
 
 
-# Words, the same on consoles and in reports
+# Texts, the same on consoles and in reports
 
 SCREENING = (
     "a plume shows one load, and the limit is of a test bed's cycle: a verdict screens, and"
