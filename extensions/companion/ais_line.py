@@ -58,7 +58,7 @@ class AisReceiver:
         }
         return [f"{what}: {count}" for what, count in counts.items() if count]
 
-    def hear(self) -> list[VesselState]:
+    def receive(self) -> list[VesselState]:
         """Return the reports that have arrived since the last call, in their order."""
         messages = [self._decoder.decode(line) for line in self._lines.receive()]
         found = [self._taken(message) for message in messages if message is not None]

@@ -708,7 +708,7 @@ def _record(
                 vehicle.give_back(f"{monitor.fault.value}, by the heading rate")
             loop.ending.given_back = vehicle.given_back
             if sniffer is not None:
-                sniffer.hear(vehicle.time)
+                sniffer.receive(vehicle.time)
             commands = follow(commands)
     except StopIteration as over:
         return record_of(over)

@@ -85,7 +85,7 @@ class ReceivedSniffer:
         limit: float = self._settings.limit_percent
         return limit
 
-    def hear(self, time: float) -> None:
+    def receive(self, time: float) -> None:
         """Take the lines that have arrived until a time since the start [s].
 
         Lines of a sniffer that began to send before the flight have times before it.

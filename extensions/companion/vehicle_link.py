@@ -259,7 +259,7 @@ class VehicleLink:
     def _deliver(self) -> None:
         for message in self._down.due(self.now):
             self._take(message)
-        for vessel in self._receiver.hear() if self._receiver else ():
+        for vessel in self._receiver.receive() if self._receiver else ():
             self._hear_of(self.now - vessel.age, vessel)
 
     def _hear_of(self, true_at: float, vessel: VesselState) -> None:

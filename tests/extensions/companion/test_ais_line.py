@@ -55,7 +55,7 @@ def receiver():
         def said(*lines):
             for text in lines:
                 sender.send(text.encode() + b"\r\n", peer)
-            return found.hear()
+            return found.receive()
 
         yield found, said
 
@@ -128,9 +128,9 @@ def test_a_receiver_over_tcp_is_connected_to():
             with stream:
                 # Pieces of a stream are no lines.
                 stream.sendall(text[:20])
-                assert found.hear() == []
+                assert found.receive() == []
                 stream.sendall(text[20:] + text)
-                reports = found.hear()
+                reports = found.receive()
         assert [report.mmsi for report in reports] == [219999001, 219999001]
     assert found.unreadable == 0
 

@@ -51,7 +51,7 @@ def test_readings_have_the_time_at_which_they_were_true(tmp_path):
         (peer,) = sender.connected()
         for text in (b"age_s,so2_ppb,co2_ppm\n0.5,10,450\n0.25,11,", b"460\nrubbish\n0.3,1,1\n"):
             sender.send(text, peer)
-            sniffer.hear(20.0)
+            sniffer.receive(20.0)
         # Of 19.7 s, when 19.75 s is there already, and the header and the rubbish.
         assert sniffer.unreadable == 3
         read = sniffer.readings(0.0)
