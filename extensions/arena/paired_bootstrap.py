@@ -14,8 +14,8 @@ any entrant: multiple comparisons with the best (J. C. Hsu, "Multiple Comparison
 arena of twenty, for any number of entrants; with only two flights in one of ten.
 
 Where no stratum has two flights, every resample is the same: there is no interval, and no
-difference is shown. An entrant that lacks the figure of a flight of which another has it has a mean
-over other flights, perhaps easier ones: it is not compared.
+difference is shown. An entrant without a figure that another has for the same flight is not
+compared: its mean is over other flights, perhaps easier ones.
 """
 
 import math

@@ -189,7 +189,7 @@ def companion(
     ] = None,
     lockstep: LockstepOption = False,
     mmsi: Annotated[
-        int | None, typer.Option(help="The vessel; default the only one that is heard.")
+        int | None, typer.Option(help="The vessel; default the only one that reports.")
     ] = None,
     wait: Annotated[
         float, typer.Option(help="For how long vehicle, vessel and GUIDED are waited for, in s.")

@@ -98,8 +98,8 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
 
     Parameters
     ----------
-    scenario : as of ``scenarios.fly``
-    keys : to set, as of ``scenarios.fly``
+    scenario : as in ``scenarios.fly``
+    keys : to set, as in ``scenarios.fly``
 
     Raises
     ------
@@ -163,7 +163,7 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
         ----------
         seed : of the flight, of its start, its air and its errors; further episodes follow from it
         options : ``{"flight_id": ...}`` begins that flight of the scenario with the seed that a run
-            of it has, in a simulation of its own, so that it is the run's to the last bit; other
+            of it has, in a separate simulation, so that it is the run's to the last bit; other
             episodes use one simulation again, which is true to 1e-9 m
 
         Raises

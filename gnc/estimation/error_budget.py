@@ -223,7 +223,7 @@ class ErrorBudget:
     own_position : of the position by satellite navigation [m]
     own_velocity : of the velocity over the ground and of the wind, by sensors, and by crab angles
         that differ from those of steady turns [m/s]
-    gusts : discrete gusts, each of which may last as long as a turn [m/s]
+    gusts : discrete gusts, which may each last as long as a turn [m/s]
     wind_change : change of the mean wind that its estimate has not followed [m/s]
     turbulence : as the vehicle meets it [m/s]
     turning : deviation of a turn in turbulence from the turn that was commanded [m]

@@ -247,7 +247,7 @@ class KeepoutGuard:
         ----------
         demand : of the guidance
         own : the vehicle's motion
-        vessels : discs, at least one, in each of which the vessel is
+        vessels : discs, at least one; each of them contains the vessel
         others : other vessels; those out of reach cost next to nothing
         """
         time, command, pace = demand.time, demand.heading_rate, demand.pace
@@ -451,7 +451,7 @@ class HeadingRateFilter:
         # In one step the command may differ from the turn by 2 omega_max, which displaces the
         # vehicle by V omega_max dt^2. In turn radii:
         self._resolution = max(_RESOLUTION, (p.heading_rate_max * p.time_step) ** 2)
-        # The turn that was safe: to which side, and from which disc of which vessel.
+        # The safe turn: its side, its vessel and the vessel's disc.
         self._side = 0.0
         self._kept_off: dict[str, Tube] = {}
         # Where several vessels are near.
@@ -486,7 +486,7 @@ class HeadingRateFilter:
         command : demanded heading rate [rad/s]
         time : now [s]
         own : the vehicle's motion
-        vessels : discs, at least one, in each of which the vessel is
+        vessels : discs, at least one; each of them contains the vessel
         fastest, slowest : airspeeds that the vehicle may come to; a turn away has to keep off at
             all speeds between them. The slowest counts where it is below the fastest [m/s]
         others : other vessels
@@ -553,7 +553,7 @@ class HeadingRateFilter:
         ----------
         time : now [s]
         own : the vehicle's motion
-        vessels : discs, at least one, in each of which the vessel is
+        vessels : discs, at least one; each of them contains the vessel
         speed : airspeed of the vehicle [m/s]
         enough : clearance above which the search may end early [m]
         radius : to keep; by default that of the parameters [m]

@@ -417,7 +417,7 @@ class Ending:
         tracked = self._settling.tracked
         if self.saturated > _SATURATED:
             return (
-                f"{what}: its steering law asked for more than the largest heading rate in"
+                f"{what}: its steering law demanded more than the largest heading rate in"
                 f" {100.0 * self.saturated:.0f} % of the steps; check that it returns rad/s,"
                 " positive to the right (guidance.law)"
             )

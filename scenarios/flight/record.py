@@ -43,7 +43,7 @@ class GuardedStep(NamedTuple):
 
 
 class Intervention(NamedTuple):
-    """A stretch of guidance steps in each of which the guard changed the command.
+    """Consecutive guidance steps at which the guard changed the command.
 
     Attributes
     ----------

@@ -52,7 +52,7 @@ def check_flyable(guidance: GuidanceConfig, title: str, envelope: Envelope) -> N
     bank = bank_for_heading_rate(omega_max(guidance), airspeed)
     if bank > envelope.bank_max:
         raise InputError(
-            f"guidance asks for {math.degrees(bank):.1f} deg of bank; the autopilot of {title}"
+            f"guidance demands {math.degrees(bank):.1f} deg of bank; the autopilot of {title}"
             f" stops at {math.degrees(envelope.bank_max):.0f}: lower guidance.bank_deg or"
             " guidance.heading_rate_max_rad_s"
         )

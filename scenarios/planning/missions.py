@@ -717,7 +717,7 @@ def check_start(
     ----------
     start, guard : the start, and the guard that would have to keep out; any start is accepted
         without a guard
-    vessel : discs at time 0, each of which certainly contains it
+    vessel : discs at time 0; each of them certainly contains it
     wind : north and east [m/s]
     known : motion by the first measurement, with the largest error of the wind at the start; None
         where it is known exactly

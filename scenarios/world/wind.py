@@ -297,7 +297,7 @@ def _rows(path: Path, table: Table) -> Iterator[_Row]:
             )
         raise InputError(
             f"wind.table: {path}, line {table.head_line}: the header is {','.join(names)[:80]!r};"
-            f" it must be {','.join(COLUMNS)}, of which time_utc or height_m may be missing:"
+            f" it must be {','.join(COLUMNS)}, where time_utc or height_m may be missing:"
             f" {remedy}"
         )
     if twice := [column for column in COLUMNS if names.count(column) > 1]:
