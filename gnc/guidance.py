@@ -109,7 +109,7 @@ class Guidance:
     Attributes
     ----------
     own, target : motion of the vehicle and of the vessel
-    mission : what to do, and the tracker of its reference
+    mission : gives the orders, and has the tracker of its reference
     guard : of the keep-out area, or None
     monitor : of the vehicle's health, or None
     traffic, yielding : other vessels, and how the mission gives way to them; or None

@@ -255,7 +255,7 @@ class WindFilter:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NavigationParameters:
-    """What the navigation knows beforehand.
+    """The parameters of the navigation, known beforehand.
 
     Attributes
     ----------

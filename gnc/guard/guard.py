@@ -105,7 +105,7 @@ longer than a rise."""
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GuardParameters:
-    """What the keep-out guard knows beforehand.
+    """The parameters of the keep-out guard, known beforehand.
 
     Attributes
     ----------

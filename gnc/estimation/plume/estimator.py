@@ -483,7 +483,7 @@ class _Scene(NamedTuple):
     ----------
     likelihood : of a plume of each spread, at each place, if it is read with each strength, shape
         (w, j, p)
-    nothing : likelihood of no pulse
+    nothing : likelihood without a pulse
     """
 
     likelihood: Array
@@ -502,7 +502,7 @@ class PlumeEstimator:
 
     Attributes
     ----------
-    prior, grid : what was expected, and the cells
+    prior, grid : the expected plume, and the cells
     cells, bearings : probability of each, shapes (w, h, c) and (b,)
     height, height_deviation : of the axis above the sea, at the distance and in the apparent wind
         of the last pass [m]

@@ -497,8 +497,8 @@ def noise_allowance(seen: float, turned: float, *, time_step: float) -> float:
 
     Parameters
     ----------
-    seen, turned : standard deviations of the error that is seen, and of the place where a turn away
-        comes nearest [m]
+    seen, turned : standard deviations of the visible error, and of the closest place of a turn away
+        [m]
     time_step : of the guidance [s]
     """
     looks = SECONDS_PER_HOUR / time_step
