@@ -221,7 +221,7 @@ def emission_of(
     Power P = P_max (v/v_max)^3: BSH library 188756, p. 17. Consumption with load: STEAM2, ACP
     12:2641 (2012). Exhaust at part load: MAN B&W project guide 198 43 20-3.3, figs. 6.04.11 and
     6.04.12, applied to all ships and loads. At dead slow the exhaust is 131 K hotter than at full
-    power, which nobody has checked. Fluxes: Briggs, as in AERMOD.
+    power, which has not been checked. Fluxes: Briggs, as in AERMOD.
     """
     check_air(air_temperature, AIR_PRESSURE)
     load = _load(ship, speed, power)
@@ -302,7 +302,7 @@ def check_air(temperature: float, pressure: float) -> None:
 
 
 def expected_fsc(fuel: Fuel) -> float:
-    """Return the fuel sulphur content that a perfect instrument reads [% m/m].
+    """Return the fuel sulphur content that a perfect instrument gives [% m/m].
 
     It does not see the sulphate, and it assumes the carbon of ``CARBON_FRACTION``. Gas oil of
     0.1000 reads 0.0972; residual fuel of 0.5000 reads 0.5003, because the two errors cancel. An

@@ -1,4 +1,4 @@
-"""The plume: where its axis really is, the exhaust about it, and the CO2 of the air beside it.
+"""The plume: its true axis, the exhaust about it, and the CO2 of the air beside it.
 
 The axis trails behind the vessel's motion through the air, or at a given angle from its bow. Smoke
 rises, disperses, meanders and bends about it with the vessel's own track.
@@ -32,13 +32,15 @@ from scenarios.scenario.sections.world import AirConfig, PlumeConfig
 from scenarios.world.vessel import TRACK_STEP, SteadyVessel, VesselTruth, sampled, track_times
 
 _AT_REST = 1e-9
-"""Speed through the air below which its direction is rounding alone [m/s]."""
+"""Speed through the air below which its direction is only rounding [m/s]."""
 
 Array = npt.NDArray[np.float64]
 
 
 class Plume(Protocol):
-    """The axis of a plume: a half-line from the vessel, level or rising at ``plume.elevation_deg``."""
+    """The axis of a plume: a half-line from the vessel, level or rising at
+    ``plume.elevation_deg``.
+    """
 
     def axis(self, time: float) -> float:
         """Return the course along which the plume trails at a time [s], without jumps [rad]."""
@@ -103,7 +105,7 @@ class StraightPlume:
 
 
 def _last_moving(velocity: Array) -> npt.NDArray[np.intp]:
-    """Return which row of shape (n, 2) was the last that is not at rest, for each: in still air a
+    """Return for each row, shape (n, 2), the last row up to it that is not at rest: in still air a
     plume stays in its place.
     """
     moving = np.hypot(velocity[:, 0], velocity[:, 1]) > _AT_REST
@@ -111,7 +113,7 @@ def _last_moving(velocity: Array) -> npt.NDArray[np.intp]:
 
 
 _TRACK_INTERVAL = 0.5
-"""Time between the places of the vessel that the smoke comes from [s]: at 10 m/s a turn at 1 deg/s
+"""Time between the places of the vessel from which the smoke comes [s]: at 10 m/s a turn at 1 deg/s
 is a chord to 6 mm.
 """
 
@@ -141,7 +143,7 @@ class FluctuatingSmoke(StraightPlume):
 
         Parameters
         ----------
-        emission, air : what leaves the stack, and into what
+        emission, air : the gases from the stack, and the air into which they go
         vessel, wind : motion of the vessel over the ground, and of the air
         duration : to be covered [s]
         source_height : of the stack's mouth above the sea [m]
@@ -188,7 +190,7 @@ class Dispersion(Protocol):
 
 @runtime_checkable
 class Smoke(Protocol):
-    """A plume model that has more than an axis."""
+    """A plume model with smoke in addition to an axis."""
 
     def dispersion(
         self,
@@ -207,13 +209,13 @@ class Smoke(Protocol):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Exhaust:
-    """What a vessel emits, and where it is.
+    """The exhaust of a vessel, and where it is.
 
     Attributes
     ----------
-    fuel, emission : what is burnt, and what leaves the stack
-    dispersion : of it, in the frame of the air mass
-    displacement : how far that frame has moved north and east at some times [s], in metres
+    fuel, emission : the fuel, and the gases from the stack
+    dispersion : of these gases, in the frame of the air mass
+    displacement : way of that frame north and east at some times [s], in metres
     """
 
     fuel: Fuel
@@ -234,7 +236,7 @@ class Exhaust:
 
 
 def fuel_of(scenario: Scenario, of: TrafficEmissionConfig | None = None) -> Fuel:
-    """Return what the vessel of a scenario burns, or ``of`` another ship."""
+    """Return the fuel of a scenario's vessel, or that ``of`` another ship."""
     given = of or scenario.emission
     return fuel_preset(given.fuel, given.sulphur_percent)
 
@@ -246,8 +248,8 @@ def emission(
     load: float | None = None,
     of: TrafficEmissionConfig | None = None,
 ) -> Emission:
-    """Return what the vessel of a scenario emits at a speed [m/s], or at a load of its engine [-]
-    where that is given; or ``of`` another ship.
+    """Return the emission of a scenario's vessel at a speed [m/s], or at a given load of its engine
+    [-]; or that ``of`` another ship.
 
     Raises
     ------
@@ -281,8 +283,8 @@ def exhaust_of(
     generator: np.random.Generator,
     of: TrafficEmissionConfig | None = None,
 ) -> Exhaust | None:
-    """Return the exhaust of a vessel that has any, in some wind, over a duration [s]. It is
-    that of its speed at the start.
+    """Return the exhaust of a vessel in some wind over a duration [s], for its speed at the start;
+    None for a vessel without exhaust.
 
     Parameters
     ----------
@@ -330,8 +332,8 @@ def exhaust_of(
 
 
 _STEP = 0.05
-"""Between the times at which the background is computed, linear between them [s]: a tenth of the
-quickest sensor's response.
+"""Time between points of the background, linear between them [s]: a tenth of the fastest sensor's
+response.
 """
 
 
@@ -366,7 +368,7 @@ def sampled_background(
     ----------
     config : the ``[air]`` section
     duration : to be covered [s]
-    generator : of the background alone, so that all else of the flight is as it is without
+    generator : of the background alone, so that the rest of the flight is the same without it
     """
     if config.background == "none":
         return UNIFORM
@@ -408,4 +410,4 @@ _SHAPES: Mapping[str, Callable[[Array, float, np.random.Generator], Array]] = {
     "sine": _sine,
     "steps": _steps,
 }
-"""How each kind of background varies, over its size."""
+"""Variation of each kind of background, over its size."""

@@ -383,7 +383,7 @@ def test_a_place_of_zero_is_none(tmp_path):
             message.lat = message.lon = 0
         return message
 
-    failed(tmp_path, "told no place but 0/0", change=nowhere)
+    failed(tmp_path, "reports no place but 0/0", change=nowhere)
 
 
 def test_a_vessel_that_is_another_one_is_refused(tmp_path):
