@@ -361,7 +361,7 @@ class EmissionConfig(Section):
     methane_slip_percent: Annotated[
         float, Field(ge=0.0, le=SPECIES["ch4"].most), EXHAUST, channel_of_gas("ch4")
     ] = 0.0
-    """Methane that leaves unburnt, by mass of the fuel, whose CO2 is less by its carbon [%]."""
+    """Methane that leaves unburnt, by mass of the fuel, whose CO2 is less by its carbon [% m/m]."""
     black_carbon_g_kg: Annotated[
         float, Field(ge=0.0, le=SPECIES["bc"].most), EXHAUST, channel_of_gas("bc")
     ] = 0.0
