@@ -18,13 +18,7 @@ from measurement.gases import GASES
 from measurement.sniffer.channel import Channel
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec, channel_of
-from measurement.species import (
-    PER_FUEL_1E15,
-    PER_FUEL_G,
-    PER_FUEL_PERCENT,
-    SPECIES,
-    Species,
-)
+from measurement.species import PER_FUEL_1E15, PER_FUEL_G, PER_FUEL_PERCENT, SPECIES, Species
 from scenarios.instruments.failing_sniffer import FailingSniffer
 from scenarios.instruments.instrument import Declarations
 from scenarios.scenario.scenario import Scenario
@@ -83,12 +77,12 @@ def gas_columns(gases: Iterable[str]) -> Declarations:
             return Column(meaning, title=heading, unit=unit, digits=species.digits + 1)
 
         unit = species.unit
-        names = _names(species)
+        truth, reading = _names(species)
         found.histories.update(
             described(
                 {
-                    names[0]: Column(f"true {title} along the path", unit=unit),
-                    names[1]: Column(f"reading of {title}, held until the next one", unit=unit),
+                    truth: Column(f"true {title} along the path", unit=unit),
+                    reading: Column(f"reading of {title}, held until the next one", unit=unit),
                 }
             )
         )
