@@ -31,6 +31,7 @@ from reports.measurement.charts import (
 from reports.measurement.data import Record, share_read
 from reports.measurement.flight_charts import sulphur_track_chart
 from reports.measurement.flight_tables import interval_words
+from reports.measurement.gases import gas_blocks
 from reports.measurement.method import (
     measured_flights,
     method_blocks,
@@ -176,6 +177,7 @@ def _flight(run: RunData, measured: pd.DataFrame, name: Name) -> Section | None:
                 budget_chart(record),
                 channels_chart(samples, "Time since the start of the flight [s]"),
                 regression_chart(samples, record),
+                *gas_blocks(record),
             ]
             title = "Fuel sulphur content" if len(measured) == 1 else _LARGEST
             shown = [block for block in blocks if block is not None]

@@ -6,7 +6,7 @@ rises, disperses, meanders and bends about it with the vessel's own track.
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -15,6 +15,7 @@ import numpy.typing as npt
 from aircraft.wind import WindField
 from gnc.errors import InfeasibleError
 from measurement.emission import (
+    AIR_PRESSURE,
     Emission,
     Fuel,
     emission_of,
@@ -25,6 +26,7 @@ from measurement.emission import (
 from measurement.gases import GASES, PARTS
 from measurement.plume.fluctuating_plume import FluctuatingPlume, PlumeSample
 from measurement.plume.spread import MarineAir, PlumeSettings
+from measurement.species import SPECIES
 from scenarios.scenario.extension_points import PLUME_MODELS
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.traffic import TrafficEmissionConfig
@@ -216,12 +218,14 @@ class Exhaust:
     fuel, emission : the fuel, and the gases from the stack
     dispersion : of these gases, in the frame of the air mass
     displacement : way of that frame north and east at some times [s], in metres
+    ratios : of gases of ``measurement.species`` to CO2, which they disperse with [unit/ppm]
     """
 
     fuel: Fuel
     emission: Emission
     dispersion: Dispersion
     displacement: Callable[[Array], tuple[Array, Array]]
+    ratios: Mapping[str, float] = field(default_factory=dict)
 
     def sample(self, time: Array, north: Array, east: Array, up: Array) -> PlumeSample:
         """Return the plume at places over the ground, each shape (n,) [s, m]."""
@@ -257,10 +261,27 @@ def emission(
     """
     given = of or scenario.emission
     ship, fuel = ship_of(given.ship or ""), fuel_of(scenario, of)
-    air_temperature = scenario.wind.temperature_c + _ZERO_CELSIUS
+    about: dict[str, float] = {
+        "air_temperature": scenario.wind.temperature_c + _ZERO_CELSIUS,
+        "methane": scenario.emission.methane if of is None else 0.0,
+    }
     if load is None:
-        return emission_of(ship, fuel, speed=speed, air_temperature=air_temperature)
-    return emission_of(ship, fuel, power=load * ship.power_max, air_temperature=air_temperature)
+        return emission_of(ship, fuel, speed=speed, **about)
+    return emission_of(ship, fuel, power=load * ship.power_max, **about)
+
+
+def air_of_particles(scenario: Scenario) -> tuple[float, float]:
+    """Return temperature [deg C] and pressure [hPa] of the air that particles are counted in."""
+    return scenario.wind.temperature_c, AIR_PRESSURE / 100.0
+
+
+def _ratios(scenario: Scenario) -> dict[str, float]:
+    """Return what the measured vessel emits of gases, over its CO2 [unit/ppm]."""
+    carbon, air = fuel_of(scenario).carbon_fraction, air_of_particles(scenario)
+    return {
+        gas: SPECIES[gas].slope(SPECIES[gas].factor(carbon, air), figure)
+        for gas, figure in scenario.emission.emitted.items()
+    }
 
 
 def without_smoke(scenario: Scenario) -> str:
@@ -328,6 +349,7 @@ def exhaust_of(
         emission=emitted,
         dispersion=dispersion,
         displacement=lambda time: wind.displacement(time, height),
+        ratios=_ratios(scenario) if of is None else {},
     )
 
 
