@@ -1,6 +1,6 @@
 """The estimate in air as it often is, by logs of a simulator that shares no code with it.
 
-The table with 100 logs and more of every regime is in docs/howto/measuring.md; here a few short logs
+The table with 25 logs and more of every regime is in docs/howto/measuring.md; here a few short logs
 of each hold it.
 """
 
