@@ -1,4 +1,6 @@
-"""A sniffer that may fail: dead, it repeats its last reading; saturated, it reads its range's end."""
+"""A sniffer that may fail: dead, it repeats its last reading; saturated, it reads the end of its
+range.
+"""
 
 import numpy as np
 import numpy.typing as npt

@@ -159,7 +159,7 @@ class GasChannels:
         self._air = air_of_particles(scenario)
         self._each = []
         for gas, channel in channels.items():
-            # Numbers of each one, so that readings do not depend on how the air is split into parts.
+            # Numbers of each channel, so that readings do not depend on how the air is split.
             own = np.random.default_rng(int(generator.integers(2**63)))
             alone = SnifferSpec(name=gas, title=gas, rate_hz=spec.rate_hz, channels=(channel,))
             sniffer = FailingSniffer(
