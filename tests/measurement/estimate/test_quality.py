@@ -237,6 +237,13 @@ def test_so2_in_steps_that_its_noise_carries_it_through_is_as_it_is_stated():
     assert abs(found.fsc_percent - 0.02) < 2.0 * found.total_percent
 
 
+def test_readings_of_two_values_only_have_an_estimate():
+    # All of SO2 lies within one step; what lies beyond it, by which noise is shown, is nothing.
+    readings, _ = flight("electrochemical", 0.25, 1)
+    readings.values[:, 0] = np.random.default_rng(0).integers(0, 2, len(readings))
+    assert estimate(readings, sensor_preset("unspecified")).quality in "BC"
+
+
 def test_a_spike_of_co2_has_no_verdict_also_where_so2_is_noisy():
     # A t90 of 4 s leaves 56 % of an excess a second later, 32 % if it were 2 s. Such a fuel of 0.25
     # % was called below 0.10 %.

@@ -179,6 +179,14 @@ def test_response_and_delay_are_found_without_bias_where_other_gases_correct_so2
     assert np.mean([each.fsc_percent for each in found]) == pytest.approx(0.2, abs=0.007)
 
 
+def test_a_delay_before_co2_is_found_too():
+    actual = changed(plain_sniffer(20.0, 4.0, so2_noise=1.0, co2_noise=1.0), "co2", delay_s=2.5)
+    unknown = changed(actual, "so2", delay_sd_s=math.inf)
+    found = estimate(read(actual, crossings(0.5)), unknown)
+    assert found.delay_sd_s < 0.1
+    assert found.delay_s == pytest.approx(-2.5, abs=0.15)
+
+
 def test_readings_that_are_far_apart_have_an_interval_that_holds_what_lies_between():
     # Every second, 4.6 time constants of CO2 apart: up to 7.7 % too much, on which averaging over
     # passes has no effect.
