@@ -94,7 +94,7 @@ def copy_model(files: ModelFiles, directory: Path, *, play: bool = True) -> Path
     ----------
     files : the model's files, which stay unchanged
     directory : where to write the copy
-    play : whether servos keep their hysteresis and dead bands, which a linear model has not
+    play : whether servos keep their hysteresis and dead bands, which a linear model does not have
 
     Raises
     ------

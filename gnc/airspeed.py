@@ -74,7 +74,7 @@ class AlongTrackTrim:
 _CRITICAL = 0.25
 """Gain of a position loop about a first-order loop, over the bandwidth of that loop [-].
 
-With it both poles are equal: none is faster without overshoot.
+With it both poles are equal, which is the fastest response without overshoot.
 """
 
 

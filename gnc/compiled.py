@@ -16,10 +16,14 @@ SOURCES = "PLUME_FLIGHT_SOURCES"
 
 ROOT = Path(__file__).parents[1]
 FOLDER = ROOT / "build" / f"compiled-{sys.implementation.cache_tag}"
-"""Compiled for this Python; apart from the sources, so that no other commit finds it."""
+"""Folder of the modules that are compiled for this Python. It is apart from the sources, so that no
+other commit finds it.
+"""
 
 INDEX = FOLDER / "index.json"
-"""``sources``, their hash; ``modules``, a file for each module. It is written last."""
+"""Index of the folder: ``sources`` is the hash of the sources, ``modules`` has a file for each
+module. It is written last.
+"""
 
 _PACKAGES = ("aircraft", "common", "gnc", "innerloop", "scenarios")
 """Packages whose sources are hashed: of compiled modules, and of what these import."""
@@ -46,9 +50,9 @@ def sources_hash() -> str:
 
 
 def compiled_modules() -> dict[str, Path]:
-    """Return the file of each compiled module by its name; none where the sources are to be run.
+    """Return the file of each compiled module by its name; empty where the sources are to be run.
 
-    That is so if a file is missing, a source was edited since, or the environment asks for it.
+    The sources are run if a file is missing, a source was edited since, or ``SOURCES`` is set.
     """
     if os.environ.get(SOURCES):
         return {}

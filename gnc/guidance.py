@@ -41,7 +41,7 @@ class ReportedVessel:
     Attributes
     ----------
     filter : of the reports
-    limits : that the vessel and its reports keep
+    limits : of the vessel's motion and of its reports
     """
 
     filter: FilterParameters
@@ -66,7 +66,7 @@ class TrafficParameters:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GuidanceParameters:
-    """The parts of a flight's guidance, with what they know beforehand. None: without the part.
+    """The parameters of the parts of a flight's guidance; None means without the part.
 
     Attributes
     ----------
@@ -109,12 +109,12 @@ class Guidance:
     Attributes
     ----------
     own, target : motion of the vehicle and of the vessel
-    mission : what to do, and the tracker of its reference
+    mission : gives the orders, and has the tracker of its reference
     guard : of the keep-out area, or None
     monitor : of the vehicle's health, or None
     traffic, yielding : other vessels, and how the mission gives way to them; or None
     plan_interval : steps between plans of the mission; with 0 there is one plan, in the first step
-    mode : what is being done
+    mode : present mode
     guarding : whether the keep-out guard changed the last command
     heading_rate_command, airspeed_command, altitude_command : last commands [rad/s, m/s, m]
     """
@@ -187,7 +187,8 @@ class Guidance:
         to_north = reference.north - own.north
         to_east = reference.east - own.east
         along = to_north * math.cos(course) + to_east * math.sin(course)
-        # While an order replaces its command, the law is called to go on from what is flown.
+        # While an order replaces the law's command, the law is still called, and goes on from the
+        # flown command.
         command = tracker.step(own.north, own.east, own.course, own.speed, own.heading_rate)
         if order.heading_rate is TRACK:
             pace = self._airspeed_law.pace(along)
@@ -204,8 +205,9 @@ class Guidance:
             command, pace, held = guarded.heading_rate, guarded.pace, guarded.pace_held
             self.guarding = guarded.status is not GuardStatus.FREE
         tracker.heading_rate_command = command
-        # A turn away is flown in full in gusts, too: it was predicted over the mean air. Where a
-        # gust makes the vehicle slower through the air, it turns faster there, at the same bank.
+        # In gusts, too, a turn away is flown in full: it was predicted over the mean air. Where a
+        # gust makes the vehicle slower through the air, the vehicle turns faster there, at the same
+        # bank.
         limit = self._heading_rate_max
         if self.guarding and own.wind_by_gusts is not None and own.air_ratio < 1.0:
             limit /= own.air_ratio
@@ -225,7 +227,7 @@ class Guidance:
             self.airspeed_command = self._airspeed_law.airspeed(pace, own, held)
 
     def _plan(self, time: float, measurement: Any) -> Order:
-        """Return what the mission orders, from what is known of vessel and vehicle now."""
+        """Return the mission's order, from the present estimates of vessel and vehicle."""
         target = self.target
         renew = self._until_plan == 0
         self._until_plan = self.plan_interval - 1 if renew else self._until_plan - 1
@@ -256,7 +258,7 @@ class Guidance:
         return order
 
     def overruled(self, heading_rate: float, airspeed: float) -> None:
-        """Note commands that are flown in place of the last ones: predictions follow them.
+        """Note the commands that are flown in place of the last ones: predictions follow them.
 
         Parameters
         ----------

@@ -1,7 +1,7 @@
 """The guidance and control of the paper, equation by equation, in the paper's order.
 
 D. Escudeiro, "UAV-based Measurement of Marine Vessels Smoke Plumes - Guidance and Control System".
-``# (24)`` marks the line that computes equation (24). Positions are north and east, in metres;
+``# (N)`` marks the line that computes equation (N). Positions are north and east, in metres;
 courses are clockwise from north, in radians. The paper's symbols are::
 
     V_r, V_V         speeds of vehicle and reference, and of the vessel

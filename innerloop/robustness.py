@@ -206,8 +206,8 @@ def _with_effectiveness(model: LinearModel, factor: float) -> LinearModel:
     """Return the model with the effectiveness of every control, also the throttle's, scaled.
 
     The perturbed aircraft that fly reversals (``aircraft.model``) have scaled surfaces only. With
-    less effectiveness the throttle's loop has less margin there than here, where its own gain is
-    lower as well.
+    less effectiveness the throttle's loop has less margin there than here, where its gain is lower
+    as well.
     """
     rows = [i for i, name in enumerate(model.state_labels) if name in BODY_STATES]
     driven = [i for i, name in enumerate(model.state_labels) if name not in BODY_STATES]

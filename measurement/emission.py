@@ -15,8 +15,10 @@ from common.physics import STANDARD_GRAVITY
 from measurement.errors import MeasurementError, check_keys, check_range, number
 from measurement.gases import (
     CARBON_FRACTION,
+    CARBON_MASS,
     CARBON_PER_CO2,
     FUEL_SULPHUR_MOST,
+    METHANE_MASS,
     MOLAR_MASS,
     SULPHUR_MASS,
 )
@@ -199,6 +201,7 @@ def emission_of(
     *,
     speed: float | None = None,
     power: float | None = None,
+    methane: float = 0.0,
     air_temperature: float = AIR_TEMPERATURE,
 ) -> Emission:
     """Return what a ship emits on a fuel at a speed through the water or at a power.
@@ -209,6 +212,7 @@ def emission_of(
     speed : [m/s], 0 to the ship's largest; the power goes with its cube and is at least 5 %
         (dead slow)
     power : [W], above 0 to the ship's largest; give speed or power
+    methane : that leaves unburnt, by mass of fuel [-]; its carbon is missing in the CO2
     air_temperature : around the stack [K]
 
     Raises
@@ -221,7 +225,7 @@ def emission_of(
     Power P = P_max (v/v_max)^3: BSH library 188756, p. 17. Consumption with load: STEAM2, ACP
     12:2641 (2012). Exhaust at part load: MAN B&W project guide 198 43 20-3.3, figs. 6.04.11 and
     6.04.12, applied to all ships and loads. At dead slow the exhaust is 131 K hotter than at full
-    power, which nobody has checked. Fluxes: Briggs, as in AERMOD.
+    power, which has not been checked. Fluxes: Briggs, as in AERMOD.
     """
     check_air(air_temperature, AIR_PRESSURE)
     load = _load(ship, speed, power)
@@ -231,7 +235,7 @@ def emission_of(
     nox = 1e-3 * _NOX_G_KWH[engine][ship.nox_tier] * energy_rate / MOLAR_MASS["no2"]
     rates = (
         fuel_rate * fuel.so2_per_fuel,
-        fuel_rate * fuel.co2_per_fuel / MOLAR_MASS["co2"],
+        fuel_rate * fuel.co2_per_fuel / MOLAR_MASS["co2"] - fuel_rate * methane / METHANE_MASS,
         (1.0 - NO2_SHARE) * nox,
         NO2_SHARE * nox,
     )
@@ -301,15 +305,18 @@ def check_air(temperature: float, pressure: float) -> None:
     check_range("air pressure", pressure, 5e4, 1.1e5, " Pa")
 
 
-def expected_fsc(fuel: Fuel) -> float:
+def expected_fsc(fuel: Fuel, methane: float = 0.0) -> float:
     """Return the fuel sulphur content that a perfect instrument reads [% m/m].
+
+    With ``methane`` that leaves unburnt, by mass of fuel [-], it reads more: less carbon is CO2.
 
     It does not see the sulphate, and it assumes the carbon of ``CARBON_FRACTION``. Gas oil of
     0.1000 reads 0.0972; residual fuel of 0.5000 reads 0.5003, because the two errors cancel. An
     estimate is judged against this value; its difference from the fuel's content is a bias of the
     method.
     """
-    return fuel.sulphur_percent * SULPHUR_AS_SO2 * CARBON_FRACTION / fuel.carbon_fraction
+    burnt = fuel.carbon_fraction - methane * CARBON_MASS / METHANE_MASS
+    return fuel.sulphur_percent * SULPHUR_AS_SO2 * CARBON_FRACTION / burnt
 
 
 def fuel_preset(name: str, sulphur_percent: float | None = None) -> Fuel:

@@ -2,8 +2,8 @@
 
 Regulation 13 of MARPOL Annex VI limits NOx per kWh, as a mean over the test cycle of a test bed, by
 the rated speed of the engine and the date on which the keel was laid. A plume shows NOx per fuel,
-at one load. The consumption at the load that the ship's speed lets expect leads from one to the
-other, so that a verdict on a plume screens and does not certify.
+at one load. The consumption at the load expected from the ship's speed relates the two, so that a
+verdict on a plume is a screening and not a certificate.
 """
 
 import math
@@ -77,7 +77,7 @@ class Limit:
     ----------
     stage : "I", "II" or "III"
     cycle_g_kwh : over the test cycle [g/kWh]
-    at_load_g_kwh : that a single load is compared with [g/kWh]
+    at_load_g_kwh : limit for a single load [g/kWh]
     """
 
     stage: str
@@ -87,7 +87,7 @@ class Limit:
 
 @dataclass(frozen=True, kw_only=True)
 class Engine:
-    """What is known of a ship's main engine; None where it is not.
+    """The known data of a ship's main engine; None for unknown values.
 
     Attributes
     ----------
@@ -95,7 +95,8 @@ class Engine:
     rated_rpm : rated speed [1/min]
     control_area : of NOx in which the ship was measured, one of ``CONTROL_AREAS``, or empty
     design_speed_mps : of the ship at full power [m/s]
-    speed_mps, speed_sd_mps : when it was measured, as by AIS, and standard deviation [m/s]
+    speed_mps, speed_sd_mps : speed during the measurement, as by AIS, and its standard deviation
+        [m/s]
     strokes : 2 or 4; by the rated speed unless stated
     residual : whether it burns residual fuel
     consumption_g_kwh : at the engine's best load; by its class unless stated [g/kWh]
@@ -140,7 +141,7 @@ class Engine:
 
     @property
     def load(self) -> tuple[float, float] | None:
-        """Load that the speed lets expect, and its standard deviation [-]; None if not known.
+        """Load expected from the speed, and its standard deviation [-]; None if unknown.
 
         Power goes with the cube of the speed (BSH library 188756, p. 17).
         """
@@ -167,7 +168,7 @@ class Engine:
     def consumption(self) -> tuple[float, float, float]:
         """Return the consumption at the load [kg/kWh], and two relative deviations [-].
 
-        They are by the load, and by the engine about its class.
+        The deviations are by the load, and by the engine about its class.
         """
         if self.load is None:
             loads = np.linspace(*_UNKNOWN_LOAD, _POINTS)
@@ -192,7 +193,7 @@ class Engine:
         return FUEL_G_KWH[self.strokes or (2 if slow else 4), self.residual]
 
     def limit(self) -> Limit | None:
-        """Return the limit of NOx; None where it is not known, or there is no limit."""
+        """Return the limit of NOx; None where it is unknown, or there is no limit."""
         if self.keel_laid is None or self.rated_rpm is None:
             return None
         return limit_of(self.keel_laid, self.rated_rpm, self.control_area)

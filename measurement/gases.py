@@ -15,6 +15,9 @@ CARBON_MASS = 12.011e-3
 _OXYGEN = 15.999e-3
 """Standard atomic weight [kg/mol], abridged (IUPAC 2021)."""
 
+_HYDROGEN = 1.008e-3
+"""Standard atomic weight [kg/mol], abridged (IUPAC 2021)."""
+
 _NITROGEN = 14.007e-3
 """Standard atomic weight [kg/mol], abridged (IUPAC 2021)."""
 
@@ -28,6 +31,9 @@ MOLAR_MASS = {
     "no2": _NITROGEN + 2.0 * _OXYGEN,
 }
 """Molar masses [kg/mol]."""
+
+METHANE_MASS = CARBON_MASS + 4.0 * _HYDROGEN
+"""Molar mass of methane [kg/mol] (IUPAC 2021)."""
 
 CARBON_FRACTION = 0.87
 """Carbon by mass that the published factor assumes [-]: Balzani Loov et al., AMT 7:2597 (2014)."""

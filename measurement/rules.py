@@ -11,7 +11,7 @@ class DecisionRule:
     ----------
     name, title : in a word, and in words
     limit_percent : of the fuel's sulphur content [% m/m]
-    suspect_percent : estimate from which the ship is suspect, whatever the uncertainty; None for a
+    suspect_percent : estimate from which the ship is suspect, with any uncertainty; None for a
         guard band of 1.645 standard uncertainties above the limit [% m/m]
     """
 

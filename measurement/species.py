@@ -21,6 +21,7 @@ from measurement.gases import (
     CARBON_MASS,
     FUEL_SULPHUR_MOST,
     MASS_PERCENT,
+    METHANE_MASS,
     MOLAR_MASS,
     SULPHUR_MASS,
     UNITS,
@@ -115,6 +116,16 @@ class Species:
         escaped = 1.0 + self.carbon_atoms * _AMOUNT["ppb"] * slope
         return factor * slope / escaped, factor / escaped**2
 
+    def slope(self, factor: float, figure: float) -> float:
+        """Return the ratio to CO2 of a figure [unit/ppm]: (1), solved for r.
+
+        Parameters
+        ----------
+        factor : of ``factor``
+        figure : [result]
+        """
+        return figure / (factor - self.carbon_atoms * _AMOUNT["ppb"] * figure)
+
 
 SPECIES = {
     species.name: species
@@ -152,7 +163,7 @@ SPECIES = {
             figure="methane slip",
             unit="ppb",
             result=PER_FUEL_PERCENT,
-            mass=CARBON_MASS + 4.0 * 1.008e-3,
+            mass=METHANE_MASS,
             carbon_atoms=1,
             # That of methane alone is 0.7487, by these atomic weights.
             carbon=0.75,

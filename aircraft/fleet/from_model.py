@@ -270,7 +270,7 @@ _NEEDED = {
 
 
 def _wrong_element(config: ET.Element, files: ModelFiles) -> str:
-    """Error in a required element of the model, in words; empty if there is none.
+    """Error in a required element of the model, in words; empty without an error.
 
     JSBSim itself takes a missing element as 0, and the first one of two.
     """
@@ -307,7 +307,7 @@ def _lifts(thruster: ET.Element) -> bool:
 def _missing_commands(
     inputs: tuple[ControlInput, ...], config: ET.Element, files: ModelFiles, *, of_user: bool
 ) -> str:
-    """Message about surfaces whose commands the model does not read; empty if there are none.
+    """Message about surfaces whose commands the model does not read; empty without such surfaces.
 
     For a user's model the message has a remedy.
     """

@@ -1,4 +1,6 @@
-"""Who takes part in an arena: each law in each task that it can do, and why not in the others."""
+"""The entrants of an arena: each law in each task that it supports, with the reason for the other
+tasks.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -16,8 +18,8 @@ from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.guidance import GuidanceConfig, law_refusal
 
 TUNING = "tuning"
-"""Name of the trial whose flights the tuner flies: seeds follow from it, and are none of the
-comparison's.
+"""Name of the trial whose flights the tuner flies: seeds follow from it, and differ from those of
+the comparison's.
 """
 
 _NEEDS = {TRACKING: ON_OSCILLATION, STANDOFF: ON_CIRCLE}
@@ -32,7 +34,7 @@ class Entrant:
     ----------
     name : of the entrant, part of the names of its flights
     law, task : its steering law, and ``TRACKING`` or ``STANDOFF``
-    inputs : what of the reference and of the air the law makes use of
+    inputs : the data of the reference and of the air that the law uses
     defaults : its parameters that are numbers, whole ones apart, by their keys in ``[guidance]``
     """
 
@@ -55,7 +57,7 @@ class Refused:
     Attributes
     ----------
     law, task : same as ``Entrant``
-    reason : why not
+    reason : why it does not take part
     """
 
     law: str
@@ -64,15 +66,15 @@ class Refused:
 
 
 def entrants_of(scenario: Scenario) -> tuple[list[Entrant], list[Refused]]:
-    """Return who takes part, and which law does not take part in which task.
+    """Return the entrants, and the laws that do not take part in a task.
 
-    A law that is added takes part in each task. The laws of the scenario take part where it lists
-    them; of those that track the reference and cannot circle, or the other way round, the reason is
-    given.
+    An added law takes part in each task. The laws of the scenario take part in the tasks for which
+    it lists them; for a law that tracks the reference and cannot circle, or vice versa, the result
+    has the reason.
 
     Raises
     ------
-    InputError : a law does not exist, or is named twice for a task, or none takes part
+    InputError : a law does not exist, or is named twice for a task, or no law takes part
     """
     arena, added = ArenaKeys.of(scenario).arena, ArenaKeys.of(scenario).laws
     listed = {TRACKING: [*arena.tracking, *added], STANDOFF: [*arena.standoff, *added]}
@@ -164,8 +166,8 @@ def conditions_of(scenario: Scenario, name: str, entrants: list[Entrant]) -> dic
 
 
 def draws_left(scenario: Scenario, values: Mapping[str, object]) -> dict[str, object]:
-    """Return the arena's random variables as a value to set: without those of keys that are set
-    beside them.
+    """Return the arena's random variables as a value to set, without variables whose keys are set
+    otherwise.
     """
     left = tuple(draw.model_dump() for draw in scenario.draws if not displaced(draw.key, values))
     return {} if len(left) == len(scenario.draws) else {"draws": left}
@@ -174,7 +176,7 @@ def draws_left(scenario: Scenario, values: Mapping[str, object]) -> dict[str, ob
 def cases_of(
     entrants: list[Entrant], chosen: Mapping[str, Mapping[str, float]]
 ) -> tuple[dict[str, Any], ...]:
-    """Return a case for each entrant, with the parameters that were chosen for it, by its name."""
+    """Return a case for each entrant, with the chosen parameters of the entrant, by its name."""
     return tuple(
         {"name": entrant.name, "set": entrant.values(chosen.get(entrant.name, {}))}
         for entrant in entrants
@@ -182,8 +184,8 @@ def cases_of(
 
 
 def _defaults(law: str, guidance: GuidanceConfig) -> dict[str, float]:
-    """Return the parameters of a law that are numbers, whole ones apart: those that the scenario
-    has, and its own defaults.
+    """Return those parameters of a law that are real numbers but not whole ones: the values of the
+    scenario, or else the law's defaults.
     """
     of = GuidanceConfig(law=law)
     types = of.law_types

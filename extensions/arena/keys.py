@@ -1,4 +1,4 @@
-"""What a scenario file may say of an arena."""
+"""The keys of an arena in a scenario file."""
 
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any
@@ -72,12 +72,16 @@ class ArenaKeys(StudyKeys):
     LAW_KEYS = ("laws", "arena.tracking", "arena.standoff")
 
     laws: tuple[str, ...] = ()
-    """Laws that take part in an arena in addition to its own, each by its name or FILE.py:NAME."""
+    """Laws that take part in an arena in addition to the built-in ones, each by its name or
+    FILE.py:NAME.
+    """
     arena: ArenaConfig = ArenaConfig()
 
     @classmethod
     def differing(cls, scenario: Any) -> Iterator[Mapping[str, object]]:
-        """Yield what an arena sets for some of its flights: law and mission, and its conditions."""
+        """Yield the settings of an arena for some of its flights: law and mission, and
+        conditions.
+        """
         yield {"guidance.law": None, "guidance.mission": None}
         yield from super().differing(scenario)
 

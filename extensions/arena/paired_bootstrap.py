@@ -1,21 +1,21 @@
-"""Means of several entrants over the same flights, and which may be the best: the paired bootstrap.
+"""Means of several entrants over the same flights, and the entrants that may be the best: the
+paired bootstrap.
 
-Every entrant flies the same starts and the same air. Resampled are these, for all entrants
-together, so that what is common to all of them, such as a wind that is hard on everyone, does not
-count as a difference (B. Efron, R. J. Tibshirani, "An Introduction to the Bootstrap", 1993,
-chapters 8 and 13). Resamples of a few flights scatter too little: deviations from the mean of a
-stratum are larger by sqrt(n/(n - 1)) here, and by Student's t over the normal quantile.
+Every entrant flies the same starts and the same air. The resampling draws these for all entrants
+together, so that a common effect, such as a wind that is difficult for all of them, does not count
+as a difference (B. Efron, R. J. Tibshirani, "An Introduction to the Bootstrap", 1993, chapters 8
+and 13). Resamples of a few flights scatter too little: deviations from the mean of a stratum are
+larger by sqrt(n/(n - 1)) here, and by Student's t over the normal quantile.
 
-The best mean is one of the same flights, and one of many. So an entrant counts as worse than the
-best only if some other is ahead of it by more than the largest lead that any would have of it if
-all had the mean that they have in expectation: multiple comparisons with the best (J. C. Hsu,
-"Multiple Comparisons", 1996, chapter 4), with leads over their own deviations. Of entrants that are
-equal, each is called worse in about one arena of twenty, however many there are; with two flights
-alone in one of ten.
+The best mean is selected from many, by the same flights. So an entrant counts as worse than the
+best only if another is ahead of it by more than the largest lead that chance alone would give to
+any entrant: multiple comparisons with the best (J. C. Hsu, "Multiple Comparisons", 1996, chapter
+4), with each lead divided by its deviation. Among equal entrants, each is called worse in about one
+arena of twenty, for any number of entrants; with only two flights in one of ten.
 
 Where no stratum has two flights, every resample is the same: there is no interval, and no
-difference is shown. An entrant that lacks the figure of a flight of which another has it has a mean
-over other flights, perhaps easier ones: it is not compared.
+difference is shown. An entrant without a figure that another has for the same flight is not
+compared: its mean is over other flights, perhaps easier ones.
 """
 
 import math
@@ -28,7 +28,7 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 
 _STILL = 1e-9
-"""Deviation of a lead over the lead itself up to which it does not scatter but for rounding."""
+"""Largest deviation of a lead, over the lead, that counts as rounding."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,13 +37,13 @@ class Estimate:
 
     Attributes
     ----------
-    mean, low, high : mean over the flights, and its interval; not a number where there is none
-    whole : whether it has the figure of every flight of which any entrant has it; otherwise it is
+    mean, low, high : mean over the flights, and its interval; NaN without one
+    whole : whether it has the figure of every flight for which any entrant has it; otherwise it is
         not compared
     best : whether it is compared, and the mean of no other that is compared is better
     behind_low, behind_high : interval of the difference from the best entrant's mean; 0 for the
         best, not a number if not compared, or if there is no interval
-    flights : number of flights that have the figure
+    flights : number of flights with the figure
     as_good : whether it is compared, and the flights do not show that another is better
     """
 
@@ -71,11 +71,11 @@ def paired_estimates(
 
     Parameters
     ----------
-    values : shape (entrants, flights); the flights of a column share start and air; not a number
-        where a flight has no figure
+    values : shape (entrants, flights); the flights of a column share start and air; NaN where a
+        flight has no figure
     strata : shape (flights,): which flights are resampled among themselves, such as those of a
         condition
-    greater_is_better : which way is better
+    greater_is_better : whether a larger value is better
     resamples : number of resamples
     confidence : of the intervals
     seed : of the resampling
@@ -101,7 +101,7 @@ def paired_estimates(
     for i, mean in enumerate(means):
         low, high = _interval(sampled[i], tail)
         if not np.any(values[i] < 0.0):
-            # Of errors and counts, which deviations that are made larger would lead below 0.
+            # Increased deviations would make errors and counts negative.
             low = max(low, 0.0)
         behind = (
             (0.0, 0.0)
@@ -127,8 +127,8 @@ def paired_estimates(
 
 
 def _scattered(row: Array, strata: npt.NDArray[Any], confidence: float) -> Array:
-    """Return the figures of one entrant with deviations from the mean of each stratum as large as
-    they have to be.
+    """Return the figures of one entrant, with the deviations from the mean of each stratum
+    increased by the factors for few flights.
     """
     scattered, known = row.copy(), np.isfinite(row)
     if not (freedom := _freedom(strata[known])):
@@ -155,30 +155,30 @@ def _wider(freedom: int, level: float) -> float:
 def _may_be_best(
     worth: Array, sampled: Array, freedom: int, confidence: float
 ) -> npt.NDArray[np.bool_]:
-    """Return which entrants may be the best, with their worth, shape (n,), and its resamples, shape
-    (n, resamples).
+    """Return which entrants may be the best, given their worth, shape (n,), and its resamples,
+    shape (n, resamples).
 
-    Those that are not compared, whose worth is not a number, may not; ``freedom`` is the number of
-    degrees of it, of all strata.
+    Entrants that are not compared, with a worth of NaN, may not; ``freedom`` is the number of
+    degrees of freedom of all strata.
     """
     found = np.isfinite(worth)
     for i in np.flatnonzero(found):
         others = np.flatnonzero(np.isfinite(worth) & (np.arange(len(worth)) != i))
         leads = worth[others] - worth[i]
         scatter = (sampled[others] - sampled[i]) - leads[:, np.newaxis]
-        # A resample may have none of the flights of which there is a figure.
+        # A resample may contain no flight that has the figure.
         scatter = scatter[:, np.isfinite(scatter).all(axis=0)]
         if not scatter.size:
             continue
         deviations = scatter.std(axis=1)
         still = deviations <= _STILL * np.abs(leads)
         if np.any(still & (leads > 0.0)):
-            # It is ahead by as much in every resample.
+            # The lead is the same in every resample.
             found[i] = False
         elif not still.all():
             ahead = leads[~still] / deviations[~still]
             largest = (scatter[~still] / deviations[~still, np.newaxis]).max(axis=0)
-            # Few flights make the tails of the largest of many leads heavier than those of one.
+            # With few flights, the largest of many leads has heavier tails than a single one.
             wider = _wider(freedom, confidence ** (1.0 / int(np.count_nonzero(~still)))) / _wider(
                 freedom, 0.5 + 0.5 * confidence
             )
@@ -199,7 +199,7 @@ def _mean(row: Array) -> float:
 
 
 def _means(row: Array, columns: npt.NDArray[np.intp]) -> Array:
-    """Return the mean of each resample, of the flights that have the figure."""
+    """Return the mean of each resample over the flights with the figure."""
     taken = row[columns]
     known = np.isfinite(taken)
     counts = known.sum(axis=1)

@@ -1,4 +1,4 @@
-"""What an arena left behind, as its report needs it."""
+"""The record of an arena, for its report."""
 
 import json
 import math
@@ -39,7 +39,7 @@ class Figure:
     ----------
     column : its name, unit and digits, as it is shown
     greater_first : whether more of the recorded value is better
-    shown : what is shown of a recorded value
+    shown : displayed form of a recorded value
     """
 
     column: Column
@@ -56,7 +56,7 @@ class Figure:
 _SULPHUR_ERROR = Column(title="Sulphur error of a minute", unit=MASS_PERCENT, digits=4)
 
 _WHOSE = ("figure", "condition", "entrant")
-"""What an entry of ``arena.json`` is about, beside the estimate itself."""
+"""Keys of an entry of ``arena.json`` other than the estimate itself."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,10 +65,10 @@ class Entrant:
 
     Attributes
     ----------
-    number : by which figures name it, from 1
+    number : its number in figures, from 1
     name, law, task, inputs : same as in ``arena.json``
     defaults, tuned : its parameters
-    cost_default, cost_tuned : to the tuner; not a number if it was not tuned [m]
+    cost_default, cost_tuned : costs in the tuner; NaN if it was not tuned [m]
     rows : its flights
     """
 
@@ -159,7 +159,9 @@ class Arena:
 
     @property
     def together(self) -> str:
-        """Return what stands for all conditions: the only one, where there is one alone."""
+        """Return the name for all conditions together: the only condition, where there is just
+        one.
+        """
         return ALL if len(self.conditions) > 1 else next(iter(self.conditions))
 
     def in_task(self, *, tracking: bool) -> list[Entrant]:
@@ -184,11 +186,12 @@ class Arena:
         return sorted(entrants, key=place)
 
     def alike(self, figure: str, entrants: Iterable[Entrant]) -> list[Entrant]:
-        """Return the entrants that cannot be told from the best over all conditions, itself first;
-        none where none is compared.
+        """Return the entrants that do not differ significantly from the best over all conditions,
+        the best first; empty without a comparison.
 
-        An entrant can be told from the best if the bootstrap shows that another is better, and if
-        their 95 % intervals are apart. One flight in each condition tells none from another.
+        An entrant differs significantly from the best if the bootstrap shows that another is
+        better, and if their 95 % intervals are apart. One flight in each condition shows no
+        difference.
         """
         ranked = [each for each in self.ranked(figure, entrants) if self._is_compared(figure, each)]
         if not ranked:
@@ -208,7 +211,7 @@ class Arena:
         return self._recorded(figure, entrant, self.together).whole
 
     def flights_of(self, condition: str) -> int:
-        """Return how many flights of each entrant a mean is of, where all were flown."""
+        """Return the number of flights of each entrant in a mean, where all were flown."""
         return self.flights * (len(self.conditions) if condition == ALL else 1)
 
 
@@ -217,7 +220,7 @@ def _overlap(one: Estimate, other: Estimate) -> bool:
 
 
 def read_arena(run: RunData) -> Arena | None:
-    """Return the arena of a run; none of one that ended before it was evaluated."""
+    """Return the arena of a run; None for a run that ended before its evaluation."""
     path = run.path / ARENA
     if not is_file(path):
         return None

@@ -1,5 +1,5 @@
-"""What an arena has shown: means with intervals by condition and over all of them, and the
-tuning of each law.
+"""Results of an arena: means with intervals by condition and over all conditions, and the tuning of
+each law.
 """
 
 import json
@@ -33,15 +33,17 @@ FIGURES = (
     "crossings_per_minute",
     *MEASURED_COLUMNS,
 )
-"""Figures of a flight's end by which laws are compared; their columns say which way is worse."""
+"""Figures of the end of a flight by which laws are compared; their columns define which direction
+is worse.
+"""
 
 _TRACKING_ONLY = ("error_rms_m", "effort_rms_rad_s", "excess_rms_rad_s", "saturated_share")
 """Figures that compare laws of one task alone: their references differ between the tasks."""
 
 
 def tuned_record(entrants: Sequence[Entrant], rows: Iterable[Row]) -> list[dict[str, Any]]:
-    """Return the tuning of each law: its parameters by default and as tuned, and what either costs
-    the tuner.
+    """Return the tuning of each law: its parameters by default and after tuning, and the cost of
+    each.
 
     A row without a cost stands for a tuning whose process was lost.
     """
@@ -78,8 +80,7 @@ def estimates(
     Parameters
     ----------
     entrants : of the arena
-    rows : for each condition figures of flights, those of an entrant after those of the one before,
-        the same number for each
+    rows : for each condition, figures of flights, entrant after entrant, the same number for each
     arena : number of resamples
     seed : of the resampling
     """

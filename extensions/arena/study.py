@@ -48,7 +48,7 @@ TUNING_COLUMNS = described(
         "wall_time_s": Column("computing time", title="Computing time", adds_up=True),
     }
 )
-"""Of ``tuning.csv``: a row per setting that the tuner of an arena tried."""
+"""Columns of ``tuning.csv``: a row per setting that the tuner of an arena tried."""
 
 
 TABLES: Mapping[str, Table] = {
@@ -67,7 +67,7 @@ class ArenaWork(FlightRunner):
 
     Attributes
     ----------
-    entrants : tasks beyond the last flight tune one after the other of these
+    entrants : tasks with numbers beyond the last flight tune these in order
     tuner : tunes them
     """
 
@@ -89,7 +89,7 @@ class ArenaWork(FlightRunner):
         """Return the result of a task whose process was lost."""
         if (entrant := self._tuned(task)) is None:
             return super().lost(task, reason)
-        # Without parameters and cost: nothing was tried.
+        # Without parameters and cost, because no setting was tried.
         row = {"entrant": entrant.name, "evaluation": 0, "message": reason}
         return replace(Result(task=task, tables={TUNING_TABLE: [row]}, items=0), lost=True)
 
@@ -109,7 +109,7 @@ class ArenaWork(FlightRunner):
         return {WINDOW_TABLE: [named | figures]}
 
     def _tuned(self, task: Task) -> Entrant | None:
-        """Return the law that a task tunes; none for a flight."""
+        """Return the law that a task tunes; None for a flight."""
         flights = self._ends[-1]
         return self.entrants[task.number - flights] if task.number >= flights else None
 
@@ -197,7 +197,7 @@ class ArenaStudy(FlightStudy):
         fly(shown.values())
 
     def task(self, number: int) -> Task:
-        """Return the task of a flight, with the parameters that were chosen for its law."""
+        """Return the task of a flight, with the chosen parameters of its law."""
         entrant = self.entrants[number // self._scenario.flights % len(self.entrants)]
         chosen = self._chosen.get(entrant.name, {})
         return Task(
@@ -262,7 +262,7 @@ class ArenaStudy(FlightStudy):
         }
 
     def summary(self, journal: Journal) -> StudySummary:
-        """Return the result so far, with the parameters that were chosen."""
+        """Return the result so far, with the chosen parameters."""
         if self._arena.evaluations and len(journal.done()) > 0 and not self._chosen:
             self._take_tuned(journal)
         found = super().summary(journal)

@@ -1,9 +1,9 @@
 """The tuner: the same budget and the same cost for every law, on flights that the comparison does
 not use.
 
-It flies the kinematic vehicle with the aircraft's lag: a thousand settings in the time that an
-aircraft would take for a hundred. Half of the budget is spread evenly over the ranges, the default
-first; the other half is Nelder and Mead's simplex about the best.
+It flies the kinematic vehicle with the aircraft's lag: a thousand settings take as long as a
+hundred with the aircraft. Half of the budget is spread evenly over the ranges, the default first;
+the other half is Nelder and Mead's simplex about the best.
 """
 
 import json
@@ -42,7 +42,7 @@ class Tuner:
 
     Attributes
     ----------
-    scenario : of the flights, the arena's own
+    scenario : of the arena's flights
     arena : budget and cost
     lag : of the aircraft's heading rate behind its command [s]
     """
@@ -52,9 +52,7 @@ class Tuner:
     lag: float
 
     def rows(self, entrant: Entrant) -> Iterator[Row]:
-        """Yield a row for each setting that was tried, in their order: the parameters, and what
-        they cost.
-        """
+        """Yield a row for each tried setting, in order: the parameters and their cost."""
         keys = list(entrant.defaults)
         tried: list[Row] = []
 
@@ -87,8 +85,8 @@ class Tuner:
         }
 
     def _flown(self, entrant: Entrant, parameters: Mapping[str, float]) -> Row:
-        """Return what a setting costs: the mean error of its flights, and what their excess of
-        effort counts as.
+        """Return the cost of a setting: the mean error of its flights, and the weighted excess of
+        their effort.
         """
         arena, errors, excesses = self.arena, [], []
         try:
@@ -123,7 +121,7 @@ class Tuner:
             "kinematic.heading_rate_lag_s": self.lag,
             "flight.duration_max_s": arena.tuning_duration_s,
             "flights": arena.tuning_flights,
-            # Costs are of the tracking alone.
+            # Costs depend on the tracking alone.
             "payload.instruments": (),
             "emission.ship": None,
             **draws_left(self.scenario, arena.tuning_set),

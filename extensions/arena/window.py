@@ -1,5 +1,5 @@
-"""Figures of the end of a flight, whether it has settled or not: by them laws are compared that may
-never settle.
+"""Figures of the end of a flight, whether it has settled or not. They compare laws that may never
+settle.
 """
 
 import math
@@ -52,7 +52,7 @@ WINDOW_COLUMNS = described(
         "speed_ratio_mean": "mean speed ratio through the air",
     }
 )
-"""Of ``window_figures``, in order."""
+"""Columns of ``window_figures``, in order."""
 
 MEASURED_COLUMNS = described(
     {
@@ -66,7 +66,7 @@ MEASURED_COLUMNS = described(
         ),
     }
 )
-"""Of ``measured_figures``, in order."""
+"""Columns of ``measured_figures``, in order."""
 
 _SECONDS_PER_MINUTE = 60.0
 
@@ -74,8 +74,8 @@ _SECONDS_PER_MINUTE = 60.0
 def window_figures(plan: FlightPlan, record: FlightRecord, *, window: float) -> Row:
     """Measure the last ``window`` [s] of a flight beside a vessel.
 
-    Errors are distances to the reference; the effort is the heading rate that was commanded, and
-    its excess is what it differs from the reference's own.
+    Errors are distances to the reference; the effort is the commanded heading rate, and its excess
+    is the difference from the reference's heading rate.
     """
     column = record.column
     time = column("time_s")
@@ -122,8 +122,8 @@ def window_figures(plan: FlightPlan, record: FlightRecord, *, window: float) -> 
 
 
 def measured_figures(row: Row, *, window: float) -> Row:
-    """Return what a minute in the air was worth to the measurement, of what a sniffer has made of
-    ``window`` [s], or of all of a shorter flight.
+    """Return the information of a minute in the air for the measurement, from the sniffer's result
+    of ``window`` [s], or of all of a shorter flight.
 
     The plume's is the time in which the concentration is above exp(-2) of that on its axis. Of the
     fuel's sulphur content it is the information, 1/sigma^2 by noise, the part of the standard

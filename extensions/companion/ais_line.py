@@ -1,8 +1,8 @@
 """Reports of ships from an AIS receiver on board, in NMEA sentences over UDP, TCP or a serial line.
 
-A report is true when its sentence comes, or, where a tag block states when it was received, then,
-by the clock of this computer. A report that was received later than now by that clock is of no use:
-one of the two clocks is wrong.
+A report is true at the time at which its sentence arrives, or at the time of reception in its tag
+block, by the clock of this computer. A report whose time of reception is later than now is not
+used: one of the two clocks is wrong.
 """
 
 import math
@@ -17,7 +17,7 @@ from scenarios.world.ais.sentences import MILLISECONDS_FROM, TAG_TIME, Message, 
 from scenarios.world.ais.size import ShipSize
 
 _CLOCKS_DIFFER = 1.0
-"""By how much a time of reception may be later than now [s]: times have whole seconds."""
+"""Largest time by which a reception may be later than now [s]: times are in whole seconds."""
 
 
 class AisReceiver:
@@ -25,7 +25,7 @@ class AisReceiver:
 
     Parameters
     ----------
-    line : that it is heard on
+    line : on which its sentences arrive
     clock : time of this computer since 1970 [s]
 
     Attributes
@@ -46,11 +46,11 @@ class AisReceiver:
 
     @property
     def unreadable(self) -> int:
-        """Number of lines that were damaged, or no NMEA."""
+        """Number of lines that were damaged or not NMEA."""
         return self._decoder.unreadable
 
     def lines(self) -> list[str]:
-        """Return what a console says of what was left out."""
+        """Return the lines for a console about reports that were left out."""
         counts = {
             "lines of AIS that were damaged, or no NMEA": self.unreadable,
             "reports of AIS from the future": self.from_future,
@@ -58,8 +58,8 @@ class AisReceiver:
         }
         return [f"{what}: {count}" for what, count in counts.items() if count]
 
-    def hear(self) -> list[VesselState]:
-        """Return the reports that have come since the last call, in their order."""
+    def receive(self) -> list[VesselState]:
+        """Return the reports that have arrived since the last call, in their order."""
         messages = [self._decoder.decode(line) for line in self._lines.receive()]
         found = [self._taken(message) for message in messages if message is not None]
         return [vessel for vessel in found if vessel is not None]
@@ -79,7 +79,7 @@ class AisReceiver:
         if why_unused([row])[0]:
             self.without_place += 1
             return None
-        # A speed without a course is next to none, and has no direction.
+        # A speed without a course is almost 0, and has no direction.
         directed = row.course < 360.0
         course = math.radians(row.course) if directed else 0.0
         speed = METRES_PER_SECOND_PER_KNOT * row.speed if directed else 0.0

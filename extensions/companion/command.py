@@ -26,10 +26,10 @@ Single = TypeVar("Single", bound="SingleFlight")
 _PLACE = re.compile(r"(-?[\d.]+),(-?[\d.]+)")
 
 _DEFAULT_HOME = "57.5,11.2"
-"""Where a scenario without a place begins: in the Kattegat. 0/0 would mean that there is no fix."""
+"""Start of a scenario without a place: in the Kattegat. 0/0 would mean that there is no fix."""
 
 _SYSTEM = 1
-"""Number of vehicle and companion."""
+"""System number of vehicle and companion."""
 
 _LATITUDE_MAX, _LONGITUDE_MAX = 90.0, 180.0
 
@@ -189,7 +189,7 @@ def companion(
     ] = None,
     lockstep: LockstepOption = False,
     mmsi: Annotated[
-        int | None, typer.Option(help="The vessel; default the only one that is heard.")
+        int | None, typer.Option(help="The vessel; default the only one that reports.")
     ] = None,
     wait: Annotated[
         float, typer.Option(help="For how long vehicle, vessel and GUIDED are waited for, in s.")
@@ -260,7 +260,7 @@ def _fly(
     from common.provenance import command_line
     from extensions.companion.ais_line import AisReceiver
     from extensions.companion.flight import Companion, CompanionFlight
-    from extensions.companion.ports import Port, heard, opened
+    from extensions.companion.ports import Port, opened, opened_input
     from extensions.companion.quality import Link
     from extensions.companion.vehicle_link import COMPONENT, VehicleLink
     from scenarios.engine.processes import InProcessExecutor
@@ -274,8 +274,10 @@ def _fly(
     with ExitStack() as held:
         line = opened("--connect", connect, listening=False)
         port = held.enter_context(Port(line, system=_SYSTEM, component=COMPONENT, log=log))
-        readings = held.enter_context(closing(heard("--sniffer", sniffer))) if sniffer else None
-        reports = held.enter_context(closing(heard("--ais", ais))) if ais else None
+        readings = (
+            held.enter_context(closing(opened_input("--sniffer", sniffer))) if sniffer else None
+        )
+        reports = held.enter_context(closing(opened_input("--ais", ais))) if ais else None
         receiver = AisReceiver(reports) if reports else None
         single.companion = Companion(
             link=VehicleLink(
@@ -332,7 +334,7 @@ def _flight(kind: type[Single], name: str, overrides: Sequence[str], flight: str
 
     Raises
     ------
-    RefusedError : there is none, or several
+    RefusedError : there is no flight, or there are several
     """
     from scenarios.scenario.files import load_study
     from scenarios.studies.base import FlightStudy, study_of

@@ -1,5 +1,5 @@
-"""Fields of MAVLink messages from quantities in SI, and back: units, signs and frames stand here
-and nowhere else.
+"""Fields of MAVLink messages from quantities in SI, and back: the only place with units, signs and
+frames.
 
 Source: the message definitions of the dialect ``ardupilotmega`` (https://mavlink.io/en/messages).
 Velocities are north, east, down; angles of places in 1e-7 deg, courses in 0.01 deg, heights in mm.
@@ -20,7 +20,7 @@ _MORE_THAN_SAID = (
     | mavlink.AIS_FLAGS_LARGE_PORT_DIMENSION
     | mavlink.AIS_FLAGS_LARGE_STARBOARD_DIMENSION
 )
-"""Flags of dimensions that are larger than their field can say."""
+"""Flags of dimensions that are too large for their field."""
 
 _AT_REST = 0.05
 """Speed below which a vessel has no course over the ground [m/s]."""
@@ -191,7 +191,7 @@ class VesselState:
     velocity_north, velocity_east : over the ground, by true north [m/s]
     bow : where the bow points, from true north [rad]
     age : of the report [s]
-    size : that it says it has, or None
+    size : as reported, or None
     """
 
     mmsi: int
@@ -258,9 +258,7 @@ class VesselState:
 
     @classmethod
     def of(cls, message: Any) -> "VesselState | None":
-        """Return the vessel of an AIS_VESSEL; none where it says no place or no velocity, or one
-        that cannot be.
-        """
+        """Return the vessel of an AIS_VESSEL; None without a possible place and velocity."""
         latitude, longitude = from_degrees_e7(message.lat), from_degrees_e7(message.lon)
         placed = abs(latitude) <= 0.5 * math.pi and abs(longitude) <= math.pi
         if not placed or (message.lat == 0 and message.lon == 0):
@@ -288,7 +286,7 @@ class VesselState:
 
 
 def _size_of(message: Any) -> ShipSize | None:
-    """Return the size that an AIS_VESSEL says, if it says one."""
+    """Return the size in an AIS_VESSEL, or None."""
     known = message.flags & mavlink.AIS_FLAGS_VALID_DIMENSIONS
     if not known or message.flags & _MORE_THAN_SAID:
         return None
@@ -318,8 +316,8 @@ def roll_target(time: float, system: int, component: int, roll: float) -> Any:
 
 
 def roll_of(message: Any) -> float | None:
-    """Return the roll [rad] that a SET_ATTITUDE_TARGET asks for, by ArduPlane's reading of its
-    mask; none where it asks for none.
+    """Return the roll [rad] that a SET_ATTITUDE_TARGET demands, by ArduPlane's reading of its mask;
+    None where it demands no roll.
     """
     ignored = message.type_mask
     attitude = not ignored & mavlink.ATTITUDE_TARGET_TYPEMASK_ATTITUDE_IGNORE

@@ -1,5 +1,5 @@
-"""A flight of a scenario on a vehicle over MAVLink: what is checked before, who has the vehicle,
-and the flight itself, which is recorded as those of a study are.
+"""A flight of a scenario on a vehicle over MAVLink: the checks before it, the takeover of the
+vehicle, and the flight itself, with the record of a study's flight.
 """
 
 import math
@@ -30,8 +30,8 @@ from extensions.companion.remote_vehicle import (
     Limits,
     RemoteVehicle,
 )
-from extensions.companion.reported_ships import Antenna, HeardPlume, HeardVessel, OtherShips
-from extensions.companion.sniffer_line import HeardSniffer
+from extensions.companion.reported_ships import Antenna, OtherShips, ReceivedPlume, ReceivedVessel
+from extensions.companion.sniffer_line import ReceivedSniffer
 from extensions.companion.vehicle_link import VehicleLink
 from gnc.estimation.health import Fault
 from gnc.estimation.navigation import AirMotion
@@ -70,39 +70,37 @@ _NEEDED = {
     "least airspeed [m/s]": ("AIRSPEED_MIN", "ARSPD_FBW_MIN"),
     "greatest airspeed [m/s]": ("AIRSPEED_MAX", "ARSPD_FBW_MAX"),
 }
-"""Parameters without which no vehicle is flown, by what they say: their name, and the former one.
+"""Parameters that every vehicle must report, by their meaning: the present name, and the former
+one.
 """
 
 SNIFFER = "sniffer"
 """The instrument whose readings may come on a line."""
 
-_RIVALS_HEARD_IN, _RIVALS_LOOK = 1.2, 0.02
-"""For how long other companions are listened for before a vehicle is taken over, and how often they
-are looked for [s].
-"""
+_RIVALS_SEEN_IN, _RIVALS_LOOK = 1.2, 0.02
+"""Time of waiting for other companions before a takeover, and interval of the checks [s]."""
 
 _LOITER_RADIUS, _GUIDED_TIMEOUT, _GUIDED_P = "WP_LOITER_RAD", "GUIDED_TIMEOUT", "GUIDED_P"
 _DEFAULTS = {_LOITER_RADIUS: 60.0, _GUIDED_TIMEOUT: 3.0, _GUIDED_P: 5000.0}
-"""Parameters that not every vehicle tells, with ArduPlane's values [m, s, 0.01 deg/rad]."""
+"""Parameters that not every vehicle reports, with ArduPlane's values [m, s, 0.01 deg/rad]."""
 
 _ROUNDING = 2e-3
-"""By how much a limit of the vehicle may be below what is needed, for rounding [-]."""
+"""Largest shortfall of a limit of the vehicle, for rounding [-]."""
 
 _PATIENCE = 10.0
-"""Time within which a vehicle tells its parameters [s]."""
+"""Time within which a vehicle reports its parameters [s]."""
 
-_ASK_INTERVAL, _LOOK = 1.0, 0.1
-"""Time between requests, and between looks at whether something has come [s]."""
+_REQUEST_INTERVAL, _LOOK = 1.0, 0.1
+"""Time between requests, and between checks for new messages [s]."""
 
 _FRESH = 1.5
-"""Age up to which a place is of now, over the time step of the guidance [-]."""
+"""Largest age of a present place, over the time step of the guidance [-]."""
 
 _VELOCITY_MAX = 0.3
-"""Difference from the scenario's velocity up to which a steady vessel counts as that one [m/s]."""
+"""Largest difference of a vessel's velocity from that of the scenario's steady vessel [m/s]."""
 
 _ROUNDED = 2.0
-"""By how much a reported size may be larger than the scenario's [m]: both of its parts are rounded.
-"""
+"""Largest excess of a reported size over the scenario's [m]: both of its parts are rounded."""
 
 _STREAMS = (
     mavlink.MAVLINK_MSG_ID_ATTITUDE,
@@ -120,29 +118,29 @@ class TakenOver:
     Attributes
     ----------
     vehicle, plan : the vehicle, and the flight from where it is
-    heard : the measured vessel, or None where a flight has none
-    others : the other ships, or None where the guidance takes no note of them
+    track : track of the measured vessel, or None for a flight without a vessel
+    others : the other ships, or None where the guidance does not use them
     """
 
     vehicle: RemoteVehicle
     plan: FlightPlan
-    heard: HeardVessel | None
+    track: ReceivedVessel | None
     others: OtherShips | None
 
 
 @dataclass(frozen=True, kw_only=True)
 class Companion:
-    """Who flies a vehicle over a link, and how.
+    """A companion that flies a vehicle over a link, and its settings.
 
     Attributes
     ----------
-    link, quality : to the vehicle, and how bad it is declared to be
+    link, quality : link to the vehicle, and its declared quality
     by : ``ATTITUDE`` or ``COURSE``
     lockstep : whether the vehicle's clock waits
     mmsi : of the vessel; None for the only one
-    patience : for how long a vehicle, a vessel and GUIDED are waited for [s]
-    sniffer : line that its readings come on, or none
-    say : tells the user what is going on
+    patience : longest wait for a vehicle, for a vessel and for GUIDED [s]
+    sniffer : line with its readings, or None
+    say : shows a message to the user
     """
 
     link: VehicleLink
@@ -161,11 +159,12 @@ class Companion:
 
         Raises
         ------
-        InputError : there is none, it is of another type, or it does not tell what is needed
+        InputError : there is no vehicle, it is of another type, or it does not report what is
+            needed
         """
         link = self.link
         self.say("waiting for a vehicle")
-        self._wait(lambda: link.kind != 0, self.patience, "no vehicle was heard")
+        self._wait(lambda: link.kind != 0, self.patience, "no heartbeat of a vehicle was received")
         if link.kind != mavlink.MAV_TYPE_FIXED_WING:
             raise InputError(
                 f"the vehicle is of MAV_TYPE {link.kind}; fixed wings (MAV_TYPE"
@@ -182,12 +181,14 @@ class Companion:
                 link.request_parameter(name)
 
         def known() -> bool:
-            told = link.parameters
-            return all(any(name in told for name in names) for names in _NEEDED.values())
+            parameters = link.parameters
+            return all(any(name in parameters for name in names) for names in _NEEDED.values())
 
-        self._wait(known, _PATIENCE, "the vehicle does not tell its limits", again=self._ask)
+        self._wait(
+            known, _PATIENCE, "the vehicle does not report its limits", again=self._request_limits
+        )
 
-    def _ask(self) -> None:
+    def _request_limits(self) -> None:
         for names in _NEEDED.values():
             for name in names:
                 if name not in self.link.parameters:
@@ -202,10 +203,11 @@ class Companion:
     ) -> None:
         """Wait for something.
 
-        In lockstep the vehicle has told everything up to its time when that is reached: its clock
-        is let go on only if that is what it takes, and a flight begins at the same step every time.
+        In lockstep the vehicle has reported everything up to its time when it reaches that time.
+        Its clock goes on only if that is necessary, so that a flight always begins at the same
+        step.
         """
-        link, waited, asked = self.link, 0.0, 0.0
+        link, waited, requested = self.link, 0.0, 0.0
         while not there():
             before = link.now
             link.advance(link.now if self.lockstep and not waited else link.now + _LOOK, there)
@@ -213,8 +215,8 @@ class Companion:
             self._refuse_rival()
             if waited > patience or link.gone:
                 raise InputError(f"{missing} in {patience:g} s; check --connect and the vehicle")
-            if waited - asked > _ASK_INTERVAL:
-                asked = waited
+            if waited - requested > _REQUEST_INTERVAL:
+                requested = waited
                 again()
 
     def _refuse_rival(self) -> None:
@@ -229,16 +231,16 @@ class Companion:
         """Refuse a vehicle that another companion flies, which says so once a second of real time,
         also where the vehicle's clock waits.
         """
-        until = time.monotonic() + _RIVALS_HEARD_IN
+        until = time.monotonic() + _RIVALS_SEEN_IN
         while time.monotonic() < until:
             self.link.advance(self.link.now)
             self._refuse_rival()
             time.sleep(_RIVALS_LOOK)
 
     def _parameter(self, *names: str) -> float:
-        told = self.link.parameters
-        name = next(each for each in names if each in told or each in _DEFAULTS)
-        value = told.get(name, _DEFAULTS.get(name, math.nan))
+        parameters = self.link.parameters
+        name = next(each for each in names if each in parameters or each in _DEFAULTS)
+        value = parameters.get(name, _DEFAULTS.get(name, math.nan))
         return 0.01 * value if name == "LIM_ROLL_CD" else value
 
     def check_limits(self, setup: VehicleSetup, heading_rate_max: float, altitude: float) -> None:
@@ -246,8 +248,7 @@ class Companion:
 
         Raises
         ------
-        InputError : they are
-        """
+        InputError : they are narrower"""
         ratio = equivalent_over_true(altitude)
         roll, slowest, fastest = (self._parameter(*names) for names in _NEEDED.values())
         turning = min(setup.airspeed_max, setup.turning_airspeed(heading_rate_max))
@@ -268,8 +269,8 @@ class Companion:
     def on_link(self, setup: VehicleSetup, request: FlightRequest) -> VehicleSetup:
         """Return what a flight needs of its vehicle, with the link between them.
 
-        The dead time delays every turn. By what a command may be later than that, the vehicle flies
-        on towards the vessel, at most at the sum of both speeds through the air.
+        The dead time delays every turn. If a command arrives even later, the vehicle flies on
+        towards the vessel in the meantime, at most at the sum of both speeds through the air.
         """
         scenario = request.scenario
         dead = self.dead_time
@@ -293,15 +294,16 @@ class Companion:
     # ------------------------------------------------------------ taking over
 
     def take_over(
-        self, plan: FlightPlan, asked_back: Callable[[], bool], *, other_radius: float
+        self, plan: FlightPlan, recalled: Callable[[], bool], *, other_radius: float
     ) -> TakenOver:
         """Wait until the vehicle is in GUIDED; return it with the plan of the flight from where it
         is, and the ships that will report themselves.
 
         Parameters
         ----------
-        plan, asked_back : the flight, and what says whether somebody has asked for the vehicle
-        other_radius : kept from ships besides the measured one [m]
+        plan, recalled : the flight, and a function that returns whether the user has recalled the
+            vehicle
+        other_radius : radius to keep from ships other than the measured one [m]
 
         Raises
         ------
@@ -312,20 +314,20 @@ class Companion:
             link.command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number, interval)
         link.advance(link.now)
         self._wait(
-            lambda: link.state is not None, self.patience, "the vehicle told no place but 0/0"
+            lambda: link.state is not None, self.patience, "the vehicle reports no place but 0/0"
         )
         if plan.world is not None:
             self._wait(
-                lambda: bool(self._vessels()), self.patience, "no report of the vessel was heard"
+                lambda: bool(self._vessels()), self.patience, "no report of the vessel was received"
             )
         self._listen_for_rivals()
         self.say(f"waiting for GUIDED, in mode {link.mode}")
         self._wait(
-            lambda: link.mode == PlaneMode.GUIDED or asked_back(),
+            lambda: link.mode == PlaneMode.GUIDED or recalled(),
             self.patience,
             "the vehicle was not in GUIDED",
         )
-        if asked_back():
+        if recalled():
             raise InputError("given back on request, before the vehicle was in GUIDED")
         fresh = _FRESH * plan.time_step
         self._wait(
@@ -333,7 +335,7 @@ class Companion:
                 self.lockstep or (link.state is not None and link.now - link.state.time < fresh)
             ),
             _PATIENCE,
-            f"the vehicle did not tell its place every {plan.time_step:g} s",
+            f"the vehicle did not report its place every {plan.time_step:g} s",
         )
         assert link.state is not None
         began = link.now if self.lockstep else link.state.time
@@ -349,28 +351,28 @@ class Companion:
             by=self.by,
             lockstep=self.lockstep,
             antenna=Antenna(AT_THE_FUNNEL if hull is None else hull.antenna_offset),
-            asked_back=asked_back,
+            recalled=recalled,
         )
-        heard, others = None, _others_of(plan, other_radius)
+        track, others = None, _others_of(plan, other_radius)
         if mmsi is not None:
-            heard = HeardVessel()
-            heard.report(vehicle.measured(*link.vessels[mmsi]))
-            self._check_vessel(plan, heard)
+            track = ReceivedVessel()
+            track.report(vehicle.measured(*link.vessels[mmsi]))
+            self._check_vessel(plan, track)
             self._check_size(plan, mmsi)
             self._check_alone(mmsi, others)
-            vehicle.listen(mmsi, heard.report, others)
-        plan = self._from_here(plan, vehicle, frame, heard)
+            vehicle.listen(mmsi, track.report, others)
+        plan = self._from_here(plan, vehicle, frame, track)
         if others is not None:
             plan = self._beside(plan, others)
         link.degrade()
         self.say("GUIDED: flying")
-        return TakenOver(vehicle=vehicle, plan=plan, heard=heard, others=others)
+        return TakenOver(vehicle=vehicle, plan=plan, track=track, others=others)
 
     def _vessels(self) -> list[int]:
-        heard = list(self.link.vessels)
+        numbers = list(self.link.vessels)
         if self.mmsi is not None:
-            return [self.mmsi] if self.mmsi in heard else []
-        return heard
+            return [self.mmsi] if self.mmsi in numbers else []
+        return numbers
 
     def _frame(self, plan: FlightPlan, began: float) -> tuple[LocalFrame, int | None]:
         """Return the frame of the flight, whose origin is where its vessel is at the start, and the
@@ -382,15 +384,17 @@ class Companion:
             here = LocalFrame(state.latitude, state.longitude, height)
             origin = here.to_geodetic(-plan.start.north, -plan.start.east)
             return LocalFrame(float(origin[0]), float(origin[1]), height), None
-        heard = self._vessels()
-        if len(heard) > 1:
-            names = ", ".join(map(str, sorted(heard)[:5]))
-            raise InputError(f"{len(heard)} vessels are heard ({names}); choose one by --mmsi")
-        at, vessel = self.link.vessels[heard[0]]
+        numbers = self._vessels()
+        if len(numbers) > 1:
+            names = ", ".join(map(str, sorted(numbers)[:5]))
+            raise InputError(
+                f"{len(numbers)} vessels report themselves ({names}); choose one by --mmsi"
+            )
+        at, vessel = self.link.vessels[numbers[0]]
         there = LocalFrame(vessel.latitude, vessel.longitude, height)
         since = began - at
         origin = there.to_geodetic(vessel.velocity_north * since, vessel.velocity_east * since)
-        return LocalFrame(float(origin[0]), float(origin[1]), height), heard[0]
+        return LocalFrame(float(origin[0]), float(origin[1]), height), numbers[0]
 
     def _limits(self, plan: FlightPlan) -> Limits:
         return Limits(
@@ -409,20 +413,20 @@ class Companion:
             guided_timeout=self._parameter(_GUIDED_TIMEOUT),
         )
 
-    def _check_vessel(self, plan: FlightPlan, heard: HeardVessel) -> None:
-        """Refuse a vessel that is not the one of a scenario that knows it beforehand."""
+    def _check_vessel(self, plan: FlightPlan, track: ReceivedVessel) -> None:
+        """Refuse a vessel that differs from the known vessel of a scenario."""
         if isinstance(plan.guidance.vessel, ReportedVessel):
             return
-        told, known = heard.motion(0.0)[2:], plan.guidance.vessel
-        off = math.hypot(told[0] - known[0], told[1] - known[1])
+        reported, known = track.motion(0.0)[2:], plan.guidance.vessel
+        off = math.hypot(reported[0] - known[0], reported[1] - known[1])
         if off > _VELOCITY_MAX:
             raise InputError(
-                f"the vessel reports {math.hypot(*told):.1f} m/s, {off:.1f} m/s off the velocity"
-                " that this scenario knows; fly one that learns it: set reports.interval_s"
+                f"the vessel reports {math.hypot(*reported):.1f} m/s, {off:.1f} m/s off the"
+                " velocity that this scenario knows; fly one that learns it: set reports.interval_s"
             )
 
     def _check_alone(self, mmsi: int, others: OtherShips | None) -> None:
-        """Refuse other ships in a scenario whose guidance takes no note of them."""
+        """Refuse other ships in a scenario whose guidance does not use them."""
         besides = len(self.link.vessels) - 1
         if others is None and besides:
             raise InputError(
@@ -431,14 +435,14 @@ class Companion:
             )
 
     def _check_size(self, plan: FlightPlan, mmsi: int) -> None:
-        """Refuse a ship that says that it is larger than the scenario takes it to be."""
+        """Refuse a ship whose reported size is larger than that of the scenario."""
         said = self.link.vessels[mmsi][1].size
         if said is None or plan.world is None:
             return
         self.say(f"vessel {mmsi}: {said.described()}")
         hull = plan.world.hull
         if hull is None:
-            # Its outline is then taken to be where it reports itself.
+            # Its outline is then assumed about the place that it reports.
             if _reach(said) >= plan.keepout_radius:
                 raise InputError(
                     f"the vessel says that it is {said.described()}; its hull reaches"
@@ -466,23 +470,23 @@ class Companion:
         plan: FlightPlan,
         vehicle: RemoteVehicle,
         frame: LocalFrame,
-        heard: HeardVessel | None,
+        track: ReceivedVessel | None,
     ) -> FlightPlan:
-        """Return the plan from where the vehicle is, with what will be heard as what is true."""
+        """Return the plan from the vehicle's place, with the received track as the true one."""
         motion, world = vehicle.motion(), plan.world
         _, heading, _ = vehicle.air_data()
         start = Start(north=motion.north, east=motion.east, course=heading)
-        if world is None or heard is None:
+        if world is None or track is None:
             return replace(plan, start=start)
         vessel = plan.guidance.vessel
         if isinstance(vessel, ReportedVessel):
             known = ReachableSet(vessel.limits)
-            north, east, v_north, v_east = heard.motion(0.0)
+            north, east, v_north, v_east = track.motion(0.0)
             known.report(VesselReport(0.0, north, east, v_north, v_east))
             tubes = list(known.tubes(0.0))
         else:
             tubes = [Tube(0.0, 0.0, 0.0, *vessel)]
-        vessel_north, vessel_east, *_ = heard.motion(0.0)
+        vessel_north, vessel_east, *_ = track.motion(0.0)
         distance = math.hypot(motion.north - vessel_north, motion.east - vessel_east)
         if distance < plan.keepout_radius:
             raise InputError(
@@ -519,10 +523,10 @@ class Companion:
                 world,
                 place=place,
                 exhaust=None,
-                vessel=heard,
-                plume=HeardPlume(heard, self._plume_heading(plan)),
+                vessel=track,
+                plume=ReceivedPlume(track, self._plume_heading(plan)),
             ),
-            # What is read is the telemetry, errors and all; reports come over the link.
+            # Readings are the telemetry with its errors; reports come over the link.
             sensing=replace(plan.sensing, errors=exact, received=[]),
         )
 
@@ -555,7 +559,7 @@ class Companion:
         )
         return replace(
             plan,
-            # They are passed on to the guidance as they report themselves.
+            # The guidance gets them from their reports.
             guidance=replace(guidance, traffic=replace(known, vessels=())),
             world=replace(world, traffic=others.ships),
             sensing=replace(plan.sensing, traffic=()),
@@ -569,10 +573,10 @@ class Companion:
 
 
 def _others_of(plan: FlightPlan, radius: float) -> OtherShips | None:
-    """Return the other ships of a flight, of which none is known yet; None where the guidance takes
-    no note of any.
+    """Return the other ships of a flight, all of them still unknown; None where the guidance does
+    not use them.
 
-    The scenario does not say which MMSI its own ones have: the largest of their radii is kept.
+    The scenario does not give the MMSI of its ships: the largest of their radii is kept.
     """
     traffic, vessel = plan.guidance.traffic, plan.guidance.vessel
     if traffic is None or not isinstance(vessel, ReportedVessel):
@@ -582,7 +586,7 @@ def _others_of(plan: FlightPlan, radius: float) -> OtherShips | None:
 
 
 def _reach(size: ShipSize) -> float:
-    """Return how far a hull reaches from its antenna, at most, by what is said of it [m]."""
+    """Return the largest distance of a hull's edge from its antenna, from the reported size [m]."""
     ways = []
     for said, before in ((size.length, size.to_bow), (size.beam, size.to_port)):
         whole = said or 0.0
@@ -591,24 +595,24 @@ def _reach(size: ShipSize) -> float:
 
 
 @contextmanager
-def _asked_back() -> Iterator[Callable[[], bool]]:
-    """Yield what says whether Ctrl-C or SIGTERM has asked for the vehicle; a second one ends the
-    program.
+def _recall() -> Iterator[Callable[[], bool]]:
+    """Yield a function that returns whether Ctrl-C or SIGTERM has recalled the vehicle; a second
+    signal ends the program.
     """
-    asked = threading.Event()
+    requested = threading.Event()
     kinds = (signal.SIGINT, signal.SIGTERM)
 
-    def ask(*_: Any) -> None:
-        if asked.is_set():
+    def request(*_: Any) -> None:
+        if requested.is_set():
             raise KeyboardInterrupt
-        asked.set()
+        requested.set()
 
     if threading.current_thread() is not threading.main_thread():
-        yield asked.is_set
+        yield requested.is_set
         return
-    before = [signal.signal(kind, ask) for kind in kinds]
+    before = [signal.signal(kind, request) for kind in kinds]
     try:
-        yield asked.is_set
+        yield requested.is_set
     finally:
         for kind, handler in zip(kinds, before, strict=True):
             signal.signal(kind, handler)
@@ -626,14 +630,14 @@ class CompanionRunner(FlightRunner):
     companion: Companion
 
     def setup_of(self, request: FlightRequest) -> VehicleSetup:
-        """Return what a flight needs of its vehicle, and of the link to it."""
+        """Return the flight's setup of its vehicle, including the link to it."""
         return self.companion.on_link(super().setup_of(request), request)
 
     def fly(self, request: FlightRequest, plan: FlightPlan, *, every_step: bool) -> Flown:
         """Return a planned flight, flown on the vehicle."""
-        with _asked_back() as asked_back:
+        with _recall() as recalled:
             taken = self.companion.take_over(
-                plan, asked_back, other_radius=radius_kept(request.scenario)
+                plan, recalled, other_radius=radius_kept(request.scenario)
             )
             vehicle, plan = taken.vehicle, taken.plan
             sniffer = self._sniffer(request)
@@ -657,40 +661,42 @@ class CompanionRunner(FlightRunner):
 
     @cached_property
     def columns(self) -> Table:
-        """What the columns of time histories are: any flight may meet other ships."""
+        """Units and meanings of the columns of time histories: any flight may meet other ships."""
         return {**history_columns(self.experiments), **TrafficBelief.COLUMNS}
 
-    def _sniffer(self, request: FlightRequest) -> HeardSniffer | None:
-        """Return the sniffer whose readings come on a line, in a flight that has one."""
+    def _sniffer(self, request: FlightRequest) -> ReceivedSniffer | None:
+        """Return the sniffer whose readings arrive on a line; None for a flight without one."""
         line = self.companion.sniffer
-        return HeardSniffer(line, request.scenario) if line and _has_sniffer(request) else None
+        return ReceivedSniffer(line, request.scenario) if line and _has_sniffer(request) else None
 
     @staticmethod
     def _connect(loop: ClosedLoop, taken: TakenOver) -> None:
-        """Have reports of ships come to the guidance and to the record."""
+        """Connect reports of ships to the guidance and to the record."""
         target, own = loop.guidance.target, loop.guidance.own
-        plan, heard = taken.plan, taken.heard
+        plan, track = taken.plan, taken.track
         if taken.others is not None and loop.guidance.traffic is not None:
             taken.others.pass_on_to(loop.guidance.traffic)
         plume = plan.world.plume if plan.world else None
-        if isinstance(plume, HeardPlume):
+        if isinstance(plume, ReceivedPlume):
             plume.wind = lambda: (own.wind_north, own.wind_east)
-        if not isinstance(target, ReportedTarget) or heard is None:
+        if not isinstance(target, ReportedTarget) or track is None:
             return
-        target.report(VesselReport(0.0, *heard.motion(0.0)))
+        target.report(VesselReport(0.0, *track.motion(0.0)))
 
         def report(of: VesselReport) -> None:
-            heard.report(of)
+            track.report(of)
             target.report(of)
 
         taken.vehicle.pass_reports_to(report)
 
 
-def _record(loop: ClosedLoop, vehicle: RemoteVehicle, sniffer: HeardSniffer | None) -> FlightRecord:
+def _record(
+    loop: ClosedLoop, vehicle: RemoteVehicle, sniffer: ReceivedSniffer | None
+) -> FlightRecord:
     """Fly; the flight ends where the vehicle is given back.
 
-    It is where the guidance takes a fault for certain, before what it commands then is flown: a
-    study's aircraft would glide to the sea. A pilot and the vehicle's own failsafes know better.
+    This is the case where the guidance detects a fault, before its next command is flown: a study's
+    aircraft would glide to the sea. A pilot and the vehicle's failsafes know better.
     """
     monitor = loop.guidance.monitor
     steps = loop.steps()
@@ -702,7 +708,7 @@ def _record(loop: ClosedLoop, vehicle: RemoteVehicle, sniffer: HeardSniffer | No
                 vehicle.give_back(f"{monitor.fault.value}, by the heading rate")
             loop.ending.given_back = vehicle.given_back
             if sniffer is not None:
-                sniffer.hear(vehicle.time)
+                sniffer.receive(vehicle.time)
             commands = follow(commands)
     except StopIteration as over:
         return record_of(over)
@@ -753,7 +759,7 @@ class CompanionFlight(SingleFlight):
         parts = {field.name: getattr(work, field.name) for field in fields(FlightRunner)}
         runner = CompanionRunner(**parts, companion=self.companion)
         request = runner.request(self.task)
-        check_flyable(request, heard=self.companion.sniffer is not None)
+        check_flyable(request, sniffer_line=self.companion.sniffer is not None)
         plan = FlightRunner.plan(runner, request)
         if plan.sensing is not None and plan.sensing.received is None:
             raise InputError(
@@ -770,13 +776,13 @@ def _has_sniffer(request: FlightRequest) -> bool:
     return request.scenario.payload.instruments == (SNIFFER,)
 
 
-def check_flyable(request: FlightRequest, *, heard: bool) -> None:
-    """Refuse a flight with parts that are simulated in a study, and would not be on a vehicle;
-    ``heard`` says whether readings of a sniffer come on a line.
+def check_flyable(request: FlightRequest, *, sniffer_line: bool) -> None:
+    """Refuse a flight with parts that a study simulates, and that a vehicle does not have;
+    ``sniffer_line`` says whether readings of a sniffer come on a line.
 
     Raises
     ------
-    InputError : it has some
+    InputError : it has such parts
     """
     scenario = request.scenario
     for number, fault in enumerate(scenario.faults):
@@ -790,13 +796,13 @@ def check_flyable(request: FlightRequest, *, heard: bool) -> None:
             "following.plume is 'told', which only a simulation can; set predicted or estimated"
         )
     instruments = scenario.payload.instruments
-    if instruments and not (heard and _has_sniffer(request)):
+    if instruments and not (sniffer_line and _has_sniffer(request)):
         raise InputError(
             f"payload.instruments has {', '.join(instruments)}, which a study simulates; a"
             " companion reads a sniffer on a line (--sniffer), and nothing else: set"
             " payload.instruments"
         )
-    if heard and not instruments:
+    if sniffer_line and not instruments:
         raise InputError(
             '--sniffer: the scenario has no sniffer; set payload.instruments=["sniffer"]'
         )

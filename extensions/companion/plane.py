@@ -1,4 +1,4 @@
-"""ArduPlane's modes over the autopilot of the study, as far as a companion computer meets them.
+"""ArduPlane's modes over the autopilot of the study, as far as a companion computer uses them.
 
 Written from ArduPlane's documented behaviour. In GUIDED a roll by SET_ATTITUDE_TARGET is flown for
 ``GUIDED_TIMEOUT``; without one, a course by GUIDED_CHANGE_HEADING, which is sticky; without that,
@@ -25,10 +25,10 @@ _SLOWEST = 1.0
 """Least airspeed in the heading rate of a turn [m/s]."""
 
 _FASTEST_CHANGE = 1000.0
-"""Rate of a change of speed or height for which none is given, as ArduPlane has it [m/s^2, m/s]."""
+"""Default rate of a change of speed or height, as in ArduPlane [m/s^2, m/s]."""
 
 _LEAST_ACCELERATION = 0.05
-"""Of a change of heading [m/s^2]."""
+"""Default lateral acceleration of a change of heading [m/s^2]."""
 
 ACCEPTED: int = mavlink.MAV_RESULT_ACCEPTED
 DENIED: int = mavlink.MAV_RESULT_DENIED
@@ -58,7 +58,7 @@ class Loiter:
 
 @dataclass(slots=True)
 class _Guided:
-    """What GUIDED was asked for last; times are of the plane's clock [s]."""
+    """The last demands in GUIDED; times are of the plane's clock [s]."""
 
     roll: float = 0.0
     roll_at: float = -math.inf
@@ -73,12 +73,12 @@ class Plane:
     Parameters
     ----------
     vehicle : under way, advanced by ``time_step`` at a time
-    frame : that its north and east are in
+    frame : of its north and east
     time_step : of the vehicle [s]
     altitude, airspeed : that it holds at the start [m, m/s]
     parameters : by ArduPlane's names; they may be changed at any time
     mode : at the start
-    say : told what a ground station would read
+    say : shows a message as a ground station would
 
     Attributes
     ----------
@@ -234,7 +234,7 @@ class Plane:
         return ACCEPTED
 
     def _altitude_of(self, frame: int, height: float) -> float | None:
-        """Return an altitude above the sea [m] by the frame of a command; none of other frames."""
+        """Return an altitude above the sea [m] by the frame of a command; None for other frames."""
         if not math.isfinite(height):
             return None
         if frame in (mavlink.MAV_FRAME_GLOBAL, mavlink.MAV_FRAME_GLOBAL_INT):
@@ -268,7 +268,7 @@ class Plane:
         self.steps += 1
 
     def _roll(self, heading: float, limit: float) -> float:
-        """Return the roll that the mode asks for [rad]."""
+        """Return the roll that the mode demands [rad]."""
         guided, motion = self._guided, self.vehicle.motion()
         if self.mode is PlaneMode.CIRCLE:
             return limit / 3.0
@@ -313,7 +313,7 @@ class Plane:
         return Loiter(motion.north, motion.east, abs(self.parameters["WP_LOITER_RAD"]))
 
     def _true(self, equivalent: float) -> float:
-        """Return a true airspeed [m/s] of an equivalent one, at the altitude that is flown."""
+        """Return the true airspeed [m/s] of an equivalent one, at the altitude of the flight."""
         return equivalent / equivalent_over_true(self._altitude)
 
 

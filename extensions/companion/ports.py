@@ -1,5 +1,4 @@
-"""Where MAVLink comes from and goes to: UDP, TCP or a serial line, with a telemetry log of both
-directions.
+"""Ports for MAVLink: UDP, TCP or a serial line, with a telemetry log of both directions.
 
 Addresses are ``udp://HOST:PORT`` and ``tcp://HOST:PORT``, which a vehicle listens at and a
 companion sends to; ``udpin://HOST:PORT``, at which a companion listens; and
@@ -25,13 +24,13 @@ from scenarios.errors import InputError
 
 _DATAGRAM = 65535
 _PEERS_MAX = 8
-"""Programs that may be connected at a time [-]: what comes from further ones is not read."""
+"""Largest number of connected programs [-]: data from further ones are not read."""
 
 _FORGET_AFTER = 30.0
-"""Time after which a peer over UDP that says nothing is forgotten [s]."""
+"""Time after which a silent peer over UDP is forgotten [s]."""
 
 _LONGEST_LINE = 400
-"""Letters of a line of text that are kept until its end comes [-]."""
+"""Largest number of letters of an incomplete line of text [-]."""
 
 _SERIAL = re.compile(r"serial://(/[^:]+):(\d+)")
 
@@ -49,7 +48,7 @@ class Line(Protocol):
         """Send to a peer; one that is gone gets nothing."""
 
     def connected(self) -> Sequence[Peer]:
-        """Return the peers that are known although they may have said nothing yet."""
+        """Return the peers that are known even if they have sent nothing yet."""
 
     def close(self) -> None:
         """Let the line go."""
@@ -88,7 +87,7 @@ class Udp:
             self._socket.sendto(data, peer)
 
     def connected(self) -> Sequence[Peer]:
-        """Return the one to which is sent, if this does not listen."""
+        """Return the peer to which this sends, if it does not listen."""
         return [self.other] if self.other is not None else []
 
     def close(self) -> None:
@@ -158,7 +157,7 @@ class Tcp:
         try:
             stream.sendall(data)
         except OSError:
-            # One that does not read would hold up the vehicle.
+            # A peer that does not read would delay the vehicle.
             self._drop(peer)
 
     def _drop(self, peer: Peer) -> None:
@@ -223,7 +222,7 @@ def opened(option: str, address: str, *, listening: bool) -> Line:
     Parameters
     ----------
     option : that gives the address, for messages
-    address : as the module says
+    address : see the module
     listening : whether others connect to it
 
     Raises
@@ -247,13 +246,13 @@ def opened(option: str, address: str, *, listening: bool) -> Line:
     raise InputError(f"{option} is '{address}'; give {known}{more}, as in tcp://127.0.0.1:5760")
 
 
-def heard(option: str, address: str) -> Line:
-    """Return the line at an address on which others say something and are not answered: a UDP
-    address is listened at.
+def opened_input(option: str, address: str) -> Line:
+    """Return the line at an address on which others send and get no answer; a UDP address is
+    listened at.
 
     Parameters
     ----------
-    option, address : as of ``opened``
+    option, address : as in ``opened``
 
     Raises
     ------
@@ -263,11 +262,11 @@ def heard(option: str, address: str) -> Line:
 
 
 class TextLines:
-    """Lines of text that come over a line, put together from the pieces in which they come.
+    """Lines of text, put together from the pieces in which they arrive.
 
     Parameters
     ----------
-    line : that they come over
+    line : over which they arrive
     """
 
     def __init__(self, line: Line) -> None:
@@ -275,7 +274,7 @@ class TextLines:
         self._rest: dict[Peer, bytes] = {}
 
     def receive(self) -> list[str]:
-        """Return the lines that have come, without waiting."""
+        """Return the lines that have arrived, without waiting."""
         found: list[str] = []
         for peer, data in self._line.receive(0.0):
             *lines, rest = (self._rest.pop(peer, b"") + data).split(b"\n")
@@ -296,7 +295,7 @@ class Port:
 
     Attributes
     ----------
-    malformed : number of packets that were no MAVLink, or damaged
+    malformed : number of packets that were damaged or not MAVLink
     """
 
     def __init__(self, line: Line, *, system: int, component: int, log: Path | None = None) -> None:
@@ -332,8 +331,8 @@ class Port:
             self._log.close()
 
     def receive(self, timeout: float) -> list[tuple[Peer, Any]]:
-        """Return the messages that have come and who sent them, after waiting for at most a time
-        [s].
+        """Return the messages that have arrived, with their senders, after waiting for at most a
+        time [s].
         """
         found: list[tuple[Peer, Any]] = []
         for peer, data in self._line.receive(timeout):
@@ -355,14 +354,14 @@ class Port:
         return found
 
     def _forget(self) -> None:
-        """Forget peers that have said nothing for long."""
+        """Forget peers that have been silent for long."""
         for peer in list(self._parsers):
             if time.monotonic() - self._heard.get(peer, -_FORGET_AFTER) >= _FORGET_AFTER:
                 del self._parsers[peer]
                 self._heard.pop(peer, None)
 
     def send(self, message: Any, peer: Peer | None = None) -> None:
-        """Send a message to a peer, or to everybody who has been heard or is connected."""
+        """Send a message to a peer, or to every peer that has sent something or is connected."""
         data = message.pack(self._packer)
         self._packer.seq = (self._packer.seq + 1) % 256
         self._note(data)

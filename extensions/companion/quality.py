@@ -1,9 +1,9 @@
-"""How bad a link is: as it is declared, and simulated.
+"""The quality of a link, as declared, and its simulation.
 
-What is declared is reckoned with. Telemetry is taken up a fixed time after it was measured, so that
-jitter does not become noise, and commands need the latency to arrive: both are dead time of the
-turn that the guard and the preview predict. What remains of the jitter, packets that are lost and
-silence bring the vehicle nearer than predicted by as far as it flies meanwhile.
+The guidance allows for the declared quality. Telemetry is used a fixed time after its measurement,
+so that jitter does not become noise, and commands need the latency to arrive: both are dead time of
+the turn that the guard and the preview predict. The rest of the jitter, lost packets and silence
+bring the vehicle nearer than predicted, by the distance that it flies in the meantime.
 """
 
 import heapq
@@ -18,7 +18,7 @@ from common.text import did_you_mean
 from scenarios.errors import InputError
 
 _MISSED = 1e-2
-"""Probability that more packets in a row are lost in a flight than is allowed for [-]."""
+"""Probability that more packets in a row are lost in a flight than the allowance [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,9 +28,9 @@ class Link:
     Attributes
     ----------
     latency : shortest time that a message takes [s]
-    jitter : by how much longer it may take [s]
+    jitter : largest additional time [s]
     loss : share of messages that are lost [-]
-    silence : longest time without any message that is flown through [s]
+    silence : longest time without any message during which the flight goes on [s]
     """
 
     latency: float = 0.0
@@ -40,7 +40,8 @@ class Link:
 
     @classmethod
     def of(cls, text: str) -> "Link":
-        """Return the link of ``latency=0.2,jitter=0.05,loss=0.05``; what is not given is 0.
+        """Return the link of ``latency=0.2,jitter=0.05,loss=0.05``; values that are not given are
+        0.
 
         Raises
         ------
@@ -66,19 +67,19 @@ class Link:
 
     @property
     def wait(self) -> float:
-        """Return after how long telemetry is taken up, since it was measured [s]."""
+        """Return the time from a measurement until its telemetry is used [s]."""
         return self.latency + self.jitter
 
     @property
     def dead_time(self) -> float:
-        """Return the time from a measurement until what is commanded for it arrives, in the mean
-        over the jitter [s].
+        """Return the time from a measurement until the command that follows from it arrives, in the
+        mean over the jitter [s].
         """
         return self.wait + self.latency + 0.5 * self.jitter
 
     def late(self, time_step: float, duration: float) -> float:
-        """Return by how much later than that a command may arrive, because of jitter, losses in a
-        row or silence [s].
+        """Return the largest additional delay of a command by jitter, losses in a row or silence
+        [s].
 
         Parameters
         ----------
@@ -97,7 +98,7 @@ class SimulatedLink:
 
     Parameters
     ----------
-    link : how bad it is
+    link : its quality
     seed : of its jitter and losses
     """
 

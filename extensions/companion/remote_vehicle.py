@@ -2,8 +2,8 @@
 long as its mode is GUIDED.
 
 A step of the guidance belongs to a time of the vehicle's clock. It is computed once the telemetry
-of that time is there, or has had the time that the link is declared to need; telemetry that is
-missing is extrapolated from the last. So the loop has one dead time, which guard and preview know.
+of that time has arrived, or after the declared time of the link; missing telemetry is extrapolated
+from the last. So the loop has one dead time, which guard and preview know.
 """
 
 import itertools
@@ -46,24 +46,24 @@ _RETREAT_INTERVAL = 5.0
 """Time between renewals of the place to retreat to [s]."""
 
 _LEAVING_GAIN = 1.0
-"""Heading rate over the angle that is left to the course away [1/s]."""
+"""Heading rate over the remaining angle to the course away [1/s]."""
 
 _LEAVING_STEPS = 5
-"""Least number of times that the vehicle is told to leave [-]: a message may be lost."""
+"""Least number of times that the command to leave is sent [-]: a message may be lost."""
 
 SILENT_AFTER = 1.0
 """Shortest time without telemetry after which the vehicle is given back [s]."""
 
 _STALE = 600.0
-"""Age from which on a report of another ship says nothing of where it is [s]: those at anchor
-report every three minutes (ITU-R M.1371-5, table 1)."""
+"""Age at which a report of another ship no longer determines its place [s]: ships at anchor report
+every three minutes (ITU-R M.1371-5, table 1)."""
 
 _BEARINGS = 36
-"""Directions from the vessel in which a place to retreat to is looked for [-]."""
+"""Number of directions from the vessel in which the search for a place to retreat looks [-]."""
 
 _DISTANCES = (1.0, 1.5, 2.0, 3.0)
-"""Distances there, over the one that is kept [-]: from ahead of the vessel a near one leads past
-it."""
+"""Distances in that search, over the one to keep [-]: from ahead of the vessel a near place leads
+past it."""
 
 _SPARE_RADII = 2.0
 """Turn radii between the keep-out area and the circle of a retreat [-]."""
@@ -71,20 +71,20 @@ _SPARE_RADII = 2.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
-    """What a companion needs to know of its flight.
+    """The parameters of a flight that a companion needs.
 
     Attributes
     ----------
     heading_rate_max : omega_max [rad/s]
-    keepout_radius : that a retreat keeps [m]
+    keepout_radius : to keep in a retreat [m]
     loiter_radius : of the vehicle's loiter [m]
     roll_max : of the vehicle [rad]
     gain : of the roll by the vehicle's heading error, in ``COURSE`` [-]
     dead_time : from a measurement until its command arrives [s]
     lag : of the heading rate behind a command that has arrived [s]
-    wait : after which a measurement is taken up [s]
+    wait : time after which a measurement is used [s]
     silent_after : time without telemetry after which the vehicle is given back [s]
-    guided_timeout : for which the vehicle flies the last roll [s]
+    guided_timeout : time for which the vehicle flies the last roll [s]
     """
 
     heading_rate_max: float
@@ -105,7 +105,7 @@ class RemoteVehicle:
     Parameters
     ----------
     link : to it
-    frame : that north and east are in
+    frame : of north and east
     limits : of the flight
     began : time of the vehicle's clock at the first step [s]
     time_step : of the guidance [s]
@@ -113,13 +113,13 @@ class RemoteVehicle:
     by : ``ATTITUDE`` or ``COURSE``
     lockstep : whether the vehicle's clock waits
     antenna : of the measured vessel
-    asked_back : says whether somebody has asked for the vehicle
+    recalled : returns whether the user has recalled the vehicle
 
     Attributes
     ----------
-    given_back : why it takes no more commands, or nothing
+    given_back : why it takes no more commands, or an empty text
     worst_wait : longest time by which a step was late [s]
-    extrapolated : number of steps without telemetry of their own
+    extrapolated : number of steps whose telemetry is extrapolated
     """
 
     def __init__(
@@ -134,13 +134,13 @@ class RemoteVehicle:
         by: str,
         lockstep: bool,
         antenna: Antenna,
-        asked_back: Callable[[], bool] = lambda: False,
+        recalled: Callable[[], bool] = lambda: False,
     ) -> None:
         if link.state is None:
             raise ValueError("a vehicle without a state cannot be flown")
         self._link, self._frame, self._limits = link, frame, limits
         self._began, self._time_step = began, time_step
-        self._by, self._lockstep, self._asked_back = by, lockstep, asked_back
+        self._by, self._lockstep, self._recalled = by, lockstep, recalled
         self._antenna = antenna
         self._state: AircraftState = link.state
         self._step = 0
@@ -161,12 +161,12 @@ class RemoteVehicle:
 
     @property
     def _target(self) -> float:
-        """Time of the vehicle's clock that the step belongs to [s]."""
+        """Time of the step by the vehicle's clock [s]."""
         return self._began + self._step * self._time_step
 
     @property
     def time(self) -> float:
-        """Time since the first step [s], of what is sent on board now."""
+        """Time since the first step [s] of the data that are sent on board now."""
         return self._link.now - self._began
 
     def motion(self) -> MeasuredMotion:
@@ -212,7 +212,7 @@ class RemoteVehicle:
         """Return nothing: accelerations are not read."""
 
     def sample(self) -> tuple[float, ...]:
-        """Return ``SAMPLE_COLUMNS``; angles of the air and control surfaces are not told."""
+        """Return ``SAMPLE_COLUMNS``; angles of the air and control surfaces are not reported."""
         state, unknown = self._state, math.nan
         return (
             state.altitude,
@@ -230,7 +230,7 @@ class RemoteVehicle:
         )
 
     def servo_error(self) -> float:
-        """Return 0: control surfaces are not told."""
+        """Return 0: control surfaces are not reported."""
         return 0.0
 
     def hold_elevator(self) -> None:
@@ -241,7 +241,7 @@ class RemoteVehicle:
         raise ValueError(f"'{name}' of a vehicle over a link cannot be made to fail")
 
     def fault(self, sample: tuple[float, ...]) -> str:
-        """Return nothing as long as the telemetry has numbers: the vehicle watches itself."""
+        """Return an empty text as long as the telemetry has numbers: the vehicle watches itself."""
         return "" if math.isfinite(sum(sample[:6])) else "the telemetry is not a number"
 
     # ------------------------------------------------------------ the vessel
@@ -249,13 +249,12 @@ class RemoteVehicle:
     def listen(
         self, mmsi: int, report: Callable[[VesselReport], None], others: OtherShips | None
     ) -> None:
-        """Pass reports on from now on, each once the guidance has come to the time at which it was
-        true.
+        """Pass reports on from now on, each when the guidance has reached its time.
 
         Parameters
         ----------
-        mmsi, report : of the measured vessel, and who takes its reports
-        others : who take the reports of other ships, if anybody does
+        mmsi, report : of the measured vessel, and the receiver of its reports
+        others : receiver of the reports of other ships, or None
         """
         self._mmsi, self._report, self._others = mmsi, report, others
 
@@ -308,7 +307,7 @@ class RemoteVehicle:
     # ------------------------------------------------------------ what the guidance commands
 
     def command_altitude(self, altitude: float, /) -> None:
-        """Let it climb or sink to an altitude [m] from the next step on, if that is flown."""
+        """Command an altitude [m] from the next step on, if that step is flown."""
         self._wanted_altitude = altitude
 
     def advance(self, heading_rate: float, airspeed: float) -> None:
@@ -337,8 +336,8 @@ class RemoteVehicle:
         if self._target - self._course_at < COURSE_INTERVAL - 1e-6:
             return
         self._course_at = self._target
-        # The heading that the vehicle has once the command arrives, what it turns until the next
-        # one, and by how much it has to be ahead for this bank.
+        # The heading of the vehicle when the command arrives, its turn until the next one, and the
+        # heading error that this bank needs.
         ahead = bank / self._limits.gain + 0.5 * COURSE_INTERVAL * heading_rate
         turned = float(self._frame.true_north(self._state.latitude, self._state.longitude))
         heading = math.degrees(self._heading() - turned + coming + ahead) % 360.0
@@ -350,8 +349,8 @@ class RemoteVehicle:
         )
 
     def _coming(self) -> float:
-        """Return by how much the vehicle turns until a command of now arrives, by those that are
-        under way [rad].
+        """Return the course that the vehicle turns by earlier commands until a command of now
+        arrives [rad].
         """
         rate, turned = self._heading_rate(), 0.0
         follows = 1.0 - math.exp(-self._time_step / self._limits.lag) if self._limits.lag else 1.0
@@ -399,7 +398,7 @@ class RemoteVehicle:
     # ------------------------------------------------------------ giving back
 
     def _judge_link(self) -> None:
-        """Give the vehicle back where it is no longer ours to fly."""
+        """Give the vehicle back where the companion may no longer fly it."""
         if self.given_back:
             return
         link = self._link
@@ -414,7 +413,7 @@ class RemoteVehicle:
             self.given_back = "the vehicle no longer answers"
         elif silent > self._limits.silent_after:
             self._leave(f"telemetry was silent for {silent:.1f} s")
-        elif self._asked_back():
+        elif self._recalled():
             self._leave("given back on request")
 
     def give_back(self, reason: str) -> None:
@@ -446,7 +445,7 @@ class RemoteVehicle:
                 return
 
     def _vessel_at(self, time: float) -> tuple[float, float]:
-        """Return where the vessel is by its last report, at a time of the vehicle's clock [m]."""
+        """Return the vessel's place from its last report, at a time of the vehicle's clock [m]."""
         assert self._vessel is not None
         since = time - self._began - self._vessel.time
         return (
@@ -455,7 +454,7 @@ class RemoteVehicle:
         )
 
     def _renew_retreat(self, *, always: bool = False) -> None:
-        """Tell the vehicle where to loiter when commands stop."""
+        """Send the place at which the vehicle loiters when commands stop."""
         due = always or self._target - self._retreat_at >= _RETREAT_INTERVAL
         if self._vessel is None or not due:
             return
@@ -492,11 +491,11 @@ def retreat(
     others: Sequence[Seen] = (),
     spare: float = 0.0,
 ) -> tuple[float, float]:
-    """Return a place to loiter at while nobody commands, north and east of the vessel [m].
+    """Return a place to loiter without commands, north and east of the vessel [m].
 
     It is beside the tracks of all ships, or behind them, so that they do not come to it, and the
-    straight way to it keeps away from them as far as any such way does. Where other ships leave no
-    such place, it is one that the vessel does not come to.
+    straight way to it keeps as far from them as possible. Where other ships leave no such place, it
+    is one to which the vessel does not come.
 
     Parameters
     ----------
@@ -504,7 +503,8 @@ def retreat(
     vessel : velocity of the vessel [m/s]
     keep : distance of the place from the vessel and its track [m]
     speed : of the vehicle over the ground [m/s]
-    others, spare : other ships as seen from the vessel, and what is kept beside their radius [m]
+    others, spare : other ships as seen from the vessel, and the distance kept in addition to their
+        radius [m]
     """
     ships = [Seen(0.0, 0.0, *vessel, keep)]
     ships += [other._replace(radius=other.radius + spare) for other in others]
@@ -538,10 +538,10 @@ def _comes_to(ship: Seen, place: tuple[float, float]) -> bool:
 
 
 def _nearer(ship: Seen, own: tuple[float, float], place: tuple[float, float], time: float) -> float:
-    """Return by how much nearer than its radius a ship is on the straight way to a place, which
-    takes a time [s]; 0 where it is not [m].
+    """Return the largest intrusion into a ship's radius on the straight way to a place, which takes
+    a time [s]; 0 without one [m].
     """
-    # Seen from the ship, the place has fallen back by the end.
+    # Relative to the ship, the place has fallen back by the end.
     start = own[0] - ship.north, own[1] - ship.east
     end = (
         place[0] - ship.north - ship.velocity_north * time,

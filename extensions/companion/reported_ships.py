@@ -1,4 +1,4 @@
-"""Ships as their reports make them known: the measured one, its plume, and those beside it."""
+"""Ships that are known from their reports: the measured one, its plume, and the other ships."""
 
 import bisect
 import math
@@ -12,11 +12,11 @@ from scenarios.world.ais.track import AT_THE_FUNNEL
 from scenarios.world.traffic import OtherShip
 
 KNOWN_WITHIN = 10_000.0
-"""Distance from the vehicle up to which a ship besides the measured one is taken note of [m]."""
+"""Largest distance from the vehicle of another ship that is taken in [m]."""
 
 
 _TURN_TIME = 20.0
-"""Time over which a rate of turn is the mean at least [s]: headings come in whole degrees."""
+"""Least time over which a rate of turn is averaged [s]: headings are in whole degrees."""
 
 
 class Seen(NamedTuple):
@@ -55,7 +55,7 @@ class Antenna:
 
         Parameters
         ----------
-        report, bow : where the antenna is, and the bow points [rad]; not before earlier ones
+        report, bow : of the antenna, and the direction of the bow [rad]; in the order of time
         """
         if self._offset == AT_THE_FUNNEL:
             return report
@@ -67,8 +67,8 @@ class Antenna:
         return at_funnel(AntennaReport(report, bow, rate), self._offset)
 
 
-class HeardVessel:
-    """A vessel's track as its reports tell it, by dead reckoning from the last one."""
+class ReceivedVessel:
+    """A vessel's track from its reports, by dead reckoning from the last one."""
 
     manoeuvres_end = math.nan
 
@@ -78,7 +78,7 @@ class HeardVessel:
         self._courses: list[float] = []
 
     def report(self, report: VesselReport) -> None:
-        """Take in a report, which is later than those before it."""
+        """Take in a report, which is later than all earlier ones."""
         course = math.atan2(report.velocity_east, report.velocity_north)
         if self._courses:
             last = self._courses[-1]
@@ -108,17 +108,17 @@ class HeardVessel:
         return self._courses[self._last(time)] if self._courses else 0.0
 
 
-class HeardPlume:
+class ReceivedPlume:
     """The axis of the plume behind a vessel that is known from reports, in the estimated wind.
 
     Parameters
     ----------
-    vessel : as it is heard
+    vessel : from its reports
     heading : of the plume from the bow, where it does not trail with the wind [rad]; None where it
         does
     """
 
-    def __init__(self, vessel: HeardVessel, heading: float | None) -> None:
+    def __init__(self, vessel: ReceivedVessel, heading: float | None) -> None:
         self._vessel, self._heading = vessel, heading
         self.wind: Callable[[], tuple[float, float]] = lambda: (0.0, 0.0)
         self._axis = 0.0
@@ -135,16 +135,16 @@ class HeardPlume:
 
 
 class OtherShips:
-    """The ships besides the measured one, which come to be known by their first reports.
+    """The ships other than the measured one, which become known by their first reports.
 
     Parameters
     ----------
     radius : kept from each of them [m]
-    limits : that they and their reports keep
+    limits : of their motion and their reports
 
     Attributes
     ----------
-    ships : that are known so far
+    ships : known so far
     reports : of each of them so far, in the same order
     """
 
@@ -152,13 +152,13 @@ class OtherShips:
         self._radius, self._limits = radius, limits
         self.ships: list[OtherShip] = []
         self.reports: list[list[VesselReport]] = []
-        self._tracks: list[HeardVessel] = []
+        self._tracks: list[ReceivedVessel] = []
         self._numbers: dict[int, int] = {}
         self._traffic: Traffic | None = None
 
     @property
     def vessels(self) -> tuple[OtherVessel, ...]:
-        """What the guidance knows of each of them before its reports."""
+        """The guidance's knowledge of each of them before its reports."""
         return tuple(map(self._vessel, self.ships))
 
     def _vessel(self, ship: OtherShip) -> OtherVessel:
@@ -184,9 +184,9 @@ class OtherShips:
             self._traffic.report(number, report)
 
     def _add(self, mmsi: int, time: float) -> None:
-        """Take in a ship that is known from a time on [s]."""
+        """Take in a ship that becomes known at a time [s]."""
         self._numbers[mmsi] = len(self.ships)
-        self._tracks.append(HeardVessel())
+        self._tracks.append(ReceivedVessel())
         ship = OtherShip(
             name=f"MMSI_{mmsi}",
             radius=self._radius,
@@ -201,7 +201,7 @@ class OtherShips:
             self._traffic.add(self._vessel(ship))
 
     def pass_on_to(self, traffic: Traffic) -> None:
-        """Pass what is known on to a guidance that knows none of them, and all that comes later."""
+        """Pass all present and later reports on to a guidance without any of these ships."""
         self._traffic = traffic
         for number, vessel in enumerate(self.vessels):
             traffic.add(vessel)

@@ -1,4 +1,6 @@
-"""A scenario's aircraft as a MAVLink vehicle: what it tells, what it takes, and its clock."""
+"""A scenario's aircraft as a MAVLink vehicle: the messages that it sends and takes, and its
+clock.
+"""
 
 import itertools
 import math
@@ -39,10 +41,10 @@ from scenarios.world.vessel import TRACK_STEP, VesselTruth
 SYSTEM, COMPONENT = 1, mavlink.MAV_COMP_ID_AUTOPILOT1
 
 MMSI, VESSEL_NAME = 999_999_999, "VESSEL"
-"""Of a scenario's vessel; its other ships have the numbers before it."""
+"""MMSI of a scenario's vessel; its other ships have the numbers below it."""
 
 _SLOW, _FAST = 1.0, 0.25
-"""Time between messages of a kind, unless another is asked for [s]."""
+"""Default time between messages of a kind [s]."""
 
 _STREAMS = {
     "HEARTBEAT": _SLOW,
@@ -54,7 +56,7 @@ _STREAMS = {
     "VFR_HUD": _FAST,
     "GLOBAL_POSITION_INT": _FAST,
 }
-"""What is sent at an interval of its own, in this order; a place comes last, and completes a state.
+"""Messages that have separate intervals, in their order; a place comes last, and completes a state.
 """
 
 _NUMBERS = {
@@ -75,7 +77,7 @@ often [s].
 """
 
 _VERSION = 4 << 24 | 5 << 16
-"""Of the autopilot whose GUIDED mode this has, as AUTOPILOT_VERSION states it: 4.5.0."""
+"""Version of the autopilot whose GUIDED mode is simulated, as in AUTOPILOT_VERSION: 4.5.0."""
 
 _REPOSITION = mavlink.MAV_CMD_DO_REPOSITION
 """Whose parameters may be no numbers."""
@@ -112,7 +114,7 @@ class Simulation:
     plan, setup : the flight and its vehicle
     home : latitude and longitude of the scenario's origin, where the scenario gives none [rad]
     mode : at the start
-    parameters : that differ from those of ``parameters_of``
+    parameters : those that differ from ``parameters_of``
 
     Attributes
     ----------
@@ -142,7 +144,7 @@ class Simulation:
             flown = AutopilotedAircraft(setup.aircraft.spec, setup.aircraft.model)
             step = flown.fdm.time_step
         self._fdm = flown.fdm if flown else None
-        # The vehicle is advanced by steps of its own, and not by those of the guidance.
+        # The vehicle is advanced by its time steps, not by those of the guidance.
         tracking = replace(plan.guidance.tracking, time_step=step)
         guidance = replace(plan.guidance, tracking=tracking)
         vehicle = release(replace(plan, guidance=guidance), setup, flown=flown)
@@ -173,7 +175,7 @@ class Simulation:
         self._measure()
 
     def fault(self) -> str:
-        """Return why the aircraft is out of control, or nothing."""
+        """Return why the aircraft is out of control, or an empty text."""
         return self.plane.vehicle.fault(self.plane.vehicle.sample())
 
     def _measure(self) -> None:
@@ -317,10 +319,11 @@ class _Reporting:
     Parameters
     ----------
     mmsi, name, track : of the ship
-    received : its reports as they are received, with the time of each [s]; None of one that is
+    received : its reports as they are received, with the time of each [s]; None for a ship that is
         known exactly
-    every : time between reports of that one [s]
-    antenna : whose place it tells, ahead of where the reports are of and to starboard of it [m]
+    every : time between reports of such a ship [s]
+    antenna : antenna whose place the vessel reports, ahead of the reports' place and to starboard
+        of it [m]
     """
 
     def __init__(
@@ -368,7 +371,7 @@ class Server:
 
     Parameters
     ----------
-    simulation, port : what is served, and where
+    simulation, port : the simulation, and its port
     lockstep : whether the clock waits for the SYSTEM_TIME of a companion
 
     Attributes
@@ -403,8 +406,8 @@ class Server:
         return "time is up"
 
     def answer(self, timeout: float) -> str:
-        """Take what has come in lockstep, after waiting for at most a time [s], and go on to the
-        time that was asked for; return why the aircraft is lost, or nothing.
+        """Take the messages in lockstep, after waiting for at most a time [s], and go on to the
+        requested time; return why the aircraft is lost, or an empty text.
         """
         self._serve(timeout)
         fault = self._fly_until(self._asked_for)
@@ -413,7 +416,7 @@ class Server:
         return fault
 
     def _fly_until(self, until: float) -> str:
-        """Fly until a time [s]; return why the aircraft is lost, or nothing."""
+        """Fly until a time [s]; return why the aircraft is lost, or an empty text."""
         simulation, fault = self._simulation, ""
         while not fault and simulation.time + 0.5 * self._plane.time_step < until:
             simulation.step()
@@ -442,13 +445,13 @@ class Server:
         self._told_until = now
 
     def _reached(self) -> Any:
-        """Return SYSTEM_TIME of the time that was asked for, to within half a step, with the number
-        of the request.
+        """Return SYSTEM_TIME of the requested time, to within half a step, with the number of the
+        request.
         """
         return mavlink.MAVLink_system_time_message(self._request, round(1e3 * self._asked_for))
 
     def _serve(self, timeout: float) -> None:
-        """Take what comes, after waiting for it for at most a time [s]."""
+        """Take the arriving messages, after waiting for at most a time [s]."""
         for peer, message in self._port.receive(timeout):
             self._take(peer, message)
 
@@ -483,13 +486,13 @@ class Server:
             self._answer(kind, message, peer)
 
     def _set_mode(self, number: int) -> int:
-        """Enter a mode, and tell it at once; return the result of the command."""
+        """Enter a mode, and report it at once; return the result of the command."""
         result = self._plane.set_mode(number)
         self._port.send(self._simulation.message("HEARTBEAT"))
         return result
 
     def _answer(self, kind: str, message: Any, peer: Peer) -> None:
-        """Answer what ground stations ask."""
+        """Answer the requests of ground stations."""
         sender = message.get_srcSystem(), message.get_srcComponent()
         if kind == "REQUEST_DATA_STREAM":
             rate = message.req_message_rate
@@ -504,7 +507,7 @@ class Server:
             self._port.send(mavlink.MAVLink_timesync_message(now, message.ts1), peer)
 
     def _advance_to(self, until: float, peer: Peer) -> None:
-        """Take the time that a companion's clock asks for; say again that one is reached."""
+        """Take the time that a companion's clock requests; confirm again a time that is reached."""
         self._asked_for = max(self._asked_for, until)
         if until <= self._simulation.time + 0.5 * self._plane.time_step:
             if self._told_until == -math.inf:
@@ -592,7 +595,7 @@ class Server:
 def send_readings(
     simulation: Simulation, request: FlightRequest, plan: FlightPlan, line: Line
 ) -> None:
-    """Have a flight's sniffer read along, and its readings be sent in lines.
+    """Read a flight's sniffer during the flight, and send its readings in lines.
 
     Raises
     ------

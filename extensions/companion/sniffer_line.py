@@ -1,8 +1,8 @@
 """Readings of a sniffer on board, in lines of text over UDP or a serial line.
 
 A line is a reading: ``age_s,so2_ppb,co2_ppm,no_ppb,no2_ppb``, numbers with a decimal point, an
-empty cell for what is not known, and nothing after the last known one. The age is that of the
-reading as it is sent; an empty one is 0. Lines that begin otherwise, such as a header, are no
+empty cell for an unknown value, and nothing after the last known one. The age is that of the
+reading when it is sent; an empty age is 0. Lines that begin otherwise, such as a header, are not
 readings.
 """
 
@@ -34,8 +34,8 @@ def reading_line(age: float, values: Sequence[float]) -> bytes:
 
 
 def reading_of(line: str) -> tuple[float, list[float]] | None:
-    """Return age [s] and values of a line, NaN for what it does not say; none of one that is no
-    reading.
+    """Return age [s] and values of a line, with NaN for missing values; None for a line that is not
+    a reading.
     """
     cells = [cell.strip() for cell in line.split(",")]
     if not 2 <= len(cells) <= 1 + len(GASES):
@@ -50,18 +50,18 @@ def reading_of(line: str) -> tuple[float, list[float]] | None:
     return age, values + [math.nan] * (len(GASES) - len(values))
 
 
-class HeardSniffer:
+class ReceivedSniffer:
     """A sniffer whose readings come over a line, as ``scenarios.instruments.instrument.GasReader``.
 
     Parameters
     ----------
-    line : that it is heard on
-    scenario : says which instrument it is, and the limit of its verdict
+    line : on which its readings arrive
+    scenario : with the instrument, and the limit of its verdict
 
     Attributes
     ----------
-    spec : as its data sheet says
-    unreadable : number of lines that were no readings
+    spec : its data sheet
+    unreadable : number of lines that were not readings
     """
 
     COLUMNS = described(
@@ -81,14 +81,14 @@ class HeardSniffer:
 
     @property
     def limit_percent(self) -> float:
-        """Sulphur content that the verdict is on [% m/m]."""
+        """Limit of the verdict on the sulphur content [% m/m]."""
         limit: float = self._settings.limit_percent
         return limit
 
-    def hear(self, time: float) -> None:
-        """Take what has come until a time since the start [s].
+    def receive(self, time: float) -> None:
+        """Take the lines that have arrived until a time since the start [s].
 
-        Lines of one that began to send before the flight have times before it.
+        Lines of a sniffer that began to send before the flight have times before it.
         """
         for line in self._lines.receive():
             self._take(time, line)
@@ -123,7 +123,7 @@ class HeardSniffer:
         return found
 
     def readings(self, since: float) -> Readings:
-        """Return what has been read since a time [s]."""
+        """Return the readings since a time [s]."""
         time, values = self._arrays()
         late = time >= since
         return Readings(time[late], values[late])
@@ -133,7 +133,7 @@ class HeardSniffer:
         return np.array(self._times, dtype=np.float64), values
 
     def evaluate(self, column: Callable[[str], Array], since: float) -> Evaluation:
-        """Return the readings at each sample, and what they say of the fuel."""
+        """Return the readings at each sample, and the estimate of the fuel from them."""
         samples = column("time_s")
         time, values = self._arrays()
         columns = np.full((len(samples), len(GASES)), np.nan)

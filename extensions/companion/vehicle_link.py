@@ -1,11 +1,11 @@
-"""The link from a companion to its vehicle: messages both ways over a link that may be bad, what
-the vehicle says of itself, and its clock.
+"""The link from a companion to its vehicle: messages in both directions over a possibly bad link,
+the vehicle's reports of its state, and its clock.
 
 Times are those of the vehicle's clock. In lockstep the companion sets that clock: it sends the time
-that it wants as SYSTEM_TIME, and the vehicle answers with the same once it is there and has told
-everything up to then. ``time_unix_usec`` numbers the request, and its answer. These messages are no
-traffic of the link, and take no time. Otherwise the clock is estimated from the telemetry's
-time stamps, by the one that came fastest.
+that it wants as SYSTEM_TIME, and the vehicle answers with the same time when it has reached it and
+has reported everything up to it. ``time_unix_usec`` numbers the request and its answer. These
+messages do not count as traffic of the link, and take no time. Otherwise the clock is estimated
+from the telemetry's time stamps, by the one that came fastest.
 """
 
 import math
@@ -24,13 +24,15 @@ from extensions.companion.quality import Link, SimulatedLink
 COMPONENT = mavlink.MAV_COMP_ID_ONBOARD_COMPUTER
 
 _HEARTBEAT_INTERVAL = 1.0
-_ASK_AGAIN, _GIVE_UP = 0.5, 60.0
-"""After how long a vehicle in lockstep is asked once more for its time, and counts as gone [s]: it
-may have to compute for long.
+_REQUEST_AGAIN, _GIVE_UP = 0.5, 60.0
+"""Time after which the request of a vehicle's time in lockstep is repeated, and time after which
+the vehicle counts as gone [s]: it may have to compute for long.
 """
 
 _JUMP = 1.0
-"""By how much a vehicle's clock may differ from what is expected [s]; one that restarted does."""
+"""Largest difference of a vehicle's clock from the expected time [s]; the clock of a restarted
+vehicle differs by more.
+"""
 
 _ATTITUDE_AGE = 1.0
 """Longest time over which a heading is extrapolated to its place [s]."""
@@ -40,12 +42,12 @@ _IDLE = 0.05
 
 
 class VehicleLink:
-    """What is known of a vehicle, and a way to tell it something.
+    """The state of a vehicle, and messages to it.
 
     Parameters
     ----------
     port : to the vehicle
-    link : how bad the link is declared to be
+    link : declared quality of the link
     lockstep : whether the vehicle's clock waits for this one
     simulated : seed of a bad link that is simulated, or None for the one that there is
     receiver : AIS receiver on board, in place of the AIS_VESSEL of the vehicle, or None
@@ -55,10 +57,10 @@ class VehicleLink:
     now : time of the vehicle's clock [s]
     system : of the vehicle, 0 before its first heartbeat
     kind, autopilot, mode : of its heartbeat
-    parameters : that it has told, by name
-    state : its motion; None before it was told completely
+    parameters : that it has reported, by name
+    state : its motion; None before it was reported completely
     vessels : last report of each vessel by its MMSI, with the time at which it was true [s]
-    rival : another companion that was heard, as (system, component), or None
+    rival : another companion on the link, as (system, component), or None
     restarted : whether the vehicle's clock has jumped
     """
 
@@ -95,7 +97,7 @@ class VehicleLink:
         self.gone = False
 
     def degrade(self) -> None:
-        """Have the link be as bad as declared from now on, where that is simulated."""
+        """Degrade the link as declared from now on, where that is simulated."""
         if self._simulated is not None:
             self._up = SimulatedLink(self._link, f"up {self._simulated}")
             self._down = SimulatedLink(self._link, f"down {self._simulated}")
@@ -137,7 +139,7 @@ class VehicleLink:
         )
 
     def request_parameter(self, name: str) -> None:
-        """Ask for a parameter."""
+        """Request a parameter."""
         self.send(
             mavlink.MAVLink_param_request_read_message(
                 self.system, mavlink.MAV_COMP_ID_AUTOPILOT1, name.encode(), -1
@@ -177,7 +179,7 @@ class VehicleLink:
                 self._deliver()
                 if self.now >= until - 1e-9 or self.gone:
                     return
-        # What has come already is taken first: a step that is late must not make the next one late.
+        # Messages that have arrived are taken first: a late step must not delay the next one.
         left = 0.0
         while True:
             for _, message in self._port.receive(min(left, _IDLE)):
@@ -195,8 +197,8 @@ class VehicleLink:
         return time.monotonic() + self._offset
 
     def _ask(self, until: float) -> None:
-        """Have the vehicle's clock go on to a time [s]."""
-        began, asked = time.monotonic(), -math.inf
+        """Let the vehicle's clock go on to a time [s]."""
+        began, requested = time.monotonic(), -math.inf
         milliseconds = round(1e3 * until)
         self._request += 1
         while self._answered < self._request or 1e3 * self._reached < milliseconds - 0.5:
@@ -204,8 +206,8 @@ class VehicleLink:
             if clock - began >= _GIVE_UP:
                 self.gone = True
                 return
-            if clock - asked >= _ASK_AGAIN:
-                asked = clock
+            if clock - requested >= _REQUEST_AGAIN:
+                requested = clock
                 self._port.send(mavlink.MAVLink_system_time_message(self._request, milliseconds))
             for _, message in self._port.receive(_IDLE):
                 self._receive(message, at=until)
@@ -257,7 +259,7 @@ class VehicleLink:
     def _deliver(self) -> None:
         for message in self._down.due(self.now):
             self._take(message)
-        for vessel in self._receiver.hear() if self._receiver else ():
+        for vessel in self._receiver.receive() if self._receiver else ():
             self._hear_of(self.now - vessel.age, vessel)
 
     def _hear_of(self, true_at: float, vessel: VesselState) -> None:
@@ -293,13 +295,13 @@ class VehicleLink:
                     self._hear_of(self.now - self._link.latency - vessel.age, vessel)
 
     def _place(self, message: Any) -> None:
-        """Take a place, which completes the state; that of 0/0 is none."""
+        """Take a place, which completes the state; 0/0 is not a place."""
         attitude, hud = self._attitude, self._hud
         if attitude is None or hud is None or (message.lat == 0 and message.lon == 0):
             return
         stamp = 1e-3 * message.time_boot_ms
         if self.state is not None and stamp < self.state.time:
-            # Overtaken on its way.
+            # A newer place has overtaken it.
             return
         rates = attitude.rollspeed, attitude.pitchspeed, attitude.yawspeed
         # The last attitude may be older than the place: one was lost, or sent at another time.

@@ -1,6 +1,6 @@
 """Thousands of vehicles that track their references, integrated at once.
 
-Each trajectory has a time and a step size of its own. One that ends makes room for the next.
+Each trajectory has a separate time and step size. One that ends makes room for the next.
 """
 
 from collections.abc import Callable
@@ -364,8 +364,8 @@ def dormand_prince_step(
 ) -> tuple[Array, Array, Array]:
     """Return the state after a step, its rates, and its error, the difference of both orders.
 
-    Many systems take a step at once, each with a time and a step of its own. The formulae are those
-    of orders 5 and 4 of Dormand and Prince, "A family of embedded Runge-Kutta formulae", Journal of
+    Many systems take a step at once, each with a separate time and step. The formulae are those of
+    orders 5 and 4 of Dormand and Prince, "A family of embedded Runge-Kutta formulae", Journal of
     Computational and Applied Mathematics 6, 1980.
 
     Parameters

@@ -205,7 +205,7 @@ def draw_case(
     seed, trajectory : of the study, and which of it
     distance_max : radius of the disc of starts [m]
     speed : of vehicle and reference [m/s]
-    heading_rate_max : omega_max, all of which an oscillation may spend [rad/s]
+    heading_rate_max : omega_max; an oscillation may use all of it [rad/s]
     """
     rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(trajectory,)))
     kind = REFERENCES[trajectory % len(REFERENCES)]

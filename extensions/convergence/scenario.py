@@ -1,4 +1,4 @@
-"""What a scenario file of a convergence study may say. Units are in the names; bounds are checked
+"""The keys of a convergence study in a scenario file. Units are in the names; bounds are checked
 here and nowhere else.
 """
 

@@ -1,4 +1,4 @@
-"""What the agent may command: one space for every flight of a scenario, and the limits of each."""
+"""The agent's commands: one space for every flight of a scenario, and the limits of each."""
 
 from collections.abc import Iterator
 

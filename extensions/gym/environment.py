@@ -38,7 +38,7 @@ _FLIGHT_ID = "flight_id"
 """Option of a reset."""
 
 _TRIES = 100
-"""Flights that are sampled at random for an episode, at most, until one has a solution."""
+"""Largest number of flights that are sampled at random for an episode until one has a solution."""
 
 
 @dataclass(slots=True)
@@ -87,8 +87,8 @@ class _Episode:
 
 
 class PlumeCrossing(gymnasium.Env[Array, Array]):
-    """A vessel, her plume, and a vehicle that is to cross it near her and to keep out of the area
-    around her.
+    """A vessel, its plume, and a vehicle that is to cross the plume near the vessel and to keep out
+    of the area around it.
 
     Actions are heading rate [rad/s] and airspeed [m/s] that the autopilot is commanded for one step
     of the guidance; observations are those of ``extensions.gym.observation.MEANINGS``,
@@ -98,8 +98,8 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
 
     Parameters
     ----------
-    scenario : as of ``scenarios.fly``
-    keys : to set, as of ``scenarios.fly``
+    scenario : as in ``scenarios.fly``
+    keys : to set, as in ``scenarios.fly``
 
     Raises
     ------
@@ -161,10 +161,9 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
 
         Parameters
         ----------
-        seed : of which flight it is, of its start, its air and its errors; further episodes follow
-            from it
+        seed : of the flight, of its start, its air and its errors; further episodes follow from it
         options : ``{"flight_id": ...}`` begins that flight of the scenario with the seed that a run
-            of it has, in a simulation of its own, so that it is the run's to the last bit; other
+            of it has, in a separate simulation, so that it is the run's to the last bit; other
             episodes use one simulation again, which is true to 1e-9 m
 
         Raises
@@ -246,7 +245,7 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
             first += experiment.flights
 
     def _begun(self, request: FlightRequest) -> "_Episode":
-        """Begin a flight that was asked for, and refuse one that has no solution in one line."""
+        """Begin a requested flight, and refuse one that has no solution in one line."""
         try:
             return self._begin(request)
         except (InfeasibleError, MeasurementError) as error:

@@ -1,5 +1,5 @@
-"""What the agent observes: the vehicle beside the vessel and her plume, and the guidance's
-reference, in the frame of the plume.
+"""The agent's observation: the vehicle, the vessel, its plume, and the guidance's reference, in the
+frame of the plume.
 """
 
 import math
@@ -80,7 +80,8 @@ class Observer:
     Attributes
     ----------
     along, across : place of the last observation, as in ``MEANINGS`` [m]
-    distance : from what the keep-out area is about in it, the vessel or its hull, horizontal [m]
+    distance : horizontal, in that observation, from the vessel or its hull, about which the
+        keep-out area lies [m]
     """
 
     def __init__(self, loop: ClosedLoop) -> None:

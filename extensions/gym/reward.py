@@ -1,4 +1,4 @@
-"""What the agent is rewarded for: crossings of the plume near the vessel, and keeping out."""
+"""The agent's reward: crossings of the plume near the vessel, and keeping out."""
 
 VIOLATION, LOST = -10.0, -10.0
 """Reward of entering the keep-out area, and of losing the aircraft."""

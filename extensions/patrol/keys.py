@@ -1,4 +1,4 @@
-"""What a scenario file may say of a patrol: how many ships, where, for how long, and what is
+"""The keys of a patrol in a scenario file: how many ships, where, for how long, and what is
 expected of serving them.
 """
 

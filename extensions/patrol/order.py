@@ -12,16 +12,16 @@ from scipy.special import ndtr
 from extensions.patrol.route import Air, Mover, straight_leg
 
 _SOONER = 1e-3
-"""Verdicts that an end sooner by the whole endurance is worth: of orders with as many verdicts the
-quickest is taken.
+"""Value, in verdicts, of an end that is earlier by the whole endurance: among orders with equal
+verdicts the fastest is chosen.
 """
 
 _LATEST = 10.0
-"""End that counts at most, over the endurance: a ship out of reach is never done."""
+"""Largest end that counts, over the endurance: a ship out of reach has an infinite one."""
 
 EXACT_MAX = 8
-"""Ships of which every order is tried: it takes half a second at the most, and for fewer less than
-the insertion.
+"""Largest number of ships for which every order is tried: it takes half a second at most, and for
+fewer ships less than the insertion.
 """
 
 _GAIN = 0.02
@@ -51,17 +51,17 @@ class Order(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Prospect:
-    """What is expected of serving ships.
+    """The expectations for serving ships.
 
     Attributes
     ----------
-    ships : where they are and go
-    service : how long each takes from the end of the way to it to the verdict [s]
-    deviation : of that time, of each ship by itself; 0 where it is known [s]
-    chance : of a verdict, of each ship [-]
+    ships : their places and motion
+    service : time for each from the end of the way to it to the verdict [s]
+    deviation : standard deviation of that time for each ship; 0 where it is known [s]
+    chance : probability of a verdict on each ship [-]
     radius : from a ship at which the way to it ends [m]
     air : wind and airspeed
-    endurance : when everything has to be done [s]
+    endurance : time by which everything has to be done [s]
     """
 
     ships: Sequence[Mover]
@@ -73,8 +73,8 @@ class Prospect:
     endurance: float
 
     def after(self, state: _State, ship: int) -> _State:
-        """Return what one more ship makes of a part of a patrol; its end is infinite where it
-        cannot be reached.
+        """Return a part of a patrol with one more ship; its end is infinite where it cannot be
+        reached.
         """
         leg = straight_leg(state.place, state.time, self.ships[ship], self.radius, self.air)
         if leg is None:
@@ -95,18 +95,18 @@ class Prospect:
         return float(ndtr(left / spread)) if spread > 0.0 else float(left >= 0.0)
 
     def judged(self, start: complex, time: float, ships: Sequence[int]) -> Order:
-        """Return what comes of serving ships in some order, from a place at a time [m, s]."""
+        """Return the result of serving ships in an order, from a place at a time [m, s]."""
         state = _State(start, time, 0, 0.0)
         for ship in ships:
             state = self.after(state, ship)
         return Order(tuple(ships), state.verdicts, state.time)
 
     def score_of(self, order: Order) -> float:
-        """Return what an order is worth: its expected verdicts, and a little for an early end."""
+        """Return the value of an order: its expected verdicts, and a little for an early end."""
         return self.score(order.verdicts, order.ends)
 
     def score(self, verdicts: float, ends: float) -> float:
-        """Return the same of expected verdicts and of the end [s]."""
+        """Return the value of expected verdicts and an end [s]."""
         return verdicts - _SOONER * min(ends / self.endurance, _LATEST)
 
 
@@ -123,8 +123,8 @@ def inserted_order(prospect: Prospect, start: complex, time: float, ships: Seque
     """Return an order by insertion and improvement, from a place at a time [m, s].
 
     From each ship as the first, the ship and the place in the order that gain most are inserted
-    until none gains; then parts of up to three ships are moved, parts turned round and ships
-    exchanged for others as long as the order gets better. The best of these orders is taken.
+    until none gains; then parts of up to three ships are moved, parts reversed and ships exchanged
+    for others as long as the order improves. The best of these orders is the result.
     """
     best = prospect.judged(start, time, ())
     for first in ships:
@@ -151,7 +151,7 @@ def exact_order(prospect: Prospect, start: complex, time: float, ships: Sequence
         score = prospect.score(state.verdicts, state.time)
         if score > prospect.score_of(best):
             best = Order(order, state.verdicts, state.time)
-        # Not even with a verdict of each ship that is left, at once.
+        # No improvement, even with an immediate verdict on each remaining ship.
         if score + sum(prospect.chance[ship] for ship in left) <= prospect.score_of(best):
             return
         for ship in sorted(left):
@@ -162,7 +162,7 @@ def exact_order(prospect: Prospect, start: complex, time: float, ships: Sequence
 
 
 def ends_of(prospect: Prospect, start: complex, time: float, ships: Sequence[int]) -> list[float]:
-    """Return when each ship of an order is done [s]."""
+    """Return the time at which each ship of an order is done [s]."""
     state, ends = _State(start, time, 0, 0.0), []
     for ship in ships:
         state = prospect.after(state, ship)
@@ -206,8 +206,8 @@ def _improved(
 
 
 def _neighbours(order: tuple[int, ...], ships: Sequence[int]) -> Iterator[tuple[int, ...]]:
-    """Yield the orders in which a part is turned round, up to three ships stand elsewhere, or one
-    is exchanged for one left out.
+    """Yield the orders with a part reversed, with up to three ships at another position, or with
+    one ship exchanged for one left out.
     """
     count = len(order)
     for i in range(count):

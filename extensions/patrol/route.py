@@ -18,13 +18,13 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 
 _CORNERS = 8
-"""Corners of the polygon round a ship by which it is avoided."""
+"""Number of corners of the polygon by which a ship is avoided."""
 
 _ROOM = 1.001
-"""Size of that polygon over the one whose sides touch the circle that is kept."""
+"""Size of that polygon, over that of the one whose sides touch the circle to keep."""
 
 _TOUCHES = 1e-6
-"""Distance by which a leg may seem to be nearer than it is, by rounding [m]."""
+"""Distance by which rounding may make a leg appear nearer [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,17 +41,17 @@ class Mover:
     velocity: complex
 
     def at(self, time: float) -> complex:
-        """Return where it is at a time [s]."""
+        """Return its place at a time [s]."""
         return self.place + self.velocity * time
 
 
 @dataclass(frozen=True, slots=True)
 class Air:
-    """What the UAV flies through.
+    """The air of the UAV.
 
     Attributes
     ----------
-    wind : where it blows to [m/s]
+    wind : velocity of the air [m/s]
     speed : of the UAV through it, V_r [m/s]
     """
 
@@ -96,8 +96,8 @@ class Leg:
 
 
 def least_distance(apart: complex, velocity: complex, duration: float) -> float:
-    """Return how near two points come that are ``apart`` [m] and part with a steady velocity [m/s]
-    for a duration [s].
+    """Return the least distance of two points that are ``apart`` [m] and have a steady relative
+    velocity [m/s] for a duration [s].
     """
     square = abs(velocity) ** 2
     nearest = -(apart.real * velocity.real + apart.imag * velocity.imag) / square if square else 0.0
@@ -105,8 +105,8 @@ def least_distance(apart: complex, velocity: complex, duration: float) -> float:
 
 
 def time_to_reach(apart: complex, velocity: complex, speed: float, radius: float = 0.0) -> float:
-    """Return the least time in which a pursuer comes within a radius of a target [s], infinite
-    where it never does.
+    """Return the least time in which a pursuer comes within a radius of a target [s]; infinite if
+    it never does.
 
     It is the first root of |p + v t| = V t + R: the pursuer flies straight to where the target will
     be, and R of that way remains.
@@ -131,8 +131,8 @@ def time_to_reach(apart: complex, velocity: complex, speed: float, radius: float
 
 
 def straight_leg(start: complex, time: float, goal: Mover, radius: float, air: Air) -> Leg | None:
-    """Return the quickest way from a place and a time [m, s] to within a radius [m] of a goal; none
-    where it cannot be reached.
+    """Return the fastest way from a place and a time [m, s] to within a radius [m] of a goal; None
+    if it cannot be reached.
     """
     apart, drift = goal.at(time) - start, goal.velocity - air.wind
     takes = time_to_reach(apart, drift, air.speed, radius)
@@ -145,8 +145,8 @@ def straight_leg(start: complex, time: float, goal: Mover, radius: float, air: A
 
 
 def keeps_clear(leg: Leg, ships: Iterable[Mover], distance: float) -> bool:
-    """Return whether a leg stays at a distance from ships [m], or, of one that it begins nearer to,
-    comes no nearer than that.
+    """Return whether a leg keeps a distance from ships [m]; it must not approach a ship that is
+    nearer at its start.
     """
     return all(
         leg.distance(ship) >= min(distance, abs(leg.start - ship.at(leg.begins))) - _TOUCHES
@@ -173,13 +173,13 @@ def route(
     Parameters
     ----------
     start, time : from where, and when [m, s]
-    goal, radius : what is to be reached, and how near [m]
+    goal, radius : target, and distance from it that has to be reached [m]
     air : wind and airspeed
-    ships, clearance : what is kept clear of, and how far [m]
+    ships, clearance : ships to keep clear of, and the distance to keep [m]
 
     Returns
     -------
-    legs one after the other, or none where there is no such way
+    legs one after the other; empty without such a way
     """
     straight = straight_leg(start, time, goal, radius, air)
     if straight is None or keeps_clear(straight, ships, clearance):

@@ -17,7 +17,7 @@ from scenarios.world.vessel import check_manoeuvres, given_place
 from scenarios.world.wind import wind_of
 
 _TRIES = 2000
-"""Places that are tried for a ship."""
+"""Number of places that are tried for a ship."""
 
 _WIND = "wind."
 """Beginning of the keys that are the same for all ships of a patrol."""
@@ -29,7 +29,7 @@ class Ship:
 
     Attributes
     ----------
-    mover : where it is and goes
+    mover : its place and motion
     scenario : of a flight beside it, without random variables and with the seed of its noise
     """
 
@@ -55,7 +55,7 @@ class Patrol:
     ----------
     name : of the patrol, part of the names of its flights
     seed : of its places
-    air : wind at the altitude that ways between ships are flown at, and airspeed
+    air : wind at the altitude of the ways between ships, and airspeed
     ships : in no order
     """
 
@@ -66,7 +66,7 @@ class Patrol:
 
     @property
     def movers(self) -> list[Mover]:
-        """Return where the ships are and go."""
+        """Return places and motions of the ships."""
         return [ship.mover for ship in self.ships]
 
 
@@ -85,7 +85,7 @@ def sampled_patrol(study: str, scenario: Scenario, number: int) -> Patrol:
     """
     by_wind = tuple(draw for draw in scenario.draws if draw.key.startswith(_WIND))
     by_ship = tuple(draw for draw in scenario.draws if not draw.key.startswith(_WIND))
-    # The speed ratio is a ship's: any wind will do.
+    # The speed ratio is a ship's: any wind is possible.
     air = sampled_flight(
         study,
         scenario.model_copy(
@@ -125,7 +125,7 @@ def _velocity(scenario: Scenario) -> complex:
 
 
 def _wind(scenario: Scenario) -> complex:
-    """Return where the wind blows to at the altitude of the flights [m/s]."""
+    """Return the velocity of the air at the altitude of the flights [m/s]."""
     altitude = scenario.altitude
     return complex(*wind_of(scenario, given_place(scenario.place, altitude)).now(0.0, altitude))
 

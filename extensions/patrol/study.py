@@ -54,7 +54,7 @@ from scenarios.scenario.scenario import Scenario
 from scenarios.studies.base import FlightStudy
 
 _PLACES = ("start.aspect_deg", "start.place_m", "start.range_m")
-"""Keys of a place to begin at."""
+"""Keys of a place at which a flight begins."""
 
 
 class PatrolStudy(FlightStudy):
@@ -69,9 +69,9 @@ class PatrolStudy(FlightStudy):
     Raises
     ------
     InputError : same as ``FlightStudy``; flights that give no verdict, ships that are not steady, a
-        place to begin at, ships that are kept clear of by more than the way to them, or are so near
-        to one another that a flight beside one enters the area of the other, an endurance too short
-        for any ship, or ships that find no room
+        place at which a flight begins, a distance to keep from ships that exceeds the way to them,
+        ships so near to one another that a flight beside one enters the area of the other, an
+        endurance too short for any ship, or ships that find no room
     """
 
     what = "patrols"
@@ -166,7 +166,7 @@ def _given(scenario: Scenario, key: str) -> bool:
 
 
 def _check(scenario: Scenario) -> None:
-    """Refuse what is no patrol."""
+    """Refuse a scenario that is not a patrol."""
     if scenario.vessel.from_file or scenario.vessel.manoeuvres or scenario.wind.table is not None:
         raise InputError(
             "study is 'patrol' beside vessel.manoeuvres, a vessel.track from a file or"
@@ -215,7 +215,7 @@ SNIFFER = "sniffer"
 """The instrument that gives verdicts."""
 
 _SHORTEST = 30.0
-"""Shortest flight beside a ship that is begun [s]."""
+"""Shortest time left for which a flight beside a ship begins [s]."""
 
 
 class _Flown(NamedTuple):
@@ -226,7 +226,7 @@ class _Flown(NamedTuple):
 
 
 class _Uav:
-    """Where the UAV is [m] and when [s], its way so far, and whether it is lost."""
+    """Place of the UAV [m] and time [s], its way so far, and whether it is lost."""
 
     def __init__(self) -> None:
         self.place, self.time = 0j, 0.0
@@ -234,7 +234,7 @@ class _Uav:
         self.lost = False
 
     def go(self, leg: Leg, named: Row, phase: str) -> None:
-        """Go on along a leg."""
+        """Fly a leg."""
         self.stretches.append(phase_row(named, phase, leg))
         self.place, self.time = leg.end, leg.ends
 
@@ -303,8 +303,8 @@ class PatrolWork(FlightRunner):
         *,
         deviation: float = 0.0,
     ) -> Prospect:
-        """Return what is expected of serving the ships, given how long each takes, and how likely a
-        verdict is.
+        """Return the expectations for serving the ships, given the time for each and the
+        probability of a verdict.
         """
         return Prospect(
             ships=patrol.movers,
@@ -416,8 +416,8 @@ class PatrolWork(FlightRunner):
         return _Flown(row, pd.read_parquet(io.BytesIO(histories[0])) if histories else None)
 
     def _oracle(self, patrol: Patrol, ships: list[Row]) -> Row:
-        """Complete the ships' rows by the oracle's order: it knows how long each ship takes, with
-        and without the true axis.
+        """Complete the ships' rows by the oracle's order: the oracle knows the time for each ship,
+        with and without the true axis.
         """
         service, chance = [], []
         known_axis = {
@@ -430,7 +430,7 @@ class PatrolWork(FlightRunner):
             verdict = verdict_of(flown)
             row |= {"known_axis_verdict": verdict, "known_axis_service_s": flown.get("duration_s")}
             known = [flown["duration_s"]] if verdict == row["truth"] else []
-            # Where the flight of the patrol took less time, the oracle knows that, too.
+            # The oracle also knows a shorter time of the patrol's flight.
             known += [row["ended_s"] - row["reached_s"]] if row.get("correct") else []
             service.append(min(known, default=math.inf))
             chance.append(float(bool(known)))
@@ -447,7 +447,7 @@ class PatrolWork(FlightRunner):
 
 
 def _limit_percent(scenario: Scenario) -> float:
-    """Return the sulphur content that verdicts are on [% m/m]."""
+    """Return the limit of the sulphur content for the verdicts [% m/m]."""
     limit: float = scenario.payload.settings(PAYLOADS.get(SNIFFER)).limit_percent
     return limit
 
@@ -471,8 +471,8 @@ _TAKEN = (
 
 
 def _start_beside(ship: Mover, course: float, last: Leg, air: Air) -> dict[str, object]:
-    """Return where a flight beside a ship on a course [rad] begins, as keys of its scenario: at the
-    end of the way to it.
+    """Return the start of a flight beside a ship on a course [rad], as keys of its scenario: the
+    end of the way to the ship.
     """
     place = (last.end - ship.at(last.ends)) * complex(math.cos(course), -math.sin(course))
     return {
@@ -503,10 +503,10 @@ def _traffic(patrol: Patrol, ship: int, time: float) -> list[dict[str, object]]:
 
 
 def _taken(row: Row) -> Row:
-    """Return what a ship's row takes from that of the flight beside it."""
+    """Return the values of a ship's row that come from the flight beside it."""
     taken = {name: row[name] for name in _TAKEN if name in row} | {"verdict": verdict_of(row)}
     if "keepout_violations" in taken:
-        # Those of other ships are counted with the way to this one.
+        # Violations of other ships are counted with the way to this one.
         taken["keepout_violations"] -= row.get("others_violations", 0)
     return taken
 

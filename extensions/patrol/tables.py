@@ -1,4 +1,4 @@
-"""Tables of a patrol: their files, their columns, and what a patrol's row says."""
+"""Tables of a patrol: their files, their columns, and the contents of a patrol's row."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -16,7 +16,7 @@ from scenarios.instruments.fuel_estimate import FIGURES as FUEL_COLUMNS
 from scenarios.measures.columns import FINDING_COLUMNS, SUMMARY_COLUMNS
 
 LOST = (Outcome.AIRCRAFT_LOST.value, Outcome.DIVERGED.value)
-"""Outcomes of flights whose aircraft does not come back."""
+"""Outcomes of flights whose aircraft is lost."""
 
 _FLIGHT = SUMMARY_COLUMNS | FINDING_COLUMNS | FUEL_COLUMNS
 
@@ -145,7 +145,7 @@ verdict; and away.
 
 
 def ship_row(patrol: Patrol, number: int, limit: float) -> Row:
-    """Return what is known of a ship before the patrol; ``limit`` is the verdict's [% m/m]."""
+    """Return the prior knowledge of a ship; ``limit`` is that of the verdict [% m/m]."""
     ship = patrol.ships[number]
     scenario, place = ship.scenario, ship.mover.place
     return {
@@ -165,12 +165,14 @@ def ship_row(patrol: Patrol, number: int, limit: float) -> Row:
 
 
 def flight_name(patrol: Patrol, number: int) -> str:
-    """Return what the flight beside a ship is called."""
+    """Return the name of the flight beside a ship."""
     return f"{patrol.name}_ship_{number}"
 
 
 def verdict_of(row: Row) -> str:
-    """Return the verdict of a flight by all of its looks, its end among them; open without one."""
+    """Return the verdict of a flight by all of its looks, including the one at its end; open
+    without a look.
+    """
     return str(row.get("sulphur_verdict", "open"))
 
 
@@ -205,7 +207,7 @@ def patrol_figures(
     endurance : of the UAV [s]
     keepout_radius : r_min [m]
     """
-    # A ship beside which nothing was flown, as a start was refused, is not served.
+    # A ship without a flight, because its start was refused, is not served.
     served = [row for row in ships if "position" in row and "keepout_violations" in row]
     judged = [row for row in served if row["verdict"] != "open"]
     duration = max((row["ends_s"] for row in stretches), default=0.0)
@@ -213,7 +215,7 @@ def patrol_figures(
     passed = [row["others_distance_min_m"] for row in served if "others_distance_min_m" in row]
     others = min(passed, default=math.inf)
     lost = any(row["outcome"] in LOST for row in served)
-    # On each way to a ship and beside it, that of other ships counts once.
+    # On each way to a ship and beside it, a violation of another ship counts once.
     violations = sum(int(row.get("keepout_violations", 0)) for row in served) + sum(
         int(near < keepout_radius) for near in passed
     )
@@ -246,7 +248,8 @@ def patrol_figures(
 
 
 def _message(served: Sequence[Row], others: float, keepout_radius: float) -> str:
-    """Return why a patrol served no ship, or did not keep out with its aircraft; no word if it did.
+    """Return why a patrol served no ship, or did not keep out with its aircraft; empty if it
+    succeeded.
 
     Parameters
     ----------
@@ -262,7 +265,7 @@ def _message(served: Sequence[Row], others: float, keepout_radius: float) -> str
 
 
 def _ended(row: Row) -> str:
-    """Return how the flight beside a ship ended: its outcome, its violations and its message."""
+    """Return the end of the flight beside a ship: its outcome, its violations and its message."""
     inside = int(row.get("keepout_violations", 0))
     violations = f"{inside} keep-out violation{'s' * (inside > 1)}" if inside else ""
     ended = (

@@ -37,7 +37,7 @@ class Acmi:
             )
             if flight.vessel is not None:
                 lines.append(_vessel_line(flight, flight.vessel, i))
-        # A byte order mark, as the format asks for.
+        # A byte order mark, as the format requires.
         path.write_text("\ufeff" + "\n".join(lines) + "\n", encoding="utf-8", newline="\n")
 
 

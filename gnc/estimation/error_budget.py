@@ -16,8 +16,8 @@ that is known, q(t) = rho(t) q_0 + innovations that are independent of q_0. Inte
     var integral (q - rho q_0)      = sigma^2 (2 T t - 3 T^2 + 4 T^2 rho - T^2 rho^2).
 
 **The estimated wind.** Each measurement of the wind triangle has the gust of its moment in it. With
-the filter's own gain K, the error e of the estimate follows e <- (1 - K) e + K q. Before it, q has
-changed: q <- rho q + an innovation. So for p = var e and c = cov(e, q),
+the filter's gain K, the error e of the estimate follows e <- (1 - K) e + K q. Before the
+measurement, q has changed: q <- rho q + an innovation. So for p = var e and c = cov(e, q),
 
     p <- (1 - K)^2 p + 2 K (1 - K) rho c + K^2 sigma^2
     c <- (1 - K) rho c + K sigma^2,
@@ -34,15 +34,15 @@ q - rho q_0 - (1 - rho) e. The innovations are independent of e, too, so that th
 the autopilot turns the motion over the ground by the acceleration across. So a turn in gusts is
 known much better than the gusts: what is left is the deviation of the closed loop, from its linear
 model (``scenarios/planning/margin/turn_spread.py``). A wrong wind by itself moves no turn, since
-the speed is kept over the wrong mean air. A wind estimate that changes during the turn does. With
-the gain g = K/dt of the filter per second it changes by at most g times the integral of q - e, and
-the vehicle follows the change along its path; that is displaced by at most
+the speed is kept over the wrong mean air. A wind estimate that changes during the turn does move
+it. With the gain g = K/dt of the filter per second it changes by at most g times the integral of q
+- e, and the vehicle follows the change along its path; that is displaced by at most
 
     min(1, g t/2)  sqrt(var integral (q - rho q_0) + var (T (1 - rho) q_0 - t e)).
 
 **How many standard deviations.** ``deviations`` returns the k that errors exceed at a stated rate.
-One rate, ``EXCEEDED_PER_HOUR``, holds for all processes in the vehicle's own motion; what places
-the vessel's discs goes by ``following.touches_per_hour``.
+One rate, ``EXCEEDED_PER_HOUR``, holds for all processes in the vehicle's own motion; the vessel's
+discs are placed by ``following.touches_per_hour``.
 """
 
 import math
@@ -51,7 +51,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 EXCEEDED_PER_HOUR = 0.1
-"""How often a process in the vehicle's own motion may exceed what is reckoned with [1/h].
+"""How often a process in the vehicle's own motion may exceed what is allowed for [1/h].
 
 That alone violates nothing: the vehicle has to be at the limit of its guard just then, and the
 error has to point towards the vessel.
@@ -60,10 +60,12 @@ error has to point towards the vessel.
 _SECONDS_PER_HOUR = 3600.0
 
 _KNOWN_BETTER = 0.95
-"""Share of the variance of the estimated wind down to which it counts as it was [-]."""
+"""Share of an earlier variance of the estimated wind [-]. A variance that has fallen, but not below
+that share, counts as unchanged.
+"""
 
 _ROUNDS = 10
-"""In which k is found that its rate depends on: each leaves a tenth of the error or less [-]."""
+"""Iterations that find k, whose rate depends on k: each leaves a tenth of the error or less [-]."""
 
 
 def deviations(
@@ -76,11 +78,11 @@ def deviations(
     """Return the number of standard deviations that errors exceed at a rate [-].
 
     A normal error in two dimensions exceeds k standard deviations with the probability p =
-    exp(-k^2/2). Drawn anew it does so once in 1/p draws. One that goes, as it ages, from the error
-    of a place to that of a velocity exceeds k at some age with p (1 + k sqrt(pi/8)) at most, by
-    Rice's formula over a quarter of a circle. A process of correlation time T comes to exceed k
-    with a rate of p k^2/T at most (Kramers, "Brownian motion in a field of force and the diffusion
-    model of chemical reactions", Physica, 1940).
+    exp(-k^2/2). An error that is drawn anew does so once in 1/p draws. An error that ages, from the
+    error of a place to that of a velocity, exceeds k at some age with the probability p (1 + k
+    sqrt(pi/8)) at most, by Rice's formula over a quarter of a circle. A process of correlation time
+    T comes to exceed k with a rate of p k^2/T at most (Kramers, "Brownian motion in a field of
+    force and the diffusion model of chemical reactions", Physica, 1940).
 
     Parameters
     ----------
@@ -110,7 +112,7 @@ class Bias:
 
     Attributes
     ----------
-    size : largest [the unit of the term]
+    size : largest magnitude [the unit of the term]
     key : of the scenario that declares it
     """
 
@@ -124,7 +126,7 @@ class Growth:
 
     Attributes
     ----------
-    rate : at most [the unit of the term, per second]
+    rate : largest growth [the unit of the term, per second]
     key : of the scenario that declares it
     """
 
@@ -162,8 +164,8 @@ class Process:
         return self.sigma * math.sqrt(max(0.0, 2.0 * t * lasting))
 
     def integral_from_known(self, time: float) -> float:
-        """Return the standard deviation of its integral over a time [s], less what the value at the
-        start let expect.
+        """Return the standard deviation of the difference between its integral over a time [s] and
+        the integral that was expected from the value at the start.
         """
         t, rho = self.correlation_time, self.remaining(time)
         square = 2.0 * t * time - t * t * (3.0 - rho * (4.0 - rho))
@@ -171,8 +173,8 @@ class Process:
         return self.sigma * math.sqrt(max(0.0, square))
 
     def not_remaining(self, time: float) -> float:
-        """Return the integral of 1 - rho over a time: for how long a value at its start has faded
-        [s, s].
+        """Return the integral of 1 - rho over a time [s], in seconds: for so long a value at its
+        start has faded.
         """
         return time - self.correlation_time * (1.0 - self.remaining(time))
 
@@ -214,24 +216,24 @@ AS_COMMANDED = TurnDeviation()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ErrorBudget:
-    """The errors that a flight is planned, guarded and judged with. What is 0 is known exactly.
+    """The errors that a flight is planned, guarded and judged with. A term of 0 is known exactly.
 
     Attributes
     ----------
     own_position : of the position by satellite navigation [m]
-    own_velocity : of the velocity over the ground and of the wind, by sensors and by crab angles
-        that are not those of steady turns [m/s]
-    gusts : discrete gusts, each of which may last as long as a turn [m/s]
+    own_velocity : of the velocity over the ground and of the wind, by sensors, and by crab angles
+        that differ from those of steady turns [m/s]
+    gusts : discrete gusts, which may each last as long as a turn [m/s]
     wind_change : change of the mean wind that its estimate has not followed [m/s]
     turbulence : as the vehicle meets it [m/s]
-    turning : of a turn in turbulence from the turn that was commanded [m]
-    response : of a full reversal from its prediction, towards the vessel [m]
-    failed_part : of a turn in which a part of the aircraft fails [m]
+    turning : deviation of a turn in turbulence from the turn that was commanded [m]
+    response : deviation of a full reversal from its prediction, towards the vessel [m]
+    failed_part : deviation of a turn in which a part of the aircraft fails [m]
     drift : of dead reckoning, besides turbulence; the rate is 0 where satellite navigation is not
         lost [m]
     slowest : airspeed that the vehicle may fall to in any turn; infinite where it keeps to its
         commands [m/s]
-    per_hour : how often the processes may exceed what is reckoned with [1/h]
+    per_hour : how often the processes may exceed what is allowed for [1/h]
     """
 
     own_position: Process = Process()
@@ -248,14 +250,14 @@ class ErrorBudget:
 
     @property
     def k(self) -> float:
-        """Standard deviations of turbulence that are reckoned with [-]."""
+        """Number of standard deviations of turbulence that is allowed for [-]."""
         if self.turbulence.sigma == 0.0:
             return 0.0
         return deviations(self.per_hour, correlation_times=(self.turbulence.correlation_time,))
 
     @property
     def steady_velocity(self) -> float:
-        """Largest error of velocity and wind that lasts, drift of dead reckoning aside [m/s]."""
+        """Largest lasting error of velocity and wind, without the drift of dead reckoning [m/s]."""
         return self.own_velocity.size + self.gusts.size + self.wind_change.size
 
     @property
@@ -275,7 +277,7 @@ class ErrorBudget:
         return self.steady_velocity + drift + self.k * wind_sigma
 
     def wander(self, time: float) -> float:
-        """Return by how much the error of the own position changes within a time at most [s, m]."""
+        """Return the largest change of the error of the own position within a time [s, m]."""
         process = self.own_position
         if process.sigma == 0.0:
             return 0.0
@@ -314,7 +316,7 @@ class ErrorBudget:
     def displacement(
         self, *, lost: float = 0.0, wind: "WindErrorByGusts | None" = None
     ) -> "Displacement":
-        """Return by how much turbulence may take the vehicle off its predicted places from now on.
+        """Return how far turbulence may take the vehicle from its predicted places from now on.
 
         Parameters
         ----------
@@ -324,7 +326,7 @@ class ErrorBudget:
         return Displacement(self, lost, wind or WindErrorByGusts(STILL))
 
     def parts(self, time: float, wind: "WindErrorByGusts | None" = None) -> "dict[str, Part]":
-        """Return what each term may displace the vehicle by in a turn, by its name.
+        """Return how far each term may displace the vehicle in a turn, by the term's name.
 
         Parameters
         ----------
@@ -345,14 +347,14 @@ class ErrorBudget:
 
 
 class Part(NamedTuple):
-    """What a term may displace the vehicle by [m], and the key of the scenario that declares it."""
+    """How far a term may displace the vehicle [m], and the key of the scenario that declares it."""
 
     distance: float
     key: str
 
 
 class Displacement:
-    """By how much turbulence may take the vehicle off its predicted places, k standard deviations.
+    """How far turbulence may take the vehicle from its predicted places, k standard deviations.
 
     Satellite navigation may be lost at any moment, where that is declared: then a turn that was
     begun by satellites goes on by dead reckoning.
@@ -375,7 +377,8 @@ class Displacement:
     def renew(self, lost: float, wind: "WindErrorByGusts") -> None:
         """Take in what is known now; see ``ErrorBudget.displacement``.
 
-        An estimate that has become a little better counts as it was, which is on the safe side.
+        An estimate that has become only a little better counts as unchanged, which is on the safe
+        side.
         """
         known = self._wind.variance
         if lost == self._lost and _KNOWN_BETTER * known <= wind.variance <= known:

@@ -28,8 +28,8 @@ Severe turbulence made it up to 0.58, over 28 flights of 500 s that stayed in co
 CHECK_INTERVAL = 0.2
 """Time between checks, a step of the guidance at least [s].
 
-One heading rate is compared with the mean of the commands in between. From that mean, a vehicle
-without lag differs the more, the longer the interval is.
+One heading rate is compared with the mean of the commands in between. The longer the interval is,
+the more a vehicle without lag differs from that mean.
 """
 
 
@@ -44,13 +44,13 @@ class Fault(Enum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HealthParameters:
-    """What a healthy vehicle is like.
+    """The properties of a healthy vehicle.
 
     Attributes
     ----------
-    thrust : what thrust to expect; None for a vehicle without an engine
-    heading_rate_max : omega_max, or what a vehicle in turbulence may turn at without a command, if
-        that is more [rad/s]
+    thrust : model of the expected thrust; None for a vehicle without an engine
+    heading_rate_max : omega_max, or the heading rate of a vehicle in turbulence without a command,
+        if that is larger [rad/s]
     lag : of the heading rate behind its command [s]
     time_step : of the guidance [s]
     """
@@ -77,7 +77,7 @@ class HealthMonitor:
 
     Attributes
     ----------
-    fault : that there is now, if any
+    fault : present fault, if any
     thrust : monitor of the thrust, or None
     """
 

@@ -51,7 +51,7 @@ class SatelliteFix(NamedTuple):
 
 
 class EngineReadings(NamedTuple):
-    """What shows whether an aircraft has the thrust that its throttle lets expect.
+    """The readings that show whether an aircraft has the thrust that its throttle should give.
 
     Attributes
     ----------
@@ -75,7 +75,7 @@ class SensorReadings(NamedTuple):
     heading_rate : rate of the course through the air [rad/s]
     servo_error : error of the control surface that is farthest from its command, over its travel
         [-]
-    engine : None for a vehicle without an engine, such as the paper's
+    engine : readings of the engine; None for a vehicle without an engine, such as the paper's
     """
 
     fix: SatelliteFix | None
@@ -97,9 +97,9 @@ class AirMotion:
     course : of the motion through the mean air, from -pi to pi [rad]
     heading_rate : rate of that course [rad/s]
     wind_north, wind_east : velocity of the air mass [m/s]
-    wind_error : error of the wind beyond its final one, while few measurements are in it, by
-        sensors and by the vehicle's own motion [m/s]
-    wind_by_gusts : error of the wind by turbulence; None where there is none
+    wind_error : error of the wind in excess of its final error, while few measurements are in the
+        estimate, by sensors and by the vehicle's own motion [m/s]
+    wind_by_gusts : error of the wind by turbulence; None without turbulence
     lost : time since satellite navigation was lost [s]
     speed : of the motion through the mean air [m/s]
     """
@@ -159,9 +159,10 @@ class WindFilter:
     """A Kalman filter for a wind that wanders slowly.
 
     It measures the wind triangle, w = v_ground - V_a (cos chi_a, sin chi_a). The error along chi_a
-    is that of the airspeed, the error across it is V_a times that of the course; gusts are in both.
-    The two components are taken one after the other, each as a scalar. The first measurement is the
-    first estimate: a wind assumed before it would stay in the estimate until more came.
+    is the error of the airspeed, the error across it is V_a times the error of the course; gusts
+    are in both. The two components are taken in one after the other, each as a scalar. The first
+    measurement is the first estimate: an assumed wind would stay in the estimate until more
+    measurements came.
 
     Parameters
     ----------
@@ -190,7 +191,7 @@ class WindFilter:
 
     @property
     def sigma(self) -> float:
-        """Standard deviation of the estimate in its worst direction, once measured [m/s]."""
+        """Standard deviation of the estimate in its worst direction, after a measurement [m/s]."""
         half = 0.5 * (self.variance_north - self.variance_east)
         return math.sqrt(
             0.5 * (self.variance_north + self.variance_east) + math.hypot(half, self.covariance)
@@ -254,7 +255,7 @@ class WindFilter:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NavigationParameters:
-    """What the navigation knows beforehand.
+    """The parameters of the navigation, known beforehand.
 
     Attributes
     ----------
@@ -286,10 +287,10 @@ class NavigationParameters:
 class EstimatedNavigation(OwnMotion):
     """The motion estimated from sensors, by dead reckoning while satellite navigation is lost.
 
-    Dead reckoning takes the air to move with the estimated wind, and in turbulence with what is
-    left of the last gust that was measured (``gnc.estimation.error_budget``).
+    Dead reckoning assumes that the air moves with the estimated wind, and in turbulence also with
+    what is left of the last measured gust (``gnc.estimation.error_budget``).
 
-    An autopilot turns against the gusty air, the guidance over the mean air:
+    An autopilot turns relative to the gusty air, the guidance relative to the mean air; see
     ``gnc.airspeed.air_turn``.
 
     Parameters
@@ -400,7 +401,7 @@ class EstimatedNavigation(OwnMotion):
             self.velocity_north += self._gust_north
             self.velocity_east += self._gust_east
         # The trapezoidal rule: with the velocity at one end alone, half a turn would be wrong by
-        # the way of a step.
+        # the distance that is flown in a step.
         self.ground_north += 0.5 * time_step * (before_north + self.velocity_north)
         self.ground_east += 0.5 * time_step * (before_east + self.velocity_east)
         self.lost += time_step

@@ -1,13 +1,13 @@
-"""Whether an aircraft has the thrust that its throttle lets expect, from its specific energy rate.
+"""Detects whether an aircraft has the thrust of its throttle, from its specific energy rate.
 
 The specific energy V^2/2g + h of an aircraft grows at the rate V (T - D)/W. Accelerometers measure
-(T - D)/W along the path, and the lift normal to it, which gives the drag. So what thrust there is
-follows from airspeed and accelerometers, in gusts as well; what there should be follows from
+(T - D)/W along the path, and the lift normal to it, which gives the drag. So the actual thrust
+follows from airspeed and accelerometers, in gusts as well; the expected thrust follows from
 airspeed and throttle. The difference, times V and summed up over time, is the height of energy that
 is missing. It is tested by a cumulative sum (E. S. Page, "Continuous inspection schemes",
-Biometrika 41, 1954): what a sound aircraft may lack is taken off at all times, and the sum starts
-anew at 0 when nothing is left. The same sum with its sign reversed tells that thrust is there
-again.
+Biometrika 41, 1954): the energy that a sound aircraft may lack is subtracted all the time, and the
+sum starts anew at 0 when it would fall below. The same sum with its sign reversed detects that
+thrust is there again.
 """
 
 import bisect
@@ -18,12 +18,12 @@ from dataclasses import dataclass
 from gnc.estimation.navigation import EngineReadings
 
 EXPECTED_SHARE = 0.5
-"""Share of the expected thrust at which it counts neither as there nor as lost [-]: the best value
-against the loss of all of it, with errors that are the same with thrust and without.
+"""Share of the expected thrust at which thrust counts neither as there nor as lost [-]: the best
+value for detecting the loss of all thrust, with errors that are the same with thrust and without.
 """
 
 _EXPONENT_MAX = 700.0
-"""Largest exponent of a number that a computer holds [-]."""
+"""Largest exponent of a floating-point number [-]."""
 
 _ITERATIONS = 60
 """Iterations of a logarithm, whose slope is below a tenth for heights of any use [-]."""
@@ -45,7 +45,7 @@ class ThrustModel:
     thrust : at each airspeed and throttle, of engines that have settled [-]
     attack : a0, a1 [rad, rad m^2/s^2]
     polar : c0, c1, c2 [s^2/m^2, -, m^2/s^2]
-    spool_time : within which a sound engine has the thrust of a throttle that is held [s]
+    spool_time : time within which a sound engine has the thrust of a throttle that is held [s]
     """
 
     airspeeds: tuple[float, ...]
@@ -95,12 +95,12 @@ class ThrustParameters:
     Attributes
     ----------
     model : of the aircraft
-    level : thrust over the weight in level flight [-]; to lack less than ``EXPECTED_SHARE`` of it
-        says nothing
-    slow_airspeed : above it, thrust that level flight takes is enough, though the throttle asks for
-        more, as it does for ever if it is stuck [m/s]
-    energy_height : missing beyond what is allowed for, at which thrust counts as lost; and there
-        beyond it, at which thrust counts as there again [m]
+    level : thrust over the weight in level flight [-]; a lack of less than ``EXPECTED_SHARE`` of it
+        is no sign of a fault
+    slow_airspeed : airspeed above which the thrust of level flight is enough, though the throttle
+        commands more, as a stuck throttle always does [m/s]
+    energy_height : height of energy that is missing beyond the allowance, at which thrust counts as
+        lost; and that is there beyond it, at which thrust counts as there again [m]
     """
 
     model: ThrustModel
@@ -112,8 +112,9 @@ class ThrustParameters:
 class ThrustMonitor:
     """Detects that thrust is lost, and that it is there again.
 
-    An engine takes time to give the thrust of a throttle. The least thrust of all throttles within
-    the time that it takes from idle to full is expected: a sound engine has that much in any case.
+    An engine takes time to give the thrust of a throttle. So the expected thrust is the least of
+    all throttles within the time that the engine takes from idle to full: a sound engine has that
+    much in any case.
 
     Parameters
     ----------
@@ -123,14 +124,15 @@ class ThrustMonitor:
     Attributes
     ----------
     lost : whether thrust counts as lost
-    missing : height of energy that is missing, beyond what is allowed for; while thrust counts as
-        lost, height of energy that is there beyond [m]
+    missing : height of energy that is missing beyond the allowance; while thrust counts as lost,
+        height of energy that is there beyond it [m]
     """
 
     def __init__(self, parameters: ThrustParameters, interval: float) -> None:
         self._parameters = parameters
         self._interval = interval
-        # One more than intervals fit: the oldest throttle has been held since before the window.
+        # One more than the intervals that fit: the oldest throttle has been held since before the
+        # window.
         size = 1 + math.ceil(parameters.model.spool_time / interval)
         self._settled: deque[float] = deque(maxlen=size)
         self._size = size
@@ -172,7 +174,7 @@ def time_between_false_alarms(drift: float, density: float, height: float) -> fl
     Parameters
     ----------
     drift : m, at which the sum falls [m/s]
-    density : D, rate at which the variance of what is summed up grows [m^2/s]
+    density : D, growth rate of the variance of the sum [m^2/s]
     height : h, at which thrust counts as lost [m]
     """
     if density <= 0.0:

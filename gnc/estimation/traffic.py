@@ -1,14 +1,14 @@
-"""The other vessels that are known, besides the one that is measured: which of them are near, and
-where each of them may be.
+"""The known vessels other than the measured one: which of them are near, and where each of them may
+be.
 
-Each has a radius of its own, and discs of its own that it cannot have left, made of its own
-reports (``gnc.estimation.vessel``). Most are far away. So discs are made only of those that vehicle
-and vessel can bring near within the **horizon**: a vessel at a distance d, whose radius to keep is
-r and whose disc reaches R after the horizon T, is out of reach for at least
+Each vessel has a radius, and discs that it cannot have left, made of its reports
+(``gnc.estimation.vessel``). Most vessels are far away. So discs are made only of those that can
+come near within the **horizon**: a vessel at a distance d, with the radius to keep r and with a
+disc that reaches R after the horizon T, is out of reach for at least
 
     (d - r - R - c T) / c    with the closing speed    c = V_max + |w| + |v|,
 
-of the largest airspeed, the wind and the vessel's speed, and is not looked at before that.
+from the largest airspeed, the wind and the vessel's speed, and is not looked at before that.
 """
 
 import math
@@ -25,13 +25,13 @@ estimated wind changes."""
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OtherVessel:
-    """A vessel that is known, besides the one that is measured.
+    """A known vessel other than the measured one.
 
     Attributes
     ----------
     name : in messages and tables
     radius : that the vehicle's path must keep from it [m]
-    limits : that it and its reports keep
+    limits : of its motion and of its reports
     """
 
     name: str
@@ -40,7 +40,7 @@ class OtherVessel:
 
 
 class KnownVessel:
-    """What is known of such a vessel in flight.
+    """The knowledge of another vessel in flight.
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ class KnownVessel:
         self.last_report = -math.inf
         self._limits = parameters.limits
         self._reach = ReachableSet(parameters.limits)
-        # Of the last plan: the guard looks at a vessel less often than there are plans.
+        # Discs of the last plan: the guard looks at a vessel less often than there are plans.
         self._reports: Sequence[VesselReport] = ()
         self._tubes: Sequence[Tube] | None = None
 
@@ -89,9 +89,9 @@ class Traffic:
 
     Parameters
     ----------
-    vessels : that are known, or may come to be
+    vessels : that are known, or may become known
     speed_max : largest airspeed of the vehicle [m/s]
-    horizon : within which a vessel counts as near [s]
+    horizon : time within which a vessel counts as near [s]
 
     Attributes
     ----------
@@ -104,16 +104,18 @@ class Traffic:
         self.near: list[KnownVessel] = []
         self._speed_max = speed_max
         self._horizon = horizon
-        # When those that are not near are looked at next [s].
+        # Time at which vessels that are not near are looked at next [s].
         self._due = -math.inf
 
     def add(self, vessel: OtherVessel) -> int:
-        """Take in a vessel that comes to be known in flight; return its number."""
+        """Take in a vessel that becomes known in flight; return its number."""
         self.vessels.append(KnownVessel(vessel))
         return len(self.vessels) - 1
 
     def is_due(self, number: int, time: float) -> bool:
-        """Return whether a report of a vessel is of use now: it is near, or is looked at [s]."""
+        """Return whether a report of a vessel is of use at a time [s]: it is near, or is due for a
+        look.
+        """
         vessel = self.vessels[number]
         return vessel.near or vessel.due <= time
 
@@ -121,7 +123,7 @@ class Traffic:
         """Take in a report of a vessel, by its number."""
         vessel = self.vessels[number]
         if vessel.last_report == -math.inf:
-            # It was not known before.
+            # The vessel was not known before.
             vessel.due = self._due = -math.inf
         vessel.report(report)
 
@@ -146,8 +148,8 @@ class Traffic:
         self.near = near
 
     def _out_of_reach(self, radius: float, disc: Tube, own: AirMotion) -> float:
-        """Return for how long a vessel stays out of reach [s], by its radius to keep [m] and its
-        disc; below 0 where it does not.
+        """Return the time for which a vessel stays out of reach [s], from its radius to keep [m]
+        and its disc; below 0 if it is in reach.
         """
         horizon = self._horizon
         closing = (

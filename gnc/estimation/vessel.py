@@ -9,9 +9,9 @@ speed. From a report at time t_i its position at t_i + s lies within
     k hypot(sigma_p, sigma_v s) + a s^2/2    of p_i + v_i s,    and within    k sigma_p + v_max s
     of p_i,
 
-where k standard deviations of the report's errors are the largest that are allowed for. Each disc
-stays true, whatever is reported later. So the vessel is in all of them at once, and keeping off one
-of them is enough (docs/keepout_guard.md).
+where k standard deviations of the report's errors are the largest that are allowed for. No later
+report makes a disc wrong. So the vessel is in all of them at once, and keeping off one of them is
+enough (docs/keepout_guard.md).
 """
 
 import math
@@ -20,16 +20,22 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 KEPT = 3
-"""Newest reports that discs are made of [-]: an older one is nearer the truth only by luck."""
+"""Number of newest reports that discs are made of [-]: an older report is more accurate only by
+chance.
+"""
 
 REPORTED_SCATTER = 0.03
 """Scatter of the estimated acceleration of a steady vessel whose reports have errors [m/s^2]."""
 
 _EXACT = 1e-3
-"""Deviation of a position below which its error grows with the velocity's at once [m]."""
+"""Deviation of a position below which its error grows at the rate of the velocity's error from the
+start [m].
+"""
 
 _SHORT = 0.005
-"""Time over the filter's memory below which the leading terms of its process noise are used [-]."""
+"""Time, over the filter's memory, below which only the leading terms of the process noise are used
+[-].
+"""
 
 
 class VesselReport(NamedTuple):
@@ -162,7 +168,7 @@ class VesselFilter:
 
     Attributes
     ----------
-    time : of the newest report, before the first one minus infinity [s]
+    time : of the newest report; minus infinity before the first one [s]
     north, east, covariance : estimate at that time, and its covariance along either axis
     """
 
@@ -334,8 +340,8 @@ class VesselLimits:
 
     Attributes
     ----------
-    acceleration : largest, in any direction [m/s^2]
-    speed_max : largest over the ground; infinite if none is declared [m/s]
+    acceleration : largest one in any direction [m/s^2]
+    speed_max : largest speed over the ground; infinite if it is not declared [m/s]
     position_sigma, velocity_sigma : of a report's components; an error of the vehicle's position
         counts as one of the vessel's [m, m/s]
     deviations : k, largest error of a report in any direction over its standard deviation [-]
@@ -393,8 +399,8 @@ def tube(report: VesselReport, limits: VesselLimits, time: float) -> Tube:
 def _error_growth(limits: VesselLimits, age: float, spread: float) -> tuple[float, float]:
     """Return first and second derivative of the error k hypot(sigma_p, sigma_v s) [m/s, m/s^2].
 
-    Derivatives beyond the second are not needed, since that one falls with time. For a position
-    that is next to exact it is beyond all bounds at first; there the growth is at most that of the
+    Derivatives beyond the second are not needed, since the second one falls with time. For a
+    position that is almost exact it is unbounded at first; there the growth is at most that of the
     velocity's error.
     """
     k, place, drift = limits.deviations, limits.position_sigma, limits.velocity_sigma
@@ -407,9 +413,9 @@ def tube_by_speed(report: VesselReport, limits: VesselLimits, time: float) -> Tu
     """Return the disc of a vessel that may go anywhere at its largest speed from ``time`` on.
 
     It begins as the disc by acceleration, or as the disc by the largest speed since the report,
-    whichever is smaller. A disc by acceleration can be left for good only until its edge moves as
-    fast as the vehicle; this one can be left always, by a vehicle that is faster than the vessel.
-    Since it begins no larger, it takes over from the other one before that.
+    whichever is smaller. A vehicle can leave a disc by acceleration for good only until the disc's
+    edge is as fast as the vehicle; it can always leave this disc, if it is faster than the vessel.
+    Since this disc begins no larger, it takes over from the other one before that.
 
     Parameters
     ----------
@@ -433,7 +439,7 @@ class ReachableSet:
 
     Attributes
     ----------
-    reports : that are kept, the newest first; a list is replaced, and never changed
+    reports : that are kept, the newest first; the list is replaced, and never changed
     """
 
     def __init__(self, limits: VesselLimits) -> None:
@@ -552,7 +558,7 @@ class ReportedTarget(TargetMotion):
         self.vessel = vessel
         self._reach = reach
         self._time_step = time_step
-        # Of the velocity, in a step.
+        # Change of the velocity in a step.
         self._gain_north = 0.0
         self._gain_east = 0.0
 
@@ -575,7 +581,7 @@ class ReportedTarget(TargetMotion):
         self.east = vessel.east
         self.velocity_north = vessel.velocity_north
         self.velocity_east = vessel.velocity_east
-        # The share of the acceleration that is no scatter of reports.
+        # The share of the acceleration that is not scatter of the reports.
         share = 1.0
         if not self.vessel.exact:
             size = math.hypot(vessel.acceleration_north, vessel.acceleration_east)

@@ -2,13 +2,13 @@
 
 A turn away heads straight away from one vessel, and may lead to another. Where several are near,
 the backup manoeuvre is a **common turn**: omega_max to one side up to some course, then straight
-on. All vessels are kept off on the same way. For each of them slack is what it is in a turn away
-(``turn.py``): the least distance from the centre of its disc, less what is allowed for there. That
-of a common turn is the least of all; so the nearest vessel decides. Courses are tried at equal
-angles to both sides, and first of all that of the common turn that was safe before.
+on. This one path keeps off all vessels. The slack of each vessel is defined as in a turn away
+(``turn.py``): the least distance from the centre of its disc, less the distance to keep there. The
+slack of a common turn is the least over the vessels; so the nearest vessel decides. Courses are
+tried at equal angles to both sides, and first of all the course of the last safe common turn.
 
-After the turn the vehicle flies straight on for a **leg**. At its end each vessel has to fall
-behind, or be so far away that a turn away is left.
+After the turn the vehicle flies straight on for a **leg**. At the end of the leg each vessel has to
+fall behind, or be so far away that a turn away is still possible.
 """
 
 import math
@@ -20,10 +20,10 @@ _ANGLE = 0.25
 """Angle between two courses on which a common turn may end [rad]."""
 
 _ANGLES = 26
-"""Number of these to a side [-]: once round."""
+"""Number of such courses on each side [-]: once round."""
 
 _BEYOND_MIN = 1.0
-"""Least distance beyond a radius by which a vessel counts [m]."""
+"""Least distance beyond its radius with which a vessel is weighted [m]."""
 
 _TURNS_BACK = 0.5 * math.pi
 """Course beyond the end of a common turn up to which the vehicle turns back [rad]."""
@@ -39,7 +39,7 @@ class CommonTurn:
     ----------
     side : of the turn
     course : at its end [rad]
-    slack : by how much it keeps off all vessels [m]
+    slack : least margin over all vessels [m]
     ends : whether each of them falls behind in the end, or is still far then
     rate : least slack per lever of commands before it [m/s]
     free_time, free_course : for how long other commands may be given before it, and the course that
@@ -72,14 +72,15 @@ class CommonTurn:
         self.change = change
 
     def keeps_off(self, floor: float) -> bool:
-        """Return whether it has a slack of ``floor`` at least [m], to its end."""
+        """Return whether its slack is at least ``floor`` [m] up to its end."""
         return self.slack >= floor and self.ends
 
 
 def remaining(side: float, course: float, to: float) -> tuple[float, float]:
     """Return the side and the angle of a turn from a course to another one [rad].
 
-    The turn to a side may be longer than half a turn. It goes back from a little beyond its end.
+    The turn to a side may be longer than half a turn. From a little beyond its end the vehicle
+    turns back.
     """
     angle = math.fmod(side * (to - course), 2.0 * math.pi)
     if angle < 0.0:
@@ -146,8 +147,7 @@ class CommonTurns:
     def away(self, motions: Sequence[RelativeMotion]) -> float:
         """Return the course away from all vessels together [rad].
 
-        The nearer one is, the more it counts: by the inverse square of its distance beyond its
-        radius.
+        Nearer vessels count more: by the inverse square of the distance beyond the radius.
         """
         north = east = 0.0
         for motion in motions:
@@ -166,7 +166,7 @@ class CommonTurns:
         change: float,
         floor: float,
     ) -> CommonTurn:
-        """Return the common turn, to any course, that commands before it can spoil least.
+        """Return the common turn, to any course, that earlier commands can spoil least.
 
         Parameters are those of ``to_course``.
         """
@@ -217,14 +217,14 @@ class CommonTurns:
         turns: Sequence[FollowedTurn],
         floor: float,
     ) -> CommonTurn:
-        """Return what comes of full turns that end after an angle [rad]."""
+        """Return the common turn whose full turns end after an angle [rad]."""
         slack = rate = free_time = math.inf
         counted, ends = 1.0, True
         for turn in turns:
             turn.turn_to(angle, floor)
             slack = min(turn.slack, slack)
             if slack < floor:
-                # It need not be known any better.
+                # A more accurate value is not needed.
                 return CommonTurn(
                     side=side,
                     course=course,

@@ -14,13 +14,14 @@ control barrier function. It is not written down, but evaluated by prediction (`
 
 A **look** predicts both turns that may follow the demand (the nominal command). If one keeps off,
 the demand passes. If neither does, a fraction of the turn that was safe at the last look is mixed
-in, found by bisection, after which that turn keeps off. If there is none, that turn is flown.
+in: bisection finds the fraction after which that turn keeps off. If no fraction does, that turn is
+flown.
 
 **Theorem.** Under the assumptions, the distance from the vessel never falls below r_min, for any
 demand, and whether reports of the vessel arrive, arrive late or do not arrive. Proof by induction:
-what passes, or is mixed, leaves a turn away that keeps off after the step. The vessel is in the
-disc of that turn; later reports add discs and invalidate none. So that turn can still be flown, and
-the guard flies it where it finds nothing better.
+after every command that passes or is mixed, a turn away is left that keeps off. The vessel is in
+the disc of that turn; later reports add discs and invalidate no disc. So that turn can still be
+flown, and the guard flies it where it finds nothing better.
 
 **Assumptions.**
 
@@ -29,15 +30,15 @@ the guard flies it where it finds nothing better.
 2. Commands within omega_max are flown, up to the airspeed at which the largest bank limits the
    turn, and in proportion above it. The filter is called once per time step.
 3. The vessel is in each of its discs.
-4. Airspeed stays between the fastest and the slowest that are predicted with. Velocity, wind and
-   turns are in error by no more than the terms of the error budget say, and without satellite
-   navigation by its drift as well.
+4. Airspeed stays between the fastest and the slowest of the predictions. Errors of velocity, wind
+   and turns are within the terms of the error budget, and without satellite navigation within its
+   drift as well.
 5. Flying straight away outruns the growth of the disc. Without reports that holds for a limited
    time, since discs grow ever faster.
 6. A turn away keeps off at the start.
 
 ``docs/keepout_guard.md`` has the proof, what each assumption rests on, and what happens where one
-fails. The guard plans no way round: it keeps out, and no more.
+fails. The guard plans no way round the disc; it only keeps the vehicle out.
 """
 
 import math
@@ -68,12 +69,12 @@ from gnc.guard.turn import (
 from gnc.numeric import limited
 
 _RESOLUTION = 1e-3
-"""Turn radii kept beyond the radius for what is not evaluated, such as the error of the predicted
-closest approach: 4 cm at a turn radius of 40 m [-]."""
+"""Distance kept beyond the radius, in turn radii, for errors that are not evaluated, such as that
+of the predicted closest approach: 4 cm at a turn radius of 40 m [-]."""
 
 _SAME_SPEED = 0.05
-"""Airspeeds that differ by no more count as one, the faster [m/s]. A turn away then keeps off by
-the same to some centimetres, at most 0.2 m at a turn radius of 40 m."""
+"""Largest difference of two airspeeds that count as one, the faster [m/s]. The slack of a turn away
+is then wrong by some centimetres, at most 0.2 m at a turn radius of 40 m."""
 
 _BISECTIONS = 5
 """Halvings of the fraction of the turn away that is mixed in: it is found to 1/32."""
@@ -82,19 +83,19 @@ _PACE_TOLERANCE = 0.05
 """Rise of the pace that the guard is not consulted about [m/s]; see ``_SAME_SPEED``."""
 
 _SHORTFALL_MAX = 0.5
-"""By how much skipped commands may be less of the turn away than the one that was looked at, over
+"""How far skipped commands may lie from the turn away, compared with the command of the look, over
 omega_max [-]. A larger share keeps more slack for rolling; a smaller one brings the next look
 sooner."""
 
 _COMMON_REACH = 2.0
-"""Turns away within which a vessel is within reach of a common turn, and for which it is looked
-ahead whether areas of vessels come near each other [-]."""
+"""Duration, in turns away, within which a vessel is within reach of a common turn, and for which
+the guard predicts whether areas of vessels come near each other [-]."""
 
 _LEFT_OUT_MOST = 1.0
-"""Time for which other vessels are left out of looks at most [s]: speeds and wind change."""
+"""Longest time for which other vessels are left out of looks [s]: speeds and wind change."""
 
 _FREE_ENOUGH, _FREE_LEAST = 0.5, 0.15
-"""Time until the next look from which on a common turn is taken without a look at the next
+"""Time until the next look that is long enough to take a common turn without a look at the next
 candidate, and without a search over all courses [s]."""
 
 _PACE_DECAY = 2.0
@@ -104,18 +105,18 @@ longer than a rise."""
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GuardParameters:
-    """What the keep-out guard knows beforehand.
+    """The parameters of the keep-out guard, known beforehand.
 
     Attributes
     ----------
-    radius : distance that the vehicle's path must keep from the vessel: r_min, and what the failure
-        of a part may take it off its turn [m]
+    radius : distance that the vehicle's path must keep from the vessel: r_min, and the deviation
+        from its turn that the failure of a part may cause [m]
     heading_rate_max : omega_max, the largest command [rad/s]
     lag : time constant of the heading rate behind its command; 0 if it follows at once [s]
     delay : dead time before that [s]
     slow_lag : delay behind slow commands; None if that is ``delay`` + ``lag`` [s]
-    time_step : for which a command is held [s]
-    errors : that are reckoned with
+    time_step : time for which a command is held [s]
+    errors : error budget that is allowed for
     turn_speed : airspeed up to which it can turn at ``heading_rate_max``; faster it turns at the
         same acceleration across [m/s]
     """
@@ -184,7 +185,7 @@ class Guarded:
 
 
 class Reckoning(NamedTuple):
-    """What turns away are predicted with besides the error budget.
+    """The values that turns away are predicted with, besides the error budget.
 
     Attributes
     ----------
@@ -200,15 +201,15 @@ class Reckoning(NamedTuple):
 class KeepoutGuard:
     """Filters the demands of a guidance. It keeps a memory and must be called once per time step.
 
-    A faster pace is flown only where the faster vehicle can turn away as well: a turn that was safe
-    must remain so. A vehicle that catches up turns wider, so V_r is flown while the guard acts, and
+    A faster pace is flown only where the faster vehicle can turn away as well: a safe turn must
+    remain safe. A vehicle that catches up turns wider, so V_r is flown while the guard acts, and
     for a quarter of a turn after that. A faster pace would make the guard act again at once, and
     the two would alternate.
 
     Parameters
     ----------
-    parameters : of the vehicle, and what is to be kept
-    speeds : between which the vehicle stays, and V_r
+    parameters : of the vehicle and of the guard
+    speeds : range of speeds of the vehicle, and V_r
     """
 
     def __init__(self, parameters: GuardParameters, speeds: "SpeedRange") -> None:
@@ -220,12 +221,12 @@ class KeepoutGuard:
 
     @property
     def status(self) -> GuardStatus:
-        """What the guard did at the last step."""
+        """The guard's action at the last step."""
         return self._heading_rates.status
 
     @property
     def reckoning(self) -> Reckoning:
-        """What turns away are predicted with after the last step."""
+        """The values that turns away are predicted with, after the last step."""
         speeds, turns = self._speeds, self._heading_rates
         return Reckoning(
             fastest=speeds.fastest(speeds.highest),
@@ -246,7 +247,7 @@ class KeepoutGuard:
         ----------
         demand : of the guidance
         own : the vehicle's motion
-        vessels : discs, at least one, in each of which the vessel is
+        vessels : discs, at least one; each of them contains the vessel
         others : other vessels; those out of reach cost next to nothing
         """
         time, command, pace = demand.time, demand.heading_rate, demand.pace
@@ -293,7 +294,8 @@ class Encounter:
     Attributes
     ----------
     disc : that contains the vessel
-    motions : fast first and slow then; and, where that differs, slow all along and fast all along
+    motions : of a vehicle that is fast at first and slow then; and, where these differ, of one that
+        is slow, and of one that is fast, all along
     """
 
     def __init__(self, disc: Tube, motions: tuple[RelativeMotion, ...]) -> None:
@@ -308,7 +310,7 @@ class Ship:
     ----------
     name : of another vessel; empty for the one that is measured
     radius : to keep from it [m]
-    discs : at least one, in each of which it is
+    discs : at least one; each of them contains the vessel
     """
 
     def __init__(self, name: str, radius: float, discs: Sequence[Tube]) -> None:
@@ -323,9 +325,9 @@ class _Surroundings:
     Attributes
     ----------
     ship, motion : the vessel, and the motion relative to its disc
-    room : distance beyond its radius in which a turn away from it is done, whatever the course
-        before it [m]
-    free_for : for how long the vehicle stays farther off than that, whatever it does [s]
+    room : distance beyond its radius within which a turn away from it is completed, from any course
+        [m]
+    free_for : time for which the vehicle stays farther off than that under any command [s]
     """
 
     def __init__(
@@ -347,7 +349,8 @@ class Several:
     Attributes
     ----------
     names, discs : of each of them
-    motions : relative to all of these discs, when a command begins to act: one or three of each
+    motions : relative to all of these discs, when a command begins to act: one or three for each
+        disc
     """
 
     def __init__(
@@ -364,7 +367,8 @@ class _Look:
     Attributes
     ----------
     ship, encounters : the only vessel that is near, and its discs
-    several : vessels that are near, by discs that may be kept off; empty where there is one alone
+    several : vessels that are near, for each choice of discs to keep off; empty where only one is
+        near
     """
 
     def __init__(
@@ -377,7 +381,7 @@ class _Look:
 
 class _BackupTurn(NamedTuple):
     """A turn away that may be flown: its slack [m], whether the disc falls behind in the end, its
-    side, and against what it was predicted.
+    side, and the disc and motion of its prediction.
     """
 
     slack: float
@@ -393,13 +397,15 @@ class HeadingRateFilter:
 
     Parameters
     ----------
-    parameters : of the vehicle, and what is to be kept
+    parameters : of the vehicle and of the guard
 
     Attributes
     ----------
-    status : what was done at the last step
+    status : action at the last step
     slowest : airspeed that the vehicle may fall to in any turn [m/s]
-    prediction, history, budget : of turns; of the commands; of those that need no look
+    prediction : of turns
+    history : of commands
+    budget : of commands that need no look
     """
 
     def __init__(self, parameters: GuardParameters) -> None:
@@ -432,8 +438,8 @@ class HeadingRateFilter:
         self._exact_wind = WindErrorByGusts(errors.turbulence)
         self._displacement = errors.displacement(wind=self._exact_wind)
         self._gusty = errors.turbulence.sigma > 0.0
-        # Half a turn to the nearer side, half as much again for the disc's motion, and what the lag
-        # takes from any heading rate.
+        # Half a turn to the nearer side, half as much again for the disc's motion, and the time
+        # that the lag takes from any heading rate.
         self._turn_time = 1.5 * math.pi / p.heading_rate_max + 2.0 * p.lag + p.delay + p.time_step
         # Slack that the declared errors may take from a turn that was safe.
         self._explained = (
@@ -445,7 +451,7 @@ class HeadingRateFilter:
         # In one step the command may differ from the turn by 2 omega_max, which displaces the
         # vehicle by V omega_max dt^2. In turn radii:
         self._resolution = max(_RESOLUTION, (p.heading_rate_max * p.time_step) ** 2)
-        # The turn that was safe: to which side, and from which disc of which vessel.
+        # The safe turn: its side, its vessel and the vessel's disc.
         self._side = 0.0
         self._kept_off: dict[str, Tube] = {}
         # Where several vessels are near.
@@ -480,14 +486,15 @@ class HeadingRateFilter:
         command : demanded heading rate [rad/s]
         time : now [s]
         own : the vehicle's motion
-        vessels : discs, at least one, in each of which the vessel is
+        vessels : discs, at least one; each of them contains the vessel
         fastest, slowest : airspeeds that the vehicle may come to; a turn away has to keep off at
             all speeds between them. The slowest counts where it is below the fastest [m/s]
         others : other vessels
         """
         skips = self.budget.may_skip(command, fastest, slowest)
         if skips and others and time >= self._left_out_until:
-            # Commands cannot spoil the turn that was found; the others alone are due.
+            # Commands cannot spoil the turn that was found; only the other vessels are due for a
+            # look.
             skips = self._leaves_others_out(time, own, vessels, fastest, slowest, others)
         if not skips:
             found = self._look(command, time, own, vessels, fastest, slowest, others)
@@ -535,19 +542,21 @@ class HeadingRateFilter:
         enough: float = math.inf,
         radius: float | None = None,
     ) -> float:
-        """Return by how much the better turn away, begun now, keeps off [m]; negative if none does.
+        """Return the clearance of the better turn away that begins now [m]; negative if neither
+        turn keeps off.
 
         At one airspeed, and from a disc that the vehicle outruns, no other commands do better
-        (docs/keepout_guard.md). What the path may come nearer within a step is taken off.
+        (docs/keepout_guard.md). The result is reduced by the distance that the path may come nearer
+        within a step.
 
         Parameters
         ----------
         time : now [s]
         own : the vehicle's motion
-        vessels : discs, at least one, in each of which the vessel is
+        vessels : discs, at least one; each of them contains the vessel
         speed : airspeed of the vehicle [m/s]
         enough : clearance above which the search may end early [m]
-        radius : to keep; that of the parameters if not given [m]
+        radius : to keep; by default that of the parameters [m]
         """
         within_step = (self._resolution - _RESOLUTION) / self._rate * speed
         pending = self.history.take_in(own.heading_rate)
@@ -586,7 +595,7 @@ class HeadingRateFilter:
         slowest: float,
         others: Sequence[KnownVessel],
     ) -> _Look | None:
-        """Return None if a turn keeps off after the command, or what is near."""
+        """Return None if a turn keeps off after the command, else the vessels that are near."""
         measured = Ship("", self._p.radius, vessels)
         if not others:
             self._common = None
@@ -623,11 +632,11 @@ class HeadingRateFilter:
         fastest: float,
         slowest: float,
     ) -> tuple[list[Ship], float]:
-        """Return the vessels that turns away have to keep off, and for how long the rest need not
-        be looked at [s].
+        """Return the vessels that turns away have to keep off, and the time for which the others
+        need no look [s].
 
-        A vessel is left out while a turn away from it is left to the vehicle whatever it does, and
-        no area of another one comes so near to its area that both might have to be kept off at once
+        A vessel is left out while the vehicle can still turn away from it after any command, and no
+        other vessel's area comes so near to its area that both might have to be kept off at once
         (docs/keepout_guard.md, "Several vessels").
         """
         far_for = math.inf
@@ -649,7 +658,7 @@ class HeadingRateFilter:
         for found in of_due:
             free = min(found.free_for, _LEFT_OUT_MOST)
             if free > 0.0 and any(self._meet(found, other) for other in around):
-                # In each other's way, though not yet within reach of a turn.
+                # These vessels are in each other's way, though not yet within reach of a turn.
                 free = min(self._out_of_reach(found), _LEFT_OUT_MOST)
             if free > 0.0:
                 self._far_until[found.ship.name] = time + free
@@ -674,8 +683,8 @@ class HeadingRateFilter:
         motion = self.relative_motion(disc, time, own, fastest, slowest, 0.0, ship.radius)
         slower = max(1.0, fastest / self._turn_speed)
         half_turn = (math.pi / self._rate) * slower + self._p.lag + self._p.delay + self._time_step
-        # Flown at the vessel, a turn away comes nearer by the turn radius and by what comes
-        # before it. The vessel comes nearer for as long as half a turn takes.
+        # A turn away that begins straight at the vessel comes nearer by the turn radius and by the
+        # way before the turn. The vessel comes nearer for as long as half a turn takes.
         disc_speed = math.hypot(motion.disc_north, motion.disc_east)
         closing = disc_speed + motion.growth + 0.5 * motion.acceleration * half_turn
         room = (
@@ -758,7 +767,9 @@ class HeadingRateFilter:
         fastest: float,
         slowest: float,
     ) -> None:
-        """Let commands pass without a look that cannot spoil a turn; none without one."""
+        """Let commands that cannot spoil a turn pass without a look; without a turn, let no command
+        pass.
+        """
         self.budget.reset(
             turn,
             side,
@@ -799,7 +810,7 @@ class HeadingRateFilter:
             if turn is not None:
                 self._keep_to(turn, found)
                 skipped = TurnAway(turn.slack, turn.free_time, turn.free_course, turn.change)
-                # At its end, commands to the side of the turn spoil it, too.
+                # At the end of the turn, commands to its side spoil it, too.
                 over = turn.to_turn <= self._rate * (self._p.lag + self._time_step)
                 self._begin_skipping(skipped, 0.0 if over else turn.side, command, fastest, slowest)
                 return None
@@ -891,8 +902,8 @@ class HeadingRateFilter:
     def _backup_common_turn(self, several: Sequence[Several]) -> tuple[CommonTurn, Several, float]:
         """Return the common turn to fly, the vessels that it keeps off, and its command [rad/s].
 
-        The turn that was safe is continued as long as the declared errors explain the slack that it
-        lacks. Beyond that it is the turn with the most slack.
+        The safe turn is continued as long as the declared errors explain the slack that it lacks.
+        Beyond that, the turn with the most slack is flown.
         """
         last = self._common
         continued: tuple[CommonTurn, Several, float] | None = None
@@ -941,7 +952,9 @@ class HeadingRateFilter:
         return discs[gaps.index(max(gaps))]
 
     def _gap(self, disc: Tube, time: float, own: AirMotion) -> float:
-        """Return the distance from a disc after a quarter of a turn, if the vehicle stayed [m]."""
+        """Return the distance from a disc after a quarter of a turn, if the vehicle stayed where it
+        is [m].
+        """
         since = time - disc.time + 0.5 * math.pi / self._rate
         north = own.ground_north - disc.north - disc.velocity_north * since
         east = own.ground_east - disc.east - disc.velocity_east * since
@@ -958,9 +971,9 @@ class HeadingRateFilter:
         pending_rate: float,
         radius: float | None = None,
     ) -> RelativeMotion:
-        """Return the motion relative to a disc, with all that is uncertain in radius and growth.
+        """Return the motion relative to a disc, whose radius and growth contain all errors.
 
-        The radius to keep is that of the parameters if not given [m].
+        By default the radius to keep is that of the parameters [m].
         """
         since = time - disc.time
         wind_error = own.wind_error
@@ -990,7 +1003,7 @@ class HeadingRateFilter:
     def time_until_near(self, motion: RelativeMotion, turns: float = 1.0) -> float:
         """Return for how long the disc stays out of reach of a turn away [s]; below 0 if it is not.
 
-        Out of reach is what is farther off than disc and vehicle can close during a turn, or
+        A disc is out of reach if disc and vehicle cannot close the distance during a turn, or
         several ``turns``.
         """
         duration = turns * self._turn_time * max(1.0, motion.fastest / self._turn_speed)
@@ -1000,7 +1013,7 @@ class HeadingRateFilter:
         gap = (
             math.hypot(motion.x, motion.y)
             - motion.radius
-            # The next look may be as late as a turn from now.
+            # The next look may come as late as a turn from now.
             - self._displacement.after(2.0 * duration)
             - (closing + 0.5 * acceleration * duration) * duration
         )
@@ -1040,7 +1053,8 @@ class HeadingRateFilter:
         change: float,
         floor: float,
     ) -> TurnAway:
-        """Return the turn away to a side after a command: the least of the motions in each respect.
+        """Return the turn away to a side after a command: each of its values is the least over the
+        motions.
 
         Below ``floor`` [m] of slack the search may end early.
         """
@@ -1093,10 +1107,10 @@ class HeadingRateFilter:
         return mixed
 
     def _backup_turn(self, encounters: Sequence[Encounter]) -> _BackupTurn:
-        """Return the turn away to fly: one that keeps off, if there is one.
+        """Return the turn away to fly: one that keeps off, if such a turn exists.
 
-        Else the turn to the side that was safe is continued, as long as the declared errors explain
-        the slack that it lacks. Beyond that it is the turn with the most slack.
+        Otherwise the turn to the safe side is continued, as long as the declared errors explain the
+        slack that it lacks. Beyond that, the turn with the most slack is flown.
         """
         safe_side = self._side
         turns: list[_BackupTurn] = []
@@ -1120,9 +1134,10 @@ class HeadingRateFilter:
     def _explained_slack(self, motion: RelativeMotion) -> float:
         """Return the slack that declared errors may have taken from a safe turn since [m]."""
         turn_time = self._turn_time * max(1.0, motion.fastest / self._turn_speed)
-        # Of the growth, that of the disc is in all predictions.
+        # All predictions contain the disc's growth already.
         error = self._speed_error + motion.wind_error
-        # What is kept for a change of speed along the turn depends on where it slows down.
+        # The distance kept for a change of speed along the turn depends on where the vehicle slows
+        # down.
         switching = SPEED_SWITCH_ERROR * (motion.fastest - motion.slowest) / self._rate
         return self._explained + error * turn_time + switching
 
@@ -1140,12 +1155,12 @@ class HeadingRateFilter:
 
 
 class CommandHistory:
-    """Heading-rate commands, one per time step, and the course that is still to come of them.
+    """Heading-rate commands, one per time step, and the course that they still bring.
 
     In the middle of a roll an aircraft will turn farther than its heading rate and a first-order
-    lag predict. Its autopilot integrates, so in the end it turns through all the course that was
-    commanded. The **lack** is the commanded course, less what was turned, less what the lag and the
-    commands under way will still turn. It is 0 for a vehicle with just that dead time and lag
+    lag predict. Its autopilot integrates, so in the end it turns through all the commanded course.
+    The **lack** is the commanded course, less what was turned, less what the lag and the commands
+    under way will still turn. It is 0 for a vehicle with just that dead time and lag
     (docs/keepout_guard.md, "Course that earlier commands still bring").
 
     Parameters
@@ -1157,11 +1172,11 @@ class CommandHistory:
 
     Attributes
     ----------
-    under_way : commands that act within the delay, the first one perhaps for a part of its step
+    under_way : commands that act within the delay; the first one may act for a part of its step
         [rad/s]
     change : largest recent change of command, over a full reversal; it counts less the older it is
         [-]
-    recent : commands within dead time and lag of the last one, of which any two make a change
+    recent : commands within dead time and lag of the last one; any two of them make a change
         [rad/s]
     """
 
@@ -1176,7 +1191,7 @@ class CommandHistory:
     ) -> None:
         self._lag = lag
         self._slow_lag = slow_lag
-        # Commands count from when they act.
+        # Commands count from the time at which they act.
         self._slow_lag_after_delay = slow_lag - delay
         self._time_step = time_step
         self._reversal = 2.0 * heading_rate_max
@@ -1210,7 +1225,7 @@ class CommandHistory:
 
     @property
     def newest(self) -> float:
-        """The command of the last step [rad/s]; whoever flies another one in its place sets it."""
+        """The command of the last step [rad/s]; it is set if another one is flown in its place."""
         return self._commands[-1]
 
     @newest.setter
@@ -1228,7 +1243,8 @@ class CommandHistory:
         Parameters
         ----------
         rate : heading rate of the aircraft now [rad/s], not the rate of the course over the mean
-            air: no autopilot makes up for what a gust or a better estimate of the wind does to that
+            air: no autopilot corrects the change of that course by a gust or by a better estimate
+            of the wind
         """
         if self._commands:
             self._begun = True
@@ -1279,7 +1295,7 @@ class CommandHistory:
         lowest, highest = min(commands), max(commands)
         widest = max(highest, self._highest) - min(lowest, self._lowest)
         if widest / self._reversal <= LEAST_CHANGE:
-            # None of them changes by more than counts at least, as on an orbit.
+            # No change exceeds the least that counts, as on an orbit.
             recent.extend(commands)
             for _ in commands:
                 change *= fading
@@ -1299,13 +1315,14 @@ class CommandHistory:
 
 
 class SkipBudget:
-    """Counts the commands that need no look, since they cannot spoil the turn away found last.
+    """Counts the commands that need no look, since they cannot spoil the last turn away that was
+    found.
 
     A look says how much course that turn can lose, for how many steps, and at which commands and
     airspeeds. Each command that passes without a look withdraws a step, and the course by which it
-    is less of the turn than omega_max. When less than two steps' course is left, or a command or an
-    airspeed lies outside of its range, the guard looks again (docs/keepout_guard.md, "Evaluating
-    less often").
+    falls short of a step of the turn at omega_max. When less than two steps' course is left, or a
+    command or an airspeed lies outside of its range, the guard looks again (docs/keepout_guard.md,
+    "Evaluating less often").
 
     Parameters
     ----------
@@ -1314,7 +1331,7 @@ class SkipBudget:
 
     Attributes
     ----------
-    steps : for which commands may be skipped, at most
+    steps : largest number of commands that may be skipped
     course_left : that the turn can still lose [rad]
     """
 
@@ -1322,11 +1339,11 @@ class SkipBudget:
         self._rate = heading_rate_max
         self._time_step = time_step
         self._step_course = heading_rate_max * time_step
-        # A command may be cut after it has passed: as much course is kept for that.
+        # A command may be cut after it has passed: this much course is kept for that.
         self._reserve = 2.0 * self._step_course
         self.steps = 0
         self.course_left = 0.0
-        # Course that a command spares, per rad/s.
+        # Course that a command saves, per rad/s.
         self._course_per_rate = 0.0
         self._lowest = self._highest = 0.0
         self._slowest = self._fastest = 0.0
@@ -1360,9 +1377,9 @@ class SkipBudget:
 
         Parameters
         ----------
-        turn : away that keeps off; None if there is none, and nothing may be skipped
+        turn : turn away that keeps off; None without one: then no command may be skipped
         side : of the turn; 0 where the disc is out of reach
-        command : that was looked at [rad/s]
+        command : command of the look [rad/s]
         recent : lowest and highest of it and the recent ones [rad/s]
         slowest, fastest : airspeeds at which the turn was predicted [m/s]
         """
@@ -1372,8 +1389,8 @@ class SkipBudget:
         self.steps = max(0, int(turn.free_time / self._time_step) - 1)
         self.course_left = turn.free_course
         self._course_per_rate = side * self._time_step
-        # Commands that change by no more than the turn's deviation counts, and that are not too
-        # little of the turn.
+        # Commands may change by no more than the turn's deviation allows for, and must not lie too
+        # far from the turn.
         middle, half = 0.5 * (recent[0] + recent[1]), turn.change * self._rate
         least = self.least_of_turn(side, command) if side else -self._rate
         self._lowest = max(middle - half, least if side > 0.0 else -self._rate)
@@ -1381,23 +1398,25 @@ class SkipBudget:
         self._slowest, self._fastest = slowest, fastest
 
     def least_of_turn(self, side: float, command: float) -> float:
-        """Return how little of a turn to a side commands may be after this one [rad/s]."""
+        """Return the least later command, counted towards the side of the turn, after a command
+        [rad/s].
+        """
         return max(min(side * command, self._rate) - _SHORTFALL_MAX * self._rate, -self._rate)
 
     def refund(self, command: float) -> None:
-        """Let the command [rad/s] that was looked at pass once more."""
+        """Let the command [rad/s] of the last look pass once more."""
         self.steps += 1
         self.course_left += self._step_course - self._course_per_rate * command
 
     def charge(self, command: float, flown: float) -> None:
-        """Count what is flown in place of a command that has passed [rad/s]."""
+        """Count the command that is flown in place of one that has passed [rad/s]."""
         self.course_left -= max(0.0, self._course_per_rate * (command - flown))
         if not self._lowest <= flown <= self._highest:
             self.steps = 0
 
 
 class SpeedRange:
-    """The speeds between which a vehicle stays, by the paces that it was commanded.
+    """The speeds between which a vehicle stays, from the commanded paces.
 
     Airspeed follows its commands with a lag and overshoots their changes. A pace is a speed over
     the mean air; former paces fade.
@@ -1423,7 +1442,7 @@ class SpeedRange:
         self._kept = math.exp(-time_step * bandwidth / _PACE_DECAY)
         self.highest = speed
         self.lowest = speed
-        # What recent paces may still make of the speed.
+        # Speeds that may still follow from recent paces.
         self._crest = speed
         self._trough = speed
 

@@ -11,9 +11,9 @@ the vehicle heads straight away from the disc, then straight on::
                              .'        '---'
        vehicle  ---->------'
 
-The **slack** (the margin) is the least, along the turn, of the distance r from the disc's centre
-less what is allowed for there: the radius to keep, the disc's growth, errors of velocity, and the
-deviation of the vehicle from the prediction.
+The **slack** is the least margin along the turn: the distance r from the disc's centre, less the
+radius to keep, the disc's growth, errors of velocity, and the deviation of the vehicle from the
+prediction.
 
 All is relative to the disc's centre, in the air mass: x north, y east [m], courses clockwise from
 north [rad]. Heading rate is the rate of that course. The side of a turn is 1 to the right and -1 to
@@ -28,54 +28,54 @@ from gnc.estimation.error_budget import Displacement
 from gnc.numeric import limited
 
 LEAST_CHANGE = 0.2
-"""Change of heading rate, over that of a full reversal, for which a turn is taken to deviate at
-least [-]."""
+"""Least change of heading rate, over that of a full reversal, that a turn's deviation is computed
+for [-]."""
 
 PENDING_DECAY = 64.0
-"""Time constant with which course that is still to come is forgotten, over the lag [-]: some of a
-turn at the largest bank never comes. Heading rates oscillate after a reversal as well, for as long
-as ``CHANGE_DECAY`` says."""
+"""Time constant with which pending course is forgotten, over the lag [-]: a part of the course of a
+turn at the largest bank is never flown. Heading rates oscillate after a reversal as well, for as
+long as ``CHANGE_DECAY`` says."""
 
 CHANGE_DECAY = 24.0
-"""Time constant with which the largest change of command counts less for how far turns deviate,
-over the lag [-]."""
+"""Time constant with which the effect of the largest change of command on the deviation of turns
+decays, over the lag [-]."""
 
 SLOW_LAG_ERROR = 0.025
-"""Share of the lag behind slow commands that it may be off [-]: it was measured at one airspeed,
-amplitude and frequency."""
+"""Relative error of the lag behind slow commands [-]: it was measured at one airspeed, amplitude
+and frequency."""
 
 _POINT_SPACING = 0.125
-"""Course turned between two points of a predicted turn, at most; half of it where the lag is
-shorter than that takes [rad]."""
+"""Largest course between two points of a predicted turn; half of it where the lag is shorter than
+the time that this course takes [rad]."""
 
 _TURN_MAX = 2.5 * math.pi
-"""Course after which a turn away is over [rad]: once round, and what a turn the other way before it
-and the disc's motion add."""
+"""Course after which a turn away is over [rad]: once round, and the course that is added by an
+earlier turn to the other side and by the disc's motion."""
 
 _ROLLING_TIMES = 3.0
 """The 3 of docs/keepout_guard.md, "Evaluating less often": commands may go on for this many times
 the shortest time in which they can use up the slack by the course that they take [-]."""
 
 SPEED_SWITCH_ERROR = 0.05
-"""Share of the difference between the turn radii when fast and slow by which a vehicle that slows
-down at any moment may come nearer than predicted [-]."""
+"""How much nearer than predicted a vehicle may come that slows down at any moment, over the
+difference between its turn radii when fast and when slow [-]."""
 
 _SPACING = 0.5
 """Spacing of the times at which displacements on straight ways are evaluated [s]."""
 
 _NEWTON_STEPS = 3
-"""Steps that find the closest approach between two points: each squares the error of the one before
-[-]."""
+"""Iterations that find the closest approach between two points: each squares the error of the one
+before [-]."""
 
 _WHOLE_STEP = 1e-6
-"""A delay may exceed a whole number of steps by this share of one without counting as one more
+"""Share of a step by which a delay may exceed a whole number of steps without counting as one more
 [-]."""
 
 
 class RelativeMotion:
     """A vehicle's motion relative to a disc, and how the disc grows.
 
-    Like the others of this module it is a plain class: the guard makes many at each look, and
+    The classes of this module are plain classes: the guard makes many objects at each look, and
     compiled they take a sixth of the time of a NamedTuple.
 
     Attributes
@@ -89,7 +89,7 @@ class RelativeMotion:
     pending_rate : change of heading rate that stands for the course still to come of earlier
         commands [rad/s]
     wind_error : part of the growth that is an error of the wind [m/s]
-    displacement : by turbulence, kept beside the radius; none where None
+    displacement : by turbulence, kept beside the radius; None without turbulence
     """
 
     def __init__(
@@ -169,12 +169,12 @@ class TurnStart:
 
 
 class TurnAway:
-    """A full turn away, and what commands before it cannot spoil it.
+    """A full turn away, and the limits within which commands before it cannot spoil it.
 
     Attributes
     ----------
-    slack : by how much it keeps off [m]; negative if it does not
-    free_time : for how long other commands may be given before it [s]
+    slack : its least margin [m]; negative if it does not keep off
+    free_time : time for which other commands may be given before it [s]
     free_course : course that these may take from the turn in all [rad]
     change : share of a full reversal that its deviation counts, by rolling into it or by recent
         changes of command [-]
@@ -237,13 +237,13 @@ class HeldResponse:
 
 
 class _Leg:
-    """What is flown between two points of a full turn at one airspeed.
+    """The flight between two points of a full turn at one airspeed.
 
     Attributes
     ----------
     way : chord [m]
-    course_to_middle, course_turned, rate_gained : by the command, besides what the heading rate at
-        the start brings [rad, rad, rad/s]
+    course_to_middle, course_turned, rate_gained : by the command; the heading rate at the start
+        adds to them [rad, rad, rad/s]
     stretch : time that the turn takes, over that at omega_max [-]
     speed : airspeed [m/s]
     """
@@ -276,7 +276,8 @@ def held_response(duration: float, lag: float) -> HeldResponse:
 
 
 def commands_under_way(delay: float, time_step: float) -> tuple[int, float]:
-    """Return how many commands act within a delay, and for how long of it the first one does [s].
+    """Return the number of commands that act within a delay, and for how long the first one does
+    [s].
 
     Parameters
     ----------
@@ -292,9 +293,9 @@ def pending_turn_rate(lack: float, rate: float, slow_lag: float, lag: float) -> 
 
     Parameters
     ----------
-    lack : commanded course that has not been turned yet, nor is on its way by the lag [rad]
+    lack : commanded course that is neither turned yet nor under way behind the lag [rad]
     rate : heading rate now [rad/s]; its delay is known to ``SLOW_LAG_ERROR``, and course within
-        that doubt does not count
+        that error does not count
     slow_lag, lag : delay behind slow commands, and lag over which the course is to be turned [s]
     """
     doubt = SLOW_LAG_ERROR * slow_lag * abs(rate)
@@ -302,7 +303,7 @@ def pending_turn_rate(lack: float, rate: float, slow_lag: float, lag: float) -> 
 
 
 def entry_rate(side: float, heading_rate: float, pending_rate: float) -> float:
-    """Return the heading rate that a turn begins with [rad/s]: pending course counts if it is
+    """Return the heading rate that a turn begins with [rad/s]; pending course counts only if it is
     against the turn.
     """
     return heading_rate + side * min(0.0, side * pending_rate)
@@ -321,8 +322,9 @@ def nearer_side(x: float, y: float, course: float) -> float:
 class TurnPrediction:
     """Predicts the turns of one vehicle.
 
-    The vehicle flies at the fastest airspeed while it flies towards the disc, and at the slowest
-    while it flies away from one that closes in all the same: so it comes nearest.
+    The prediction has the fastest airspeed while the vehicle flies towards the disc, and the
+    slowest while it flies away from a disc that closes in nevertheless: so the vehicle comes
+    nearest.
 
     Parameters
     ----------
@@ -330,7 +332,7 @@ class TurnPrediction:
 
     Attributes
     ----------
-    overshoot : angle by which a turn that ends straight away goes beyond it [rad]
+    overshoot : angle by which a turn that ends straight away goes beyond that course [rad]
     """
 
     def __init__(
@@ -349,7 +351,8 @@ class TurnPrediction:
         self._deviation = deviation
         self._turn_speed = turn_speed
         self._step = held_response(time_step, lag)
-        # The first of the commands under way acts for a part of its step, the rest for all of it.
+        # The first of the commands under way acts for a part of its step, the others for a whole
+        # step.
         self._first_step = held_response(commands_under_way(delay, time_step)[1], lag)
         spacing = max(
             min(_POINT_SPACING / heading_rate_max, lag), 0.5 * _POINT_SPACING / heading_rate_max
@@ -384,7 +387,7 @@ class TurnPrediction:
             course += turned * heading_rate + (duration - turned) * command
             heading_rate = response.decay * heading_rate + (1.0 - response.decay) * command
             response = self._step
-        # One chord will do, with the sine over arc of half the course turned.
+        # One chord is enough, with the sine over arc of half the course turned.
         mean_course, half_turned = mean_course_time / self._delay, 0.5 * (course - motion.course)
         cos, sin = math.cos(mean_course), math.sin(mean_course)
         receding = motion.x * cos + motion.y * sin > 0.0
@@ -400,7 +403,7 @@ class TurnPrediction:
     def after(self, command: float, motion: RelativeMotion) -> TurnStart:
         """Return where a command [rad/s] leads that is held for one time step."""
         if motion.fastest > self._turn_speed:
-            # At the largest bank a turn is the slower the faster the vehicle flies.
+            # At the largest bank a faster vehicle turns more slowly.
             command = limited(command, self._rate * self._turn_speed / motion.fastest)
         step = self._step
         duration, turned, mean = step.duration, step.turned, step.mean
@@ -427,18 +430,19 @@ class TurnPrediction:
         floor: float,
         against: float = 1.0,
     ) -> TurnAway:
-        """Return by how much a full turn away keeps off, and what cannot spoil it.
+        """Return the slack of a full turn away, and the limits within which commands cannot spoil
+        it.
 
-        The turn is over once the vehicle recedes and the turn makes it recede faster: by going on
-        until it heads straight away, and straight on then, it recedes for good. From a disc that
-        closes in faster than the vehicle flies it turns no farther than that, and is followed for
-        as long as a turn takes; ``ends`` says that the disc does not fall behind then.
+        The turn is over once the vehicle recedes and the turn makes it recede faster: if it goes on
+        until it heads straight away, and then flies straight on, it recedes for good. From a disc
+        that is faster than the vehicle it turns no farther than that; the prediction then covers
+        the time of a turn, and ``ends`` is False if the disc does not fall behind.
 
         Parameters
         ----------
         side : of the turn
         start : of the turn
-        motion : when the command that is judged begins to act; its disc and speeds count
+        motion : when the judged command begins to act; its disc and speeds are used
         change : largest recent change of command, over a full reversal [-]
         time : from now to the start [s]
         floor : slack below which the search may end early [m]
@@ -461,14 +465,15 @@ class TurnPrediction:
                 least = turn.slack
                 past_straight_away = last_outward >= 0.0 > outward and path.away
                 if past_straight_away and side * path.heading_rate > 0.0:
-                    # The disc gains on it all the same: flying straight on does best.
+                    # The disc gains on it nevertheless: flying straight on is best.
                     path.fly_straight_on()
                     outward = 0.0
                 continue
             least = turn.slack
-            # Passing straight away between two points counts as well: it would have stopped there.
+            # Passing the course straight away between two points counts as well: the turn would
+            # have ended there.
             if side * path.heading_rate >= 0.0 and (outward >= 0.0 or last_outward >= 0.0):
-                # The turn is over. One point more may allow more time until the next look.
+                # The turn is over. One more point may allow more time until the next look.
                 over = True
                 last_best = slack_per_lever
                 slack_per_lever = max(slack_per_lever, min(turn.rate, rise / turn.duration))
@@ -495,7 +500,9 @@ class TurnPrediction:
         time: float,
         against: float = 1.0,
     ) -> "FollowedTurn":
-        """Return a full turn that is followed point by point; parameters of ``turn_away``."""
+        """Return a full turn that is followed point by point; parameters are those of
+        ``turn_away``.
+        """
         rate, lag, time_step = self._rate, self._lag, self._step.duration
         heading_rate = entry_rate(side, start.heading_rate, motion.pending_rate)
         counted = max(change, rolled_change(side, heading_rate, rate))
@@ -505,8 +512,8 @@ class TurnPrediction:
         if motion.slowest != motion.fastest:
             self._let_slow_down(path, side, motion, leg)
         loss_rate = 2.0 * motion.fastest * rate * against / _ROLLING_TIMES
-        # Commands before the turn displace the vehicle by the course that they take from it, times
-        # a lever; and they use up slack by rolling, which makes the turn deviate more.
+        # Commands before the turn displace the vehicle by the course that they take from the turn,
+        # times a lever; and they use up slack by rolling, which makes the turn deviate more.
         rolling = self._rolling_deviation(change, against, counted) / (
             loss_rate * max(lag, time_step)
         )
@@ -537,13 +544,13 @@ class TurnPrediction:
         path.slow_down_while_receding(self._leg(side, motion.slowest), radii_difference)
 
     def _rolling_deviation(self, change: float, against: float, counted: float) -> float:
-        """Return by how much commands against a turn may make it deviate more [m]."""
+        """Return the additional deviation of a turn by commands against it [m]."""
         return max(0.0, self._deviation * max(change, against) - self._deviation * counted)
 
     def _leg(self, side: float, speed: float) -> _Leg:
-        """Return what is flown between two points of a full turn at an airspeed [m/s]."""
+        """Return the flight between two points of a full turn at an airspeed [m/s]."""
         spacing = self._spacing
-        # At the largest bank a turn is the slower the faster the vehicle flies.
+        # At the largest bank a faster vehicle turns more slowly.
         stretch = max(1.0, speed / self._turn_speed)
         rate = side * self._rate / stretch
         return _Leg(
@@ -558,7 +565,8 @@ class TurnPrediction:
     def _outward(self, side: float, start: TurnStart) -> float:
         """Return how far the course leads off the disc's direction on the side of the turn [m].
 
-        It is 0 where the turn begins beyond straight away by no more than one that ends there.
+        It is 0 where the turn begins no farther beyond straight away than a turn that ends there
+        overshoots.
         """
         x, y, course = start.x, start.y, start.course
         cos, sin = math.cos(course), math.sin(course)
@@ -567,11 +575,12 @@ class TurnPrediction:
         return 0.0 if beyond and x * cos + y * sin > 0.0 else outward
 
     def time_until_once_round(self, side: float, start: TurnStart, motion: RelativeMotion) -> float:
-        """Return how soon the turn may lead once round, being too far beyond straight away [s].
+        """Return the time after which the turn would begin too far beyond straight away, and lead
+        once round [s].
 
         The vehicle's course turns at omega_max at most. The direction in which the disc lies turns
-        the other way, by what crosses it: all of the disc's speed, and the vehicle's speed across
-        while it has so far left to turn.
+        the other way, by the speed across it: all of the disc's speed, and the vehicle's speed
+        across while it has that much course left to turn.
         """
         x, y, course = start.x, start.y, start.course
         to_turn = side * math.remainder(math.atan2(y, x) - course, 2.0 * math.pi) + self.overshoot
@@ -593,16 +602,17 @@ class FollowedTurn:
     side, motion : of ``TurnPrediction.turn_away``
     course : at the start [rad]
     lag : of the heading rate behind its command [s]
-    rollout : distance that the end of a turn may deviate by from one that ends at once [m]
+    rollout : largest deviation of the end of a turn from one that ends at once [m]
     duration, decay : of a step from point to point [s, -]
     stretch : time that the turn takes, over that at omega_max [-]
-    acting, fade : time since a command begins to act, and what its lag has left of it [s, -]
-    on_leg : lever of commands before the turn on the straight way after it, besides that at its
-        end [s]: they make it begin later by the course that they take, over omega_max
+    acting, fade : time since a command begins to act, and the share of its effect that the lag
+        still holds back [s, -]
+    on_leg : lever of commands before the turn on the straight way after it, added to that at its
+        end [s]: the straight way begins later by the course that they take, over omega_max
     counted : share of a full reversal that its deviation counts [-]
-    deviation : that is kept from the start on [m]
-    loss_rate : at which commands against it take from its slack, per lever [m/s^2]
-    rolling : lever that stands for what rolling uses up [s]
+    deviation : distance kept for it from the start on [m]
+    loss_rate : rate at which commands against the turn reduce its slack, per lever [m/s^2]
+    rolling : lever that stands for the slack used up by rolling [s]
 
     Attributes
     ----------
@@ -650,7 +660,7 @@ class FollowedTurn:
         self._first = True
         self.rise = 0.0
         self.turned = 0.0
-        # At the start itself the vehicle has not deviated yet.
+        # At the start the vehicle has not deviated yet.
         self.slack = path.slack + deviation
         self.rate = math.inf
         self.counted = counted
@@ -677,19 +687,19 @@ class FollowedTurn:
         self._first = False
 
     def turn_to(self, angle: float, floor: float) -> None:
-        """Go on until so much course is turned [rad], or slack falls below ``floor`` [m]."""
+        """Go on until the course ``angle`` is turned [rad], or slack falls below ``floor`` [m]."""
         while self.turned < angle and self.slack >= floor:
             self.advance()
             self.turned = self._side * (self.path.place.course - self._course)
 
     def straight_on(self, duration: float, turn_time: float) -> "StraightOn":
-        """Return how near the disc comes if the turn ends here.
+        """Return the closest approach of the disc if the turn ends here.
 
         Parameters
         ----------
         duration : for which the vehicle flies straight on [s]
-        turn_time : of a turn away, for which room has to be left then where the disc still closes
-            in [s]
+        turn_time : of a turn away, for which room has to be left at the end where the disc still
+            closes in [s]
         """
         motion, path = self._motion, self.path
         place = path.place
@@ -718,10 +728,11 @@ class FollowedTurn:
         return StraightOn(slack, slack / (self._lever() + self._on_leg), ends)
 
     def _later(self, nearest_at: float, duration: float, square: float) -> float:
-        """Return when slack is least, as the disc grows after it came nearest [s].
+        """Return the time at which slack is least, since the disc grows after its closest approach
+        [s].
 
-        With the distance m there and the relative speed w, slack sqrt(m^2 + w^2 t^2) - g t is least
-        at t = g m / (w sqrt(w^2 - g^2)).
+        With the distance m at the closest approach and the relative speed w, slack sqrt(m^2 + w^2
+        t^2) - g t is least at t = g m / (w sqrt(w^2 - g^2)).
         """
         motion, place = self._motion, self.path.place
         growth = motion.growth + motion.acceleration * nearest_at
@@ -732,13 +743,14 @@ class FollowedTurn:
         return min(nearest_at + growth * distance / math.sqrt(square * room), duration)
 
     def _lever(self) -> float:
-        """Return the lever of commands before the turn, on where it leads until now [s]."""
+        """Return the lever of commands before the turn on the present place of the vehicle [s]."""
         return self._acting - self._lag * (1.0 - self._fade) + self._rolling
 
 
 class StraightOn(NamedTuple):
-    """How near a disc comes on a straight way after a turn: the least slack [m], that per lever of
-    commands before the turn [m/s], and whether the disc falls behind in the end or is still far.
+    """Closest approach of a disc on a straight way after a turn: the least slack [m], the least
+    slack per lever of commands before the turn [m/s], and whether the disc falls behind in the end
+    or is still far.
     """
 
     slack: float
@@ -752,18 +764,19 @@ class _TurnPath:
     Parameters
     ----------
     side, start, motion : see ``TurnPrediction.turn_away``
-    heading_rate : that the turn begins with [rad/s]
+    heading_rate : at the start of the turn [rad/s]
     spacing : from point to point
     time : from now to the start [s]
-    deviation : that is kept from the start on [m]
-    leg : what is flown between two points
+    deviation : distance kept for it from the start on [m]
+    leg : flight between two points
 
     Attributes
     ----------
     heading_rate : now [rad/s]
-    slack : distance from the disc's centre less what is allowed for [m]
+    slack : distance from the disc's centre less the distance to keep [m]
     displaced_by : growth of the displacement by turbulence on the last leg [m]
-    outward : how far the last leg led off the disc's direction on the side of the turn [m]
+    outward : distance by which the last leg led off the disc's direction on the side of the turn
+        [m]
     away : whether it led away from the disc's centre
     """
 
@@ -811,7 +824,7 @@ class _TurnPath:
     def allowed_after(self, time: float) -> float:
         """Return the distance from the disc's centre to keep some time after the last point [s, m].
 
-        Displacements are kept by their times, so that these are rounded up to a few.
+        Times are rounded up to a few values, because the displacement of each is stored.
         """
         later, motion = self._time + time, self._motion
         allowed = self._kept + (motion.growth + 0.5 * motion.acceleration * later) * later
@@ -872,7 +885,7 @@ class _TurnPath:
         self._other_leg = None
 
     def closest_about_last_point(self, *, first: bool) -> float:
-        """Return the least slack before or after the last point, from which on slack rises [m].
+        """Return the least slack before or after the last point, after which slack rises [m].
 
         ``first`` says that the turn began at the last point.
         """
@@ -921,18 +934,19 @@ def speed_switch_allowance(
     y: float,
     course: float,
 ) -> float:
-    """Return how much nearer a turn may come that slows down sooner or later than predicted [m].
+    """Return how much nearer a vehicle may come that slows down sooner or later than predicted [m].
 
-    A vehicle is predicted to slow down where it begins to fly away from the disc's centre. It comes
-    nearest in another direction. Seen in that one, it began to fly away sooner, or later, by the
-    course that lies between the two directions, if it turned as much.
+    A vehicle is predicted to slow down where it begins to fly away from the disc's centre. Its
+    closest approach lies in another direction. Along that direction it began to fly away sooner, or
+    later, by the course between the two directions, if it turned as much.
 
     Parameters
     ----------
     side : of the turn
     radii_difference : between the turns, fast and slow [m]
-    switch, turned : where it was predicted to slow down, and course turned until there [rad]
-    x, y, course : where it is now
+    switch, turned : point at which it was predicted to slow down, and course turned until then
+        [rad]
+    x, y, course : place and course now
     """
     across, along = side * (switch.x * y - switch.y * x), x * switch.x + y * switch.y
     sooner = across < 0.0
@@ -958,7 +972,7 @@ def closest_between_samples(
     duration: float,
     first: bool,
 ) -> float:
-    """Return the least slack about a point from which on it rises [m]: before that point, or after.
+    """Return the least slack before or after a point after which slack rises [m].
 
     Parameters
     ----------
@@ -984,8 +998,8 @@ def _least_slack_between(
     """Return the least slack between two points that are ``duration`` [s] apart [m].
 
     The path is the cubic through both places with the velocities there, which is true to 1e-6 turn
-    radii. A disc may be smaller than the way between the points, so the distances at them alone
-    tell little of the closest approach.
+    radii. A disc may be smaller than the way between the points, so the distances at the points
+    alone do not determine the closest approach.
     """
     x, y = begin.x, begin.y
     way = end.speed * duration
@@ -1003,7 +1017,7 @@ def _least_slack_between(
         y_u = y + u * (y_1 + u * (y_2 + u * y_3))
         x_rate = x_1 + u * (2.0 * x_2 + 3.0 * u * x_3)
         y_rate = y_1 + u * (2.0 * y_2 + 3.0 * u * y_3)
-        # The square of the distance about there is square + 2 tilt du + bend du^2.
+        # The square of the distance near this point is square + 2 tilt du + bend du^2.
         square = x_u * x_u + y_u * y_u
         tilt = x_u * x_rate + y_u * y_rate
         bend = (
@@ -1013,7 +1027,7 @@ def _least_slack_between(
         )
         room = bend - slope * slope
         if room <= 0.0:
-            # What is allowed for grows faster than the distance ever will.
+            # The distance to keep grows faster than the distance ever will.
             return min(
                 math.hypot(x, y) - begin.allowed,
                 math.hypot(end.x, end.y) - end.allowed,

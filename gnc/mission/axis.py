@@ -1,4 +1,4 @@
-"""The height and bearing at which a plume's axis is expected: predicted, given, or searched for."""
+"""The expected height and bearing of a plume's axis: predicted, given, or searched for."""
 
 import math
 from collections.abc import Sequence
@@ -21,25 +21,29 @@ from gnc.reference.moving_centre import MovingCentre
 Array = npt.NDArray[np.float64]
 
 _HEIGHT_STEP = 6.0
-"""Between the heights that are weighed [m]: less than the spread of a plume."""
+"""Step between the heights that are weighed [m]: less than the spread of a plume."""
 
 _HORIZON = 8
 """Number of passes that the search plans ahead [-]."""
 
 _KNOWN = 0.3
-"""Deviation of the height over the spread of a pass [-], below which the search stays there."""
+"""Deviation of the height, over the spread of a pass, below which the search stays at that height
+[-].
+"""
 
 _PROBE_REACH = 1.6
-"""Farthest that a height beside the estimated one is flown, over its deviation [-]."""
+"""Largest distance of a flown height from the estimated one, over its deviation [-]."""
 
 _PROBES = np.linspace(0.0, 1.0, 9)
-"""Heights that are weighed, from the lowest to the highest probe [-]."""
+"""Number of heights that are weighed, from the lowest to the highest probe [-]."""
 
 _PASSES_INFORMED = 3.0
-"""Passes over which the information of one counts [-]: later ones have given as much."""
+"""Number of passes over which the information of one pass counts [-]: later passes have given as
+much.
+"""
 
 _RUNG = 15.0
-"""Between the heights of a ladder [m]."""
+"""Step between the heights of a ladder [m]."""
 
 _MODES = {
     PlumeState.SEARCHING: Mode.SEARCHING,
@@ -54,7 +58,7 @@ _NOTED = 0.75
 """Time between readings beyond which the estimator gets a position in between [s]."""
 
 _SILENT = 2.0
-"""Time without readings beyond which the estimator is informed of it [s]."""
+"""Time without readings after which the estimator is informed of the gap [s]."""
 
 _DECIDED = 10.0
 """Least time for which a chosen height is held once the plume is found [s]."""
@@ -74,11 +78,11 @@ class AxisHeight:
     ----------
     source : height of the stack's mouth above the sea [m]
     climb : slope of the axis [-]
-    momentum_flux, buoyancy_flux : of the assumed exhaust; 0 for an axis that does not rise by
-        itself [m^4/s^2, m^4/s^3]
+    momentum_flux, buoyancy_flux : of the assumed exhaust; 0 for an axis without plume rise
+        [m^4/s^2, m^4/s^3]
     stack_diameter, exhaust_speed : at the stack's mouth, whose wake draws the plume down; 0
         without exhaust [m, m/s]
-    lowest, highest : that is flown [m]
+    lowest, highest : altitudes that are flown [m]
     """
 
     source: float
@@ -105,14 +109,15 @@ class AxisHeight:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Climb:
-    """How the commanded altitude follows the demanded one: slowly, so that the autopilot follows.
+    """The slow way in which the commanded altitude follows the demanded one, so that the autopilot
+    follows.
 
     Attributes
     ----------
     time : constant of the lag [s]
     gradient : steepest climb or descent over the vehicle's way [-]
-    reach : farthest that the command may be from the altitude that is flown [m]: an autopilot that
-        has fallen behind by more may stop to integrate, and come back slowly
+    reach : largest distance of the command from the present altitude [m]: an autopilot that has
+        fallen behind by more may stop its integrator, and come back slowly
     """
 
     time: float
@@ -132,7 +137,7 @@ class Climb:
 
         Parameters
         ----------
-        altitude, demanded : commanded now, and in the end [m]
+        altitude, demanded : commanded now, and demanded in the end [m]
         speed : of the vehicle [m/s]
         time_step : [s]
         flown : altitude now; NaN where it is unknown [m]
@@ -143,7 +148,7 @@ class Climb:
 
 
 class AxisInputs(NamedTuple):
-    """What the expectation of a plume's axis is computed from.
+    """The inputs from which the expected axis of a plume is computed.
 
     Attributes
     ----------
@@ -170,8 +175,8 @@ class ExpectedAxis:
 
     Parameters
     ----------
-    parameters : how it is known
-    mode : what is done while the reference is tracked, at first
+    parameters : how the axis is known
+    mode : initial mode while the reference is tracked
 
     Attributes
     ----------
@@ -180,7 +185,7 @@ class ExpectedAxis:
     demanded : altitude to fly [m]
     bearing : of the centre of oscillation, to the right of where the plume trails behind the
         vessel's motion through the air [rad]
-    mode : what is done while the reference is tracked
+    mode : mode while the reference is tracked
     """
 
     def __init__(self, parameters: "AxisParameters", mode: Mode) -> None:
@@ -202,7 +207,7 @@ class AxisParameters:
 
     Attributes
     ----------
-    height : of the axis as it is predicted, and lowest and highest altitude that are flown
+    height : predicted height of the axis, and lowest and highest altitude that are flown
     altitude : at the start [m]
     climb : how the altitude follows
     """
@@ -278,17 +283,18 @@ class Search(Protocol):
 
 
 class HeightSearch:
-    """Maximises the probability of detection per time; then narrows the height down, and stays.
+    """Maximises the probability of detection per time, then reduces the uncertainty of the height,
+    and stays there.
 
-    While it searches, each height is weighed by the passes that lie on the way to it and at it: the
-    sum over them of the probability that the plume has been detected by then is the largest for the
-    height with the least expected time to find. Misses that have a plume in common are not
-    independent; given a cell of the estimate they are.
+    During the search, each height is weighed by the passes on the way to it and at it. The sum over
+    these passes of the probability that the plume has been detected by then is largest for the
+    height with the least expected time to find. Misses of the same plume are not independent, but
+    they are for a given cell of the estimate.
 
     Parameters
     ----------
-    lowest, highest : altitudes that may be flown [m]: limits of the flight, of the terrain and of
-        the keep-out area together
+    lowest, highest : altitudes that may be flown [m]: the limits of the flight, the terrain and the
+        keep-out area together
     climb_rate : at which the vehicle climbs and sinks [m/s]
     """
 
@@ -306,7 +312,7 @@ class HeightSearch:
         return self._most_hits(estimator)
 
     def _most_hits(self, estimator: PlumeEstimator) -> float:
-        """Return the height with the most expected hits, now and by what the pass shows [m]."""
+        """Return the height with the most expected hits, now and after the pass [m]."""
         height = estimator.height
         deviation = estimator.height_deviation
         spread = estimator.sigma_z
@@ -345,7 +351,8 @@ class HeightSearch:
 
 
 class LadderSearch:
-    """Goes up and down a ladder of heights, one a pass, until the plume is found, and flies there.
+    """Goes up and down a ladder of heights, one a pass, until the plume is found, and stays at its
+    height.
 
     Parameters
     ----------
@@ -372,15 +379,15 @@ class LadderSearch:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SearchedPlume(AxisParameters):
-    """A plume that is searched for; on the way the predicted height is flown.
+    """A plume that is searched for; on the way to it the predicted height is flown.
 
     Attributes
     ----------
     height, altitude, climb : same as ``AxisParameters``
     expected : of ship and sensor
     climb_rate : at which the vehicle climbs and sinks [m/s]
-    ladder : whether a ladder of heights is flown until it is found, instead of the most informative
-        height
+    ladder : whether a ladder of heights is flown until the plume is found, instead of the most
+        informative height
     """
 
     expected: Expectation
@@ -428,7 +435,7 @@ class SearchedAxis(ExpectedAxis):
     Attributes
     ----------
     estimate : after the last pass
-    sensor : its state, by its readings
+    sensor : state of the sensor, as its readings show it
     """
 
     def __init__(self, parameters: SearchedPlume) -> None:
@@ -462,7 +469,7 @@ class SearchedAxis(ExpectedAxis):
         return self._estimator.measurable if self._estimator is not None else math.nan
 
     def take_readings(self, time: float, readings: Sequence[tuple[float, float]]) -> None:
-        """Note the place now, and what was read since the last call.
+        """Note the place now, and the readings since the last call.
 
         Parameters
         ----------
@@ -505,7 +512,7 @@ class SearchedAxis(ExpectedAxis):
             self.mode = Mode.SENSOR_FAILED
 
     def _begin_search(self, time: float, inputs: AxisInputs) -> PlumeEstimator:
-        # The wind at the vehicle's height: how it changes with height is not known on board.
+        # The wind at the vehicle's height is used: its change with height is not known on board.
         prior = expected_plume(
             self._expected,
             distance=inputs.centre.distance,
@@ -539,7 +546,7 @@ class SearchedAxis(ExpectedAxis):
             return
         self._pass_time += _PASS_MEMORY * (at - self._last_pass - self._pass_time)
         self._last_pass = at
-        # Seen from the stack: the pass may have been nearer than the orbit's centre, or farther.
+        # Bearing from the stack: the pass may have been nearer than the orbit's centre, or farther.
         self._bearing_demand = estimator.bearing
         self._keep_estimate(estimator)
         if estimator.state is not PlumeState.FOUND or at >= self._decide_at:
@@ -563,7 +570,7 @@ class SearchedAxis(ExpectedAxis):
 
 
 def _fix_at(fixes: Sequence[_Fix], time: float) -> _Fix:
-    """Return the place at a time [s], linear between those that are known; at least one is."""
+    """Return the place at a time [s], interpolated between known places; at least one is known."""
     later = len(fixes) - 1
     while later > 0 and fixes[later - 1].time >= time:
         later -= 1

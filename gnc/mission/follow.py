@@ -17,7 +17,8 @@ from gnc.reference.steered import SteeredReference
 from gnc.tracker import Tracker, TrackingParameters
 
 MANOEUVRE_RANGE = 200.0
-"""Distance that the orbit is moved off per acceleration of the vessel [s^2]: the centre lags."""
+"""Distance by which the orbit is moved away, per acceleration of the vessel [s^2]: the centre lags.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,17 +31,17 @@ class FollowingParameters:
     reference_heading_rate : largest of the reference [rad/s]
     swing : courses of the reference's shape
     turn_rate_fraction_until_tracked : same as ``gnc.reference.reference.ReferenceShape`` [-]
-    speed_ratio_max : above it the vessel outruns the vehicle [-]
+    speed_ratio_max : speed ratio above which the vessel outruns the vehicle [-]
     approach : the way to the centre
     standoff : additional distance of the centre until the reference is tracked [m]
     glide_airspeed : while leaving without thrust or control [m/s]
-    stale : age of vessel data beyond which the keep-out margin no longer covers where the vessel
-        may be [s]
-    reach, reach_time : distance that the vessel may be, after that time, from where it is assumed
-        to be, while its reports come [m, s]
-    errors : that are reckoned with
+    stale : age of vessel data beyond which the keep-out margin no longer covers the vessel's
+        possible places [s]
+    reach, reach_time : largest distance of the vessel from its assumed place after that time, while
+        its reports come [m, s]
+    errors : error budget that is allowed for
     plan_interval : guidance steps between plans
-    axis : how the plume's axis is known, and so the altitude
+    axis : how the plume's axis, and so the altitude, is known
     """
 
     centre: CentreParameters
@@ -71,7 +72,7 @@ class PlumeFollowing:
     ----------
     centre : of oscillation
     axis : of the plume
-    departing : whether the vehicle leaves for good, though nothing is wrong with it
+    departing : whether the vehicle leaves for good, though without a fault
     """
 
     def __init__(self, parameters: FollowingParameters, tracking: TrackingParameters) -> None:
@@ -91,7 +92,7 @@ class PlumeFollowing:
         self.departing = False
         self._tracking = False
         self._closing_in = False
-        # Time since the last plan, none before the first [s].
+        # Time since the last plan; 0 before the first [s].
         self._plan_time = 0.0
         self._orbit_range = 0.0
         self._orbit_rate = 0.0
@@ -99,7 +100,9 @@ class PlumeFollowing:
     def plan(
         self, time: float, own: OwnMotion, vessel: TargetMotion, *, renew: bool, guarding: bool
     ) -> Order:
-        """Return whether to track, or the way to the centre of oscillation or from the vessel."""
+        """Return the order to track, or the way to the centre of oscillation or away from the
+        vessel.
+        """
         if renew:
             self._move_orbit(own, vessel)
             self._decide(own, vessel, guarding)
@@ -134,7 +137,7 @@ class PlumeFollowing:
             self._mode = Mode.APPROACH
 
     def depart(self) -> None:
-        """Leave the vessel for good at this altitude: there is no more to be done here."""
+        """Leave the vessel for good at this altitude: the mission is over."""
         self.departing = True
 
     def _move_orbit(self, own: OwnMotion, vessel: TargetMotion) -> None:
@@ -159,11 +162,11 @@ class PlumeFollowing:
         self._centre_error = math.hypot(off_north, off_east)
 
     def _widen_margin(self, own: OwnMotion, vessel: TargetMotion) -> None:
-        """Keep farther off while the vessel may have come farther than between its reports."""
+        """Keep farther away while the vessel may have moved farther than between its reports."""
         p = self._parameters
         cos_a = math.cos(self.centre.axis)
         sin_a = math.sin(self.centre.axis)
-        # Each disc in the direction of the plume, from where the vessel is assumed to be.
+        # Reach of each disc in the direction of the plume, from the assumed place of the vessel.
         reach = min(
             tube.reach(p.reach_time)
             + cos_a
@@ -247,7 +250,7 @@ class PlumeFollowing:
         )
 
     def _follow_axis(self, time: float, own: OwnMotion, vessel: TargetMotion) -> None:
-        """Follow the height of the plume's axis, and say what is being done."""
+        """Follow the height of the plume's axis, and set the mode."""
         p = self._parameters
         axis = self.axis
         inputs = AxisInputs(own, vessel, self.centre, self._speed, self._plan_time)

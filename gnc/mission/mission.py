@@ -1,4 +1,4 @@
-"""What a mission is: it orders a heading rate, or that the reference is tracked."""
+"""The mission's Protocol: it orders a heading rate, or orders to track the reference."""
 
 from enum import Enum
 from typing import NamedTuple, Protocol
@@ -10,7 +10,7 @@ from gnc.tracker import ReferenceTracker
 
 
 class Mode(Enum):
-    """What the guidance is doing.
+    """The mode of the guidance.
 
     Attributes
     ----------
@@ -40,31 +40,31 @@ for _i, _mode in enumerate(Mode):
     _mode.number = _i
 
 LOST = (Mode.GLIDING, Mode.TERMINATING)
-"""Modes in which an aircraft sinks to the sea, away from the vessel. It comes back from there only
-if thrust that was lost is there again."""
+"""Modes in which an aircraft sinks to the sea, away from the vessel. It returns only if lost thrust
+is there again."""
 
 FAULTY = (*LOST, Mode.RETREATING)
 """Modes of a vehicle with a fault. It retreats without thrust for as long as it can hold its
-height, and goes on if thrust is there again."""
+height, and continues the mission if thrust is there again."""
 
 LEAVING = (*FAULTY, Mode.DEPARTING)
 """Modes in which the vehicle leaves the vessel, and tracks no reference."""
 
 TRACK = None
-"""In place of an ordered heading rate: the tracker commands it."""
+"""Stands for an ordered heading rate: the tracker commands the rate."""
 
 
 class Order:
-    """What the guidance is to do in this step.
+    """The mission's order for this step of the guidance.
 
-    A plain class, same as ``RelativeMotion``: one is made at each step.
+    This is a plain class, as ``RelativeMotion`` is: one is made at each step.
 
     Attributes
     ----------
     heading_rate : to fly, positive to the right [rad/s]; ``TRACK`` to track the reference
-    airspeed : to fly with an ordered heading rate; an airspeed law sets that of tracking [m/s]
+    airspeed : to fly with an ordered heading rate; an airspeed law sets it during tracking [m/s]
     altitude : above the sea [m]
-    mode : what is being done
+    mode : mode of the guidance
     """
 
     def __init__(
@@ -95,13 +95,13 @@ NO_CENTRE = Centre()
 
 
 class OrbitStatus(NamedTuple):
-    """Where the reference's orbit is.
+    """The place of the reference's orbit.
 
     Attributes
     ----------
     centre : of oscillation
-    error : distance of the orbit's centre from that [m]
-    in_place : whether the orbit is as near to the vessel as it will come
+    error : distance of the orbit's centre from that centre [m]
+    in_place : whether the orbit is at its final distance from the vessel
     """
 
     centre: Centre
@@ -110,11 +110,11 @@ class OrbitStatus(NamedTuple):
 
 
 class Mission(Protocol):
-    """Plans where the reference goes, and takes over where tracking would lead the wrong way.
+    """Plans the motion of the reference, and takes over where tracking would lead the wrong way.
 
     Attributes
     ----------
-    tracker : of the reference; there is one once the first plan is made
+    tracker : of the reference; it exists after the first plan
     orbit : of the reference; None before the first plan has placed it
     """
 
@@ -127,13 +127,13 @@ class Mission(Protocol):
     def plan(
         self, time: float, own: OwnMotion, vessel: TargetMotion, *, renew: bool, guarding: bool
     ) -> Order:
-        """Return what to do in this step of the guidance.
+        """Return the order for this step of the guidance.
 
         Parameters
         ----------
         time : now [s]
         own, vessel : motion of the vehicle and of the vessel
-        renew : whether the plan is made anew, or the last one is carried on
+        renew : whether to make a new plan, or to continue the last one
         guarding : whether the keep-out guard turned the vehicle away in the last step
         """
 

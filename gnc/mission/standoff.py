@@ -1,9 +1,9 @@
 """The mission on a circle about a moving vessel: the standoff orbits of the literature.
 
-The reference is the circle's point nearest to the vehicle, anew at every step, with the course and
-the heading rate through the air that keep to the circle. It has no clock, so that a law is free to
-lag along the circle; a law that reads a path from the reference finds the circle in the frame of
-the vessel.
+At every step, the reference is the circle's point nearest to the vehicle, with the course and the
+heading rate through the air that keep to the circle. It has no clock, so that a law is free to lag
+along the circle; a law that reads a path from the reference gets the circle in the frame of the
+vessel.
 """
 
 import math
@@ -25,19 +25,20 @@ from gnc.vectors import Vector, along, course_of, minus, norm, plus, scaled
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StandoffParameters:
-    """How a vessel is circled, clockwise.
+    """Parameters of circling a vessel clockwise.
 
     Attributes
     ----------
-    radius : of the circle; it is joined outside of its place, and closes in once it is tracked [m]
+    radius : of the circle; the vehicle joins a larger circle, which closes in once it is tracked
+        [m]
     tracked : distance from the circle that counts as tracked [m]
     speed : V_r [m/s]
-    speed_ratio_max : above it the vessel outruns the vehicle [-]
+    speed_ratio_max : speed ratio above which the vessel outruns the vehicle [-]
     glide_airspeed : while leaving without thrust or control [m/s]
     plan_interval : guidance steps between plans
     altitude : at the start [m]
     height : of the plume's axis, and so of the flight
-    climb : how the altitude follows it
+    climb : how the altitude follows that height
     """
 
     radius: float
@@ -77,7 +78,7 @@ class CirclePoint(PlacedReference):
 
 
 class CircleTracker(ReferenceTracker):
-    """Steers to the circle, ahead of time by the vehicle's lag.
+    """Steers to the circle, with a preview by the vehicle's lag.
 
     Parameters
     ----------
@@ -130,7 +131,7 @@ class CircleTracker(ReferenceTracker):
             then = Motion(*placed(ahead, self._lag), speed, turning)
             air = Air(own.wind_north, own.wind_east, target.velocity_north, target.velocity_east)
             demand, command = self._law.demand(ahead, then, air)
-            # Where it will be at the next step, same as the reference of any tracker.
+            # The place at the next step, as for the reference of any tracker.
             placed(reference, self._time_step)
         self.heading_rate_demand, self.heading_rate_command = demand, command
         self.saturated = command != demand
@@ -138,7 +139,7 @@ class CircleTracker(ReferenceTracker):
 
 
 class StandoffOrbit:
-    """Circles the vessel, which is its centre; see ``gnc.mission.mission.Mission``.
+    """Circles the vessel; see ``gnc.mission.mission.Mission``.
 
     Parameters
     ----------
@@ -167,7 +168,7 @@ class StandoffOrbit:
         renew: bool,
         guarding: bool,  # noqa: ARG002 - of the Protocol
     ) -> Order:
-        """Return whether to fly the circle, or the way from the vessel."""
+        """Return the order to fly the circle, or to leave the vessel."""
         p = self._parameters
         if renew:
             self._plan_circle(own, vessel)

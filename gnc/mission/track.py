@@ -15,7 +15,9 @@ from gnc.reference.reference import Reference
 from gnc.tracker import Tracker, TrackingParameters
 
 STANDOFF = 2.0
-"""How far outside its place the orbit is joined, over the distance that counts as tracked [-]."""
+"""Distance outside of its place at which the orbit is joined, over the distance that counts as
+tracked [-].
+"""
 
 CLOSING_RATE = 0.2
 """Rate at which it then closes in, over V_r [-]."""
@@ -23,12 +25,12 @@ CLOSING_RATE = 0.2
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Joining:
-    """How an orbit is joined.
+    """Parameters of joining an orbit.
 
     Attributes
     ----------
     approach : the way to it
-    orbit : to be joined where it is nearest
+    orbit : orbit to join at its nearest point
     plan_interval : guidance steps between plans
     """
 
@@ -45,7 +47,7 @@ class DirectParameters:
     ----------
     reference : at time 0
     centre : of its oscillation
-    joining : how its orbit is joined; without it, it is tracked from the first step on
+    joining : how the orbit is joined; None to track the reference from the first step on
     """
 
     reference: Reference
@@ -61,10 +63,10 @@ class DirectParameters:
 class DirectTracking:
     """Tracks a reference that is given for the whole flight; see ``gnc.mission.mission.Mission``.
 
-    Differs from the paper because its law knows nothing of the keep-out area: on the way to a far
-    reference it leads through it, and law and guard would undo each other's work for as long as the
-    flight lasts. Here the vehicle goes round the vessel, and joins the orbit somewhat outside of
-    its place, at the phase that is nearest; once tracked, the orbit closes in. An orbit that takes
+    Differs from the paper because its law does not know the keep-out area: on the way to a far
+    reference the law leads through the area, and law and guard would counteract each other for the
+    whole flight. Here the vehicle goes round the vessel, and joins the orbit somewhat outside of
+    its place, at the nearest phase; once it is tracked, the orbit closes in. An orbit that takes
     all of the heading rate is joined slowed down
     (``ReferenceShape.turn_rate_fraction_until_tracked``), and joined anew where it is lost.
 
@@ -84,7 +86,7 @@ class DirectTracking:
         self._axis = math.atan2(parameters.centre.y, parameters.centre.x)
         self._joining = parameters.joining
         self.tracker: Tracker[Any] = Tracker(tracking, copy.copy(parameters.reference))
-        # Whether the orbit may be lost without the guard's doing, and joined anew.
+        # Whether the orbit may be lost without an action of the guard, and joined anew.
         self._losable = False
         self._on_the_way = False
         self._closing = False
@@ -112,7 +114,7 @@ class DirectTracking:
         renew: bool,
         guarding: bool,
     ) -> Order:
-        """Return whether to track the reference, or the way round the vessel to its orbit."""
+        """Return the order to track the reference, or the way round the vessel to its orbit."""
         if self._joining is None or self._approach is None:
             return Order(TRACK, self._airspeed, self._altitude, Mode.TRACKING)
         watching = self._on_the_way or self._closing or guarding or self._losable
@@ -174,10 +176,10 @@ class DirectTracking:
         near = error < (LOST_TRACK if ahead.closing else 1.0) * tracked
         if near:
             ahead.reference.set_turn_rate_fraction(1.0)
-        # A slower orbit is larger: it would reach farther towards the vessel.
+        # A slower orbit is larger, and would reach farther towards the vessel.
         ahead.closing = near and ahead.reference.turn_rate_fraction == 1.0
         if ahead.standoff == 0.0:
-            # In its place it no longer has to be moved.
+            # An orbit in its place no longer has to be moved.
             self.tracker.ahead = ahead.reference
             self._closing = False
         self._centre_error = ahead.standoff
@@ -190,7 +192,7 @@ class DirectTracking:
         )
 
     def _join(self, orbit: JoinedOrbit, own: OwnMotion, vessel: TargetMotion) -> None:
-        """Track the orbit from where it is nearest."""
+        """Track the orbit from its nearest point."""
         last = self.tracker.heading_rate_command
         reference = orbit.nearest(
             vessel.north + self._centre.x,

@@ -14,10 +14,10 @@ COURSE_GAIN = 2.0
 """Heading rate per course error off the reference, in units of omega_max [-]."""
 
 LOST_TRACK = 3.0
-"""Distance from the reference at which it is lost, over that at which it is tracked [-]."""
+"""Distance at which the reference counts as lost, over that at which it counts as tracked [-]."""
 
 _GLIDE_ALTITUDE = -1000.0
-"""Altitude commanded in a glide [m]: so low that the autopilot holds its airspeed by pitch."""
+"""Altitude commanded in a glide [m], so low that the autopilot holds its airspeed by pitch."""
 
 _BLOCKED_WITHIN = 0.97
 """Largest radius of the blocked area, over the centre's distance from the vessel [-]."""
@@ -145,7 +145,7 @@ def _way_is_clear(x: float, y: float, target_x: float, target_y: float, radius: 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ApproachParameters:
-    """How the way to the centre goes.
+    """Parameters of the way to the centre.
 
     Attributes
     ----------
@@ -201,15 +201,15 @@ class Approach:
 
         It turns to the nearer side. Where that leads through the course straight to the vessel, the
         keep-out guard may block the turn, and hold the vehicle on a course beside a fast vessel
-        until it has fallen behind. After a quarter of a turn of that it flies abeam until it is as
-        far off as it goes round the vessel, and turns then.
+        until the vehicle has fallen behind. If this lasts for the time of a quarter turn, the
+        vehicle flies abeam out to the radius by which it goes round the vessel, and turns then.
 
         Parameters
         ----------
         own, vessel : motion of the vehicle and of the vessel
         centre_x, centre_y : of oscillation, north and east of the vessel [m]
         last_command : of the heading rate [rad/s]
-        additional_range : added to the radii of the keep-out area for now [m]
+        additional_range : temporary addition to the radii of the keep-out area [m]
         guarding : whether the keep-out guard turns the vehicle away
         """
         p = self._parameters
@@ -281,7 +281,7 @@ class Approach:
     def halve_join_distance(self) -> None:
         """Halve the distance at which tracking begins, after the keep-out guard has ended it.
 
-        From as far as before, the guard would end it again.
+        From the same distance, the guard would end it again.
         """
         p = self._parameters
         least = min(LOST_TRACK * p.tracked, p.join_distance)
@@ -291,14 +291,15 @@ class Approach:
 class Egress:
     """Leads straight away from the vessel, for a vehicle that has to leave.
 
-    From a course towards it either turn would do, and the vehicle keeps to the one that it has
-    begun: to decide at every step would lead straight on.
+    From a course towards the vessel either turn would do, and the vehicle keeps to the turn that it
+    has begun: a new decision at every step would lead straight on.
 
     Parameters
     ----------
     tracking : of the reference that is left
-    speed : V_r, at which a vehicle retreats that holds its height [m/s]
-    glide_airspeed : of a vehicle that sinks, midway between V_r and the slowest commanded [m/s]
+    speed : V_r, the speed of a retreat at constant height [m/s]
+    glide_airspeed : of a sinking vehicle, midway between V_r and the slowest commanded airspeed
+        [m/s]
     """
 
     def __init__(self, tracking: TrackingParameters, speed: float, glide_airspeed: float) -> None:
@@ -319,10 +320,10 @@ class Egress:
     ) -> Order:
         """Return the order to leave, for a vehicle with a fault.
 
-        Without thrust it holds its height for as long as its speed lasts, and asks the engine for
-        all that takes: if thrust is there, that shows it. To glide to the sea is the last resort,
-        when the speed over the mean air has fallen to that of the glide, or the airspeed to the
-        slowest commanded.
+        Without thrust the vehicle holds its height for as long as its speed lasts, and commands the
+        throttle that this takes: if thrust is there, the command shows it. A glide to the sea is
+        the last resort, when the speed over the mean air has fallen to that of the glide, or the
+        airspeed to the slowest commanded one.
 
         Parameters
         ----------
@@ -334,8 +335,8 @@ class Egress:
         command = self.command(own, vessel, last_command)
         if fault is not Fault.THRUST_LOST:
             return Order(command, self._glide_airspeed, _GLIDE_ALTITUDE, Mode.TERMINATING)
-        # A gust is no reason to glide while it leaves an airspeed that is commanded at times, which
-        # goes as far below that of the glide as V_r is above it.
+        # A gust is no reason to glide while it leaves an airspeed that may be commanded, which goes
+        # as far below that of the glide as V_r is above it.
         slow = own.speed < self._glide_airspeed or (
             own.airspeed < 2.0 * self._glide_airspeed - self._speed
         )
@@ -345,7 +346,7 @@ class Egress:
         return Order(command, self._speed, altitude, Mode.RETREATING)
 
     def reset(self) -> None:
-        """Forget the turn and the glide that were begun: the fault is over."""
+        """Forget the turn and the glide that have begun: the fault is over."""
         self._side = 0.0
         self._gliding = False
 

@@ -1,14 +1,14 @@
-"""Ways that keep clear of other vessels: the mission yields to them before the guard has to act.
+"""Gives way to other vessels before the guard has to act.
 
 While the reference is tracked, the vehicle stays within a circle about the centre of oscillation,
-the orbit's **footprint**, which moves along with the vessel that is measured. While it is on its
-way, it flies a course. Where another vessel's area is about to enter the one, or lies on the other,
-the mission gives way: of all courses on which a straight flight keeps clear of all vessels, the
-measured one among them, the one nearest to the wanted course is flown. These are the courses
+the orbit's **footprint**, which moves along with the measured vessel. On its way to the orbit, it
+flies a course. The mission gives way where another vessel's area is about to enter the footprint or
+lies on that course. It then flies the course nearest to the wanted one among all courses on which a
+straight flight keeps clear of all vessels, including the measured one. These are the courses
 outside of the velocity obstacles (P. Fiorini, Z. Shiller, "Motion planning in dynamic environments
 using velocity obstacles", Int. J. Robotics Research 17:760, 1998).
 
-The guard keeps out whatever is flown here.
+The guard keeps the vehicle out on any of these courses.
 """
 
 import math
@@ -26,27 +26,27 @@ HORIZON = 60.0
 """Time for which courses are judged, and for which vessels are near [s]."""
 
 _SOON = 30.0
-"""Time within which an area enters the footprint, or a way, for the mission to yield [s]."""
+"""The mission yields if an area enters the footprint, or the way, within this time [s]."""
 
 _CLEAR = 10.0
-"""Time by which it has to stay clear longer until the mission goes on [s]."""
+"""Additional time for which the area has to stay clear before the mission continues [s]."""
 
 _COURSES = 36
-"""Courses that are judged [-]."""
+"""Number of courses that are judged [-]."""
 
 _OTHER_SIDE = 0.5
-"""What it costs to change the side to which the wanted course is left [rad]."""
+"""Cost of a change of the side to which the vehicle leaves the wanted course [rad]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class YieldParameters:
-    """How a mission gives way.
+    """Parameters of giving way.
 
     Attributes
     ----------
     footprint : radius of the circle about the centre of oscillation in which the orbit lies [m]
-    room : distance kept beside the radius of a vessel, in which the guard does not act [m]
-    measured_radius : kept from the vessel that is measured, on a way that yields [m]
+    room : distance kept in addition to the radius of a vessel, so that the guard does not act [m]
+    measured_radius : distance kept from the measured vessel while giving way [m]
     """
 
     footprint: float
@@ -81,14 +81,14 @@ class Area:
         self.growth = growth
 
     def clearance(self, velocity_north: float, velocity_east: float, duration: float) -> float:
-        """Return the least distance from the area of what moves straight on from the place [m].
+        """Return the least distance from the area in a straight flight from the place [m].
 
-        What is within the area is clear of it where it leaves.
+        It is negative within the area. Where the area recedes, it is the distance at the start.
 
         Parameters
         ----------
         velocity_north, velocity_east : over the ground [m/s]
-        duration : for which it moves [s]
+        duration : time of that flight [s]
         """
         north = self.velocity_north - velocity_north
         east = self.velocity_east - velocity_east
@@ -106,12 +106,12 @@ class Yielding:
 
     Parameters
     ----------
-    parameters : how it gives way
+    parameters : of giving way
     heading_rate_max, lag : of the vehicle [rad/s, s]
 
     Attributes
     ----------
-    to : name of the vessel to which the mission yields; empty while it does not
+    to : name of the vessel to which the mission yields; empty while it does not yield
     """
 
     def __init__(self, parameters: YieldParameters, *, heading_rate_max: float, lag: float) -> None:
@@ -144,7 +144,7 @@ class Yielding:
         orbit : of the reference
         near : other vessels
         last_command : of the heading rate [rad/s]
-        renew : whether the decision is made anew, or the last one is carried on
+        renew : whether to decide anew, or to keep the last decision
         """
         if renew:
             self._decide(order, time, own, target, orbit, near)
@@ -211,8 +211,8 @@ class Yielding:
     def _wanted(
         self, order: Order, own: OwnMotion, target: TargetMotion, orbit: OrbitStatus
     ) -> float:
-        """Return the course that leads to the centre of oscillation, or from the vessel that is
-        measured [rad].
+        """Return the course that leads to the centre of oscillation, or away from the measured
+        vessel [rad].
         """
         north, east = target.north - own.ground_north, target.east - own.ground_east
         if order.mode in LEAVING:
@@ -231,7 +231,7 @@ class Yielding:
         areas: Sequence[Area],
         soon: float,
     ) -> int | None:
-        """Return the number of the area that enters the orbit's footprint most, or None."""
+        """Return the number of the area that enters the orbit's footprint farthest, or None."""
         to_north = target.north + orbit.centre.x - own.ground_north
         to_east = target.east + orbit.centre.y - own.ground_east
         entering, least = None, self._parameters.footprint
@@ -250,8 +250,8 @@ class Yielding:
         return entering
 
     def _choose(self, wanted: float, own: OwnMotion, areas: Sequence[Area]) -> None:
-        """Choose the course nearest to the wanted one that keeps clear, or the one that keeps the
-        clearest [rad].
+        """Return the course nearest to the wanted one that keeps clear, or the one with the largest
+        clearance [rad].
         """
         best, least_cost = wanted, math.inf
         clearest, most = wanted, -math.inf
@@ -276,15 +276,17 @@ def _is_near(own: OwnMotion, target: TargetMotion, orbit: OrbitStatus) -> bool:
 
 
 def _clearance(course: float, own: OwnMotion, areas: Sequence[Area], duration: float) -> float:
-    """Return how far a straight flight keeps from areas [m], on a course for a time [rad, s]."""
+    """Return the least distance of a straight flight from areas [m], on a course [rad] for a time
+    [s].
+    """
     north = own.speed * math.cos(course) + own.wind_north
     east = own.speed * math.sin(course) + own.wind_east
     return min(area.clearance(north, east, duration) for area in areas)
 
 
 def _in_the_way(wanted: float, own: OwnMotion, areas: Sequence[Area], soon: float) -> int | None:
-    """Return the number of the area that lies most in the way of the wanted course [rad], or of the
-    one that is flown; None where neither leads into one.
+    """Return the number of the area that blocks the wanted course [rad] most, or else the course
+    that is flown; None where neither leads into an area.
     """
     blocking, least = None, 0.0
     for number, area in enumerate(areas):

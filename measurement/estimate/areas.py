@@ -24,13 +24,13 @@ _TAIL = 5.0
 """Time from the end of a pass to that of its window [slowest time constants]."""
 
 _BASE = 15.0
-"""Length of the background beside a window, outside of others [s]; at least one sample."""
+"""Length of the background beside a window, outside of other windows [s]; at least one sample."""
 
 _SHARE_LEAST = 0.05
-"""Share of an area below which nothing can be concluded from the rest."""
+"""Least share of an area that allows a conclusion."""
 
 _SAME = 1e-6
-"""Times that differ by less are the same [s]: seconds since 1970 are accurate to 2e-7."""
+"""Difference of times that count as equal [s]: seconds since 1970 are accurate to 2e-7."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,8 +41,8 @@ class Areas:
     ----------
     ratio : SO2 over CO2 [ppb/ppm]
     noise : standard deviation of the ratio by the noise [ppb/ppm]
-    share : of an area of SO2 that remains, as passes overlap in its channel [-]
-    separate : ratio of the areas that separate passes would have, by the share that remains of each
+    share : share of an area of SO2 that is left where passes overlap in its channel [-]
+    separate : ratio of the areas of separate passes, computed from the share that is left of each
         gas [ppb/ppm]
     interval_s : between passes, median; NaN for one pass [s]
     """
@@ -56,7 +56,7 @@ class Areas:
     def truncation_reason(self, t90_s: float) -> str:
         """Return why areas hold too little of the SO2, given its t90 [s].
 
-        Passes overlap, or a single pass is cut off where the record ends.
+        Either passes overlap, or a single pass is cut off at the end of the record.
         """
         share = f"{100.0 * self.share:.0f} %"
         if math.isnan(self.interval_s):
@@ -106,7 +106,7 @@ def area_ratio(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) 
 
 def _variance(weights: Array, channel: Channel, step: float) -> float:
     """Return the variance of a weighted sum of readings by noise and drift of the zero."""
-    # A step of the drift is in all readings that follow it.
+    # A step of the drift changes all readings after it.
     later = np.cumsum(weights[::-1])
     noise = channel.noise**2 * float(weights @ weights)
     return noise + channel.random_walk**2 * step * float(later @ later)
@@ -117,13 +117,13 @@ def _area_weights(
 ) -> dict[str, Array]:
     """Return the weights of each gas's samples in the areas of all passes together.
 
-    A window ends when the slowest channel has forgotten its pass or the next one begins.
+    A window ends when the slowest channel has forgotten its pass, or when the next window begins.
     """
     tail = _TAIL * max(instrument.known(gas).constants[0] for gas in record.gases)
     windows: list[Span] = []
     for i, found in enumerate(passes):
-        # Where the window before is over, this one leads its pass; otherwise it begins at the
-        # trough.
+        # After the end of the window before, this one begins ahead of its pass; otherwise it begins
+        # at the trough.
         before = windows[-1][1] if windows else -math.inf
         onset = passes[i + 1].start_s if i + 1 < len(passes) else math.inf
         windows.append((max(found.start_s - _LEAD, before), min(found.end_s + tail, onset)))
@@ -137,7 +137,9 @@ def _area_weights(
 
 
 def _sum_weights(record: Record, windows: Sequence[Span], late: float) -> Array:
-    """Return the weights of samples in the sum of areas over windows ``late`` [s], shape (n,)."""
+    """Return the weights of samples in the sum of areas over windows that are ``late`` [s] later,
+    shape (n,).
+    """
     weights = np.zeros(len(record.time))
     for i, (start, end) in enumerate(windows):
         after_last = windows[i - 1][1] if i else -math.inf
@@ -159,7 +161,7 @@ def _add_window(weights: Array, record: Record, window: Span, free: Span) -> Non
         last = int(np.searchsorted(time, window[1] + _SAME)) - 1
         if last > first + 1 and first < len(time):
             part = weights[before : before + len(time)]
-            # Trapezoids: the ends count half. The area below the background's line is that of the
+            # Trapezoids: the ends count half. The area below the background's line follows from the
             # mean of its ends.
             part[first : last + 1] += record.step
             part[[first, last]] -= 0.5 * record.step
@@ -173,9 +175,10 @@ def _add_window(weights: Array, record: Record, window: Span, free: Span) -> Non
 
 
 def _puffs(record: Record, instrument: SnifferSpec, passes: Sequence[Pass], gas: str) -> Array:
-    """Return what a gas's channel reads of puffs of CO2 with the dose of each pass [ppm].
+    """Return the readings of a gas's channel for puffs of CO2 with the dose of each pass [ppm].
 
-    Each sample is the mean over a step: it does not matter when between samples a puff arrives.
+    Each sample is the mean over a step, so that the time of a puff between two samples does not
+    matter.
     """
     channel, co2 = instrument.known(gas), instrument.known("co2")
     centres = np.array([found.centre_s for found in passes])

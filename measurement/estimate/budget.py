@@ -1,4 +1,4 @@
-"""Errors that do not average out: effect of each property of the instrument not known exactly."""
+"""Errors that do not average out: the effect of each uncertain property of the instrument."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -17,8 +17,8 @@ CARBON_SD = 0.015
 SAMPLING_SD = 0.02
 """Relative standard deviation by the time between readings, per time constant of CO2 [-].
 
-Without noise, readings 0.6 to 4.6 time constants apart read 0.8 to 3.7 % too much, or 1.1 to 7.7 %
-where delays differ by half of their interval.
+Without noise, the result of readings 0.6 to 4.6 time constants apart is 0.8 to 3.7 % too high, or
+1.1 to 7.7 % where delays differ by half of the interval.
 """
 
 SULPHATE_SHARE = 0.0225
@@ -30,9 +30,9 @@ _CORRECTING = ("no", "no2")
 def unmeasured(
     instrument: SnifferSpec, measured: tuple[str, ...], factor: float
 ) -> dict[str, tuple[float, float]]:
-    """Return the effect of NO and NO2 that are not measured, and its deviation, by gas.
+    """Return the effect of NO and NO2 that were not measured, and its deviation, by gas.
 
-    Both are in the unit that ``factor`` makes of a ratio, as % m/m.
+    Both are in the unit to which ``factor`` converts a ratio, such as % m/m.
     """
     so2, found = instrument.known("so2"), {}
     for gas in _CORRECTING:
@@ -53,19 +53,18 @@ def common_errors(
     *,
     timing: bool = True,
 ) -> tuple[dict[str, float], float]:
-    """Return standard uncertainties of the result by name, and the energy they add to residuals.
+    """Return standard uncertainties of the result by name, and the energy that they add to the
+    residuals.
 
     Each gain, response, delay and cross-sensitivity is moved by its standard deviation, and the
-    result found again; those of a name add in squares.
+    result is computed again; uncertainties of one name add in squares.
 
     Parameters
     ----------
-    instrument : as it is known, with response and delay of SO2 as they fit where they are not
-        stated
+    instrument : as stated; where response and delay of SO2 are not stated, with the fitted ones
     measured : gases of the record
-    changes : by how much result and residuals of another instrument differ from those of the
-        instrument as it is known
-    timing : whether gain, t90 and delay of SO2 and CO2 are among them
+    changes : differences of result and residuals of another instrument from those of ``instrument``
+    timing : whether gain, t90 and delay of SO2 and CO2 are among the errors
     """
     squares: dict[str, float] = {}
     energy = 0.0
@@ -79,7 +78,7 @@ def common_errors(
 def _moved_channels(
     instrument: SnifferSpec, measured: tuple[str, ...], timing: bool
 ) -> Iterator[tuple[str, Channel]]:
-    """Yield name and channel of each error, except of what was found from the record (infinite)."""
+    """Yield name and channel of each error, without properties found from the record (infinite)."""
     for gas in measured:
         channel = instrument.known(gas)
         calibration, response = "calibration", "response"

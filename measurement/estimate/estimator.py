@@ -1,4 +1,6 @@
-"""Fuel sulphur content of a flight: uncertainty, quality and verdicts, at its end or over time."""
+"""Estimates the fuel sulphur content of a flight, with uncertainty, quality and verdicts, at its
+end or over time.
+"""
 
 import math
 from collections.abc import Sequence
@@ -52,29 +54,29 @@ ELAPSED_S = (60.0, 120.0, 300.0, 600.0)
 """Times after which the estimate is reported [s]."""
 
 _CARBON_LEAST, _CARBON_MOST = 0.5, 0.95
-"""Range of a fuel's carbon [-]; methanol has 0.375, for which these factors are not made."""
+"""Range of a fuel's carbon [-]. Methanol has 0.375, for which these factors do not hold."""
 
 _OVERLAP_LEAST = 0.95
-"""Least share of the SO2 that areas must read [-]: that of passes 2.0 t90 apart."""
+"""Least share of the SO2 that areas must contain [-]: the share at passes 2.0 t90 apart."""
 
 _DELAY_NEAR = 0.75
-"""Difference from the stated delay that the grid of the search may show by chance [s]."""
+"""Difference from the stated delay that the grid of the search may have by chance [s]."""
 
 _EXPLAINED_LEAST = 0.5
-"""Least share of a misfit that another delay explains if it is the true one [-]."""
+"""Least share of a misfit that a delay has to explain to count as the true one [-]."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Ratio:
-    """A ratio of SO2 to CO2, and what depends on the method; NaN without a pass.
+    """A ratio of SO2 to CO2, and the results that depend on the method; NaN without a pass.
 
     Attributes
     ----------
     ratio, noise : [ppb/ppm]
     misfit : mean square of the residuals over that of the noise [-]
     common : standard uncertainties by errors that do not average out, by name [ppb/ppm]
-    instrument : with response and delay of SO2 as stated, or as they fit best
-    overlap : excess of the ratio that separate passes would have [ppb/ppm]
+    instrument : with the stated response and delay of SO2, or with those that fit best
+    overlap : ratio that separate passes would have, less ``ratio`` [ppb/ppm]
     problems : reasons why there can be no verdict
     """
 
@@ -98,21 +100,21 @@ def estimate(
 ) -> FscEstimate:
     """Return the fuel sulphur content that the readings show.
 
-    A record that is weak, but not wrong, has quality C with its reason, and no verdict.
+    A weak but valid record gets quality C with the reason, and no verdict.
 
     Parameters
     ----------
     readings : of a flight through the plume of one ship
-    instrument : as the analyst knows it
+    instrument : as the analyst states it
     method : "regression" (equalise and regress), or "areas" over each pass
     carbon : mass share of the fuel [-], 0.5 to 0.95
-    limits_percent : that verdicts are given on [% m/m], above 0, at most 10
+    limits_percent : limits for the verdicts [% m/m], above 0, at most 10
     problems : further reasons why there can be no verdict
 
     Raises
     ------
-    MeasurementError : the readings cannot be those of a flight through a plume: no CO2, or wrong
-        times, units or shapes; or a parameter is out of range
+    MeasurementError : the readings cannot be of a flight through a plume: no CO2, or wrong times,
+        units or shapes; or a parameter is out of range
     """
     check_parameters(method, carbon, limits_percent)
     measured = measure_ratio(readings, instrument, method)
@@ -122,7 +124,7 @@ def estimate(
 
 @dataclass(frozen=True, kw_only=True)
 class Measured:
-    """What a record shows of the ratio of a gas to CO2, whatever the gas.
+    """The ratio of any gas to CO2 in a record, with the evidence for it.
 
     Attributes
     ----------
@@ -137,7 +139,7 @@ class Measured:
     problems: list[str]
 
     def figure(self, species: Species, factor: float) -> "Figure":
-        """Return the figure of a gas by its ratio to CO2, with the errors that it has.
+        """Return the figure of a gas from its ratio to CO2, with its errors.
 
         ``factor`` is the figure per small ratio, of ``Species.factor``.
         """
@@ -155,10 +157,10 @@ class Measured:
         return Figure(value=value, noise=slope * ratio.noise, common=common, assumed=assumed)
 
     def pending_problem(self, value: float, total: float) -> tuple[str, ...]:
-        """Return the problem of a gas that may still come, where its delay is not stated."""
+        """Return the problem of a gas that may still arrive, where its delay is not stated."""
         if not math.isinf(self.ratio.instrument.known("so2").delay_sd_s):
             return ()
-        # The share that was read of the time in which it may come after each pass.
+        # Of the time in which the gas may arrive after each pass, the share that was read.
         after = [self.record.time - found.end_s for found in self.passes]
         samples = [np.count_nonzero((t > 0.0) & (t <= DELAY_MOST)) for t in after]
         read = [min(1.0, count * self.record.step / DELAY_MOST) for count in samples]
@@ -167,11 +169,11 @@ class Measured:
 
 @dataclass(frozen=True, kw_only=True)
 class Figure:
-    """A figure and its errors, in its own unit.
+    """A figure and its errors, in the figure's unit.
 
     Attributes
     ----------
-    value : NaN where it is not known
+    value : NaN where it is unknown
     noise : standard uncertainty by noise
     common : standard uncertainties by errors that do not average out, by name
     assumed : part of the value that corrects for gases that were not measured
@@ -189,7 +191,7 @@ class Figure:
 
 
 def measure_ratio(readings: Readings, instrument: SnifferSpec, method: Method) -> Measured:
-    """Return the ratio of the gas in the place of SO2 to CO2, and what speaks against it.
+    """Return the ratio to CO2 of the gas in the place of SO2, and the problems of the record.
 
     Raises
     ------
@@ -264,7 +266,7 @@ def _too_short(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) 
 
 
 def _by_regression(record: Record, instrument: SnifferSpec, fit: Fit) -> Ratio:
-    """Return the slope of SO2 over CO2, with response and delay as they are stated or fit best."""
+    """Return the slope of SO2 over CO2, with the stated or best-fitting response and delay."""
     problems: tuple[str, ...] = ()
     parts: dict[str, float] = {}
     if fit.residuals is not None:
@@ -288,7 +290,8 @@ def _by_regression(record: Record, instrument: SnifferSpec, fit: Fit) -> Ratio:
 
 
 def _shown_delay_problem(record: Record, instrument: SnifferSpec, fit: Fit) -> tuple[str, ...]:
-    """Return the problem of SO2 and CO2 that do not fit in time, as with the clocks of two loggers.
+    """Return the problem of SO2 and CO2 whose times do not match, as with the clocks of two
+    loggers.
 
     The delay is sought over its whole range: far from the true one, small steps show no error.
     """
@@ -300,8 +303,8 @@ def _shown_delay_problem(record: Record, instrument: SnifferSpec, fit: Fit) -> t
     if abs(so2_delay(free) - stated) <= _DELAY_NEAR:
         return ()
     found = fit_record(record, free)
-    # With a clean fuel, the uncorrected effect of NO and NO2 is left, which may follow the CO2 of
-    # another pass a little better than that of its pass.
+    # With a clean fuel, the uncorrected effect of NO and NO2 is left. It may follow the CO2 of
+    # another pass a little better than the CO2 of the same pass.
     if found.residuals is None:
         return ()
     remaining, whole = found.residuals.misfit - 1.0, residuals.misfit - 1.0
@@ -436,12 +439,12 @@ def over_time(
 
     Columns: ``elapsed_s``, ``fsc_percent``, ``noise_percent``, ``total_percent``, ``low_percent``,
     ``high_percent``, ``quality``, ``passes``, and for each limit ``verdict_0.1`` and
-    ``probability_above_0.1``. Times at which there is no estimate yet have quality C and NaN.
+    ``probability_above_0.1``. Times before the first estimate have quality C and NaN.
 
     Raises
     ------
-    MeasurementError : a parameter is out of range, or the whole record cannot be that of a flight,
-        same as ``estimate``
+    MeasurementError : a parameter is out of range, or the whole record cannot be of a flight, as in
+        ``estimate``
     """
     check_parameters(method, carbon, limits_percent)
     checked_record(readings, instrument)
@@ -470,7 +473,7 @@ def over_time(
 def _row(
     elapsed: float, found: FscEstimate | None, limits: Sequence[float]
 ) -> dict[str, float | str]:
-    """Return a row of the table over time; ``found`` is None where there is no estimate yet."""
+    """Return a row of the table over time; ``found`` is None before the first estimate."""
     row: dict[str, float | str] = {"elapsed_s": elapsed}
     for name in ("fsc_percent", "noise_percent", "total_percent", "low_percent", "high_percent"):
         row[name] = math.nan if found is None else getattr(found, name)
@@ -486,7 +489,9 @@ def _row(
 
 
 def time_to_verdict(table: pd.DataFrame, limit_percent: float) -> float:
-    """Return the elapsed time from which the verdict on a limit [% m/m] stays, NaN if open [s]."""
+    """Return the elapsed time after which the verdict on a limit [% m/m] stays [s]; NaN if it is
+    open.
+    """
     verdicts = table[f"verdict_{limit_percent:g}"].tolist()
     if not verdicts or verdicts[-1] == OPEN:
         return math.nan

@@ -1,10 +1,10 @@
-"""The fit of a record: rounds of ``model``, passes of other fuels, and what must not be judged.
+"""Fits a record: rounds of ``model``, passes of other fuels, and records that must not be judged.
 
 1. Properties of the instrument are linearised about the stated ones, then about those that the
    record shows, with variances and slope found anew.
-2. A pass whose own slope is far off becomes a fixed column: it may be of another ship.
-3. Passes that do not stand out of the fitted background are no passes.
-4. The slopes of the others get a random effect.
+2. A pass with a very different slope becomes a fixed column: it may be of another ship.
+3. Passes that do not stand out of the fitted background are dropped.
+4. The slopes of the other passes get a random effect.
 """
 
 import math
@@ -42,47 +42,51 @@ from measurement.sniffer.lag import Array
 from measurement.sniffer.spec import SnifferSpec
 
 FOREIGN_SIGMA = 4.5
-"""Standard deviations by which the slope of a pass of another fuel differs, at least."""
+"""Least difference of the slope of a pass of another fuel [standard deviations]."""
 
 FOREIGN_MOST = 0.25
 """Largest share of the passes that may be left out."""
 
 _COMPARED_LEAST = 4
-"""Fewest passes among which one can be seen to be of another fuel."""
+"""Least number of passes among which a pass of another fuel can be found."""
 
 TOGETHER = 0.1
-"""Standard deviation of the time between SO2 and CO2 that one pass has and others have not [s]."""
+"""Standard deviation, from pass to pass, of the time between SO2 and CO2 [s]."""
 
 _PASS_S = 3.0
 """Usual length of a pass [s]: a shift by as much counts as a ratio that is twice as large."""
 
 DISAGREE = 0.01
-"""Probability of passes that differ as much, below which there is no verdict.
+"""Least probability of such differences between passes for a verdict.
 
 They may differ by ``ALIKE`` and ``TOGETHER``, so that quiet logs are below it in fewer than 1 of
 1,000."""
 
 CHANGE = 1e-4
-"""Probability of a change of slope between two passes, below which there is no verdict."""
+"""Least probability of such a change of slope between two passes for a verdict."""
 
 KEPT_LEAST = 0.8
 """Least share of the instrument's energy that the plume must have for a verdict."""
 
 _CORRECTED_SPREAD = 0.3
-"""Relative standard deviation of what (7) corrects, as the background is not quite what the model
-says."""
+"""Relative standard deviation of the correction by (7), as the background differs a little from the
+model."""
 
 _STANDS_OUT = 3.0
-"""Height of a pass over its line [standard deviations of the background over such a line]."""
+"""Least height of a pass over its line [standard deviations of the background over such a line]."""
 
 _ROUNDS, _ROUNDS_FREE = 5, 10
-"""Most rounds of linearising with a stated instrument, and with a t90 or delay to be found."""
+"""Largest number of rounds of linearisation with a stated instrument, and with an unknown t90 or
+delay.
+"""
 
 _SETTLED = 0.2
-"""Change of every property at which the linearisation has settled [units]."""
+"""Largest change of a property at which the linearisation has settled [units]."""
 
 _STEP_MOST = 3.0
-"""Largest distance of a property from what is stated, or step of one that is not [units]."""
+"""Largest distance of a property from its stated value, or largest step of one that is not stated
+[units].
+"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,13 +100,13 @@ class ExcludedPass:
 
 @dataclass(frozen=True, kw_only=True)
 class _State:
-    """What is known during the fit.
+    """The state of the fit.
 
     Attributes
     ----------
     data, properties : the record, linearised, and its instrument's properties
     place : of the linearisation, by property [units]
-    variances, slope : found so far
+    variances, slope : present estimates
     foreign : indices of passes of other fuels
     """
 
@@ -144,12 +148,12 @@ class _State:
         return orthonormal(np.hstack([self.data.fixed, others, self.later(others)]))
 
     def later(self, passes: Array) -> Array:
-        """Return the change of passes that come later, shape (n, k) [ppm/s]."""
+        """Return the change of passes per second of delay, shape (n, k) [ppm/s]."""
         return -np.asarray(np.gradient(passes, self.data.blocks.time[self.data.known], axis=0))
 
     @property
     def freed(self) -> Array:
-        """Fixed columns with z, so that an error of the slope cannot look like another thing."""
+        """Fixed columns with z, so that an error of the slope does not count as background."""
         return orthonormal(np.hstack([self.fixed, self.instrument_column[:, np.newaxis]]))
 
     @property
@@ -174,13 +178,15 @@ class _State:
         return likelihood.inverse(self.variances, fixed, varying)[0]
 
     def with_known_properties(self) -> "_State":
-        """Return the state as if the instrument was known exactly to be that of ``place``."""
+        """Return the state for an instrument that is known exactly, with the properties at
+        ``place``.
+        """
         return replace(self, data=replace(self.data, columns=0.0 * self.data.columns))
 
     def unweighted_slope(self) -> float:
-        """Return the slope by the instrument z without weights, 0 if there is none.
+        """Return the slope by the instrument z without weights; 0 without an instrument.
 
-        It does not depend on the variances, and they depend on it little.
+        It does not depend on the variances, which depend on it only a little.
         """
         z, fixed = self.instrument_column, self.fixed
         z = z - fixed @ (fixed.T @ z)
@@ -189,7 +195,7 @@ class _State:
         return float(z @ so2) / energy if energy > 0.0 else 0.0
 
     def refitted(self, varying: Array | None = None) -> "_State":
-        """Return the state with the variances of the greatest likelihood (4)."""
+        """Return the state with the variances that maximise the likelihood (4)."""
         likelihood = Likelihood(self.data, self.slope, self.properties, coarse=True)
         found = likelihood.fitted(self.residual, self.freed, self.variances, varying)
         return replace(self, variances=found)
@@ -206,7 +212,7 @@ class _State:
         Parameters
         ----------
         varying : the columns Z of passes whose slopes may differ
-        draw_windows : whether windows are found in c + w, and not as if they were given
+        draw_windows : whether windows are found in c + w, or taken as given
         """
         if not self.stated:
             bare = self.without_properties()
@@ -220,7 +226,7 @@ class _State:
 
     @property
     def stated(self) -> bool:
-        """Whether all properties are stated: only then (8) finds them beside the slope."""
+        """Whether all properties are stated: only then (8) finds them together with the slope."""
         return all(item.prior == 1.0 for item in self.properties)
 
     def without_properties(self) -> "_State":
@@ -255,13 +261,13 @@ class _State:
             over[:, :, i] = copies
         found = data.regressors(over, self.properties, self.slope)
         instruments, columns, noisy = (found[:, i].copy() for i in range(3))
-        # What SO2 follows is all of CO2, not the passes over their lines alone.
+        # SO2 follows all of CO2, not only the passes over their lines.
         noisy[:, :, 0] = data.co2[:, np.newaxis]
         columns[:, :, 0] = data.co2[:, np.newaxis] - data.equalised(drawn)
         return Copies(instruments=instruments, columns=columns, noisy=noisy)
 
     def plume_share(self, varying: Array) -> float:
-        """Return the share of the energy of the passes that is not noise and background [-]."""
+        """Return the share of the energy of the passes that is neither noise nor background [-]."""
         inverse = self.with_known_properties().inverse(self.fixed, varying)
         operator = line_operator(len(self.data.read), [self.data.windows[i] for i in self.own])
         whole = float(self.instrument_column @ inverse @ self.data.co2)
@@ -276,7 +282,7 @@ class _State:
         return [windows[i] for i in np.flatnonzero(high)]
 
     def _is_own(self, window: Window) -> bool:
-        """Return whether no pass of another fuel is where this window has its peak."""
+        """Return whether no pass of another fuel lies at the peak of this window."""
         foreign = [self.data.windows[i] for i in self.foreign]
         return not any(other.first < window.peak < other.last for other in foreign)
 
@@ -285,19 +291,20 @@ class _State:
         return replace(self, variances=replace(self.variances, between=between))
 
     def with_slope(self, found: Slope) -> "_State":
-        """Return the state with a slope, if that is a number."""
+        """Return the state with a slope; unchanged if the slope is not a number."""
         return replace(self, slope=found.slope) if math.isfinite(found.slope) else self
 
 
 @dataclass(frozen=True, kw_only=True)
 class Residuals:
-    """Sums of squares of residuals beside a slow background, in blocks [ppb^2].
+    """Sums of squares of residuals in blocks, without a slow background [ppb^2].
 
     Attributes
     ----------
-    energy, noise, background, instrument : found; expected of the stated noise, of the background
-        that CO2 shows, and of one standard deviation of each stated t90 and delay
-    freedom : degrees of freedom of what is expected [-]
+    energy : of the residuals
+    noise, background, instrument : expected from the stated noise, from the background that CO2
+        shows, and from one standard deviation of each stated t90 and delay
+    freedom : degrees of freedom of the expected sums [-]
     """
 
     energy: float
@@ -314,18 +321,18 @@ class Residuals:
 
 @dataclass(frozen=True, kw_only=True)
 class Fit:
-    """Slope of SO2 over CO2 of a record, and what was found with it.
+    """Slope of SO2 over CO2 of a record, and the other results of the fit.
 
     Attributes
     ----------
-    slope : [ppb/ppm]; NaN where the plume cannot be told from noise and background
+    slope : [ppb/ppm]; NaN where the plume does not stand out of noise and background
     noise : its standard deviation by noise, background and differences between passes
-    response : the same by t90 and delay of SO2 and CO2
-    residuals : how large they are
+    response : its standard deviation by t90 and delay of SO2 and CO2
+    residuals : their sums of squares
     background_ppb, background_ppm, background_s : standard deviation of the background of the
         residuals and of CO2, and its correlation length
-    agreement : probability that passes of one fuel differ as much, in slope or in time; NaN for a
-        single pass
+    agreement : probability that passes of one fuel differ as much as these, in slope or in time;
+        NaN for a single pass
     excluded : passes of another fuel
     groups : slopes of groups of passes, and their noise
     t90_sd_s, delay_sd_s : standard deviations of t90 of SO2 and of its delay after CO2 [s]
@@ -351,7 +358,7 @@ class Fit:
     _weights: Array = field(default_factory=lambda: np.zeros(0), repr=False)
 
     def change(self, moved: SnifferSpec) -> tuple[float, Array]:
-        """Return by how much slope and residuals change with another instrument.
+        """Return the changes of slope and residuals with another instrument.
 
         Parameters
         ----------
@@ -404,7 +411,7 @@ _HAZE = "CO2 background varies as much within passes as the plume; fly closer or
 
 
 def _begun(record: Record, instrument: SnifferSpec) -> _State | None:
-    """Return the state to begin with; None without passes."""
+    """Return the initial state; None without passes."""
     properties = uncertain_properties(instrument)
     data = block_record(record, instrument, properties)
     if data is None or not data.windows:
@@ -445,7 +452,7 @@ def _linearised(record: Record, instrument: SnifferSpec, state: _State) -> _Stat
 
 
 def _within_search(instrument: SnifferSpec, properties: Sequence[Property], place: Array) -> Array:
-    """Return the properties with a t90 that is not stated within the range that is searched."""
+    """Return the properties, with a t90 that is not stated kept within the searched range."""
     found = place.copy()
     for i, item in enumerate(properties):
         if item.prior != 1.0 and item.name == "t90_s":
@@ -458,9 +465,10 @@ def _within_search(instrument: SnifferSpec, properties: Sequence[Property], plac
 def _of_passes_that_stand_out(
     record: Record, instrument: SnifferSpec, state: _State
 ) -> tuple[_State, tuple[str, ...]]:
-    """Return the state with the passes that stand out of the background, and the problem of none.
+    """Return the state with the passes that stand out of the background, and the problem of a
+    record without such passes.
 
-    Peaks of the background have been chosen for their height, so that (7) would not correct them.
+    Peaks of the background are selected by their height, so that (7) would not correct them.
     """
     data = state.data
     operator = line_operator(len(data.read), data.windows)
@@ -483,7 +491,7 @@ def _of_passes_that_stand_out(
 def stands_out(
     operator: Array, windows: Sequence[Window], read: Array, errors: Array
 ) -> npt.NDArray[np.bool_]:
-    """Return which passes are higher over their lines than errors of CO2 are by chance.
+    """Return which passes are higher over their lines than errors of CO2 reach by chance.
 
     Parameters
     ----------
@@ -496,7 +504,8 @@ def stands_out(
 
 
 def _without_foreign(state: _State) -> tuple[_State, Array, float]:
-    """Return the state without passes whose slope is far off, P, and how well the others agree.
+    """Return the state without passes whose slope is very different, P, and the agreement of the
+    others.
 
     Passes of one fuel may differ by ``ALIKE``.
     """
@@ -517,11 +526,11 @@ def _without_foreign(state: _State) -> tuple[_State, Array, float]:
 
 
 def _agreement(state: _State, inverse: Array) -> float:
-    """Return the probability that passes of one fuel differ as much, in ratio or in time.
+    """Return the probability that passes of one fuel differ as much as these, in ratio or in time.
 
-    Another plume that overlaps the ship's is hardly ever in the same place of every pass. So it
-    changes the ratio from pass to pass, and where SO2 is in a pass by the time of CO2. What all
-    passes have in common, as another slope, t90 or delay, counts for nothing.
+    Another plume that overlaps the ship's is hardly ever at the same place in every pass. So it
+    changes, from pass to pass, the ratio and the place of SO2 relative to CO2. A difference that
+    all passes have in common, as of slope, t90 or delay, does not count.
 
     Parameters
     ----------
@@ -536,7 +545,8 @@ def _agreement(state: _State, inverse: Array) -> float:
     weighted = inverse @ common
     inverse = inverse - weighted @ np.linalg.solve(common.T @ weighted, weighted.T)
     residual = inverse @ state.residual
-    # Ratios alone as well: among as many places again they are told less well.
+    # Ratios are also tested alone: together with as many places, differences of the ratios are less
+    # significant.
     chances = [
         _chance_of_scores(columns.T @ residual, columns.T @ (inverse @ columns))
         for columns in (own, np.hstack([own, _PASS_S * later]))
@@ -545,7 +555,7 @@ def _agreement(state: _State, inverse: Array) -> float:
 
 
 def _chance_of_scores(scores: Array, covariance: Array) -> float:
-    """Return the probability of scores that are as large as these, given their covariance."""
+    """Return the probability of scores at least as large as these, given their covariance."""
     values, vectors = np.linalg.eigh(covariance)
     telling = values > 1e-4 * values[-1]
     squares = (vectors.T @ scores)[telling] ** 2 / values[telling]
@@ -560,7 +570,7 @@ def _with_columns(inverse: Array, columns: Array) -> Array:
 
 
 def _disagreement(state: _State, inverse: Array, agreement: float) -> tuple[str, ...]:
-    """Return the problem of passes that are not of one fuel, with the ratios that they show."""
+    """Return the problem of passes that are not of one fuel, with their ratios."""
     count = len(state.data.windows)
     full = len(state.foreign) >= max(1, int(FOREIGN_MOST * count))
     change, chance = _change_of_slope(state, inverse)
@@ -590,15 +600,16 @@ def _times(state: _State, change: int) -> tuple[float, float]:
 
 
 def _change_of_slope(state: _State, inverse: Array) -> tuple[int, float]:
-    """Return the pass from which on the slope differs most, and the probability of so much.
+    """Return the first pass after the largest change of slope, and the probability of that change.
 
-    It is that of the largest of all changes by chance, at most their number times that of one.
+    It is the probability that the largest of all changes is as large by chance: at most the number
+    of changes times the probability of one.
     """
     own = state.data.passes[:, state.own]
     count = own.shape[1]
     if count < _COMPARED_LEAST:
         return 0, 1.0
-    # Later passes together, beside a slope that all have.
+    # A common slope of the later passes, in addition to the slope of all passes.
     later = np.cumsum(own[:, ::-1], axis=1)[:, ::-1]
     weighted = inverse @ later
     inner = later.T @ weighted
@@ -625,7 +636,7 @@ def _result(
     if stated.all():
         response = float(np.sum(found.by_property**2))
     else:
-        # What D adds to the noise.
+        # The part of the noise that D adds.
         response = float(np.sum((state.distortions[:, stated].T @ found.weights) ** 2))
         known = replace(
             state,
@@ -687,7 +698,7 @@ def _residuals(state: _State, size: float) -> Residuals:
 
 
 def _excluded(state: _State) -> tuple[ExcludedPass, ...]:
-    """Return the passes of other fuels, with their slopes beside the ship's."""
+    """Return the passes of other fuels, with slopes that are fitted together with the ship's."""
     if not state.foreign:
         return ()
     columns = state.data.passes[:, list(state.foreign)]
@@ -701,7 +712,8 @@ def _excluded(state: _State) -> tuple[ExcludedPass, ...]:
 
 
 _GROUPS_MAX = 8
-"""Groups of passes at most: single passes overlap in a slow sensor and have large errors."""
+"""Largest number of groups of passes: single passes overlap in a slow sensor and have large errors.
+"""
 
 _TELLING = 0.1
 """Least CO2 of a group, relative to the median group [-]."""
@@ -723,7 +735,9 @@ def _groups(state: _State) -> tuple[tuple[float, float], ...]:
 
 
 def _own_slopes(state: _State, columns: Array) -> tuple[list[float], list[float]]:
-    """Return slopes and their noise of passes or groups, beside the slope of all others."""
+    """Return slopes of passes or groups and their noise, fitted together with the slope of all
+    others.
+    """
     inverse = state.inverse(state.data.fixed)
     weighted = inverse @ columns
     covariance = np.linalg.pinv(columns.T @ weighted, hermitian=True)
@@ -736,7 +750,7 @@ def _own_slopes(state: _State, columns: Array) -> tuple[list[float], list[float]
 
 
 def _with_found_timing(instrument: SnifferSpec, state: _State) -> SnifferSpec:
-    """Return the instrument with the properties that are not stated as the record shows them."""
+    """Return the instrument, with the record's values of the properties that are not stated."""
     for item, units in zip(state.properties, state.place, strict=True):
         if item.prior != 1.0:
             instrument = item.moved(instrument, float(units))

@@ -1,8 +1,8 @@
 """Figures of any gas by its ratio to CO2: the estimate of SO2 with another gas in its place.
 
-The fit knows two gases: CO2, and one that is compared with it, which stands in the column of SO2.
-So every gas has the same response, background, noise, quality and verdict as SO2, and nothing is
-its own but the constants of ``measurement.species``.
+The fit has two gases: CO2, and the gas that is compared with it, in the column of SO2. So every gas
+is treated like SO2 in response, background, noise, quality and verdict; only the constants of
+``measurement.species`` differ.
 
 NOx is the sum of NO and NO2. Its cell is that of NO, which reads NOx less NO2: a cross-sensitivity
 of -1 to NO2. So both are brought to one response, and the gain of NO2 has its part in the
@@ -34,16 +34,16 @@ from measurement.sniffer.spec import SnifferSpec
 from measurement.species import PER_ENERGY, SPECIES, Species
 
 SLOT = "so2"
-"""Gas in whose place another one stands."""
+"""Gas whose place another gas takes in the fit."""
 
 NO2_SHARE_SD = 0.03
 """Standard deviation of the share of NO2 in NOx that is not measured [-]: 0.05 to 0.15, evenly."""
 
 AIR_SD = 0.01
-"""Relative standard deviation of the volume of air that particles are counted in [-]: 3 K."""
+"""Relative standard deviation of the volume of air in which particles are counted [-]: 3 K."""
 
 _SHOWN = 300
-"""Samples of a gas that its record has, about."""
+"""Approximate number of samples of a gas in its record."""
 
 ERRORS = {
     "noise": "noise, background and differences between passes",
@@ -63,14 +63,14 @@ ERRORS = {
 
 @dataclass(frozen=True, kw_only=True)
 class GasReadings:
-    """A gas as the fit takes it.
+    """The readings of a gas in the form that the fit takes.
 
     Attributes
     ----------
     species : its constants
     readings, instrument : with the gas in the place of SO2
-    remarks : how it was made of the log's columns
-    own_column : whether the log has a column of it; NOx may be made of NO and NO2
+    remarks : how the gas was made of the log's columns
+    own_column : whether the log has a column of the gas; NOx may be made of NO and NO2
     """
 
     species: Species
@@ -80,7 +80,7 @@ class GasReadings:
     own_column: bool = True
 
     def words(self, text: str) -> str:
-        """Return a sentence on SO2 as one on this gas."""
+        """Return a sentence about SO2, reworded for this gas."""
         return about_gas(text, self.species)
 
 
@@ -99,26 +99,26 @@ class GasVerdict:
 
 @dataclass(frozen=True, kw_only=True)
 class GasEstimate:
-    """A figure of a gas with its uncertainty; NaN where it is not known.
+    """A figure of a gas with its uncertainty; NaN where it is unknown.
 
     Attributes
     ----------
     gas, title, figure, unit, source : of the gas, its figure, and its constants
-    value, noise, common, total : figure, and its standard uncertainty by noise, by errors that do
-        not average out (by name), and by all [unit]
+    value, noise, common, total : the figure, and its standard uncertainties by noise, by errors
+        that do not average out (by name), and by all of these [unit]
     low, high : 95 % interval [unit]
     slope, slope_unit : ratio to CO2
-    per_fuel, per_fuel_unit : the figure per fuel, where it is one per kWh; else equal to ``value``
+    per_fuel, per_fuel_unit : the figure per fuel, if ``value`` is per kWh; otherwise ``value``
     carbon : mass share of the fuel [-]
     quality, quality_reasons : A, B or C, and why it is not A
-    verdict, no_verdict : on its limit, or why there is none
+    verdict, no_verdict : verdict on its limit, or the reason why there is no verdict
     stage : limit of NOx of the engine, or None
-    rated_rpm : of the engine, NaN where it is not known [1/min]
-    load, load_sd, consumption_kg_kwh : of the engine, as its speed lets expect
+    rated_rpm : of the engine; NaN where it is unknown [1/min]
+    load, load_sd, consumption_kg_kwh : of the engine, as expected from its speed
     agreement, misfit : see ``FscEstimate``
-    t90_s, delay_s : response, and delay after CO2, as stated or as they fit best [s]
+    t90_s, delay_s : response, and delay after CO2, as stated or fitted [s]
     figures : of the record
-    remarks : how it was made of the log's columns
+    remarks : how the gas was made of the log's columns
     signals : equalised signals; a row per sample
     """
 
@@ -159,7 +159,8 @@ class GasEstimate:
     def record(self) -> dict[str, Any]:
         """Return everything but the signals, for JSON, with None for NaN.
 
-        Of the signals it has some samples, for a picture: ``co2_ppm`` and ``excess`` over it.
+        It contains a selection of the signals' samples, for a figure: ``co2_ppm`` and ``excess``
+        over it.
         """
         nested = ("figures", "verdict", "stage")
         values = {name: value for name, value in vars(self).items() if name != "signals"}
@@ -177,12 +178,12 @@ class GasEstimate:
 
     @property
     def load_share(self) -> float:
-        """Share of the load in the variance of the figure [-]; 0 where it has no part."""
+        """Share of the load in the variance of the figure [-]; 0 where the load has no effect."""
         return self.common.get("load", 0.0) ** 2 / self.total**2 if self.total > 0.0 else 0.0
 
 
 def about_gas(text: str, species: Species) -> str:
-    """Return a sentence on SO2 as one on another gas, with its unit."""
+    """Return a sentence about SO2, reworded for another gas and its unit."""
     text = re.sub(r"\bSO2\b|\bso2\b(?= =)", species.title, text)
     unit = species.unit if species.step == 1.0 else f"{species.step:g} x {species.unit}"
     return re.sub(r"\bppb\b", unit, text) if species.unit != "ppb" else text
@@ -204,7 +205,7 @@ def placed(
     ----------
     channel : of the gas; its name is that of SO2
     column : its readings, shape (m,)
-    readings, instrument : with CO2, and with NO2 where that has a part
+    readings, instrument : with CO2, and with NO2 where it contributes
     """
     values = np.full((len(readings.time), len(GASES)), np.nan)
     values[:, GASES.index(SLOT)] = column / species.step
@@ -221,13 +222,13 @@ def placed(
 
 
 def _in_steps(channel: Channel, step: float) -> Channel:
-    """Return a channel in the place of SO2 whose readings count steps of its unit."""
+    """Return a channel in the place of SO2, with readings in steps of its unit."""
     names = ("noise", "random_walk", "resolution", "range_low", "range_high", "zero", "zero_sd")
     return replace(channel, gas=SLOT, **{name: getattr(channel, name) / step for name in names})
 
 
 def nox_of(readings: Readings, instrument: SnifferSpec) -> GasReadings | None:
-    """Return NOx by the readings of NO, and of NO2 where there are any; None without NO."""
+    """Return NOx from the readings of NO, and of NO2 if there are any; None without NO."""
     known = {
         gas: instrument.channel(gas) is not None
         and bool(np.isfinite(readings.values[:, GASES.index(gas)]).any())
@@ -238,7 +239,7 @@ def nox_of(readings: Readings, instrument: SnifferSpec) -> GasReadings | None:
     no = instrument.known("no")
     column = readings.values[:, GASES.index("no")]
     if known["no2"]:
-        # The gain of NO is that of its share in NOx.
+        # The gain of NO applies to the share of NO in NOx.
         gain_sd = (1.0 - NO2_SHARE) * no.gain_sd
         channel = replace(no, cross={"no2": -1.0}, cross_sd={}, gas=SLOT, gain_sd=gain_sd)
         remark = "the sum of NO and NO2"
@@ -280,13 +281,13 @@ def estimate_gas(
     ----------
     method : same as for ``estimate``
     carbon : mass share of the fuel [-]; None for that of fuels with this gas
-    air : temperature [deg C] and pressure [hPa] of the air that particles are counted in
-    engine : of the ship, where it is known; without it NOx is per fuel
+    air : temperature [deg C] and pressure [hPa] of the air in which particles are counted
+    engine : of the ship, where it is known; without an engine NOx is per fuel
     problems : further reasons why there can be no verdict
 
     Raises
     ------
-    MeasurementError : the readings cannot be those of a flight through a plume
+    MeasurementError : the readings cannot be of a flight through a plume
     """
     species = gas.species
     try:
@@ -379,12 +380,12 @@ _KWH_MOST = 0.4
 
 
 def _most_over_fuel(unit: str, species: Species) -> float:
-    """Return by what the largest figure per fuel is multiplied in a unit [-]."""
+    """Return the factor of the largest figure per fuel in a unit [-]."""
     return _KWH_MOST if unit == PER_ENERGY and species.per_energy else 1.0
 
 
 def _with_error(figure: Figure, name: str, relative: float) -> Figure:
-    """Return a figure with another error, relative to it."""
+    """Return a figure with one more error, which is relative to the figure."""
     return replace(figure, common={**figure.common, name: relative * abs(figure.value)})
 
 
@@ -401,13 +402,13 @@ def _verdict(limit: Limit, value: float, total: float, quality: Quality) -> GasV
     )
 
 
-# Words, the same on consoles and in reports
+# Texts, the same on consoles and in reports
 
 SCREENING = (
     "a plume shows one load, and the limit is of a test bed's cycle: a verdict screens, and"
     " certifies nothing"
 )
-"""What a verdict on NOx is worth."""
+"""Remark on the significance of a verdict on NOx."""
 
 
 def value_words(found: GasEstimate) -> str:
@@ -422,7 +423,7 @@ def value_words(found: GasEstimate) -> str:
 
 
 def verdict_words(found: GasEstimate) -> str:
-    """Return the verdict on a gas in words, or why there is none."""
+    """Return the verdict on a gas in words, or the reason why there is no verdict."""
     verdict, stage = found.verdict, found.stage
     if verdict is None or stage is None:
         return found.no_verdict

@@ -1,21 +1,22 @@
-r"""Slope of SO2 over CO2 among a background that varies, by a restricted likelihood.
+r"""Slope of SO2 over CO2 in a varying background, by a restricted likelihood.
 
 **Residual.** Channels are brought to one response and one delay (``signals``) and averaged over
 blocks. With the true slope b, the difference
 
     r = so2 - b co2                                                                      (1)
 
-holds nothing of the ship's plume, whatever shape the plume has. What is left is Gaussian, with
+contains nothing of the ship's plume, for any shape of the plume. The rest is Gaussian, with the
+covariance
 
     V = s N + e^2 I + a^2 K(l) + D b b' D' + c^2 Z Z'                                    (2)
 
-* N : white noise of each channel through the filter that equalises it, and the walk of its zero,
-  as they are stated; s is known to be 1 within some 30 %;
+* N : white noise of each channel through the filter that equalises it, and the walk of its zero, as
+  stated; s is 1 within some 30 %;
 * e : some hundredths of the plume, as no channel is exactly a lag;
 * K : an Ornstein-Uhlenbeck background, exp(-|dt|/l) in the air, read with the common response;
 * D : a column for each t90 and delay of SO2 and of CO2: the change of co2 by one standard deviation
   of that property, in the plume alone. This marginalises the property. For SO2, b is the slope of
-  its readings, with what it reads of NO and NO2;
+  its readings, including its response to NO and NO2;
 * Z : a column for each pass, its CO2: slopes of passes may differ by a random effect c.
 
 Constant, trend, the transients of the filters and passes of another fuel are fixed columns X. With
@@ -27,30 +28,31 @@ s, a, l and c have the least of
     -2 log L = log|V| + log|X' V^-1 X| + r' P r,   X with z                              (4)
 
 which is the restricted likelihood (Patterson and Thompson, Biometrika 58:545): with the instrument
-z of (5) as one of the fixed columns, an error of b cannot look like a background.
+z of (5) as one of the fixed columns, an error of b does not count as background.
 
-**Slope.** The plume is seen in the passes alone, each over the straight line between the troughs
-beside it,
+**Slope.** Only the passes show the plume, each over the straight line between the troughs beside
+it,
 
     z = E Q c,   c the readings, Q the line taken away, E the equalising filter          (5)
 
-and D is made of it. With the properties d from where the record is linearised [units], SO2 is
+and D is made of it. With d the properties less those of the linearisation [units], SO2 is
 
     so2 = b p - H d + noise,   H = D b in the true plume p                               (6)
 
-where the noise has the V of (2) without D, and d a normal distribution about -(that place). Both p
-and H are only known with the errors of c, its noise and background. These weaken b, and with
-D in P they do so in a way that no trace corrects: a longer t90 makes short passes in a slow cell
-lower, nearly as a smaller b does, so that z beside D is small, and the errors of z and of D, which
-are the same, are not. A fuel of 2.7 % was read 26 % too high.
+where the noise has the V of (2) without D, and d has a normal distribution about the stated
+properties, d = -place. Both p and H are only known with the errors of c, its noise and background.
+These errors reduce b. With D in P no correction by a trace removes this: a longer t90 makes short
+passes in a slow cell lower, almost as a smaller b does. So z beside D is small, but the errors of z
+and of D, which are the same, are not. The result for a fuel of 2.7 % was 26 % too high.
 
-So d is found beside b, and the errors are taken out of all products. With other errors w of the
-same covariance, c + w and c - w are independent. Instruments are made of the one, columns of the
-other:
+So d is estimated together with b, and the errors are removed from all products. With other errors w
+of the same covariance, c + w and c - w are independent. Instruments are made of c + w, columns of c
+- w:
 
     Z = (z, -H) of c + w,   X = (co2 - E w, -H of c - w),   M = mean of Z' P X over w    (7)
 
-has the products of what is true in its mean, E[M] = E[Z]' P (p, -H), P that of (3) without D. Then
+has the products of the true values as its mean, E[M] = E[Z]' P (p, -H), with P of (3) without D.
+Then
 
     (M + G) (b, d) = mean of Z' P so2 - G (0, place),   G = diag(0, 1/prior^2)           (8)
     var b = v' Z' P Z v + sum of (v_k / prior_k)^2,   v the first row of (M + G)^-1      (9)
@@ -59,16 +61,17 @@ has the products of what is true in its mean, E[M] = E[Z]' P (p, -H), P that of 
 added errors: Oliveira, Lei and Tibshirani, arXiv:2111.09447; Leiner et al., arXiv:2112.11079). M
 holds for any instruments that are made of c + w alone:
 
-* The windows of the passes are found there. In c, a weak pass would count where noise raises it,
-  and windows end where it is low: errors that choose are not 0 in the mean.
-* All passes get their mean shape, each of its own size. So a single number of each holds noise and
-  background, and C, their covariance, need not be known well.
+* The windows of the passes are found in c + w. In c, a weak pass would count where noise raises it,
+  and windows would end where noise lowers it: the mean of such selected errors is not 0.
+* All passes get their mean shape, each with its size. So only one number of each pass contains
+  noise and background, and their covariance C need not be known well.
 
-The part of M that is H' P H in the mean has no negative eigenvalue; one that errors make is set to
-0. The background of CO2 in C is what residuals and troughs show of it, the smaller of both.
+The part of M whose mean is H' P H has no negative eigenvalue; an eigenvalue that errors make
+negative is set to 0. The background of CO2 in C is the smaller one of those that residuals and
+troughs show.
 
-Where a t90 or delay is not stated, G holds nothing, and M alone leads away from the true t90 of a
-cell in which passes overlap. Then D stays in P, as in (2), (8) has b alone, and d is found from r.
+Where a t90 or delay is not stated, G is 0, and M alone leads away from the true t90 of a cell in
+which passes overlap. Then D stays in P, as in (2), (8) has only b, and d is estimated from r.
 """
 
 import itertools
@@ -98,17 +101,19 @@ from measurement.sniffer.spec import SnifferSpec
 Rows = npt.NDArray[np.intp]
 
 _BLOCKS_MOST, _BLOCK_LEAST = 400, 1.0
-"""Most blocks of a record, and shortest block [s]: the cost grows with the cube of their number."""
+"""Largest number of blocks of a record, and shortest block [s]: the cost grows with the cube of the
+number.
+"""
 
 _FREE_LEAST = 3
-"""Least number of blocks beyond those that fixed columns take up [-]."""
+"""Least number of blocks in excess of the fixed columns [-]."""
 
 _INDEPENDENT = 1e-5
 """Least singular value of a column, relative to the largest."""
 
 _INEXACT = 0.03
 """Least noise of a block, relative to the SO2 of the plume: no channel is exactly a lag, and no
-record exact. What varies between readings adds ``SAMPLING_SD`` for each time constant of CO2."""
+record is exact. Variation between readings adds ``SAMPLING_SD`` for each time constant of CO2."""
 
 
 # Blocks and passes
@@ -135,13 +140,15 @@ class _Blocks:
         return np.asarray(values[self.rows].mean(axis=1))
 
     def by_segment(self, change: Callable[[Array], Array], values: Array) -> Array:
-        """Return blocks of values changed segment by segment, shape as ``values``."""
+        """Return blocks of values after a change of each segment, in the shape of ``values``."""
         cuts = np.flatnonzero(np.diff(self.segment)) + 1
         return np.concatenate([change(part) for part in np.split(values, cuts)])
 
 
 def _make_blocks(record: Record) -> _Blocks:
-    """Return the blocks of a record; samples that fill no block at a segment's end are left out."""
+    """Return the blocks of a record; samples at a segment's end that do not fill a block are left
+    out.
+    """
     length = max(_BLOCK_LEAST, record.duration / _BLOCKS_MOST)
     size = max(1, round(length / record.step))
     rows, segments, start = [], [], 0
@@ -161,7 +168,7 @@ def _make_blocks(record: Record) -> _Blocks:
 
 @dataclass(frozen=True, kw_only=True)
 class Window:
-    """Blocks of a pass: both ends, which show the level beside it, and its peak."""
+    """Blocks of a pass: its peak, and both ends, which show the level beside it."""
 
     first: int
     peak: int
@@ -174,20 +181,21 @@ class Window:
 
 
 _BESIDE = 6.0
-"""Least time from the beginning of a window to its peak [s]; it ends as long after the peak, and
-three time constants of CO2."""
+"""Least time from the beginning of a window to its peak [s]; the window ends by the same time, and
+three time constants of CO2, after the peak."""
 
 _WIDTHS = 2.0
-"""The same for long passes, in widths at half of their height [-]."""
+"""The same time for long passes, in widths at half of their height [-]."""
 
 _NEAR = 20.0
-"""Time on either side within which a peak must stand out [s]: broad haze does so little."""
+"""Time on either side within which a peak must stand out [s]: broad haze does not."""
 
 
 def _find_windows(blocks: _Blocks, co2: Array, instrument: SnifferSpec) -> list[Window]:
     """Return the windows of the passes: from trough to trough at most, by the CO2 of blocks [ppm].
 
-    Blocks have less noise than readings, so that weaker passes count here than in ``find_passes``.
+    Blocks have less noise than readings, so that passes count that are too weak for
+    ``find_passes``.
     """
     noise = _noise_of_blocks(blocks, instrument)
     memory = sum(instrument.known("co2").constants)
@@ -225,7 +233,7 @@ def _peaks(values: Array, least: float, reach: int) -> tuple[Rows, Array]:
 
     reach = max(5, reach)
     with warnings.catch_warnings():
-        # A plateau that is longer than the reach does not stand out, which it warns of.
+        # A plateau that is longer than the reach does not stand out: SciPy warns of that.
         warnings.simplefilter("ignore")
         peaks, _ = find_peaks(values, prominence=least, wlen=reach)
         widths = peak_widths(values, peaks, rel_height=0.5, wlen=reach)[0]
@@ -245,9 +253,9 @@ def line_operator(count: int, windows: Sequence[Window]) -> Array:
 
 
 def in_one_shape(over: Array, windows: Sequence[Window]) -> Array:
-    """Return passes in the mean shape of all, each of the size that fits it, shape (n,).
+    """Return passes in the mean shape of all, each with the size that fits it, shape (n,).
 
-    A single number of each pass then holds its noise and background, not each of its blocks.
+    Only one number of each pass then contains noise and background, instead of all its blocks.
 
     Parameters
     ----------
@@ -281,13 +289,13 @@ def _filtered_kernel(lags: Array, length: float, pole: float) -> Array:
 
 @dataclass(frozen=True, kw_only=True)
 class Property:
-    """T90 or delay of SO2 or CO2, which is known with a standard deviation or not at all.
+    """T90 or delay of SO2 or CO2, which is known with a standard deviation or unknown.
 
     Attributes
     ----------
     gas, name : "t90_s" or "delay_s"
     unit : step of the property: of log(t90), or of the delay [s]
-    prior : standard deviation by what is stated [units]
+    prior : stated standard deviation [units]
     """
 
     gas: str
@@ -296,7 +304,7 @@ class Property:
     prior: float
 
     def moved(self, instrument: SnifferSpec, units: float) -> SnifferSpec:
-        """Return an instrument with this property moved by so many units."""
+        """Return an instrument with this property moved by ``units``."""
         channel = instrument.known(self.gas)
         if self.name == "t90_s":
             value = channel.t90_s * math.exp(units * self.unit)
@@ -312,7 +320,9 @@ _NOT_STATED = 300.0
 
 
 def with_delay(instrument: SnifferSpec, gas: str, delay_s: float) -> SnifferSpec:
-    """Return an instrument with another delay of a gas; below 0 all others come later instead."""
+    """Return an instrument with another delay of a gas; if it is below 0, all other gases get later
+    instead.
+    """
     late = max(0.0, -delay_s)
     channels = tuple(
         replace(
@@ -324,7 +334,7 @@ def with_delay(instrument: SnifferSpec, gas: str, delay_s: float) -> SnifferSpec
 
 
 def uncertain_properties(instrument: SnifferSpec) -> list[Property]:
-    """Return t90 and delay of SO2 and CO2, where they are not known exactly."""
+    """Return those of t90 and delay of SO2 and CO2 that are not known exactly."""
     found = []
     for gas in ("so2", "co2"):
         channel = instrument.known(gas)
@@ -342,15 +352,15 @@ class BlockedRecord:
 
     Attributes
     ----------
-    signals : by that instrument
-    blocks, known : all blocks, and which have all readings
+    signals : signals by that instrument
+    blocks, known : all blocks, and which of them have all readings
     so2, co2 : of the known blocks, at the common response, shape (n,) [ppb], [ppm]
     read, windows : CO2 of all blocks at the delay of SO2 [ppm], and its passes
     passes : equalised CO2 of each pass over its line, shape (n, number of passes) [ppm]
-    noises : of each gas, its share in so2 and in co2, and the covariance of its noise
+    noises : for each gas, its share in so2 and in co2, and the covariance of its noise
     fixed : constant, trend and transients, orthonormal, shape (n, k)
     columns : change of r by a unit of each property, for readings of slope 1, shape (n, p)
-    cross : slope of what the readings of SO2 have of other gases [ppb/ppm]
+    cross : slope of the response of SO2's readings to other gases [ppb/ppm]
     """
 
     signals: Signals
@@ -386,7 +396,7 @@ class BlockedRecord:
         return _filtered_kernel(lags, length, self.signals.common[0])
 
     def equalised(self, values: Array) -> Array:
-        """Return E of (5) on CO2 of all blocks, at the known ones, shape (n, ...)."""
+        """Return E of (5) applied to CO2 of all blocks, at the known ones, shape (n, ...)."""
         return self._equalised(values)[self.known]
 
     def _equalised(self, values: Array) -> Array:
@@ -430,7 +440,7 @@ def block_record(
     properties: Sequence[Property],
     windows: list[Window] | None = None,
 ) -> BlockedRecord | None:
-    """Return a record in blocks, with the windows of its passes if given; None if too short."""
+    """Return a record in blocks, with the given windows of its passes; None if it is too short."""
     signals, blocks = make_signals(record, instrument), _make_blocks(record)
     known = np.flatnonzero(signals.known[blocks.rows].min(axis=1) > 0.0)
     if len(known) < _FREE_LEAST:
@@ -479,7 +489,7 @@ def block_record(
 
 
 def _beside(fixed: Array, values: Array) -> Array:
-    """Return what fixed columns do not explain of values, in the shape of these."""
+    """Return the part of values that fixed columns do not explain, in the same shape."""
     return np.asarray(values - fixed @ (fixed.T @ values))
 
 
@@ -540,13 +550,13 @@ def _passes_over_lines(
 
 
 def _by_segments(record: Record, values: Array, change: Callable[[Array], Array]) -> Array:
-    """Return samples changed segment by segment, shape as ``values``."""
+    """Return samples after a change of each segment, in the shape of ``values``."""
     cuts = np.cumsum([len(times) for times in record.times])[:-1]
     return np.concatenate([change(part) for part in np.split(values, cuts)])
 
 
 def _from_rest(signals: Signals, values: Array) -> Array:
-    """Return E of (5) on samples of CO2 in a segment."""
+    """Return E of (5) applied to samples of CO2 in a segment."""
     own = signals.instrument.known("co2").constants
     return equalised_from_rest(values, signals.record.step, own, signals.common)
 
@@ -560,7 +570,7 @@ def _distortions(
 ) -> Array:
     """Return the columns D of (2) for slope 1: change of r by a unit of each property.
 
-    They are made of the passes over their lines. Readings would not do: the derivative of their
+    They are made of the passes over their lines. Readings are not suitable: the derivative of their
     background is correlated with the background of r.
 
     Parameters
@@ -578,7 +588,7 @@ def _distortions(
         if item.name == "delay_s":
             # A later SO2 has CO2 shifted later, a later CO2 has it shifted less.
             return part - shifted(part, step, sign * item.unit)
-        # Taken for slower than it is, a channel is sharpened too much.
+        # A channel whose assumed response is too slow is sharpened too much.
         constants = signals.instrument.known(item.gas).constants
         slower = tuple(math.exp(item.unit) * constant for constant in constants)
         return sign * (equalised_from_rest(part, step, slower, constants) - part)
@@ -595,11 +605,11 @@ LENGTH_LEAST, LENGTH_MOST = 8.0, 600.0
 """Range of the correlation length of the background [s]."""
 
 _LENGTH_USUAL, _LENGTH_SPREAD = 60.0, 1.5
-"""Median of the lengths that are expected [s], and standard deviation of their logarithm."""
+"""Median of the expected lengths [s], and standard deviation of their logarithm."""
 
 _NOISE_SPREAD, _NOISE_FREEDOM = 0.3, 3.0
 """Spread of log(s), the noise's variance over the stated one, and degrees of freedom of its
-Student-t distribution, whose tails allow for an instrument that is not as stated."""
+Student-t distribution, whose tails allow for an instrument that differs from its statement."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -620,14 +630,14 @@ class Variances:
 
 
 ALIKE = 0.05
-"""Standard deviation by which slopes of passes of one fuel differ, relative to the slope [-]: other
-gases come with another response, and the response is not quite what a lag is.
+"""Standard deviation of slopes of passes of one fuel, relative to the slope [-]: other gases have
+another response, and no response is exactly a lag.
 
-It is the scale of the half-Cauchy prior of c, by which few passes do not take their noise for
-differences (Gelman, Bayesian Analysis 1:515)."""
+It is the scale of the half-Cauchy prior of c. With that prior, the noise of a few passes does not
+count as differences between them (Gelman, Bayesian Analysis 1:515)."""
 
 _COARSE_MOST = 200
-"""Most blocks by which variances are fitted: backgrounds are slower than these."""
+"""Largest number of blocks in the fit of variances: backgrounds are slower than such blocks."""
 
 
 class Likelihood:
@@ -676,7 +686,7 @@ class Likelihood:
     ) -> tuple[Array, float, Array]:
         """Return P of (3), both determinants of (4), and K; ``varying`` are the columns Z.
 
-        Columns have as many rows as blocks after averaging.
+        Columns have one row for each block after averaging.
         """
         kernel = self._background(found.length)
         total = found.noise * self._noise + found.background**2 * kernel + self._stated
@@ -701,13 +711,13 @@ class Likelihood:
     def fitted(
         self, residual: Array, fixed: Array, start: Variances, varying: Array | None = None
     ) -> Variances:
-        """Return the variances of the greatest restricted likelihood (4).
+        """Return the variances that maximise the restricted likelihood (4).
 
         Parameters
         ----------
         residual : r, shape (n,)
         fixed : X with z, shape (n, k)
-        start : variances to start from; without ``varying`` passes do not differ
+        start : variances to start from; without ``varying``, all passes have one slope
         varying : columns Z, whose variance is fitted too, shape (n, m)
         """
         from scipy.optimize import minimize
@@ -776,7 +786,7 @@ def _prior(logs: Array, between: float) -> tuple[float, Array]:
     scale = _NOISE_FREEDOM * _NOISE_SPREAD**2
     value = (_NOISE_FREEDOM + 1.0) * math.log1p(logs[0] ** 2 / scale)
     slopes[0] = (_NOISE_FREEDOM + 1.0) * 2.0 * logs[0] / (scale + logs[0] ** 2)
-    # Some background is as good as none: this keeps its size from growing without end.
+    # Some backgrounds have no effect: this keeps their size from growing without end.
     value += 0.01 * logs[1] ** 2
     slopes[1] = 0.02 * logs[1]
     away = (logs[2] - math.log(_LENGTH_USUAL)) / _LENGTH_SPREAD
@@ -794,15 +804,17 @@ def _prior(logs: Array, between: float) -> tuple[float, Array]:
 
 @dataclass(frozen=True, kw_only=True)
 class Slope:
-    """Solution of (8); a slope of NaN where the plume cannot be told from noise and background.
+    """Solution of (8); the slope is NaN where the plume does not stand out of noise and background.
 
     Attributes
     ----------
-    slope, noise : and its standard deviation by V [ppb/ppm]
-    by_property : the same by each property, as far as it is stated, shape (p,) [ppb/ppm]
-    properties, covariance : of the properties, from where the record is linearised [units]
-    weights : the slope is their sum with SO2 (but for what is stated), shape (n,) [1/ppm]
-    kept : slope that noise and background of CO2 would leave of a slope of 1 [-]
+    slope, noise : slope, and its standard deviation by V [ppb/ppm]
+    by_property : its standard deviation by each property that is stated, shape (p,) [ppb/ppm]
+    properties, covariance : properties less those of the linearisation, and their covariance
+        [units]
+    weights : the slope is the sum of SO2 with these weights, apart from the effect of stated
+        properties, shape (n,) [1/ppm]
+    kept : slope to which noise and background of CO2 would reduce a slope of 1 [-]
     """
 
     slope: float
@@ -820,14 +832,16 @@ class Slope:
 
 
 SLOPE_LEAST = 0.1
-"""Slope below which residuals say nothing of CO2 [ppb/ppm], and from which the fit begins."""
+"""Slope below which residuals contain no information on CO2, and slope at which the fit begins
+[ppb/ppm].
+"""
 
 
 def background_of_co2(data: BlockedRecord, found: Variances, slope: float) -> float:
     """Return the standard deviation of the background of CO2 [ppm].
 
-    It is the smaller of what residuals and troughs between passes show: the background of SO2 is in
-    the residuals too, and the tail of a pass may be in a trough.
+    It is the smaller of the values that residuals and troughs between passes show: the residuals
+    contain the background of SO2, too, and a trough may contain the tail of a pass.
     """
     by_residuals = found.background / max(abs(slope), SLOPE_LEAST)
     outside = np.ones(len(data.read), dtype=bool)
@@ -874,19 +888,19 @@ def drawn_errors(errors: Array) -> Array:
     errors : covariance of the errors of CO2 as read, of all blocks [ppm^2]
     """
     white = np.random.default_rng(_SEED).standard_normal((len(errors), _DRAWS))
-    # Of errors that are exactly 0, none are drawn.
+    # Errors that are exactly 0 are not drawn.
     least = max(_ROUNDING * float(np.max(np.diagonal(errors))), 1e-300)
     drawn = np.linalg.cholesky(errors + least * np.eye(len(errors))) @ white
     return np.hstack([drawn, -drawn])
 
 
 def error_energy(data: BlockedRecord, inverse: Array, operator: Array, errors: Array) -> float:
-    """Return the part of z' P co2 that errors of CO2 have in it, for windows that are given [-].
+    """Return the part of z' P co2 that errors of CO2 make, for given windows [-].
 
     Parameters
     ----------
     inverse : P of (3), shape (n, n)
-    operator : takes the lines away, of all blocks
+    operator : removes the lines, of all blocks
     errors : covariance of the errors of CO2 as read, of all blocks [ppm^2]
     """
     covariance = data.equalised(data.equalised(operator @ errors).T).T
@@ -916,9 +930,9 @@ def solve_slope(
     Parameters
     ----------
     inverse : P of (3), shape (n, n)
-    so2 : by the instrument that the record is linearised about, shape (n,) [ppb]
-    precision : of what is stated of each property [1/unit^2]
-    place : where the record is linearised [units]
+    so2 : by the instrument of the linearisation, shape (n,) [ppb]
+    precision : of the stated value of each property [1/unit^2]
+    place : of the linearisation [units]
     """
     count, _, size = copies.instruments.shape
     weighted = (inverse @ copies.instruments.reshape(count, -1)).reshape(copies.instruments.shape)

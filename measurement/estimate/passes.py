@@ -21,18 +21,20 @@ _STEPS_LEAST = 3.5
 _SAMPLES_LEAST = 4
 """Least median length of passes [sample periods].
 
-Simulated logs of 0.25 % read 0.25 to 0.28 % in the mean where passes last longer, and 0.12 to
-0.33 % where they do not.
+Simulated logs of 0.25 % give a mean of 0.25 to 0.28 % where passes last longer, and of 0.12 to 0.33
+% where they do not.
 """
 
 _TIME_ROUNDING = 0.01
-"""Amount by which a pass may be shorter than whole sample periods, as times are rounded [-]."""
+"""Amount by which a pass may be shorter than whole sample periods [-], because times are
+rounded.
+"""
 
 _WINDOW = 60.0
 """Length of the pieces whose low quantile is the background [s]."""
 
 _QUANTILE, _QUANTILE_SIGMA = 0.05, 1.645
-"""Low quantile of the readings, and how far the background is above it [standard deviations]."""
+"""Low quantile of the readings, and height of the background above it [standard deviations]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,8 +44,8 @@ class Pass:
     Attributes
     ----------
     time_s, centre_s : of the peak of the CO2 reading, and of the centre of its area [s]
-    start_s, end_s : where the CO2 reading leaves its background and is back, or the trough to the
-        neighbouring pass [s]
+    start_s, end_s : times at which the CO2 reading leaves its background and returns to it, or of
+        the trough to the neighbouring pass [s]
     height_ppm, snr : of the peak over the background [ppm], and over the noise [-]
     dose_ppm_s : area of the excess of CO2 in the air, corrected for the channel's memory at start
         and end [ppm s]
@@ -71,7 +73,7 @@ def co2_excesses(record: Record, noise: float) -> list[Array]:
 
 
 def _background(time: Array, values: Array, noise: float) -> Array:
-    """Return the background of CO2: its low quantile in pieces, joined by straight lines."""
+    """Return the background of CO2: its low quantile in each piece, joined by straight lines."""
     pieces = max(1, round((time[-1] - time[0]) / _WINDOW))
     edges = np.linspace(time[0], time[-1], pieces + 1)
     edges[-1] = math.inf
@@ -103,7 +105,9 @@ def find_passes(record: Record, channel: Channel) -> tuple[Pass, ...]:
 def _passes_at(
     peaks: npt.NDArray[np.int64], time: Array, excess: Array, channel: Channel
 ) -> list[Pass]:
-    """Return the passes at peaks: where the excess is above noise, at most trough to trough."""
+    """Return the passes at peaks: each lasts while the excess is above noise, at most from trough
+    to trough.
+    """
     noise, memory = channel.noise, sum(channel.constants)
     troughs = [int(a + np.argmin(excess[a : b + 1])) for a, b in itertools.pairwise(peaks)]
     below = np.flatnonzero(excess <= noise)
@@ -112,8 +116,8 @@ def _passes_at(
         start = max(low, int(below[below < peak].max(initial=low)))
         end = min(high, int(below[below > peak].min(initial=high)))
         height, inside = float(excess[peak]), slice(start, end + 1)
-        # Where a plume is never far, the low quantile is above the background, and the troughs are
-        # a better level.
+        # Where a plume is always near, the low quantile is above the background, and the troughs
+        # are a better level.
         level = min(0.0, 0.5 * float(excess[start] + excess[end]))
         weights = np.maximum(excess[inside], 0.0)
         area = float(
@@ -135,7 +139,9 @@ def _passes_at(
 
 
 def coarseness_problem(passes: Sequence[Pass], record: Record) -> tuple[str, ...]:
-    """Return the problem of CO2 read in too large steps, or too seldom, for these passes."""
+    """Return the problem of CO2 that is read in too large steps, or too rarely, for these
+    passes.
+    """
     height = float(np.median([found.height_ppm for found in passes]))
     step = record.resolution["co2"]
     if height < _STEPS_LEAST * step:

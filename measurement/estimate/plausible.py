@@ -1,4 +1,6 @@
-"""Readings that no working sensor has: cut off, stuck, spikes, too little noise, mixed-up gases."""
+"""Finds readings that no working sensor has: cut off, stuck, spikes, too little noise, mixed-up
+gases.
+"""
 
 import math
 
@@ -13,13 +15,17 @@ from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
 
 _CUT_LEAST, _CUT_OVER, _CUT_STEPS = 8, 3.0, 5
-"""Readings that are cut off: least number at an end, ratio to the next steps, number of these."""
+"""Criterion of readings that are cut off: least number at an end, its ratio to the number in the
+next steps, and the number of these steps.
+"""
 
 _FASTER, _FASTEST = 0.5, 0.1
-"""Largest and least share of its t90 in which a sensor may fall, by how well t90 is known."""
+"""Largest and least share of its t90 within which a sensor may fall, depending on the uncertainty
+of t90.
+"""
 
 _FALL_SIGMAS = 10.0
-"""Standard deviations of the noise by which a reading may be lower than a fall allows."""
+"""Tolerance of a reading below the fastest fall [standard deviations of the noise]."""
 
 _CHANCE_MOST = 1e-6
 """Least probability that noise alone has as many equal readings in a row in the record."""
@@ -34,30 +40,36 @@ _RISE_SIGMA = 10.0
 """Rise of another gas that shows the plume [standard deviations of its noise, which reaches 7]."""
 
 _SMOOTHED = 0.1
-"""Least share of its stated noise that a sensor shows in clean air: instruments smooth."""
+"""Least share of its stated noise that a sensor shows in clean air: instruments smooth their
+readings.
+"""
 
 _STEP_ROUNDING = 1e-6
-"""Rounding of floating-point numbers by which readings a step apart may differ more [steps]."""
+"""Tolerance of the difference of readings that are a step apart, for floating-point rounding
+[steps].
+"""
 
 _NOISE_USUAL = 1.0
-"""Noise of a channel of SO2, NO or NO2 that states none [ppb]: presets have 0.3 to 7.5 ppb."""
+"""Noise of a channel of SO2, NO or NO2 without a stated noise [ppb]: presets have 0.3 to 7.5
+ppb.
+"""
 
 _QUIET_SHARE = 0.01
 """Least scatter of readings, relative to their noise.
 
-Readings in ppm have a thousandth. With ``_NOISE_USUAL`` it is 10 ppt: only laser-induced
-fluorescence has less in a second (2 ppt in 10 s: Rollins et al., AMT 9:4601).
+For readings in ppm it is a thousandth. With ``_NOISE_USUAL`` it is 10 ppt: only laser-induced
+fluorescence has less noise in a second (2 ppt in 10 s: Rollins et al., AMT 9:4601).
 """
 
 _OZONE_MOST = 50.0
 """Most NO2 that ozone makes of the NO of a plume [ppb]: sea air has 20 to 50 of ozone."""
 
 _LOW, _HIGH, _NOISE_RANGE = 0.05, 0.95, 3.29
-"""Quantiles whose difference is the range of a gas, and that range of noise alone [sigma]."""
+"""Quantiles whose difference is the range of a gas, and the range that noise alone has [sigma]."""
 
 
 def implausibilities(record: Record, readings: Readings, instrument: SnifferSpec) -> list[str]:
-    """Return what is wrong with the readings of CO2, SO2, and the gases that SO2 responds to."""
+    """Return the problems of the readings of CO2, SO2, and the gases to which SO2 responds."""
     so2, co2 = instrument.known("so2"), instrument.known("co2")
     problems = []
     for gas in record.gases:
@@ -74,7 +86,7 @@ def implausibilities(record: Record, readings: Readings, instrument: SnifferSpec
 
 
 def _cut_off(readings: Readings, channel: Channel) -> list[str]:
-    """Return the problem of readings that are cut off at the largest or the least.
+    """Return the problem of readings that are cut off at the largest or the least value.
 
     Saturation at the end of the stated range is a problem of the record, and not repeated here.
     """
@@ -92,7 +104,7 @@ def _cut_off(readings: Readings, channel: Channel) -> list[str]:
             f"{name} reads {most:g} {unit}, and never more, {times} times, and hardly ever just"
             " less: it is cut off"
         ]
-    # Clean air without visible noise reads the same, and least.
+    # Clean air without visible noise always has the same, least reading.
     times = _heap((known - least) / step) if noise >= step else 0
     if times:
         return [
@@ -103,15 +115,17 @@ def _cut_off(readings: Readings, channel: Channel) -> list[str]:
 
 
 def _heap(steps: Array) -> int:
-    """Return how many readings are at an end, given their steps from it, if these are a heap."""
+    """Return the number of readings at an end, given their steps from it, if they accumulate
+    there.
+    """
     heap, *near = (int(np.sum(np.round(steps) == number)) for number in range(_CUT_STEPS + 1))
     return heap if heap >= _CUT_LEAST and heap > _CUT_OVER * max(near) else 0
 
 
 def _spikes(record: Record, readings: Readings, channel: Channel) -> list[str]:
-    """Return the problem of CO2 that falls faster than its sensor can, as it does after a spike.
+    """Return the problem of CO2 that falls faster than its sensor can, as after a spike.
 
-    One spike is enough to draw the slope to 0, and where SO2 is noisy nothing else shows it.
+    One spike is enough to draw the slope to 0, and where SO2 is noisy no other check shows that.
     """
     column = readings.values[:, GASES.index("co2")]
     known = np.flatnonzero(np.isfinite(column))
@@ -177,14 +191,14 @@ def _exchanged(record: Record, instrument: SnifferSpec) -> list[str]:
 def _stuck(readings: Readings, channel: Channel) -> list[str]:
     """Return the problem of a gas whose sensor is stuck for a part of the record.
 
-    Only where another gas rises meanwhile is the stated noise taken at its word. Otherwise a tenth
-    of it has to be too much, and readings of 0 do not count, as a sensor may cut off what is lower.
-    A gas that reads the same throughout is left to ``_quiet``.
+    The stated noise is used in full only where another gas rises meanwhile. Otherwise even a tenth
+    of it has to be too much, and readings of 0 do not count, as a sensor may cut off lower ones.
+    ``_quiet`` checks a gas whose reading never changes.
     """
     column = readings.values[:, GASES.index(channel.gas)]
     known = np.flatnonzero(np.isfinite(column))
     time, values = readings.time[known], column[known]
-    # A sensor that works for a part of the record may hardly ever move by a single step.
+    # A sensor that works for a part of the record may rarely move by a single step.
     step = shown_step(np.sort(values))
     if not step:
         return []
@@ -235,10 +249,10 @@ def _around(run: range, values: Array) -> list[Array]:
 
 
 def _too_long(run: range, values: Array, step: float, noise: float) -> bool:
-    """Return whether noise would hardly ever leave so many readings within a step."""
+    """Return whether noise would very rarely leave as many readings within a step."""
     if not noise > 0.0:
         return False
-    # Most normal noise is within a step that is centred on its mean.
+    # Normal noise lies most often within a step that is centred on its mean.
     within = math.erf(step / noise / math.sqrt(2.0))
     # A logger that is faster than the sensor repeats each reading in several rows.
     changes = np.flatnonzero(np.diff(values))
@@ -250,12 +264,14 @@ def _too_long(run: range, values: Array, step: float, noise: float) -> bool:
 def _explained(
     run: range, time: Array, values: Array, step: float, readings: Readings, channel: Channel
 ) -> bool:
-    """Return whether a working sensor may read this: at the end of its range, or in clean air."""
+    """Return whether a working sensor may have these readings: at the end of its range, or in clean
+    air.
+    """
     if values[run[0]] >= channel.range_high - channel.resolution:
         return True
     if values[run[0]] != 0.0 and _too_long(run, values, step, _SMOOTHED * channel.noise):
         return False
-    # A gas that arrives ends the clean air; faster sensors than this one show it before.
+    # An arriving gas ends the clean air; sensors that are faster than this one show it earlier.
     until = time[run[-1]] - channel.t90_s - channel.delay_s
     during = (readings.time >= time[run[0]]) & (readings.time <= until)
     others = [i for i, gas in enumerate(GASES) if gas != channel.gas]

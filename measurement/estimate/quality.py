@@ -1,4 +1,4 @@
-"""Quality class of a record, and what makes an estimate from it unreliable."""
+"""Quality class of a record, and the reasons that make an estimate from it unreliable."""
 
 import math
 from collections.abc import Sequence
@@ -19,16 +19,22 @@ PASSES_GOOD = 3
 """Passes for class A."""
 
 AGREEMENT_LEAST = 0.05
-"""Least probability for class A that passes of one fuel differ as much."""
+"""Least probability for class A that passes of one fuel differ as much as these."""
 
 STRANGE_SIGMA = 4.0
-"""Standard deviations beyond which residuals or a property are not of the stated instrument."""
+"""Largest difference of residuals or a property from the stated instrument [standard
+deviations].
+"""
 
 _ARRIVED_SIGMA, _ARRIVED_SHARE = 3.0, 0.5
-"""Least result of SO2 that has arrived [standard uncertainties]; else, share of CO2 to follow."""
+"""Least result that shows that SO2 has arrived [standard uncertainties]; otherwise, least share of
+the CO2 whose SO2 would have been read by then.
+"""
 
 _NEGATIVE_SIGMA = 3.0
-"""Standard uncertainties below 0, or above the most that a fuel has, that a result may be."""
+"""Largest distance of a result below 0, or above the largest content of a fuel [standard
+uncertainties].
+"""
 
 
 def quality_class(
@@ -43,15 +49,16 @@ def quality_class(
     responses_stated: bool,
     species: Species = SPECIES["so2"],
 ) -> tuple[Quality, tuple[str, ...]]:
-    """Return the quality class and why it is not A.
+    """Return the quality class, and the reasons why it is not A.
 
     Parameters
     ----------
-    problems : of the record; each makes it C
+    problems : of the record; each of them makes the class C
     snr, passes : of CO2, median of the passes, and their number
     fsc, deviation : result and its standard uncertainty [unit of the gas's figure]
     agreement : probability that passes of one fuel differ as much
-    limit : lowest limit, or None for a gas without one: then the result counts
+    limit : lowest limit; None for a gas without one: then the uncertainty is compared with the
+        result
     responses_stated : whether the response of the SO2 channel to NO and NO2 is known
     species : gas that is compared with CO2
     """
@@ -80,7 +87,7 @@ def quality_class(
 
 
 def _printed(value: float, species: Species) -> str:
-    """Return a figure of a gas as its limits are printed; a sulphur content in plain %."""
+    """Return a figure of a gas in the format of its limits; a sulphur content in plain %."""
     return f"{value:.{species.digits}f} {_unit(species)}"
 
 
@@ -89,7 +96,7 @@ def _unit(species: Species) -> str:
 
 
 def _impossible(passes: int, value: float, deviation: float, species: Species) -> list[str]:
-    """Return why no fuel can have this result."""
+    """Return the reason why no fuel can have this result."""
     found, gas = [], species.title
     most = f"{species.most:g} {_unit(species)}"
     if passes and not math.isfinite(value):
@@ -118,7 +125,8 @@ def residual_problem(residuals: Residuals, others: float) -> tuple[str, ...]:
     Parameters
     ----------
     residuals : of the fit
-    others : sum of squares by one standard deviation of each property that these do not have
+    others : sum of squares by one standard deviation of each property that ``residuals`` do not
+        include
     """
     instrument = STRANGE_SIGMA**2 * (residuals.instrument + others)
     expected = residuals.noise + residuals.background + instrument
@@ -136,7 +144,7 @@ def noise_explains(residuals: Residuals) -> bool:
 
 
 def _chance(residuals: Residuals) -> float:
-    """Return by how much residuals may exceed what is expected of them by chance [-]."""
+    """Return the ratio to their expectation that residuals may reach by chance [-]."""
     # A sum of squares with n degrees of freedom has a relative standard deviation of sqrt(2/n).
     return 1.0 + STRANGE_SIGMA * math.sqrt(2.0 / residuals.freedom)
 
@@ -149,7 +157,7 @@ def pending_so2_problem(
     Parameters
     ----------
     fsc, deviation : result and its standard uncertainty [% m/m]
-    read : for each pass, share of the time in which its SO2 may come that was read [-]
+    read : for each pass, share that was read of the time in which its SO2 may arrive [-]
     doses : of CO2 in each pass [ppm s]
     """
     if not read or fsc > _ARRIVED_SIGMA * deviation:
@@ -168,7 +176,7 @@ def delay_problem(stated: float, shown: float, deviation: float) -> tuple[str, .
 
     Parameters
     ----------
-    stated, shown : by the instrument's figures, and as the readings fit best [s]
+    stated, shown : delay by the instrument's figures, and the one that fits the readings best [s]
     deviation : standard deviation of the difference [s]
     """
     if not abs(shown - stated) > STRANGE_SIGMA * deviation:

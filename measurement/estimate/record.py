@@ -38,25 +38,31 @@ _SATURATED_MAX, _MISSING_MAX = 0.0, 0.1
 """Largest shares of saturated and of missing samples with a verdict."""
 
 _SAME = 1e-9
-"""Difference of equal readings, relative to the largest reading."""
+"""Largest difference of readings that count as equal, relative to the largest reading."""
 
 _CALM, _CALM_SIGMA = 0.1, 0.1257
-"""Share of the second differences that are noise alone, and that quantile of normal noise."""
+"""Share of the second differences that contain only noise, and that quantile of normal noise."""
 
 _GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
-"""Fractional parts of multiples of the golden section are evenly spread in 0 to 1."""
+"""Golden section: the fractional parts of its multiples are evenly spread from 0 to 1."""
 
 _NEGATIVE_SIGMA = 8.0
-"""Standard deviations of noise and zero below which a reading cannot be one."""
+"""Number of standard deviations of noise and zero below which a reading is impossible."""
 
 _NOX_SIGMA = 3.0
-"""Standard deviations above the mean that the NO and NO2 of a ship may have if not measured."""
+"""Number of standard deviations above the mean that a ship's NO and NO2 may have if they are not
+measured.
+"""
 
 _DITHERED = 4.0
-"""Largest step of other gases whose rounding is noise [standard deviations of their noise]."""
+"""Largest step of other gases whose rounding counts as noise [standard deviations of their
+noise].
+"""
 
 _CACHE_SIZE = 32
-"""Results kept for a record: moving one property of the instrument changes few of them."""
+"""Number of results kept for a record: a change of one property of the instrument changes few of
+them.
+"""
 
 _T = TypeVar("_T")
 
@@ -72,7 +78,7 @@ class Record:
     values : of each segment, by gas, shape (n,) each
     resolution : by gas, smallest change between consecutive readings of the log, 0 if none changes
     scatter : by gas, standard deviation of the noise that the readings show
-    problems : reasons why there can be no verdict, a sentence each
+    problems : reasons why there can be no verdict, one sentence each
     """
 
     step: float
@@ -116,8 +122,8 @@ def checked_record(readings: Readings, instrument: SnifferSpec) -> Record:
 
     Raises
     ------
-    MeasurementError : no CO2 or SO2, too short, times that do not increase or are too far apart, or
-        readings that cannot be in their unit
+    MeasurementError : no CO2 or SO2, too short a record, times that do not increase or are too far
+        apart, or readings that cannot be in their unit
     """
     time = np.asarray(readings.time, dtype=np.float64)
     values = np.asarray(readings.values, dtype=np.float64)
@@ -202,7 +208,7 @@ def split_at_gaps(
 
 
 def _grid(time: Array, step: float) -> Array:
-    """Return even times over those of a segment; times that are even already stay as they are."""
+    """Return even times over those of a segment; even times stay unchanged."""
     intervals = math.floor((time[-1] - time[0]) / step + 1e-6)
     grid = time[0] + step * np.arange(intervals + 1)
     even = len(grid) == len(time) and np.allclose(grid, time, rtol=0.0, atol=1e-3 * step)
@@ -223,7 +229,7 @@ def _no_segment(columns: Mapping[str, Array]) -> str:
 
 
 def check_increasing(time: Array, *, rows: npt.NDArray[np.int_] | None = None) -> None:
-    """Check that times increase, shape (m,); the error names their row of a file that has ``rows``.
+    """Check that times increase, shape (m,); with ``rows``, the error names the row in the file.
 
     Raises
     ------
@@ -266,7 +272,7 @@ def check_units(channel: Channel, values: Array) -> None:
 
 
 def shown_step(values: Array) -> float:
-    """Return the smallest change between consecutive known readings, apart from rounding errors."""
+    """Return the smallest change between consecutive known readings, without rounding errors."""
     known = values[np.isfinite(values)]
     changes = np.abs(np.diff(known))
     changes = changes[changes > _SAME * float(np.abs(known).max())]
@@ -282,8 +288,8 @@ def shown_scatter(segments: Sequence[Array], step: float) -> float:
     if not sum(len(segment) > 2 for segment in segments):
         return 0.5 * step
     second = np.concatenate([np.diff(segment, 2) for segment in segments])
-    # Rounded readings hide their noise: most second differences are 0. Spread evenly over a step
-    # they show it again.
+    # Rounding hides noise: most second differences are 0. Readings that are spread evenly over a
+    # step show it again.
     spread = step * ((_GOLDEN * np.arange(len(second))) % 1.0 - 0.5)
     # The variance of a second difference is 6 times that of a sample.
     shown = float(np.quantile(np.abs(second + spread), _CALM)) / _CALM_SIGMA / math.sqrt(6.0)
@@ -296,11 +302,12 @@ def stated_noise(channel: Channel, segments: Sequence[Array], step: float) -> fl
 
 
 def lowest_reading(gas: str, values: Array, instrument: SnifferSpec) -> float:
-    """Return how low a gas may read by noise, zero and the cell's response to other gases.
+    """Return the lowest possible reading of a gas, by noise, zero and the cell's response to other
+    gases.
 
     Parameters
     ----------
-    gas : that has readings and a channel
+    gas : gas with readings and a channel
     values : readings of all gases, shape (m, 4)
     """
     channel = instrument.known(gas)
@@ -312,7 +319,9 @@ def lowest_reading(gas: str, values: Array, instrument: SnifferSpec) -> float:
 
 
 def _cross_floor(cross: Mapping[str, float], values: Array, instrument: SnifferSpec) -> float:
-    """Return how far other gases, measured or as emitted, push a cell of gain 1 below zero."""
+    """Return how far other gases, as measured or as emitted, move the reading of a cell of gain 1
+    below zero.
+    """
     channels = [instrument.channel(gas) for gas in GASES]
     concentrations = values / [channel.gain if channel else 1.0 for channel in channels]
     co2 = concentrations[:, GASES.index("co2")]
@@ -331,7 +340,9 @@ def _cross_floor(cross: Mapping[str, float], values: Array, instrument: SnifferS
 def _problems(
     time: Array, values: Array, columns: Mapping[str, Array], instrument: SnifferSpec
 ) -> tuple[str, ...]:
-    """Return what the record lacks for a verdict: missing, saturated or negative readings, gaps."""
+    """Return the problems of the record that allow no verdict: missing, saturated or negative
+    readings, gaps.
+    """
     problems = []
     for gas, column in columns.items():
         channel = instrument.known(gas)

@@ -1,34 +1,36 @@
-"""Verdicts that may be looked at again and again: one rate of errors for all looks together.
+"""Verdicts that may be looked at repeatedly: one rate of errors for all looks together.
 
-A flight that leaves as soon as there is a verdict looks at the same evidence many times, and with a
-guard band for one look each further look adds to the chance that one of them is wrong: looks every
-15 s for ten minutes call 10 to 16 % of the fuels at the limit above, where 5 % are stated.
+A flight that leaves as soon as there is a verdict looks at the same evidence many times. With the
+guard band for one look, each further look adds to the probability that one of them is wrong: looks
+every 15 s for ten minutes call 10 to 16 % of the fuels at the limit above, instead of the stated 5
+%.
 
 The estimate over time
-    At look j the estimate is X_j with the standard uncertainty u_j. What more readings add does not
-    depend on what is left of the error, and the errors of the instrument are the same at all looks:
-    both give Cov(X_i, X_j) = u_j^2 for i before j. So with the information I = 1/u^2 the score
-    I (X - limit) of a fuel at the limit is a Wiener process at the time I: its increments are
+    At look j the estimate is X_j with the standard uncertainty u_j. The information of later
+    readings is independent of the remaining error, and the errors of the instrument are the same at
+    all looks: both give Cov(X_i, X_j) = u_j^2 for i before j. So with the information I = 1/u^2 the
+    score I (X - limit) of a fuel at the limit is a Wiener process at the time I: its increments are
     independent (D. O. Scharfstein, A. A. Tsiatis and J. M. Robins, "Semiparametric efficiency and
     its implication on the design and analysis of group-sequential studies", Journal of the American
     Statistical Association 92 (1997)). Information ends at that of an exact reading by this
     instrument.
 Spending the errors
-    A share t^1.5 of the error rate may have been spent where a share t of that information is there
-    (K. K. G. Lan and D. L. DeMets, "Discrete sequential boundaries for clinical trials", Biometrika
-    70 (1983); K. Kim and D. L. DeMets, "Design and analysis of group sequential tests based on the
-    type I error spending rate function", Biometrika 74 (1987)). A smaller power ends flights by
-    fuels far from the limit earlier and leaves more of the others without a verdict. The last look
-    spends what is left.
+    A share t^1.5 of the error rate may have been spent when a share t of that information is
+    available (K. K. G. Lan and D. L. DeMets, "Discrete sequential boundaries for clinical trials",
+    Biometrika 70 (1983); K. Kim and D. L. DeMets, "Design and analysis of group sequential tests
+    based on the type I error spending rate function", Biometrika 74 (1987)). A smaller power ends
+    flights by fuels far from the limit earlier and leaves more of the others without a verdict. The
+    last look spends the rest.
 Guard band of a look
-    z = (X - limit)/u has to exceed a_j, with P(z_1 < a_1, ..., z_j-1 < a_j-1, z_j >= a_j) what the
-    look may spend. The density of z on the paths that have not crossed goes from look to look by
-    one integral (P. Armitage, C. K. McPherson and B. C. Rowe, "Repeated significance tests on
-    accumulating data", Journal of the Royal Statistical Society A 132 (1969)).
+    z = (X - limit)/u has to exceed a_j, where P(z_1 < a_1, ..., z_j-1 < a_j-1, z_j >= a_j) is the
+    share that the look may spend. The density of z on the paths that have not crossed goes from
+    look to look by one integral (P. Armitage, C. K. McPherson and B. C. Rowe, "Repeated
+    significance tests on accumulating data", Journal of the Royal Statistical Society A 132
+    (1969)).
 
 Every path that is ever called above crosses one of the a_j, and all crossings together have the
-error rate: so it holds at every time at which somebody stops, for any reason. It holds for "below"
-likewise, and for fuels farther from the limit all the more.
+error rate: so the rate holds for any time at which the looks end, for any reason. The same holds
+for "below"; for fuels farther from the limit the rate is lower.
 """
 
 import functools
@@ -42,14 +44,15 @@ from measurement.estimate.verdict import ABOVE, BELOW, CONFIDENCE, OPEN, Side, j
 from measurement.sniffer.lag import Array
 
 UNDERSTATED = 1.1
-"""By how much a standard uncertainty may be too small and one look still errs as stated [-].
+"""Factor by which a standard uncertainty may be too small while one look still keeps the stated
+error rate [-].
 
-An uncertainty is itself only known to some tenth: estimates of simulated logs scatter by 0.86 to
-1.12 times theirs.
+An uncertainty is only known to some tenth: estimates of simulated logs scatter by 0.86 to 1.12
+times their uncertainty.
 """
 
 SPENDING_POWER = 1.5
-"""Power of the share of information that the share of spent errors is [-]."""
+"""Exponent of the share of information in the share of spent errors [-]."""
 
 GROWTH_LEAST = 0.01
 """Least relative growth of information from look to look that is reckoned with.
@@ -59,10 +62,12 @@ need be (Slepian's inequality).
 """
 
 FINEST = 0.1
-"""Uncertainty over the limit at which all errors are spent, if the instrument gets below it."""
+"""Uncertainty, over the limit, at which all errors are spent, if the instrument reaches a lower
+one.
+"""
 
 _NODES, _LOWEST = 256, -8.0
-"""Nodes of the integral, and where it begins: a share of 6e-16 lies below."""
+"""Number of nodes of the integral, and its lower end: a share of 6e-16 lies below."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +86,7 @@ class _Paths:
     weights: Array
 
     def kept(self, information: float) -> tuple[float, float]:
-        """Return the correlation of z with that at more information, and the deviation left."""
+        """Return the correlation of z with z at more information, and the remaining deviation."""
         correlation = math.sqrt(self.information / information)
         return correlation, math.sqrt(1.0 - correlation**2)
 
@@ -101,7 +106,7 @@ class _Paths:
 
 
 class RepeatedVerdict:
-    """The verdict on a limit by estimates of one flight, each from more readings.
+    """The verdict on a limit from estimates of one flight, each from more readings than the last.
 
     Parameters
     ----------
@@ -113,7 +118,7 @@ class RepeatedVerdict:
     ----------
     verdict : "open" until a look finds another one, which then stays
     looks : number of looks that could give a verdict
-    guard : standard uncertainties by which the last of them had to be above or below the limit
+    guard : standard uncertainties by which the last of these had to be above or below the limit
 
     Examples
     --------
@@ -128,7 +133,7 @@ class RepeatedVerdict:
 
     def __init__(self, limit_percent: float, *, error_rate: float = 1.0 - CONFIDENCE) -> None:
         self.limit_percent = limit_percent
-        # Of 5 %, 3.5 % are spent.
+        # 3.5 % of the 5 % are spent.
         self._rate = float(ndtr(UNDERSTATED * ndtri(error_rate)))
         self.verdict: Side = OPEN
         self.looks, self.guard = 0, math.nan
@@ -145,8 +150,8 @@ class RepeatedVerdict:
         fsc : estimate [% m/m]
         noise, total : its standard uncertainties by noise, which falls with more readings, and by
             all errors [% m/m]
-        admitted : whether its quality admits a verdict; a look that is not costs nothing
-        last : whether no other look follows, so that what is left of the error rate may be spent
+        admitted : whether its quality admits a verdict; other looks spend nothing
+        last : whether no other look follows, so that the rest of the error rate may be spent
         """
         alone = judged(self.limit_percent, fsc, total, admitted=admitted)
         if self.verdict != OPEN or not admitted or math.isnan(alone.probability_above):
@@ -156,7 +161,7 @@ class RepeatedVerdict:
         spent = self._rate * (1.0 if last else share**SPENDING_POWER)
         self.guard = self._next_guard((self.limit_percent / total) ** 2, spent)
         self.looks += 1
-        # A look by itself says "below" of no reading that is far below 0.
+        # A single look never gives "below" for a reading that is far below 0.
         if alone.verdict != OPEN and abs(fsc - self.limit_percent) >= self.guard * total:
             self.verdict = ABOVE if fsc > self.limit_percent else BELOW
         return self.verdict
@@ -167,7 +172,7 @@ class RepeatedVerdict:
         Parameters
         ----------
         information : (limit/u)^2 [-]
-        spent : of the error rate, with this look
+        spent : share of the error rate, including this look
         """
         before = self._paths
         allowed = max(0.0, spent - self._spent)

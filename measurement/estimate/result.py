@@ -21,16 +21,16 @@ class Figures:
     Attributes
     ----------
     duration_s : of the record [s]
-    passes : number through the plume
+    passes : number of passes through the plume
     interval_s : between passes, median [s]
-    seconds_in_plume : with the CO2 reading above its background by its detection limit [s]
+    seconds_in_plume : time with the CO2 reading above its background by its detection limit [s]
     dose_ppm_s : CO2 of a pass, mean [ppm s]
     co2_snr : signal to noise of a pass's peak, median [-]
-    so2_snr : standard deviation of the SO2 that the plume explains, over that of the rest [-]
-    background_ppm, background_ppb : standard deviation of the background of CO2 that varies, and of
-        what is left of SO2 beside the plume
+    so2_snr : standard deviation of the SO2 that the plume explains, over that of the remainder [-]
+    background_ppm, background_ppb : standard deviation of the varying background of CO2, and of SO2
+        without the plume
     background_s : correlation length of that background [s]
-    passes_excluded : number that are of another fuel
+    passes_excluded : number of passes of another fuel
     """
 
     duration_s: float
@@ -48,7 +48,9 @@ class Figures:
 
 @dataclass(frozen=True, kw_only=True)
 class PassContent:
-    """Sulphur content by a single pass, and its noise [% m/m]; the time of its peak [s]."""
+    """Sulphur content from a single pass, and its noise [% m/m]; the time of the pass's peak
+    [s].
+    """
 
     time_s: float
     fsc_percent: float
@@ -57,7 +59,7 @@ class PassContent:
 
 @dataclass(frozen=True, kw_only=True)
 class FscEstimate:
-    """A fuel sulphur content with its uncertainty, in % m/m; NaN where it is not known.
+    """A fuel sulphur content with its uncertainty, in % m/m; NaN where it is unknown.
 
     Attributes
     ----------
@@ -66,26 +68,26 @@ class FscEstimate:
     noise_percent : standard uncertainty by noise, which falls with the number of passes
     common_percent : standard uncertainties by errors that do not average out, by name
     overlap_percent : increase of the result if the areas' passes did not overlap; 0 by regression
-    assumed_percent : part of the estimate that corrects SO2 for NO and NO2 not measured, as ships
-        emit them on average
+    assumed_percent : part of the estimate that corrects SO2 for unmeasured NO and NO2, by the mean
+        emissions of ships
     total_percent : standard uncertainty by noise and common errors
-    low_percent, high_percent : 95 % interval, of the same distribution as the verdicts'
+    low_percent, high_percent : 95 % interval, from the same distribution as the verdicts'
         probabilities
-    sulphate_percent : mean error by sulphur that leaves as sulphate, stated and not corrected
+    sulphate_percent : mean error by sulphur that is emitted as sulphate, stated and not corrected
     slope_ppb_per_ppm : SO2 over CO2
     misfit : mean square of the residuals over that of the stated noise [-]
     quality, quality_reasons : A, B or C, and why it is not A
     verdicts : on each limit
     figures : of the record
     passes : through the plume
-    excluded : passes that are of another fuel, as of another ship
+    excluded : passes of another fuel, such as that of another ship
     pass_percent, pass_deviation_percent : sulphur content of groups of neighbouring passes and its
         noise
     agreement : probability that passes of one fuel differ as much as these
     so2_t90_s, so2_t90_sd_s, delay_s, delay_sd_s : response of SO2 and its delay after CO2, as
-        stated or as they fit best [s]
-    instrument : as it was used: noise, and response and delay of SO2, as the record shows them
-        where they were not stated
+        stated or fitted [s]
+    instrument : as used: the record gives noise, and response and delay of SO2, where they were not
+        stated
     signals : readings, equalised signals without their background, fit and residual; a row per
         sample
     """

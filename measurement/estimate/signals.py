@@ -2,8 +2,8 @@
 
 1. Response: each channel is filtered to the slowest poles of all, which amplifies no noise.
 2. Delay: each is shifted to the delay of SO2.
-3. Background: a slow level of each channel, and the transient at each segment's start, span a basis
-   that signals are made orthogonal to.
+3. Background: a slow level of each channel, and the transient at each segment's start, span a
+   basis. Signals are made orthogonal to it.
 """
 
 import math
@@ -29,10 +29,12 @@ Weights = tuple[float, float, float, float]
 """Weights of the four samples of ``_AROUND`` [-]."""
 
 _AROUND = (-1, 0, 1, 2)
-"""Samples that a shifted signal is interpolated between, relative to the one before the place."""
+"""Samples from which a shifted signal is interpolated, relative to the sample before the place."""
 
 _ON_SAMPLE = 1e-9
-"""Share of a step by which a delay may miss a whole number of steps and still be one."""
+"""Largest difference, in steps, between a delay and a whole number of steps that counts as that
+number.
+"""
 
 _STRAIGHT_MAX = 300.0
 """Longest record whose background is one straight line [s]."""
@@ -44,30 +46,30 @@ _INDEPENDENT = 1e-6
 """Least singular value of a column of the basis, relative to the largest."""
 
 _MEMORY = 12.0
-"""Time after which a filter has forgotten [time constants]."""
+"""Time after which a filter has forgotten its input [time constants]."""
 
 _FREE_LEAST = 3
-"""Least number of known samples beyond those that the background takes up [-]."""
+"""Least number of known samples in excess of the background's parameters [-]."""
 
 _OUTSIDE = 0.1
-"""Share of the samples with the least CO2, which show the level outside the plume."""
+"""Share of the samples, those with the least CO2, that shows the level outside the plume."""
 
 
 # Response and delay of one channel
 
 
 def slowest(poles: Sequence[Poles]) -> Poles:
-    """Return the poles of the common response: of each order the largest time constant."""
+    """Return the poles of the common response: the largest time constant of each order."""
     count = max(len(p) for p in poles)
     return tuple(max(p[i] for p in poles if len(p) > i) for i in range(count))
 
 
 def equalised(signal: Array, step: float, own: Poles, common: Poles) -> Array:
-    """Return a signal as a channel with the common poles would have read it.
+    """Return the signal that a channel with the common poles would have read.
 
     Each pole's filter is (1 + tau s)/(1 + T s), that is tau/T c + (1 - tau/T) lag_T(c), exact for a
-    signal that is linear between samples. It is at rest at the first sample; what that leaves out
-    is in the basis of the background.
+    signal that is linear between samples. It is at rest at the first sample; the transient that
+    this neglects is in the basis of the background.
 
     Parameters
     ----------
@@ -106,7 +108,9 @@ def shifted(signal: Array, step: float, delay: float) -> Array:
 
 
 def _beyond_ends(step: float, delay: float) -> Ends:
-    """Return how many samples of a signal ``shifted`` by ``delay`` [s] are from beyond its ends."""
+    """Return the number of samples of a signal ``shifted`` by ``delay`` [s] that lie beyond its
+    ends.
+    """
     whole, weights = _between_samples(step, delay)
     used = [whole + offset for offset, weight in zip(_AROUND, weights, strict=True) if weight]
     return max(0, -min(used)), max(0, *used)
@@ -153,7 +157,7 @@ def background_basis(record: Record, common: Poles, known: Array) -> Array:
 
 
 def transients(time: Array, common: Poles) -> list[Array]:
-    """Return what an unknown state at the first time leaves in a signal, by pole, shape (n,) each.
+    """Return the transient of an unknown initial state in a signal, for each pole, shape (n,) each.
 
     Parameters
     ----------
@@ -176,7 +180,7 @@ class Signals:
 
     Attributes
     ----------
-    record, instrument : that they are made of
+    record, instrument : sources of the signals
     co2, so2 : at the common response and delay, with their backgrounds, shape (n,) [ppm], [ppb]
     ends : samples for which at least one channel of another delay has no readings
     known : 0 at these and 1 at all others, shape (n,)
@@ -209,7 +213,7 @@ class Signals:
 
     @cached_property
     def excess(self) -> tuple[Array, Array]:
-        """CO2 and SO2 without what the background explains, 0 where not known, shape (n,) each."""
+        """CO2 and SO2 without the background, 0 where they are unknown, shape (n,) each."""
         co2 = without(self.basis, self.known * self.co2)
         so2 = without(self.basis, self.known * self.so2)
         return co2, so2
@@ -243,7 +247,8 @@ class Signals:
         return np.ascontiguousarray(np.concatenate(parts))
 
     def noise_energy(self, gas: str) -> float:
-        """Return the expected sum of squares of a gas's equalised noise beside the background.
+        """Return the expected sum of squares of a gas's equalised noise, without the background's
+        part.
 
         It is for noise of standard deviation 1.
         """
@@ -254,7 +259,7 @@ class Signals:
         energy = 0.0
         for segment in self.record.times:
             squares = self.impulse(gas, len(segment)) ** 2
-            # Each reading is in all samples after it.
+            # Each reading contributes to all samples after it.
             first, end = self.ends[0], len(segment) - self.ends[1]
             samples = np.maximum(0, end - np.maximum(first, np.arange(len(squares))))
             energy += float(np.sum(squares * samples))
@@ -264,7 +269,7 @@ class Signals:
         )
 
     def impulse(self, gas: str, longest: int | None = None) -> Array:
-        """Return how a reading of 1 is spread over the samples after it, shape (length,)."""
+        """Return the impulse response: the samples after a reading of 1, shape (length,)."""
         longest = len(self.so2) if longest is None else longest
         length = min(longest, int(_MEMORY * sum(self.common) / self.record.step) + 2)
         one = np.zeros(length)
@@ -301,8 +306,8 @@ def common_poles(
 ) -> Poles:
     """Return the poles of the common response.
 
-    They are the slowest of SO2 and CO2. A slower channel that corrects them joins in where bringing
-    it to their response would make its noise larger than that of SO2.
+    They are the slowest of SO2 and CO2. A slower channel that corrects these gases is included
+    where its noise, at their response, would be larger than that of SO2.
     """
     so2, co2 = instrument.known("so2"), instrument.known("co2")
     poles = slowest([so2.constants, co2.constants])
@@ -318,8 +323,8 @@ def common_poles(
 def make_signals(record: Record, instrument: SnifferSpec, ends: Ends = (0, 0)) -> Signals:
     """Return the signals of a record for the response, delays, gains and cross-sensitivities given.
 
-    Samples at the ends of segments count as not known where a channel that counts has no reading
-    for them, and the first and the last ``ends`` of each in any case.
+    Samples at the ends of segments count as unknown where a relevant channel has no reading for
+    them; the first and the last ``ends`` samples of each segment always do.
     """
     shares = shares_of(instrument, record.gases)
     common = common_poles(instrument, record.gases, shares)
@@ -376,7 +381,7 @@ def signals_table(signals: Signals, slope: float) -> tuple[pd.DataFrame, float]:
     record = signals.record
     co2, so2 = signals.excess
     known = signals.known > 0.0
-    # Beside the background both have a mean of 0. They are shown from the level that CO2 has
+    # Without the background both have a mean of 0. They are shown relative to the level of CO2
     # outside the plume.
     level = float(np.quantile(co2[known], _OUTSIDE)) if known.any() else 0.0
     fit = slope * co2

@@ -1,4 +1,4 @@
-"""Response and delay of SO2 that are not stated: where the fit begins, by a search on a grid."""
+"""Initial values of the response and delay of SO2 that are not stated, by a search on a grid."""
 
 import math
 from dataclasses import replace
@@ -13,10 +13,10 @@ from measurement.sniffer.lag import Array
 from measurement.sniffer.spec import SnifferSpec
 
 DELAY_MOST = 30.0
-"""Largest delay of SO2 after CO2 that is sought [s]."""
+"""Largest delay of SO2 after CO2 in the search [s]."""
 
 T90_LEAST, T90_MOST = 0.5, 120.0
-"""Range of t90 of SO2 that is sought [s]."""
+"""Range of t90 of SO2 in the search [s]."""
 
 _DELAY_SEARCH = tuple(float(d) for d in np.arange(-5.0, DELAY_MOST + 1.0, 1.0))
 _T90_SEARCH = tuple(float(t) for t in np.geomspace(T90_LEAST, T90_MOST, 14))
@@ -57,7 +57,7 @@ def _unexplained(signals: Signals, delays: tuple[float, ...], stated: float) -> 
     for delay in delays:
         moved = shifted(signals.co2, signals.record.step, delay - stated)
         co2: Array = without(signals.basis, signals.known * moved)
-        # SO2 does not fall where CO2 rises: a negative share is none.
+        # SO2 does not fall where CO2 rises: a negative share counts as 0.
         explained = max(0.0, float(co2 @ so2)) / max(float(np.linalg.norm(co2)), 1e-30)
         left.append((energy - explained**2) / noise)
     return left
@@ -66,7 +66,7 @@ def _unexplained(signals: Signals, delays: tuple[float, ...], stated: float) -> 
 def _so2_noise(signals: Signals) -> float:
     """Return the mean square of the noise of the SO2 signal, or 1 if it has none or is too short.
 
-    A small t90 of SO2 smooths it most: without this scale it would have the least residuals.
+    A small t90 smooths SO2 most: without this scale it would have the smallest residuals.
     """
     energy = sum(
         in_so2**2 * signals.noise(gas) ** 2 * signals.noise_energy(gas)

@@ -1,11 +1,12 @@
-"""Verdicts on limits, and rules by which ships are reported: guard bands, error rates, and words.
+"""Verdicts on limits, and rules by which ships are reported, with guard bands, error rates and
+texts.
 
 Guard bands are those of JCGM 106 (2012), "The role of measurement uncertainty in conformity
 assessment". A verdict that is looked at repeatedly needs wider ones: ``repeated``.
 
-Probabilities and the interval are of one distribution: the normal one of content and standard
-uncertainty, cut at 0, as no fuel has less. It describes a content of which nothing is known before
-the reading but that it is not negative (ISO 11929-1).
+Probabilities and the interval follow from one distribution: the normal distribution of the content
+with its standard uncertainty, truncated at 0, as no content is negative. This is the distribution
+without any prior knowledge except that the content is not negative (ISO 11929-1).
 """
 
 import math
@@ -34,13 +35,13 @@ GUARD, COVERAGE = float(ndtri(CONFIDENCE)), float(ndtri(0.5 + 0.5 * CONFIDENCE))
 """Standard uncertainties of a guard band, 1.645, and of half an interval, 1.960."""
 
 MISSED_OVER_LIMIT = 2.0
-"""Content of which the misses of a rule are stated, over the limit [-]."""
+"""Content for which the misses of a rule are stated, over the limit [-]."""
 
 _FAR = 1000.0
-"""Deviations beyond which a normal distribution's limits serve [-]."""
+"""Number of deviations beyond which a normal distribution's asymptotic forms are used [-]."""
 
 REJECTED = "C"
-"""Quality of records that have no verdict."""
+"""Quality of records without a verdict."""
 
 _COUNTED = {
     ABOVE: "above the limit",
@@ -48,7 +49,7 @@ _COUNTED = {
     OPEN: "with an open verdict",
     REJECTED: "without a verdict (quality C)",
 }
-"""Words for several records, by their verdict, or by the quality that has none."""
+"""Texts for several records, by their verdict, or by the quality without a verdict."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,8 +64,7 @@ class Verdict:
         that it is not negative
     above_from_percent, below_to_percent : estimates beyond which the verdict is "above" and "below"
         with this standard uncertainty [% m/m]
-    false_alarm, miss : shares of fuels at the limit that are called above and below, of one look
-        [-]
+    false_alarm, miss : shares of fuels at the limit that one look calls above and below [-]
     """
 
     limit_percent: float
@@ -78,15 +78,15 @@ class Verdict:
 
 @dataclass(frozen=True, kw_only=True)
 class Decision:
-    """What a rule makes of an estimate.
+    """The decision of a rule on an estimate.
 
     Attributes
     ----------
     rule, title, limit_percent : of the rule
     suspect_from_percent : estimate from which the ship is suspect [% m/m]
-    suspect : whether it is; None for a record without a verdict
+    suspect : whether the ship is suspect; None for a record without a verdict
     false_alarm : share of fuels at the limit that the rule reports, with this uncertainty [-]
-    missed_percent : content of which ``miss`` is stated [% m/m]
+    missed_percent : content for which ``miss`` is stated [% m/m]
     miss : share of fuels of that content that the rule does not report [-]
     """
 
@@ -148,10 +148,10 @@ def judged(limit: float, fsc: float, deviation: float, *, admitted: bool) -> Ver
 
 
 def _below_to(limit: float, deviation: float) -> float:
-    """Return the estimate that has a probability of 5 % to be above the limit [% m/m].
+    """Return the estimate for which the content is above the limit with 5 % probability [% m/m].
 
-    With r deviations from 0 to the limit it lies x deviations below the limit, where
-    Phi(-x) = 5 % Phi(r - x). The right side has 5 % at most, so that x is 1.645 at least.
+    With r deviations from 0 to the limit it lies x deviations below the limit, where Phi(-x) = 5 %
+    Phi(r - x). The right side is at most 5 %, so that x is at least 1.645.
     """
     from scipy.optimize import brentq
 
@@ -169,7 +169,7 @@ def _below_to(limit: float, deviation: float) -> float:
 
 
 def decide(rule: DecisionRule, fsc: float, deviation: float, *, admitted: bool) -> Decision:
-    """Return what a rule makes of an estimate and its standard uncertainty [% m/m].
+    """Return the decision of a rule on an estimate with its standard uncertainty [% m/m].
 
     Parameters
     ----------
@@ -198,7 +198,8 @@ def interval(fsc: float, deviation: float) -> tuple[float, float]:
     """Return the shortest interval that holds the sulphur content with 95 % [% m/m].
 
     Far from 0 it is the estimate with 1.960 standard uncertainties to either side. Where it begins
-    at 0, the content is above its end with 5 % (ISO 11929-1, shortest coverage interval).
+    at 0, the content is above its end with 5 % probability (ISO 11929-1, shortest coverage
+    interval).
     """
     if math.isnan(fsc + deviation):
         return math.nan, math.nan
@@ -208,8 +209,8 @@ def interval(fsc: float, deviation: float) -> tuple[float, float]:
     half = deviation * float(ndtri(0.5 + 0.5 * CONFIDENCE * kept))
     if fsc > half:
         return fsc - half, fsc + half
-    # In logarithms, as almost nothing of the normal distribution is above 0 for a reading far
-    # below it.
+    # In logarithms, because almost nothing of the normal distribution is above 0 for a reading far
+    # below 0.
     beyond = math.log(1.0 - CONFIDENCE) + float(log_ndtr(fsc / deviation))
     return 0.0, fsc - deviation * float(ndtri_exp(beyond))
 
@@ -218,7 +219,7 @@ def interval(fsc: float, deviation: float) -> tuple[float, float]:
 
 
 def probability(share: float) -> str:
-    """Return a probability in percent, never as certain."""
+    """Return a probability in percent, never 0 or 100 %."""
     if math.isnan(share):
         return "not known"
     if share > 0.999:
@@ -243,7 +244,8 @@ def content_words(fsc_percent: float, low_percent: float, high_percent: float) -
 def verdict_words(
     verdict: str, limit_percent: float, probability_above: float, quality: str = "A"
 ) -> str:
-    """Return a verdict with its limit and probability; for quality C, that there is no verdict.
+    """Return a verdict with its limit and probability; for quality C, a text that there is no
+    verdict.
 
     Parameters
     ----------
@@ -258,7 +260,9 @@ def verdict_words(
 
 
 def repeated_words(looks: float, guard: float) -> str:
-    """Return how often a verdict was looked at and what that cost; empty where it was not."""
+    """Return the number of looks at a verdict and the resulting guard band; empty without repeated
+    looks.
+    """
     if not looks > 0 or math.isnan(guard):
         return ""
     return (
@@ -268,7 +272,9 @@ def repeated_words(looks: float, guard: float) -> str:
 
 
 def rate_words(verdict: Verdict) -> str:
-    """Return where verdicts begin, and how often they are wrong for a fuel at the limit."""
+    """Return the estimates at which verdicts begin, and their error rates for a fuel at the
+    limit.
+    """
     if math.isnan(verdict.false_alarm):
         return "no guard band: the uncertainty is not known"
     above, below = probability(verdict.false_alarm), probability(verdict.miss)
@@ -280,7 +286,8 @@ def rate_words(verdict: Verdict) -> str:
 
 
 def suspect_words(suspect: float | None, false_alarm: float, miss: float) -> str:
-    """Return whether a flight's rule reports the ship, with its rates; empty where it does not say.
+    """Return whether a flight's rule reports the ship, with the rule's error rates; empty without a
+    rule.
 
     Parameters
     ----------
@@ -296,7 +303,7 @@ def suspect_words(suspect: float | None, false_alarm: float, miss: float) -> str
 
 
 def decision_words(decision: Decision) -> str:
-    """Return what a rule makes of an estimate, and how often it is wrong."""
+    """Return the decision of a rule on an estimate, and the rule's error rates."""
     called = {True: "suspect", False: "not suspect", None: "no decision"}[decision.suspect]
     words = (
         f"rule {decision.rule} ({decision.title}), suspect from"
@@ -312,7 +319,7 @@ def decision_words(decision: Decision) -> str:
 
 
 def needed(probability_above: float) -> str:
-    """Return why a verdict is open."""
+    """Return the reason why a verdict is open."""
     if probability_above > CONFIDENCE:
         return "the result is within the guard band"
     return "95 % or 5 % are needed"
@@ -326,13 +333,13 @@ def next_step(
     noise: float,
     errors: Mapping[str, float],
 ) -> str:
-    """Return what to do for a record with an open verdict or none; otherwise an empty text.
+    """Return advice for a record with an open verdict or without one; otherwise an empty text.
 
     Parameters
     ----------
     undecided : whether a verdict is open
     noise, errors : standard uncertainty by noise, and by each error that further passes do not
-        lower, by its words [% m/m]
+        reduce, by its name [% m/m]
     """
     if quality == REJECTED and not passes:
         return "Next: check the CO2 sensor, and measure again in the plume."
@@ -354,7 +361,7 @@ def next_step(
 
 
 def counted_verdicts(records: Iterable[tuple[str, str]]) -> str:
-    """Return how many records have each verdict, given verdict and quality of each."""
+    """Return the number of records with each verdict, given verdict and quality of each."""
     called = [quality if quality == REJECTED else verdict for verdict, quality in records]
     return ", ".join(
         f"{called.count(verdict):,} {words}"

@@ -37,11 +37,11 @@ class Analysis:
     estimate : by the chosen method
     other : by the other method, or None where it is not possible
     table : of ``over_time``
-    instrument : as the analyst knows it
+    instrument : as the analyst states it
     carbon : mass share of the fuel [-]
     decision : by the rule, or None without one
-    gases : of the others that are compared with CO2
-    gas_remarks : of gases that the log has and that cannot be estimated, why
+    gases : figures of the other gases that are compared with CO2
+    gas_remarks : for gases of the log that cannot be estimated, the reason
     """
 
     estimate: FscEstimate
@@ -54,7 +54,7 @@ class Analysis:
     gas_remarks: tuple[str, ...] = ()
 
     def sampled(self, flight: LoggedFlight) -> tuple[pd.DataFrame, Readings]:
-        """Return the signals of the estimate, and the readings that they are made of."""
+        """Return the signals of the estimate, and their readings."""
         return self.estimate.signals, flight.readings
 
     def record(self, true_percent: float | None = None) -> dict[str, Any]:
@@ -62,7 +62,7 @@ class Analysis:
 
         Parameters
         ----------
-        true_percent : what a perfect instrument reads, where that is known [% m/m]
+        true_percent : result of a perfect instrument, where it is known [% m/m]
         """
         limits = [verdict.limit_percent for verdict in self.estimate.verdicts]
         return {
@@ -96,7 +96,7 @@ class GasAnalysis:
     instrument: SnifferSpec
 
     def sampled(self, flight: LoggedFlight) -> tuple[pd.DataFrame, Readings]:
-        """Return the signals of the first gas, and the readings that they are made of."""
+        """Return the signals of the first gas, and their readings."""
         first = self.gases[0]
         readings = next(of.readings for of in flight.gases if of.species.name == first.gas)
         return first.signals, readings
@@ -191,7 +191,8 @@ def analyse(
 def estimate_gases(
     gases: Sequence[GasReadings], declared: Container[str], **chosen: Any
 ) -> tuple[list[GasEstimate], list[str]]:
-    """Return the figures of gases, and why there is none of those that are not declared.
+    """Return the figures of gases, and for gases without a figure that are not declared, the
+    reason.
 
     Parameters
     ----------
@@ -230,11 +231,11 @@ class Gaps:
     Attributes
     ----------
     log_rows : of the log
-    rows : those with a new reading, where the log is faster than the sensors; otherwise all
+    rows : rows with a new reading, where the log is faster than the sensors; otherwise all rows
     missing : number of readings that are missing in these rows, by gas that the analysis uses
     interpolated : samples in short gaps, which are bridged by a straight line
     gaps : beginning and end of each longer gap, which is left out [s] since the first row
-    unused : complete rows that are also left out, as there are too few of them in a row
+    unused : complete rows that are also left out, because too few of them are consecutive
     """
 
     log_rows: int
@@ -306,7 +307,7 @@ def find_gaps(readings: Readings, signals: pd.DataFrame, log_rows: int) -> Gaps:
 
 
 def interpolated(readings: Readings, signals: pd.DataFrame) -> npt.NDArray[np.bool_]:
-    """Return which samples of an estimate are not near to a row with all readings, shape (n,)."""
+    """Return which samples of an estimate are not near a row with all readings, shape (n,)."""
     complete: Array = readings.time[
         np.isfinite(readings.values[:, _used_gases(signals)]).all(axis=1)
     ]
@@ -318,7 +319,7 @@ def interpolated(readings: Readings, signals: pd.DataFrame) -> npt.NDArray[np.bo
 
 
 def _used_gases(signals: pd.DataFrame) -> list[int]:
-    """Return the indices in ``GASES`` of those that an estimate made signals of."""
+    """Return the indices in ``GASES`` of the gases in the signals of an estimate."""
     return [i for i, gas in enumerate(GASES) if f"{gas}_{UNITS[gas]}" in signals]
 
 

@@ -1,6 +1,6 @@
-"""Calibration of a sniffer by zero and span gas, and what an estimate makes of it.
+"""Calibration of a sniffer by zero and span gas, and its use in an estimate.
 
-A log of a calibration has the reading of each gas beside what was supplied to the inlet, in steps:
+A log of a calibration has, for each gas, the reading and the concentration at the inlet, in steps:
 zero, span, zero, and so on. Each channel is fitted as
 
     y(t) = (g + g' t) x(t) + o + o' t + noise,   x the supplied steps, late by d, through a lag  (1)
@@ -35,13 +35,15 @@ FORMAT = 1
 """Version of a calibration's file."""
 
 KIND = "plume-flight calibration"
-"""What a calibration's file says that it is."""
+"""Entry of a calibration's file with its kind."""
 
 SUPPLIED = "_supplied"
-"""What follows a gas in the name of the column with what was supplied, as in so2_supplied_ppb."""
+"""Suffix of a gas in the name of the column with the supplied concentration, as in
+so2_supplied_ppb.
+"""
 
 HOURS_MOST = 24.0
-"""Age from which on a calibration is stale, unless the configuration says otherwise [h]."""
+"""Default age at which a calibration becomes stale [h]."""
 
 SPAN_SD = 0.01
 """Relative standard deviation of the span gas unless it is stated [-]; an assumption: see the
@@ -54,10 +56,10 @@ _SLOW_MOST = 0.015
 """Largest slow part of the residuals, over the span [-]; an assumption."""
 
 _BLOCK_S = 15.0
-"""Time over which residuals are averaged to see their slow part [s]."""
+"""Time over which residuals are averaged to find their slow part [s]."""
 
 _SIGNIFICANT = 3.0
-"""Standard deviations from which on a drift is shown."""
+"""Least drift that is shown [standard deviations]."""
 
 _FEWEST = 30
 """Fewest readings of a gas."""
@@ -69,12 +71,12 @@ _UNITS = {**{name: of.unit for name, of in SPECIES.items()}, **UNITS}
 
 @dataclass(frozen=True, kw_only=True)
 class CalibratedChannel:
-    """What a calibration shows of a channel; drifts are per hour.
+    """The result of a calibration for a channel; drifts are per hour.
 
     Attributes
     ----------
     unit : of readings
-    span : largest concentration that was supplied [unit]
+    span : largest supplied concentration [unit]
     gain, gain_sd : reading over concentration, at the middle of the calibration [-]
     offset, offset_sd : reading of zero gas [unit]
     gain_drift, gain_drift_sd, offset_drift, offset_drift_sd : [1/h, unit/h]
@@ -83,8 +85,8 @@ class CalibratedChannel:
     misfit : root mean square of the residuals over the noise [-]
     slow : standard deviation of the part of the residuals that noise does not explain, over the
         span [-]
-    problems : why it must not be used, as a leak
-    remarks : what it shows, as a drift
+    problems : reasons why it must not be used, such as a leak
+    remarks : other findings, such as a drift
     """
 
     unit: str
@@ -167,14 +169,14 @@ def calibrate(
 
     Parameters
     ----------
-    instrument, serial : that was calibrated
-    time_utc : of the first reading of a log that counts seconds of no date
+    instrument, serial : of the calibrated sniffer
+    time_utc : of the first reading, for a log of seconds without a date
     span_sd : relative standard deviation of the span gas [-]
 
     Raises
     ------
-    MeasurementError : the log cannot be read, has no gas with what was supplied, or no step of it;
-        or no time is known
+    MeasurementError : the log cannot be read, has no gas with a supplied concentration, or no step
+        of it; or no time is known
     """
     try:
         content = path.read_bytes()
@@ -241,7 +243,7 @@ def _pairs(names: Sequence[str]) -> dict[str, tuple[str, str]]:
 
 
 def _factor(unit: str, gas: str, name: str) -> float:
-    """Return by what a column is multiplied to be in the unit of its gas."""
+    """Return the factor of a column to the unit of its gas."""
     if not (unit or unit_in(name)):
         raise MeasurementError(f"column '{name}' does not say its unit; name it {name}_ppb")
     return unit_factor(unit or unit_in(name), _UNITS[gas], gas=gas)
@@ -250,7 +252,7 @@ def _factor(unit: str, gas: str, name: str) -> float:
 def _channel(
     gas: str, time: Array, reading: Array, supplied: Array, span_sd: float
 ) -> CalibratedChannel:
-    """Return what a channel shows: the fit of (1)."""
+    """Return the result for a channel: the fit of (1)."""
     from scipy.optimize import least_squares
 
     name, unit = gas.upper(), _UNITS[gas]
@@ -351,7 +353,7 @@ def _slow_part(left: Array, noise: float, block: int) -> float:
 
 
 def _leaks(name: str, gain: float, slow: float) -> list[str]:
-    """Return what looks like a leak."""
+    """Return the signs of a leak."""
     found = []
     if abs(gain - 1.0) > _REACHED:
         found.append(
@@ -432,7 +434,7 @@ def _channel_from(record: Mapping[str, Any]) -> CalibratedChannel:
     return CalibratedChannel(**values)
 
 
-# What an estimate makes of it
+# Use in an estimate
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -450,11 +452,11 @@ class Applied:
 
     @property
     def gases(self) -> set[str]:
-        """Gases that all of them have."""
+        """Gases that all calibrations have."""
         return set.intersection(*(set(of.channels) for of in self.calibrations))
 
     def problems(self, gas: str) -> tuple[str, ...]:
-        """Return why a gas has no verdict by these calibrations."""
+        """Return the reasons why these calibrations allow no verdict on a gas."""
         return tuple(
             f"calibration of {of.time_utc:%Y-%m-%d %H:%M}: {problem}"
             for of in self.calibrations
@@ -465,9 +467,9 @@ class Applied:
     def channel(self, gas: str, channel: Channel) -> Channel:
         """Return a channel as it was during the flight, between calibrations or near one.
 
-        Gain and offset are interpolated in time. Half of their change between two calibrations,
-        taken as even, or the drift since a single one, is in their uncertainty; so is all that a
-        leak takes away.
+        Gain and offset are interpolated in time. Their uncertainty includes half of their change
+        between two calibrations, assumed to be even, or the drift since a single one, and all that
+        a leak takes away.
         """
         if gas not in self.gases:
             return channel
@@ -537,8 +539,8 @@ def applied(
 
     Raises
     ------
-    MeasurementError : there are more than two, or one is of another instrument, is stale, or of no
-        time that can be compared; or two are on the same side of the flight
+    MeasurementError : there are more than two, or one is of another instrument, is stale, or has no
+        time to compare; or two are on the same side of the flight
     """
     if len(calibrations) > 2:
         raise MeasurementError(

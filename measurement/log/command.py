@@ -115,7 +115,7 @@ def _analysed(
 
     Raises
     ------
-    MeasurementError : the readings cannot be those of a flight through a plume, or there are none
+    MeasurementError : there are no readings, or they cannot be of a flight through a plume
     """
     config = prepared.config
     if not config.with_sulphur:

@@ -99,7 +99,7 @@ class FlightDetails:
     day : date of the flight in UTC
     start : of the log's first reading in UTC, or None where only the date is given
     place : in words
-    operator : who flew and measured
+    operator : person who flew and measured
     """
 
     vessel: str = ""
@@ -118,11 +118,11 @@ class LogConfig:
 
     Attributes
     ----------
-    instrument : as the analyst knows it
-    stated : keys that the configuration has of each channel, by gas; None for a preset, whose file
-        says what is assumed
+    instrument : as the analyst states it
+    stated : keys of each channel in the configuration, by gas; None for a preset, whose file lists
+        its assumptions
     carbon : mass share of the fuel [-]
-    limits_percent : that verdicts are given on [% m/m]
+    limits_percent : limits for the verdicts [% m/m]
     rule : by which the ship is reported, or None
     method : "regression" or "areas"
     missing : numbers that stand for missing readings in the file, as -9999
@@ -130,7 +130,7 @@ class LogConfig:
     scale : factors of gases' columns to ppb, or ppm of CO2; they come before any unit
     units : of gases' columns; those that are not given are in the columns' names or in a row of
         units
-    air : temperature [deg C] and pressure [hPa] of the air that masses per volume are of
+    air : temperature [deg C] and pressure [hPa] of the air to which masses per volume refer
     table : how the file is written, as far as it is given
     flight : details that the log cannot show
     species : gases beside SO2 that may be in the log, by name
@@ -361,7 +361,7 @@ def _sub_table(table: Mapping[str, Any], key: str, names: Sequence[str]) -> dict
 def _units(
     given: Mapping[str, Any], known: Mapping[str, str]
 ) -> tuple[dict[str, str], tuple[float, float]]:
-    """Return the units of gases whose own are ``known``, and the air of masses per volume.
+    """Return the units of gases whose units are ``known``, and the air of masses per volume.
 
     The air is its temperature [deg C] and pressure [hPa].
     """

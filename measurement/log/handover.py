@@ -1,4 +1,4 @@
-"""The record of an estimate to hand over: what was measured, by whom and with what, and its hashes.
+"""The record of an estimate to hand over: result, people, instrument and hashes.
 
 ``record-1.json`` in ``measurement/schemas`` is its JSON Schema. The entry ``sha256`` of a record is
 that of its other entries, so that a changed figure is noticed:
@@ -7,8 +7,8 @@ that of its other entries, so that a changed figure is noticed:
     text = json.dumps(bare, sort_keys=True, separators=(",", ":"))
     hashlib.sha256(text.encode()).hexdigest()
 
-Beside it stands a CSV with the items that a sulphur inspection has in THETIS-EU. Their list is
-public; that this table fits into that system nobody has approved.
+With it comes a CSV with the items of a sulphur inspection in THETIS-EU. Their list is public;
+nobody has approved that this table fits into that system.
 """
 
 import csv
@@ -35,22 +35,22 @@ from measurement.sniffer.spec import SnifferSpec
 from measurement.species import SPECIES
 
 FORMAT = "plume-flight record"
-"""What a record says that it is."""
+"""Entry of a record with its kind."""
 
 VERSION = 1
 """Version of the record, and of its schema."""
 
 NOT_APPROVED = "not approved by anybody"
-"""What the table of inspection items says of itself."""
+"""Remark in the table of inspection items."""
 
 SCOPE = f"Measured in a ship's plume: {SCREENING}."
-"""What the figures of a record are worth."""
+"""Remark on the significance of the figures of a record."""
 
 THETIS_SOURCE = (
     "EU coast guard functions, maritime data catalogue, item 5.02, THETIS-EU sulphur"
     " (coastguard.europa.eu)"
 )
-"""Where the list of inspection items is public."""
+"""Public address of the list of inspection items."""
 
 
 def schema() -> dict[str, Any]:
@@ -73,7 +73,7 @@ def record_of(
 
     Parameters
     ----------
-    inputs : files that were read, and what each is, as "log"
+    inputs : files that were read, and the role of each, such as "log"
     calibrations : that were applied
     pictures : of the ship
 
@@ -229,7 +229,7 @@ def _figure(found: GasEstimate) -> dict[str, Any]:
 
 
 def write_record(path: Path, record: Mapping[str, Any]) -> Path:
-    """Write a record, and the table of inspection items beside it, whose path is returned.
+    """Write a record and the table of inspection items; return the path of the table.
 
     Raises
     ------
@@ -268,7 +268,7 @@ def read_record(path: Path) -> dict[str, Any]:
 
 
 def items_csv(record: Mapping[str, Any]) -> str:
-    """Return the items of a sulphur inspection as a table: item, value, and where it is from."""
+    """Return the items of a sulphur inspection as a table: item, value and source."""
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
     rows.writerow(["item", "value", "from"])

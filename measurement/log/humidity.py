@@ -1,8 +1,8 @@
-"""Humid air: what it does to a gas where that is stated, and no verdict where it is not.
+"""Humid air: its effect on a gas where that is stated, and no verdict where it is not.
 
 Of eight systems that measured side by side at the Elbe seven read too little sulphur, possibly in
-air of more than 80 % relative humidity (Beecken et al., AMT 16:5883, 2023,
-doi 10.5194/amt-16-5883-2023). Of a log without a humidity nothing is concluded.
+air of more than 80 % relative humidity (Beecken et al., AMT 16:5883, 2023, doi
+10.5194/amt-16-5883-2023). A log without humidity allows no conclusion.
 """
 
 import math
@@ -14,18 +14,18 @@ from measurement.sniffer.channel import Channel
 from measurement.sniffer.lag import Array
 
 HUMID_PERCENT = 80.0
-"""Relative humidity from which on its effect has to be stated [%]."""
+"""Least relative humidity whose effect has to be stated [%]."""
 
 
 def is_humid(humidity: Array | None) -> bool:
-    """Return whether the air was humid in half of the rows that say it."""
+    """Return whether the air was humid in half of the rows with a humidity."""
     if humidity is None or not np.isfinite(humidity).any():
         return False
     return float(np.nanmedian(humidity)) > HUMID_PERCENT
 
 
 def in_humid_air(channel: Channel, effect: tuple[float, float] | None) -> tuple[Channel, str]:
-    """Return a channel in humid air, and why there can be no verdict, or an empty text.
+    """Return a channel in humid air, and the reason why there can be no verdict, or an empty text.
 
     Parameters
     ----------

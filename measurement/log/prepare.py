@@ -1,4 +1,4 @@
-"""What is known of a flight beside its log: calibrations, humid air, and the speed of its ship."""
+"""Knowledge of a flight besides its log: calibrations, humid air, and the speed of its ship."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -15,7 +15,7 @@ from measurement.sniffer.spec import SnifferSpec, channel_of
 
 @dataclass(frozen=True, kw_only=True)
 class Prepared:
-    """A configuration with what is known of the flight.
+    """A configuration with the knowledge of the flight.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ def prepare(
     calibrations: Sequence[Calibration] = (),
     ships: Sequence[ShipTrack] = (),
 ) -> Prepared:
-    """Return the configuration of a flight with what is known of it.
+    """Return the configuration of a flight with the knowledge of it.
 
     Raises
     ------
@@ -81,7 +81,7 @@ def prepare(
 
 
 def _of(gas: str, config: LogConfig) -> tuple[str, ...]:
-    """Return the gases whose figure a channel has a part in."""
+    """Return the gases whose figure depends on a channel."""
     if gas == "co2":
         return ("so2", *config.species)
     return {"no": ("so2", "nox"), "no2": ("so2", "nox")}.get(gas, (gas,))
@@ -95,7 +95,7 @@ def _with_channels(instrument: SnifferSpec, found: Applied) -> SnifferSpec:
 
 
 def _calibration_remarks(found: Applied) -> list[str]:
-    """Return a line for each calibration, with what it shows."""
+    """Return a line for each calibration, with its findings."""
     lines = []
     for of in found.calibrations:
         gases = ", ".join(gas.upper() for gas in of.channels)

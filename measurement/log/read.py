@@ -38,7 +38,7 @@ from measurement.sniffer.spec import channel_of
 from measurement.species import SPECIES, Species
 
 TRUE_COLUMNS = {f"{gas}_true_{UNITS[gas]}": gas for gas in GASES}
-"""Columns of the true concentrations of a simulated flight; shown, and not used by the estimate."""
+"""Columns of the true concentrations of a simulated flight: shown, but not used by the estimate."""
 
 FROM_LOG, FROM_CONFIGURATION = "log", "configuration"
 """Sources of the times of a flight."""
@@ -64,10 +64,10 @@ class FlightRecord:
     first_utc, last_utc : of the first and the last reading, or None where neither log nor
         configuration has a time
     utc_from : ``FROM_LOG``, ``FROM_CONFIGURATION`` or empty
-    offset : whether the log's times have an offset from UTC; those without are taken as UTC
+    offset : whether the log's times have an offset from UTC; times without one count as UTC
     first_position, last_position : first and last known place of the log, or None where it has none
-    place_remark : which of its places are taken as missing, or empty
-    ships : how far the log lies from each place or track of its ship that is known, in words
+    place_remark : places that count as missing, or empty
+    ships : distance of the log from each known place or track of its ship, in words
     columns, scale, missing : as the log was read
     table : how the log was read, in one line
     stated : keys of the instrument's channels in the configuration, same as in ``LogConfig``
@@ -108,7 +108,7 @@ class LoggedFlight:
     place : ``time_s``, and those of ``north_m``, ``east_m``, ``height_m`` and the true
         concentrations that the file has
     about : details of the flight and its log
-    gases : others that can be compared with CO2, as the fit takes them
+    gases : other gases that can be compared with CO2, in the form that the fit takes
     humidity : relative humidity by row, shape (n,), or None where the log has none [%]
     """
 
@@ -122,8 +122,8 @@ class LoggedFlight:
 def read_flight(path: Path, config: LogConfig, ships: Sequence[ShipTrack] = ()) -> LoggedFlight:
     """Return the flight in a table with a row per reading, or with rows faster than the sensors.
 
-    How the table may be written, ``common.tables`` says. Times are seconds, or dates and times.
-    ``ships`` are where its ship was, by a file or the configuration.
+    ``common.tables`` lists the formats of the table. Times are seconds, or dates and times.
+    ``ships`` are the places of its ship, by a file or the configuration.
 
     Raises
     ------
@@ -279,7 +279,7 @@ def _humidity(table: Table, kept: npt.NDArray[np.bool_], config: LogConfig) -> A
 
     Raises
     ------
-    MeasurementError : the column is not there, or has what no humidity is
+    MeasurementError : the column does not exist, or has values that are no humidity
     """
     name = config.columns.get(HUMIDITY)
     if name is None:
@@ -314,16 +314,16 @@ def _described(table: Table, moments: Moments) -> str:
 
 
 def _factor(table: Table, gas: str, config: LogConfig) -> float:
-    """Return by what a gas's column is multiplied to be in its unit of ``UNITS``."""
+    """Return the factor of a gas's column to its unit of ``UNITS``."""
     return _factor_of(table, gas, config.columns[gas], UNITS[gas], config)
 
 
 def _factor_of(table: Table, gas: str, name: str, own: str, config: LogConfig) -> float:
-    """Return by what the column ``name`` of a gas is multiplied to be in the unit ``own``.
+    """Return the factor of the column ``name`` of a gas to the unit ``own``.
 
     Raises
     ------
-    MeasurementError : nothing says the column's unit, or it is no unit of a gas
+    MeasurementError : the column's unit is unknown, or it is not a unit of a gas
     """
     if gas in config.scale:
         return config.scale[gas]
@@ -391,8 +391,8 @@ def _known_numbers(table: Table, name: str, config: LogConfig) -> Array:
 
 
 def _times(table: Table, config: LogConfig) -> tuple[Array, Moments, npt.NDArray[np.bool_]]:
-    """Return the times [s], what the table says of them, and which rows are kept: all but those of
-    a leap second.
+    """Return the times [s], the table's description of them, and which rows are kept: all but those
+    of a leap second.
     """
     moments = table.times(config.columns["time"], day=config.flight.day)
     missing = np.flatnonzero(~np.isfinite(moments.seconds))
@@ -490,7 +490,7 @@ def _check_negative(values: Array, rows: Rows, readings: Readings, config: LogCo
 
 
 _FEWEST = 10
-"""Least number of intervals between new readings that show how many rows a reading has."""
+"""Least number of intervals between new readings that determine the number of rows per reading."""
 
 _LOW = 0.1
 """Share of these intervals that counts as the shortest; equal readings make others longer."""
@@ -524,7 +524,7 @@ def new_readings(logged: Readings, gases: Sequence[str]) -> Readings:
 def rows_per_reading(column: Array) -> float:
     """Return the mean number of rows that a reading of a gas has; 1 where they are not repeated.
 
-    Readings in coarse steps may change as seldom and as evenly as passes come, and mostly by one
+    Readings in coarse steps may change as rarely and as evenly as passes occur, and mostly by one
     step: they count as not repeated.
 
     Parameters
@@ -633,7 +633,7 @@ def _check_jumps(
 def _logged_places(
     places: Mapping[str, Array], start: float | None, time: Array, lines: Rows
 ) -> LoggedPlaces:
-    """Return where the aircraft was; ``start`` is the time of the first row since 1970 [s]."""
+    """Return the places of the aircraft; ``start`` is the time of the first row since 1970 [s]."""
     nowhere = np.full(len(time), np.nan)
     return LoggedPlaces(
         latitude=places.get("latitude", nowhere),

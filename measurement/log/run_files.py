@@ -1,4 +1,4 @@
-"""The directory of an analysis: manifest, estimate and samples, which its report is built from."""
+"""The directory of an analysis: manifest, estimate and samples, from which its report is built."""
 
 import hashlib
 import importlib.metadata
@@ -49,7 +49,7 @@ _SOURCE_HASH = "source_hash"
 """Entry of the manifest with the SHA-256 of the log's content."""
 
 _SHOWS = {Analysis: "Fuel sulphur content", GasAnalysis: "Emissions"}
-"""What an analysis shows, in its title."""
+"""Title of an analysis."""
 
 _PACKAGES = ("numpy", "scipy", "pandas")
 """Packages whose versions the manifest has."""
@@ -109,8 +109,8 @@ def write_run(
     table = samples(signals, flight, readings)
     if isinstance(analysis, GasAnalysis):
         table = _of_gas(table, analysis.gases[0].gas)
-    # A log's time may be seconds since 1970 or 1980, of which six digits are weeks: all digits of a
-    # floating-point number.
+    # A log's time may be seconds since 1970 or 1980, whose first six digits are weeks: all digits
+    # of a floating-point number.
     table["time_s"] = [f"{time:.15g}" for time in table["time_s"]]
     try:
         directory.mkdir(parents=True, exist_ok=True)

@@ -1,5 +1,5 @@
-"""Where the ship was of which a log is said to be: a log that lies far from it is of another ship,
-another day, or has its places or times otherwise than it says.
+"""The places of the ship to which a log is said to belong. A log that lies far from them is of
+another ship or another day, or its places or times are not in the stated form.
 """
 
 from collections.abc import Iterator
@@ -17,29 +17,29 @@ from measurement.errors import MeasurementError
 Array = npt.NDArray[np.float64]
 
 DISTANCE_MOST = 20_000.0
-"""Distance from which on no sniffer finds a ship's exhaust [m]: of 3.3 kg/s of CO2, from 20 MW, 0.6
-ppm are left there in 5 m/s (G. A. Briggs, ATDL 79 (1973), open country, neutral)."""
+"""Distance beyond which no sniffer finds a ship's exhaust [m]: 3.3 kg/s of CO2, from 20 MW, give
+0.6 ppm there in 5 m/s (G. A. Briggs, ATDL 79 (1973), open country, neutral)."""
 
 _SUSPECT, _NEARER = 1000.0, 10.0
-"""Distance from which on, and how many times nearer a mistake has to bring the log, to be asked
-about [m, -]."""
+"""Least distance, and least factor by which a correction has to bring the log nearer, for an error
+message [m, -]."""
 
 _HOURS = (*range(-14, 0), *range(1, 15))
 """Hours that a clock of another zone may be off."""
 
 _COVERED = 60.0
-"""By how much the log may go beyond the ship's track [s]."""
+"""Time by which the log may go beyond the ship's track [s]."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ShipTrack:
-    """Where a ship was.
+    """The places of a ship.
 
     Attributes
     ----------
     name : in words, as "MMSI 219999001 (ship.csv)"
     latitude, longitude : shape (n,) [deg]
-    time : since 1970 in UTC, rising, shape (n,) [s]; empty for a place that it was at all the time
+    time : since 1970 in UTC, rising, shape (n,) [s]; empty for a place where it was all the time
     """
 
     name: str
@@ -49,12 +49,12 @@ class ShipTrack:
 
 
 class LoggedPlaces(NamedTuple):
-    """Where an aircraft was.
+    """The places of an aircraft.
 
     Attributes
     ----------
-    latitude, longitude : NaN where they are not known, shape (n,) [deg]
-    time : since 1970 in UTC, shape (n,) [s], or None where the log counts seconds of no date
+    latitude, longitude : NaN where they are unknown, shape (n,) [deg]
+    time : since 1970 in UTC, shape (n,) [s], or None for a log of seconds without a date
     lines : of the file, shape (n,)
     """
 
@@ -65,12 +65,12 @@ class LoggedPlaces(NamedTuple):
 
 
 def distance_words(places: LoggedPlaces, ship: ShipTrack) -> str:
-    """Return how far a log lies from its ship, in words.
+    """Return the distance of a log from its ship, in words.
 
     Raises
     ------
     MeasurementError : it has no places, or no time in common with the ship's track, or never comes
-        near; or would come ten times nearer with a mistake that is often made
+        near; or correcting a frequent mistake would bring it ten times nearer
     """
     if not np.isfinite(places.latitude + places.longitude).any():
         raise MeasurementError(
@@ -114,7 +114,7 @@ def _distance(places: LoggedPlaces, ship: ShipTrack) -> Array:
 
 
 def speed_of(ship: ShipTrack, begin: float, end: float) -> float | None:
-    """Return a ship's mean speed over ground from report to report [m/s], None where not known.
+    """Return a ship's mean speed over ground from report to report [m/s]; None where it is unknown.
 
     Parameters
     ----------
@@ -135,7 +135,9 @@ def speed_of(ship: ShipTrack, begin: float, end: float) -> float | None:
 
 
 def _mistaken(places: LoggedPlaces, ship: ShipTrack) -> Iterator[tuple[str, float]]:
-    """Yield mistakes, and the least distance that the log would have without each [m]."""
+    """Yield possible mistakes, each with the least distance that the log would have without it
+    [m].
+    """
     for mistake, corrected in MISTAKES.items():
         latitude, longitude = corrected(places.latitude, places.longitude)
         if not np.nanmax(np.abs(latitude)) > 90.0:

@@ -26,10 +26,12 @@ FOUND_WITHIN = 300.0
 """Time on the orbit within which the plume has to be found [s]."""
 
 _CHUNK = 4096
-"""Places that are computed at a time: their arrays stay in the processor's cache."""
+"""Number of places that are computed at a time: their arrays stay in the processor's cache."""
 
 _EDGE = 4.0
-"""Spreads from the centre within which there are fluctuations [-]; beyond, 3e-4 is left."""
+"""Distance from the centre within which there are fluctuations, in spreads [-]; beyond it, 3e-4 of
+the gas is left.
+"""
 
 _FOLD = 0.5
 """Least share of a parcel's length inside a bend [-]: agrees best with puffs, of 0.1 to 1."""
@@ -38,10 +40,10 @@ _STEPS_PER_LENGTH = 8.0
 """Steps of the meander per correlation length [-]: cubics are good to 1e-4 standard deviations."""
 
 _WAVES = 64
-"""Waves in the field of fluctuations: enough that the sum is Gaussian."""
+"""Number of waves in the field of fluctuations: enough for a Gaussian sum."""
 
 _WAVE_CHUNK = 512
-"""Places whose waves are summed at a time: their phases stay in the processor's cache."""
+"""Number of places whose waves are summed at a time: their phases stay in the processor's cache."""
 
 _TURN = 2.0 * math.pi
 
@@ -304,7 +306,7 @@ class FluctuatingPlume:
         centre, centre_height = np.zeros(len(age)), height
         if self._across is not None and self._up is not None:
             centre = meander_y * self._across.at(parcels.path)
-            # Below the sea the centre is its own mirror image.
+            # Below the sea the mirror image of the centre stands for it.
             centre_height = np.abs(height + meander_z * self._up.at(parcels.path))
         off_y = (parcels.across - centre) / sigma_y
         off_z = (up - centre_height) / sigma_z

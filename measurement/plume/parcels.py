@@ -20,7 +20,7 @@ _CLOSE = 1e-7
 """Tolerance of the emission time of a nearest parcel [s]: a micrometre along the plume."""
 
 _ITERATIONS_MAX = 60
-"""Most iterations of the search: it takes 3 to 6, and 35 by bisection of an hour."""
+"""Largest number of iterations of the search: it takes 3 to 6, and 35 by bisection of an hour."""
 
 
 class Nearest(NamedTuple):
@@ -55,7 +55,7 @@ class _Step(NamedTuple):
     Attributes
     ----------
     north, east, path : coefficients from the constant on [m], shape (4, n)
-    rest : how far into its step each time is [-], shape (n,)
+    rest : fraction of its step that has passed at each time [-], shape (n,)
     """
 
     north: Array
@@ -136,7 +136,7 @@ class Parcels:
         """Return the parcels nearest to places [m], shape (m,), of an interval of emission times.
 
         A parcel's cross-section is the line across its apparent wind. Where the line of parcels
-        bends or folds, a place can be in several cross-sections, or in none; only those are
+        bends or folds, a place can be in several cross-sections, or in none; only parcels are
         returned from which the distance grows both ways.
 
         Parameters

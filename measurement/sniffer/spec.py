@@ -193,7 +193,7 @@ def sensor_preset(name: str) -> SnifferSpec:
 
     Raises
     ------
-    MeasurementError : there is none of that name
+    MeasurementError : there is no instrument of that name
     """
     known = sensor_presets()
     if name not in known:

@@ -87,6 +87,7 @@ _UDUNITS = {
     "ppb": "1e-9",
     "ppm": "1e-6",
     "% m/m": "percent",
+    "% of the fuel": "percent",
     "deg": "degree",
     "degC": "degree_Celsius",
 }

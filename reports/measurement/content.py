@@ -63,13 +63,20 @@ def gas_verdict(record: Record) -> Verdict:
 
 def gas_sections(record: Record, *, with_samples: bool = True) -> list[Section]:
     """Return the section on other gases; none where the log has none."""
+    blocks = gas_blocks(record, with_samples=with_samples)
+    if not blocks:
+        return []
+    return [Section(anchor="gases", title="Other gases", nav_title="Gases", blocks=blocks)]
+
+
+def gas_blocks(record: Record, *, with_samples: bool = True) -> list[Block]:
+    """Return a table of other gases, and their charts; none where a record has none."""
     found: list[Record] = record.get("gases") or []
     if not found:
         return []
     charts: list[Block | None] = [samples_chart(found) if with_samples else None]
     charts.append(stage_chart(found))
-    blocks = [gas_table(found), *(chart for chart in charts if chart is not None)]
-    return [Section(anchor="gases", title="Other gases", nav_title="Gases", blocks=blocks)]
+    return [gas_table(found), *(chart for chart in charts if chart is not None)]
 
 
 def gas_table(found: list[Record]) -> Table:

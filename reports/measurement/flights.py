@@ -28,6 +28,7 @@ from reports.measurement.charts import (
     over_time_chart,
     regression_chart,
 )
+from reports.measurement.content import gas_blocks
 from reports.measurement.data import Record, share_read
 from reports.measurement.method import (
     interval_words,
@@ -181,6 +182,7 @@ def _flight(run: RunData, measured: pd.DataFrame, name: Name) -> Section | None:
                 budget_chart(record),
                 channels_chart(samples, "Time since the start of the flight [s]"),
                 regression_chart(samples, record),
+                *gas_blocks(record),
             ]
             title = "Fuel sulphur content" if len(measured) == 1 else _LARGEST
             shown = [block for block in blocks if block is not None]

@@ -1,5 +1,6 @@
-"""Console command: ``plume-flight run|design|estimate|calibrate|report|export|compare|describe|new|schema``.
-Each hands on to what does the work.
+"""Console command: ``plume-flight
+run|design|estimate|calibrate|report|export|compare|describe|new|schema``. Each hands on to what
+does the work.
 """
 
 import importlib

@@ -226,7 +226,8 @@ def _of_parts(
             yield from _comment(
                 f"{key.meaning} ({key.range}{unit}; of {' or '.join(key.conditions)})"
             )
-        shown = f"{name} = {as_toml(values.get(name, default))}"
+        value = values.get(name, default)
+        shown = f"{name} = {'' if value is None else as_toml(value)}".rstrip()
         yield from (shown if name in values else f"# {shown}", "")
 
 

@@ -1,5 +1,5 @@
-"""The closed loop: a vehicle, what is sensed, the guidance at its own rate, and the record. It is
-closed here only.
+"""The closed loop: a vehicle, its sensing, the guidance at its rate, and the record. No other
+module closes it.
 """
 
 import math
@@ -30,21 +30,21 @@ Commands = tuple[float, float]
 
 
 class ClosedLoop:
-    """One flight under way: a vehicle that stands at its start, and the guidance of its plan.
+    """One flight: a vehicle at its start, and the guidance of the flight's plan.
 
     Parameters
     ----------
     plan, vehicle : the flight
     payload : instruments on board
-    reader : sniffer that is read in flight, or none
-    every_step : whether every step of the guidance is recorded, beside the samples; it changes
-        nothing of the flight
+    reader : sniffer that is read in flight, or None
+    every_step : whether every step of the guidance is recorded in addition to the samples; the
+        flight stays the same
 
     Attributes
     ----------
     plan, vehicle, guidance : of the flight
-    settling : says when it has settled, and how often it has crossed since
-    ending : says how it ended
+    settling : when it has settled, and how often it has crossed since
+    ending : how it ended
     """
 
     def __init__(
@@ -86,14 +86,14 @@ class ClosedLoop:
         )
 
     def steps(self) -> Generator[Commands, Commands, FlightRecord]:
-        """Fly: yield at each step what the guidance commands, take what is to be flown for it, and
+        """Fly: yield the guidance's commands at each step, receive the commands to fly instead, and
         return the record at the end.
 
-        The flight ends one sample after the last crossing that it is to fly, so that every crossing
-        lies inside the record; when its time is up; when it has left with a verdict; on the water;
-        or out of control.
+        The flight ends one sample after its last required crossing, so that every crossing lies
+        inside the record; or when its time is up, when it has left with a verdict, when it is on
+        the water, or when it is out of control.
         """
-        # Names of their own: this is the innermost loop of every flight.
+        # Local names are faster: this is the innermost loop of every flight.
         plan, guidance, sensing = self.plan, self.guidance, self._sensing
         recorder, ending, belief = self._recorder, self.ending, self._guard_belief
         mission, target, guard = guidance.mission, guidance.target, guidance.guard
@@ -180,12 +180,12 @@ def fly(
 
 
 def record_of(over: StopIteration) -> FlightRecord:
-    """Return the record of a flight whose steps are over.
+    """Return the record of a flight from the end of its steps.
 
     Raises
     ------
-    RuntimeError : a part of the user's has ended them. Python itself says so (PEP 479), but not of
-        compiled steps
+    RuntimeError : a user's part has ended the steps. Python raises this itself (PEP 479), but not
+        for compiled steps
     """
     record = over.value
     if not isinstance(record, FlightRecord):
@@ -196,7 +196,7 @@ def record_of(over: StopIteration) -> FlightRecord:
 def _sensing(
     plan: FlightPlan, vehicle: Vehicle, guidance: Guidance, reader: GasReader | None
 ) -> OnboardSensing | None:
-    """Return the sensing of a flight; none where everything is known exactly."""
+    """Return the sensing of a flight; None where everything is known exactly."""
     sensing, world, axis = plan.sensing, plan.world, axis_of(guidance)
     if sensing is None or world is None:
         return None
@@ -213,7 +213,7 @@ def _sensing(
 def _early_stop(
     plan: FlightPlan, guidance: Guidance, reader: GasReader | None, settling: Settling
 ) -> EarlyStop | None:
-    """Return what ends a flight early, of one that may end so."""
+    """Return the early stop of a flight that may end early, or None."""
     mission = guidance.mission
     if not plan.until_verdict or reader is None or not isinstance(mission, PlumeFollowing):
         return None
@@ -223,13 +223,13 @@ def _early_stop(
 class Viewer(Protocol):
     """Another program that shows an aircraft while its flight is replayed, in real time.
 
-    Its class is called with the address that the user gives, and an installed package announces it
-    in the group ``plume_flight_study.viewer``. Its name becomes an option of ``plume-flight run``.
-    An address that is none is refused by an ``InputError``.
+    Its class is called with the address that the user gives. An installed package announces the
+    class in the group ``plume_flight_study.viewer``, and its name becomes an option of
+    ``plume-flight run``. The class raises an ``InputError`` for an invalid address.
     """
 
     def show(self, fdm: Fdm) -> None:
-        """Show an aircraft from now on; it is placed next."""
+        """Show an aircraft from now on; the caller places it after this call."""
 
 
 def failable(plan: FlightPlan) -> bool:
@@ -250,8 +250,8 @@ def release(
     ----------
     plan : the flight
     setup : of the aircraft, or of the kinematic vehicle
-    viewer : shows the aircraft, in real time; none if not given
-    flown : an aircraft that has flown before, to be used again; a fresh one if not given
+    viewer : shows the aircraft in real time; by default there is no viewer
+    flown : an aircraft of an earlier flight, to be used again; by default a new one
     """
     start, world = plan.start, plan.world
     where = {
@@ -269,7 +269,7 @@ def release(
     flown = flown or AutopilotedAircraft(aircraft.spec, aircraft.model, failable=failable(plan))
     if viewer is not None:
         viewer.show(flown.fdm)
-    # Still air needs no weather of its own.
+    # Still air needs no weather model.
     weather = world.weather if world and plan.sensing else None
     return JsbsimVehicle(
         flown, aircraft.start, aircraft.envelope, **where, time_step=plan.time_step, weather=weather

@@ -1,8 +1,8 @@
 """When a flight has settled, when it is over, and how it ended.
 
 A flight may end early: with a verdict on the fuel, or with the knowledge that there will be none.
-Each look at the readings could be wrong, and a flight ends at the first that finds a verdict. So the
-guard band allows for the looks before and after it (``measurement.estimate.repeated``).
+Each look at the readings could be wrong, and a flight ends at the first that finds a verdict. So
+the guard band allows for the looks before and after it (``measurement.estimate.repeated``).
 """
 
 import math
@@ -32,34 +32,36 @@ from scenarios.scenario.sections.flight import DITCHED
 from scenarios.vehicles.vehicle import Vehicle
 
 _CENTRE_BANDS = 3.0
-"""Distance of the orbit's centre from its place that counts as there, over the settling band: the
-vessel is not known exactly.
+"""Largest distance of the orbit's centre from its place that counts as in place, over the settling
+band: the vessel is not known exactly.
 """
 
 LOOK_INTERVAL = 15.0
 """Time between looks at the readings [s]."""
 
 _AGREEING = 2
-"""Looks in a row that have to find the plume out of reach or the sensor failed, which may pass."""
+"""Number of looks in a row that have to find the plume out of reach, or the sensor failed: either
+may be temporary.
+"""
 
 _MEASURABLE = 0.05
-"""Probability that the plume can be crossed below which it is given up [-]."""
+"""Least probability that the plume can be crossed: below it the flight gives up [-]."""
 
 LEFT_BY = 150.0
-"""How much farther from the vessel than where it began to leave a flight is over [m]."""
+"""Distance that a leaving flight adds to its distance from the vessel until it is over [m]."""
 
 _ON_THE_WATER = 2.0
 """Altitude below which a gliding vehicle has come down [m]."""
 
 _SATURATED = 0.9
-"""Part of the steps of a flight in which its law asked for more than omega_max, above which the law
-is at fault [-].
+"""Largest share of the steps in which a law may demand more than omega_max without being at fault
+[-].
 
-Of 63,688 flights with the paper's law, whether they settled or not, it was 0.38 at most.
+In 63,688 flights with the paper's law, settled or not, the share was 0.38 at most.
 """
 
 _GIVEN_UP = (Mode.OUTRUN, Mode.NO_PLUME, Mode.RETREATING)
-"""Modes in which the plume is no longer crossed; a flight that holds off resumes with the next
+"""Modes in which the plume is no longer crossed; a flight that holds off resumes after the next
 report.
 """
 
@@ -67,25 +69,26 @@ report.
 class Settling:
     """Watches a flight, sample by sample.
 
-    A flight has settled from the first moment from which the vehicle stays near its reference, and
-    the orbit near its place, for a whole period. It stays settled: what turbulence or a manoeuvre
-    do later belongs to the flight.
+    A flight settles at the first moment after which the vehicle stays near its reference, and the
+    orbit near its place, for a whole period. It stays settled: later effects of turbulence or a
+    manoeuvre belong to the flight.
 
     Parameters
     ----------
     band : distance from the reference that counts as near [m]
     period : of the oscillation [s]
-    crossings : to be flown; 0 for no end
-    after : how long the flight goes on once it has settled, infinite for no end [s]
+    crossings : number of crossings to fly; 0 without an end
+    after : time for which the flight goes on after it has settled; infinite without an end [s]
 
     Attributes
     ----------
-    at : when the flight had settled, NaN as long as that does not show [s]
-    crossings : flown since
-    tracked : longest time for which the vehicle stayed near its reference before that, wherever the
-        orbit was [s]
+    at : time at which the flight had settled; NaN before that is known [s]
+    crossings : number of crossings since then
+    tracked : longest time before that for which the vehicle stayed near its reference, with the
+        orbit at any place [s]
     centre_error, centre_band : distance of the orbit's centre from its place at the last sample,
-        infinite while it is still closing in, and below what it counts as there [m]
+        infinite while it is still closing in, and the distance below which it counts as in place
+        [m]
     """
 
     def __init__(
@@ -115,8 +118,7 @@ class Settling:
         y: float,
         axis: float,
     ) -> bool:
-        """Take note of a sample; return whether the flight had flown all that it is to fly by the
-        last one.
+        """Take note of a sample; return whether the flight was complete at the sample before.
 
         Parameters
         ----------
@@ -146,8 +148,8 @@ class Settling:
         return complete
 
     def _flown(self, time: float) -> bool:
-        """Return whether it has settled for as long, and has the crossings, that are asked for; not
-        where nothing is.
+        """Return whether it has the required time after settling and the required crossings; False
+        where neither is required.
         """
         crossed = 0 < self._demanded <= self.crossings
         if self._after == math.inf:
@@ -156,7 +158,7 @@ class Settling:
 
 
 class StopReason(Enum):
-    """Why a flight leaves before its time."""
+    """The reason why a flight leaves early."""
 
     ABOVE = "verdict: above"
     BELOW = "verdict: below"
@@ -165,13 +167,13 @@ class StopReason(Enum):
 
 
 class EarlyStop:
-    """Checks periodically whether the flight can end early, and then has it leave.
+    """Checks periodically whether the flight can end early, and then makes it leave.
 
     Parameters
     ----------
     reader : of the gases
     mission : that follows the plume
-    settling : says from when on readings count
+    settling : gives the time after which readings count
 
     Attributes
     ----------
@@ -191,7 +193,7 @@ class EarlyStop:
 
     @property
     def message(self) -> str:
-        """Return why the flight left without a verdict, in a sentence."""
+        """Return the reason why the flight left without a verdict, in a sentence."""
         axis = self._mission.axis
         believed = ""
         if isinstance(axis, SearchedAxis) and not math.isnan(axis.estimate.height):
@@ -220,13 +222,13 @@ class EarlyStop:
         return False
 
     def _look(self) -> StopReason | None:
-        """Return the reason to stop that there is by now."""
+        """Return the present reason to stop, or None."""
         axis = self._mission.axis
         if isinstance(axis, SearchedAxis):
             if axis.sensor is not SensorState.WORKING:
                 return StopReason.SENSOR
             orbit = self._mission.orbit
-            # Off its orbit a flight detects nothing, wherever the plume is.
+            # Off its orbit a flight detects nothing, regardless of the plume's place.
             on_orbit = orbit is not None and orbit.in_place
             if on_orbit and axis.mode is not Mode.FOUND and axis.measurable() < _MEASURABLE:
                 return StopReason.OUT_OF_REACH
@@ -252,16 +254,16 @@ class Ending:
     Parameters
     ----------
     plan, vehicle, guidance, settling : of the flight
-    early_stop : says when it can end early; None where it may not
+    early_stop : decides when it can end early; None where it may not
 
     Attributes
     ----------
-    guarded : whether the keep-out guard changed a command in the flight; the loop says so at its
+    guarded : whether the keep-out guard changed a command in the flight; the loop sets it at its
         end
-    saturated : part of the steps in which the law asked for more than omega_max [-]; likewise
-    given_back : why the vehicle takes no more commands, said by what flies it from outside; the
-        flight is over at the next sample then. Nothing as long as it takes them
-    outcome, message : in a word, and why in a sentence; nothing to say where it completed
+    saturated : share of the steps in which the law demanded more than omega_max [-]; set likewise
+    given_back : why the vehicle takes no more commands, set by an external pilot; the flight is
+        then over at the next sample. Empty while it takes commands
+    outcome, message : outcome in a word, and the reason in a sentence; empty for a completed flight
     """
 
     def __init__(
@@ -283,7 +285,7 @@ class Ending:
         self, time: float, motion: MeasuredMotion, sample: tuple[float, ...], *, complete: bool
     ) -> bool:
         """Return whether the flight is over at a sample; ``complete`` says whether it has all
-        crossings that are asked for.
+        required crossings.
         """
         monitor, self._end = self._guidance.monitor, time
         failed = monitor is not None and monitor.fault is not Fault.NONE
@@ -300,13 +302,13 @@ class Ending:
 
     @property
     def stop_reason(self) -> str:
-        """Return why the flight left before its time, or nothing."""
+        """Return why the flight left early, or an empty text."""
         stop = self._early_stop
         return stop.reason.value if stop is not None and stop.reason is not None else ""
 
     @property
     def verdict(self) -> RepeatedVerdict | None:
-        """Return the verdict on the fuel by all looks, or None where nobody looked."""
+        """Return the verdict on the fuel by all looks, or None without a look."""
         return self._early_stop.verdict if self._early_stop is not None else None
 
     @property
@@ -320,7 +322,7 @@ class Ending:
         mode, plan = self._guidance.mode, self._plan
         if self._fault:
             return Outcome.DIVERGED
-        # One that was given back flies on, and not as the guidance orders.
+        # A vehicle that was given back flies on, but not as the guidance orders.
         if self._ditched or (mode in LOST and not self.given_back):
             return Outcome.AIRCRAFT_LOST
         if plan.world is None or self.stop_reason.startswith("verdict"):
@@ -330,14 +332,14 @@ class Ending:
         if math.isnan(self._settling.at):
             return Outcome.NOT_SETTLED
         flown = self._settling.crossings >= max(1, plan.crossings) and not self._missing
-        # One that has flown all that it is to fly is over, whatever its guidance is about to do.
+        # A complete flight is over, regardless of the present mode of its guidance.
         endless = not plan.crossings and plan.after_settling == math.inf
         given_up = endless and mode in _GIVEN_UP
         return Outcome.COMPLETED if flown and not given_up else Outcome.INCOMPLETE
 
     @property
     def _missing(self) -> float:
-        """Return how much of the time after settling that is asked for has not been flown [s]."""
+        """Return the remaining part of the required time after settling [s]."""
         demanded = self._plan.after_settling
         if demanded == math.inf:
             return 0.0
@@ -345,7 +347,7 @@ class Ending:
 
     @property
     def message(self) -> str:
-        """Return why the flight did not complete, in a sentence; nothing where it did."""
+        """Return why the flight did not complete, in a sentence; empty where it did."""
         match self.outcome:
             case Outcome.DIVERGED:
                 return f"{self._fault} at {self._end:.1f} s"
@@ -367,7 +369,7 @@ class Ending:
         return f"after {settling.crossings}{f' of {demanded}' if demanded else ''} crossings"
 
     def _after_fault(self) -> str:
-        """Return which faults of the scenario had begun, or nothing."""
+        """Return the faults of the scenario that had begun, in words, or an empty text."""
         begun = self._plan.world.faults.begun(self._end) if self._plan.world else ()
         if not begun:
             return ""
@@ -375,7 +377,7 @@ class Ending:
         return f", after the fault{'s' * (len(begun) > 1)} {named}"
 
     def _what_was_noticed(self) -> str:
-        """Return the fault that was noticed in flight and not taken back, or nothing."""
+        """Return the fault that was noticed in flight and not revoked, or an empty text."""
         monitor = self._guidance.monitor
         if monitor is None or self._noticed == math.inf:
             return ""
@@ -396,7 +398,7 @@ class Ending:
         if self._missing:
             flown = f"flew {after - self._missing:.0f} of {after:g} s after settling"
         elif after < math.inf and not plan.crossings:
-            # It ended as it was to end, before the end of the longest flight.
+            # The flight ended as planned, before the longest flight time.
             return (
                 f"flew no crossing in {self._end - settling.at:.0f} s after settling: fly longer"
                 " (flight.after_settling_s), or ask for crossings (flight.crossings)"
@@ -415,7 +417,7 @@ class Ending:
         tracked = self._settling.tracked
         if self.saturated > _SATURATED:
             return (
-                f"{what}: its steering law asked for more than the largest heading rate in"
+                f"{what}: its steering law demanded more than the largest heading rate in"
                 f" {100.0 * self.saturated:.0f} % of the steps; check that it returns rad/s,"
                 " positive to the right (guidance.law)"
             )
@@ -427,8 +429,8 @@ class Ending:
         return f"{what}: {tracking}. {remedy.capitalize()}"
 
     def _orbit(self) -> str:
-        """Return how the orbit stood to its place at the end of a flight that tracked it and did
-        not settle.
+        """Return, in words, how far the orbit was from its place at the end of a flight that
+        tracked it and did not settle.
         """
         off, most = self._settling.centre_error, self._settling.centre_band
         if off == math.inf:
@@ -444,7 +446,7 @@ def failure(error: Exception | SystemExit) -> Row:
 
     Raises
     ------
-    MemoryError : if that is the error: the same flight may do in a process of its own
+    MemoryError : if that is the error: the same flight may succeed in a separate process
     """
     if isinstance(error, MemoryError):
         raise error
@@ -453,7 +455,7 @@ def failure(error: Exception | SystemExit) -> Row:
     message = str(error)
     if not isinstance(error, RefusedError):
         frames = traceback.extract_tb(error.__traceback__)
-        # Methods of dataclasses are made from text, and have no file: what called them has.
+        # Methods of dataclasses are generated from text, and have no file; their caller has one.
         in_files = [frame for frame in frames if not frame.filename.startswith("<")]
         where = (in_files or frames)[-1]
         message = f"{type(error).__name__}: {error} ({Path(where.filename).name}:{where.lineno})"
@@ -461,7 +463,7 @@ def failure(error: Exception | SystemExit) -> Row:
 
 
 def unflown(outcome: Outcome, message: str) -> Row:
-    """Return the outcome and the message, in one line, of a flight that was not flown or not to its
-    end.
+    """Return the outcome and the message, in one line, of a flight that was not flown or not
+    completed.
     """
     return {"outcome": outcome.value, "message": one_line(message), "criteria_met": False}

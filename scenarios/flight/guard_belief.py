@@ -1,5 +1,5 @@
-"""What the keep-out guard believes and reckons with, for the record: the premises of its theorem
-are measured against it after the flight (``scenarios.measures.premises``).
+"""The guard's estimates and allowances, for the record: after the flight the premises of its
+theorem are checked against them (``scenarios.measures.premises``).
 """
 
 import math
@@ -15,12 +15,13 @@ _EXACT_WIND = WindErrorByGusts(STILL)
 
 
 class GuardBelief:
-    """What a guard believes and reckons with, as columns of the time history.
+    """A guard's estimates and allowances, as columns of the time history.
 
     Parameters
     ----------
-    guidance, guard : under way
-    vessel : true; of the guard's discs the one is recorded in which it has least room
+    guidance, guard : of the flight
+    vessel : true motion of the vessel; of the guard's discs, the one is recorded in which the
+        vessel has least room
     time_step : of the guidance [s]
     """
 
@@ -28,19 +29,29 @@ class GuardBelief:
         {
             "own_seen_north_m": "place of the UAV over the ground, as the guidance estimates it",
             "own_seen_east_m": "place of the UAV over the ground, as the guidance estimates it",
-            "own_seen_course_rad": "course of the UAV through the mean air, as the guidance estimates it",
-            "own_seen_speed_mps": "speed of the UAV through the mean air, as the guidance estimates it",
+            "own_seen_course_rad": (
+                "course of the UAV through the mean air, as the guidance estimates it"
+            ),
+            "own_seen_speed_mps": (
+                "speed of the UAV through the mean air, as the guidance estimates it"
+            ),
             "satellites_lost_s": "time since satellite navigation was lost, 0 while it works",
             "wind_allowance_mps": "error of the wind allowed for while few measurements are in it",
             "gust_in_wind_mps": "standard deviation of the estimated wind by gusts",
             "gust_in_wind_covariance_m2_s2": "covariance of that error with the gust of the moment",
             "gust_in_wind_gain_per_s": "share of that error that a second of measurements corrects",
-            "disc_north_m": "centre of the disc in which the vessel has least room, of those of the guard",
-            "disc_east_m": "centre of the disc in which the vessel has least room, of those of the guard",
+            "disc_north_m": (
+                "centre of the disc in which the vessel has least room, of those of the guard"
+            ),
+            "disc_east_m": (
+                "centre of the disc in which the vessel has least room, of those of the guard"
+            ),
             "disc_radius_m": "radius of that disc",
             "speed_fastest_mps": "fastest speed through the mean air that the guard predicts with",
             "speed_slowest_mps": "slowest speed through the mean air that the guard predicts with",
-            "command_change": "largest recent change of command over a full reversal, as the guard has it",
+            "command_change": (
+                "largest recent change of command over a full reversal, as the guard has it"
+            ),
             "course_commanded_rad": "integral of the commanded heading rate over the mean air",
         }
     )

@@ -1,5 +1,5 @@
-"""What the guidance learns by sensors, by reports and of the plume, and what it passes on to the
-vehicle beside its commands.
+"""Inputs of the guidance: sensors, reports and plume readings; and its outputs to the vehicle other
+than heading rate and airspeed.
 """
 
 import math
@@ -20,16 +20,16 @@ from scenarios.world.faults import SATELLITES, VESSEL_DATA
 from scenarios.world.world import World
 
 _BELIEF_INTERVAL = 15.0
-"""Time between evaluations of what is costly to compute [s]."""
+"""Time between evaluations of costly quantities [s]."""
 
 
 class PlumeReadings:
-    """Passes on the readings of a sniffer, and the true axis of the plume to a flight that is given
+    """Passes on the readings of a sniffer, and the true axis of the plume to a flight that knows
     it.
 
     Parameters
     ----------
-    reader : a sniffer that is read in flight, or none
+    reader : a sniffer that is read in flight, or None
     world, vehicle : of the flight
     axis : of the plume, as the guidance has it
     interval : guidance steps between rows of the record, at which the sniffer's path is known
@@ -50,7 +50,7 @@ class PlumeReadings:
         self._interval, self._knows_axis = interval, knows_axis
 
     def pass_on(self, step: int, time: float, motion: MeasuredMotion, guidance: Guidance) -> None:
-        """Pass on what has come until a step; the guidance has taken note of its own motion at it."""
+        """Pass on the readings up to a step, at which the guidance already knows its motion."""
         if step % self._interval == 0:
             sample, axis = self._vehicle.sample(), self._axis
             axis.flown = sample[0]
@@ -61,7 +61,7 @@ class PlumeReadings:
             self._set_true_axis(time, guidance)
 
     def _set_true_axis(self, time: float, guidance: Guidance) -> None:
-        """Say where the mean axis is, seen from the centre of oscillation as the guidance has it."""
+        """Set the true mean axis at the guidance's centre of oscillation."""
         exhaust, orbit = self._world.exhaust, guidance.mission.orbit
         if exhaust is None or orbit is None or not isinstance(self._axis, PredictedAxis):
             return
@@ -90,11 +90,11 @@ BELIEF_COLUMNS = described(
         " consistent",
     }
 )
-"""Of a time history, of flights that search for the plume."""
+"""Columns of the time history of flights that search for the plume."""
 
 
 class PlumeBelief:
-    """What the guidance believes of the plume, as columns of the time history.
+    """The guidance's estimate of the plume, as columns of the time history.
 
     Parameters
     ----------
@@ -140,16 +140,16 @@ class OnboardSensing:
     Parameters
     ----------
     sensing : reports and errors
-    world : what is true, and what fails
-    vehicle, guidance : under way; reports go straight to the filter of its target, at each plan
-        where the vessel is known exactly
-    altitude : that the vehicle holds at the start [m]
-    readings : passes on what is learnt of the plume, or none
+    world : the true motions, and the faults
+    vehicle, guidance : of the flight; reports go straight to the filter of the guidance's target,
+        at each plan where the vessel is known exactly
+    altitude : of the vehicle at the start [m]
+    readings : passes on the readings of the plume, or None
 
     Attributes
     ----------
-    airspeed_error : of the last reading [m/s]; an autopilot that measures it flies that much past
-        the command
+    airspeed_error : of the last reading [m/s]; an autopilot that uses the reading misses its
+        command by as much
     """
 
     def __init__(
@@ -186,13 +186,13 @@ class OnboardSensing:
         self.airspeed_error = 0.0
 
     def read(self, step: int, time: float, motion: MeasuredMotion) -> SensorReadings:
-        """Return what the sensors say at a step; hand on what reports have come, and let fail what
-        fails now.
+        """Return the sensors' readings at a step; also pass on the reports that have arrived, and
+        begin the faults that are due.
         """
         airspeed, heading, roll = self._air_data()
         faults = self._faults
         if self._exact:
-            # The flight begins with a vessel that is known, whatever fails.
+            # The flight begins with a known vessel, regardless of faults.
             outage = self._vessel_lost and step > 0 and faults.lasts(VESSEL_DATA, time)
             if step % self._guidance.plan_interval == 0 and not outage:
                 self._report(VesselReport(time, *self._vessel.motion(time)))
@@ -203,7 +203,7 @@ class OnboardSensing:
             self._report_traffic(step, time)
         while self._pending and time >= self._pending[-1].begins:
             self._vehicle.fail(self._pending.pop().kind)
-        # It begins with a place that is known, too: dead reckoning goes on from one.
+        # It begins with a known own place, too: dead reckoning needs one.
         lost = self._satellites_lost and step > 0 and faults.lasts(SATELLITES, time)
         fix, measured, measured_heading = self._read_with_errors(
             step, motion, airspeed, heading, satellites=not lost
@@ -220,7 +220,7 @@ class OnboardSensing:
         )
 
     def _report_traffic(self, step: int, time: float) -> None:
-        """Hand on what reports of other ships have come, at each plan."""
+        """Pass on the reports of other ships that have arrived, at each plan."""
         traffic = self._guidance.traffic
         if traffic is None or step % self._guidance.plan_interval != 0:
             return
@@ -235,8 +235,8 @@ class OnboardSensing:
                     traffic.report(number, received.pop()[1])
 
     def act(self, step: int, time: float, motion: MeasuredMotion) -> None:
-        """Pass on what the guidance has decided beside heading rate and airspeed, and to it what
-        has been read.
+        """Pass on the guidance's decisions other than heading rate and airspeed, and pass the
+        readings to it.
         """
         guidance = self._guidance
         if self._readings is not None:
@@ -250,6 +250,6 @@ class OnboardSensing:
             and monitor is not None
             and monitor.fault is Fault.ACTUATOR_STUCK
         ):
-            # Where one surface is elevator and aileron, each would undo the other's work.
+            # Where one surface is elevator and aileron, each function would counteract the other.
             self._elevator_held = True
             self._vehicle.hold_elevator()

@@ -8,11 +8,11 @@ from common import premises
 class Outcome(Enum):
     """How a flight ended.
 
-    A flight completed if its aircraft came through, and its mission was flown: it settled, and
-    crossed the plume as often as was asked for, or once at least; one without a vessel only has to
-    last. ``NOT_SETTLED`` and ``INCOMPLETE`` are missions that were not flown; ``AIRCRAFT_LOST`` and
+    A flight completed if its aircraft was not lost, and its mission was flown: it settled, and made
+    the required number of crossings, at least one. A flight without a vessel only has to last.
+    ``NOT_SETTLED`` and ``INCOMPLETE`` are missions that were not flown; ``AIRCRAFT_LOST`` and
     ``DIVERGED`` are aircraft that do not come back. ``UNEXPLAINED_VIOLATION`` is an aircraft that
-    came through and entered the keep-out area although every premise of the guard's theorem held:
+    was not lost and entered the keep-out area although every premise of the guard's theorem held:
     an error of the theorem or of its code.
     """
 

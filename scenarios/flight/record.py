@@ -1,5 +1,5 @@
-"""What is recorded of a flight: its columns, each with unit and meaning, how the flight ended, and
-when the keep-out guard changed commands.
+"""The record of a flight: its columns, each with unit and meaning, the way the flight ended, and
+the commands that the keep-out guard changed.
 """
 
 import math
@@ -43,13 +43,13 @@ class GuardedStep(NamedTuple):
 
 
 class Intervention(NamedTuple):
-    """A stretch of guidance steps in each of which the guard changed the command.
+    """Consecutive guidance steps at which the guard changed the command.
 
     Attributes
     ----------
     time_s : when it began [s]
     duration_s : for how long it lasted [s]
-    distance_min_m : how near the vessel was taken to be [m]
+    distance_min_m : least distance to the vessel, as the guidance knew it [m]
     lost : whether the guard's radius could not be held at some step
     """
 
@@ -140,21 +140,23 @@ HISTORY_COLUMNS = described(
         "time_utc": "time in UTC",
     }
 )
-"""Columns of a time history, in order, and what each is. A vehicle's own, from ``altitude_m`` on,
-may be NaN.
+"""Columns of a time history, in order, with their meanings. The vehicle's columns, from
+``altitude_m`` on, may be NaN.
 """
 
 RELATIVE_COLUMNS = ("delta_m", "rho_m", "phi_r_rad", "phi_rad")
-"""The states of equation (19), in its order: they follow from the others."""
+"""The states of equation (19), in its order: they follow from other columns."""
 
 WIND_COLUMNS = ("true_wind_north_mps", "true_wind_east_mps")
-"""The mean wind, of flights in wind: it follows from the scenario, too."""
+"""The mean wind, for flights in wind: it follows from the scenario, too."""
 
 HULL_COLUMNS = ("vessel_heading_rad",)
-"""Where the bow points, of flights beside a ship whose size is known."""
+"""Heading of the bow, for flights beside a ship whose size is known."""
 
 PLACE_COLUMNS = ("latitude_deg", "longitude_deg", "time_utc")
-"""Where and when on earth, of flights of which that is known: they follow from the others, too."""
+"""Place and time on earth, for flights whose place is known: they follow from other columns,
+too.
+"""
 
 _DERIVED = RELATIVE_COLUMNS + WIND_COLUMNS + HULL_COLUMNS + PLACE_COLUMNS
 
@@ -164,23 +166,24 @@ COLUMNS = tuple(column for column in HISTORY_COLUMNS if column not in _DERIVED)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlightRecord:
-    """What was flown.
+    """The record of one flight.
 
     Attributes
     ----------
     outcome, message : how it ended, in a word and in a sentence
     mode : of the guidance at the end, or ``DITCHED``
-    stop_reason : why it left before its time, or nothing
-    verdict : on the fuel by all looks of a flight that ends with one, or None
-    settled_at : when it had settled, NaN if it never had [s]
+    stop_reason : why it left early; empty if it did not
+    verdict : on the fuel by all looks, of a flight that may end with a verdict, or None
+    settled_at : time at which it had settled; NaN if it did not settle [s]
     interventions : each time that the keep-out guard changed commands
     columns : of the histories: ``COLUMNS``, and those of the payload
     history : shape (samples, len(columns))
-    every_step : the same of every step of the guidance, if that was recorded; otherwise ``history``
+    every_step : the same for every step of the guidance, if that was recorded; otherwise
+        ``history``
     saturation_fraction : fraction of guidance steps whose demand was cut at omega_max [-]
-    heading_rate_demand_max, heading_rate_command_max : largest heading rate that the law asked for,
+    heading_rate_demand_max, heading_rate_command_max : largest heading rate that the law demanded,
         and that was commanded, at any step of the guidance [rad/s]
-    guard_time : for how long the guard changed commands, altogether [s]
+    guard_time : total time for which the guard changed commands [s]
     """
 
     outcome: Outcome
@@ -213,7 +216,7 @@ class FlightRecord:
 
 
 class ReferencePoint(NamedTuple):
-    """Where the reference is in the frame of the air mass.
+    """Place and motion of the reference in the frame of the air mass.
 
     Attributes
     ----------
@@ -228,7 +231,7 @@ class ReferencePoint(NamedTuple):
 
 
 NO_REFERENCE = ReferencePoint(math.nan, math.nan, math.nan, math.nan)
-"""Before the mission has placed it."""
+"""The reference before the mission has placed it."""
 
 _NO_ORBIT = OrbitStatus(NO_CENTRE, math.nan, in_place=False)
 
@@ -261,19 +264,19 @@ class Recorder:
         self._mission, self._guard = guidance.mission, guidance.guard
         self._sample, self._payload = vehicle.sample, instruments
         self._update_settling = settling.update
-        # A track, plume or instrument of a user's own may answer in other numbers than Python's,
-        # and in other rows than tuples.
+        # A user's track, plume or instrument may return numbers that are not Python's, and rows
+        # that are not tuples.
         self._vessel_at: Callable[[float], Any] = world.vessel.motion if world else _no_vessel
         self._axis_at: Callable[[float], Any] = world.plume.axis if world else _no_axis
         own_columns = [column for instrument in instruments for column in instrument.COLUMNS]
         self.columns = COLUMNS + tuple(own_columns)
-        # As bytes: tuples would be numbers by the hundred thousand for Python to look after, and
-        # slow to make an array of.
+        # As bytes: tuples would be some hundred thousand numbers for Python's garbage collector,
+        # and slow to convert to an array.
         self._rows: list[bytes] = []
         self._pack = struct.Struct(f"{len(self.columns)}d").pack
 
     def reference(self) -> ReferencePoint | None:
-        """Return where the reference is; None before the mission has placed it."""
+        """Return place and motion of the reference; None before the mission has placed it."""
         if self._mission.orbit is None:
             return None
         reference = self._mission.tracker.reference
@@ -284,8 +287,8 @@ class Recorder:
     def record(
         self, time: float, motion: MeasuredMotion, reference: ReferencePoint, *, judged: bool
     ) -> tuple[tuple[float, ...], bool]:
-        """Keep a row; return the vehicle's sample, and whether the flight has all its crossings, by
-        ``judged`` samples.
+        """Keep a row; return the vehicle's sample, and whether the flight has all its crossings,
+        from ``judged`` samples.
 
         Parameters
         ----------
@@ -347,14 +350,14 @@ class Recorder:
         return sample, settled
 
     def rows(self) -> Array:
-        """Return what is recorded, shape (rows, columns)."""
+        """Return the recorded rows, shape (rows, columns)."""
         return np.frombuffer(b"".join(self._rows)).reshape(-1, len(self.columns))
 
 
 def _read_all(
     payload: Sequence[Any], time: float, motion: MeasuredMotion, sample: tuple[float, ...]
 ) -> list[float]:
-    """Return what instruments read, one after the other."""
+    """Return the readings of the instruments, one after the other."""
     values: list[float] = []
     for instrument in payload:
         part = f"payload: instrument of class {type(instrument).__qualname__}"

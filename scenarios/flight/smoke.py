@@ -1,4 +1,4 @@
-"""The smoke of a flight, as its replay draws it: the parcels of the realisation that was flown in."""
+"""The smoke in a flight's replay: the parcels of the realisation in which it was flown."""
 
 import json
 from typing import Any
@@ -12,7 +12,9 @@ LENGTH = 3.0
 """Length of the plume that is recorded, over r_min [-]."""
 
 _SPACING = 6.0
-"""Distance between recorded parcels [m], about: of the order of their spreads near the keep-out area."""
+"""Approximate distance between recorded parcels [m], of the order of their spreads near the
+keep-out area.
+"""
 
 
 def smoke_record(exhaust: Exhaust | None, duration: float, radius: float) -> bytes | None:
@@ -20,15 +22,15 @@ def smoke_record(exhaust: Exhaust | None, duration: float, radius: float) -> byt
 
     Parameters
     ----------
-    exhaust : of the flight's vessel, if it has any
+    exhaust : of the flight's vessel, or None
     duration : of the flight [s]
     radius : r_min [m]
 
     Notes
     -----
     Keys are the fields of ``PlumeLine``, with the times of emission as ``first`` and ``step`` [s].
-    ``drift_north`` and ``drift_east`` say how far the air has moved over the ground by the time of
-    each emission [m].
+    ``drift_north`` and ``drift_east`` are the drift of the air over the ground at the time of each
+    emission [m].
     """
     if exhaust is None or not isinstance(exhaust.dispersion, FluctuatingPlume):
         return None

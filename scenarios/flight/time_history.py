@@ -1,5 +1,5 @@
-"""A flight's time history: its record with what follows from it, which of them a study keeps, and how
-they are written.
+"""A flight's time history: its record with derived columns, the choice of those that a study keeps,
+and the file.
 """
 
 import io
@@ -35,8 +35,8 @@ Array = npt.NDArray[np.float64]
 
 
 def flight_history(plan: FlightPlan, record: FlightRecord) -> pd.DataFrame:
-    """Return a row per sample; columns are those of the record, ``RELATIVE_COLUMNS``, and what
-    there is of the others.
+    """Return a row per sample; columns are those of the record, ``RELATIVE_COLUMNS``, and the
+    others that exist.
     """
     numbers = {name: i for i, name in enumerate(record.columns)}
 
@@ -61,11 +61,11 @@ def flight_history(plan: FlightPlan, record: FlightRecord) -> pd.DataFrame:
     if plan.world is not None and plan.world.hull is not None:
         names = (*names, *HULL_COLUMNS)
         states = (*states, plan.world.headings(column("time_s")))
-    # One table at once: to add columns to one takes five times as long.
+    # One table at once: adding columns to a table takes five times as long.
     history = pd.DataFrame(np.column_stack([record.every_step, *states]), columns=list(names))
     place = plan.world.place if plan.world else None
     if place is not None and math.isfinite(place.latitude):
-        # Metres are counted at the altitude that the flight is flown at.
+        # Metres are counted at the altitude of the flight.
         frame = LocalFrame(place.latitude, place.longitude, plan.altitude)
         found = (
             np.degrees(angle) for angle in frame.to_geodetic(column("north_m"), column("east_m"))
@@ -81,7 +81,7 @@ def flight_history(plan: FlightPlan, record: FlightRecord) -> pd.DataFrame:
 def relative_states(
     look_ahead: LookAhead, to_north: Array, to_east: Array, reference_course: Array, course: Array
 ) -> tuple[Array, Array, Array, Array]:
-    """Return delta, rho [m], phi_r and phi [rad] of many samples at once; parameters as of
+    """Return delta, rho [m], phi_r and phi [rad] of many samples at once; parameters are those of
     ``gnc.paper.relative_state``.
     """
     delta = look_ahead.epsilon * (to_north**2 + to_east**2) + look_ahead.radius
@@ -97,15 +97,15 @@ def relative_states(
 
 
 UNFINISHED = (Outcome.NOT_SETTLED.value, Outcome.INCOMPLETE.value)
-"""Outcomes of missions that were not completed though the aircraft came through."""
+"""Outcomes of missions that were not completed although the aircraft was not lost."""
 
 
 def keeps_history(task: Task, *, planned: int, kept: int, row: Row) -> bool:
     """Return whether the time history of a flight is kept.
 
-    Of all flights an even sample is, and every one that is not known to have kept out, or did not
-    do what is required of it. Of missions that were not completed there may be many: the study
-    chooses among them.
+    An even sample of all flights is kept, and every flight that is not known to have kept out, or
+    that did not meet its requirements. Many missions may not have been completed: the study chooses
+    among them.
 
     Parameters
     ----------
@@ -133,16 +133,16 @@ def history_files(
     kept: int,
     row: Row,
 ) -> dict[str, bytes]:
-    """Return the time history of a flight as a Parquet file, by its path, if there is one and it is
-    kept; with it the document, the smoke and the tracks of other ships.
+    """Return the files of a flight's time history by their paths: the history as Parquet, the
+    document, the smoke and the tracks of other ships; empty if the history is not kept.
 
     Parameters
     ----------
     history : of the flight, if it has one
-    document : what an instrument made of the flight, if any did
-    smoke : parcels of the exhaust, if there was any
-    traffic : tracks of other ships, if there were any
-    columns : what the columns of time histories are
+    document : made by an instrument from the flight, or None
+    smoke : parcels of the exhaust, or None
+    traffic : tracks of other ships, or None
+    columns : units and meanings of the columns of time histories
     task, planned, kept, row : same as ``keeps_history``
     """
     if history is None or not keeps_history(task, planned=planned, kept=kept, row=row):
@@ -161,8 +161,8 @@ def as_parquet(history: pd.DataFrame, columns: Table) -> bytes:
     """Return a time history as a Parquet file; unit and meaning of each column are in the metadata
     of its field.
     """
-    # In this thread: to begin others takes longer than to convert so few columns, and other flights
-    # have the other cores.
+    # In this thread: starting other threads takes longer than converting so few columns, and other
+    # flights use the other cores.
     table = pa.Table.from_pandas(history, preserve_index=False, nthreads=1)
     by_table = {FLIGHTS: columns}
     described = [

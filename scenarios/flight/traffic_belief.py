@@ -1,4 +1,4 @@
-"""How well the guard knows the ships besides the one that is measured, for the record."""
+"""Accuracy of the guard's knowledge of the other ships, for the record."""
 
 import math
 from collections.abc import Sequence
@@ -17,8 +17,8 @@ class TrafficBelief:
 
     Parameters
     ----------
-    guidance : under way
-    ships : that the guidance knows; those that come to be known in flight are added to them
+    guidance : of the flight
+    ships : ships that the guidance knows; those that become known in flight are added
     """
 
     COLUMNS = described(
@@ -41,8 +41,8 @@ class TrafficBelief:
         """Return a value for each column."""
         traffic, own = self._guidance.traffic, self._guidance.own
         worst = math.nan
-        # An error of the own position counts as one of the ship's; in dead reckoning it has a term
-        # of its own.
+        # An error of the own position counts as one of the ship's; in dead reckoning it has a
+        # separate term.
         off_north = off_east = 0.0
         if own.lost == 0.0:
             off_north, off_east = own.ground_north - motion.north, own.ground_east - motion.east

@@ -79,7 +79,8 @@ class EvaluatedInstrument(Protocol):
     It may have ``FIGURES``, the columns of the summary that it fills, and ``TABLES``, the columns
     of the tables that it fills, by file, beside those that name the flight. Both are declared as
     ``COLUMNS`` are; reports and comparisons show the figures. A figure that it does not return is
-    empty.
+    empty. ``FILLED_BY`` may have, by a key of its settings that is a table, what returns the
+    ``Declarations`` of what such a table adds.
 
     Attributes
     ----------
@@ -153,12 +154,16 @@ def declarations(scenarios: Iterable[Scenario]) -> Declarations:
     ------
     PluginError : there is no such instrument
     """
-    named = {
-        name: part for scenario in scenarios for name, part in scenario.payload.parts().items()
-    }
+    named, further = {}, {}
+    for scenario in scenarios:
+        given = scenario.payload.model_extra or {}
+        for name, part in scenario.payload.parts().items():
+            named[name] = part
+            for key, fills in getattr(part, "FILLED_BY", {}).items():
+                if given.get(key):
+                    further[name, key, tuple(given[key])] = fills(given[key])
     found = Declarations()
-    for name, instrument in named.items():
-        of = declared_by(name, instrument)
+    for of in (*(declared_by(name, part) for name, part in named.items()), *further.values()):
         found.histories.update(of.histories)
         found.figures.update(of.figures)
         found.tables.update(of.tables)

@@ -8,7 +8,7 @@ goes on, as at once.
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -25,12 +25,14 @@ from measurement.errors import MeasurementError
 from measurement.gases import GASES, UNITS
 from measurement.plume.fluctuating_plume import HIT, PlumeSample, passes
 from measurement.rules import RULES
-from measurement.sniffer.sniffer import Readings, Sniffer
+from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec, sensor_of, sensor_presets
+from scenarios.instruments.failing_sniffer import FailingSniffer
 from scenarios.instruments.fuel_estimate import FIGURES, TABLES, fuel_estimate
-from scenarios.instruments.instrument import Evaluation, payload
+from scenarios.instruments.gas_channels import GasChannels, channels_of, gas_columns
+from scenarios.instruments.instrument import Declarations, Evaluation, payload
 from scenarios.scenario.scenario import Scenario
-from scenarios.world.faults import OF_SNIFFER, SNIFFER_DEAD, SNIFFER_SATURATED
+from scenarios.world.faults import OF_SNIFFER
 from scenarios.world.plume import Background, Exhaust
 from scenarios.world.world import World
 
@@ -304,6 +306,8 @@ class SnifferSettings:
     Attributes
     ----------
     sensor : a preset of measurement/sniffer/presets, or an inline table with the same keys
+    channels : further channels, a table by gas, ch4, bc or pn, with the keys of those of a sensor:
+        methane, black carbon and the number of particles that the ship emits
     exact : whether the instrument is as its data sheet says; otherwise gains, zeros, responses and
         cross-sensitivities are sampled within what is stated
     limit_percent : sulphur content that the verdict is on [% m/m]: 0.1 in an emission control area,
@@ -316,6 +320,9 @@ class SnifferSettings:
 
     sensor: Annotated[str | dict[str, Any], BeforeValidator(_name_or_table)] = field(
         default="electrochemical", metadata={"choices": _choices}
+    )
+    channels: dict[str, Any] | None = field(
+        default=None, metadata={"choices": lambda: ("a table",)}
     )
     exact: bool = False
     limit_percent: float = 0.1
@@ -340,6 +347,10 @@ class SnifferSettings:
                     " which shows the plume, is not"
                     " among them: add the table payload.sensor.channels.co2"
                 )
+        try:
+            channels_of(self.channels or {})
+        except MeasurementError as error:
+            raise MeasurementError(f"channels is an invalid table: {error}") from None
         if not 0.0 < self.limit_percent <= 5.0:
             raise MeasurementError(
                 f"limit_percent is {self.limit_percent:g}; give above 0 to 5 % m/m, as 0.1 in an"
@@ -376,6 +387,7 @@ class SnifferOnBoard:
     )
     FIGURES = FIGURES | PASS_FIGURES
     TABLES = TABLES
+    FILLED_BY: ClassVar[Mapping[str, Callable[[Any], Declarations]]] = {"channels": gas_columns}
 
     def __init__(self, scenario: Scenario, world: World, generator: np.random.Generator) -> None:
         if world.exhaust is None:
@@ -384,10 +396,25 @@ class SnifferOnBoard:
             )
         self._exhaust = world.exhaust
         self._settings = scenario.payload.settings(type(self))
-        self._fault = world.faults.first(OF_SNIFFER)
+        fault = world.faults.first(OF_SNIFFER)
         self.spec: SnifferSpec = self._settings.spec
         actual = self.spec if self._settings.exact else self.spec.drawn(generator)
-        self._sniffer = Sniffer(actual, generator=generator, time_step=TIME_STEP)
+        channels = channels_of(self._settings.channels or {})
+        self._gases = GasChannels(
+            channels,
+            world.exhaust.ratios,
+            scenario,
+            self.spec,
+            exact=self._settings.exact,
+            fault=fault,
+            generator=generator,
+            time_step=TIME_STEP,
+        )
+        if channels:
+            added = gas_columns(channels)
+            self.COLUMNS = {**self.COLUMNS, **added.histories}
+            self.FIGURES = {**self.FIGURES, **added.figures}
+        self._sniffer = FailingSniffer(actual, fault, generator=generator, time_step=TIME_STEP)
         self._others = [ship for ship in world.traffic if ship.exhaust is not None]
         if self._others:
             self.FIGURES = {**self.FIGURES, **OTHERS_FIGURES}
@@ -399,10 +426,7 @@ class SnifferOnBoard:
         )
         self._air: list[AirSamples] = []
         self._read: list[Readings] = []
-        ends = {channel.gas: channel.range_high for channel in actual.channels}
-        self._full, self._stuck = (
-            np.array([value.get(gas, np.nan) for gas in GASES]) for value in (ends, {})
-        )
+        self._methane = scenario.emission.methane
         # What is known of the flight since the air was last sampled: time, place, rates and
         # airspeed.
         self._path: list[tuple[float, ...]] = []
@@ -418,11 +442,15 @@ class SnifferOnBoard:
         """Return what has been read since a time [s], but for what the plume of another ship may be
         in: where that lies is known by the ship's reports and the wind.
         """
+        return self._kept(since)[0]
+
+    def _kept(self, since: float) -> tuple[Readings, npt.NDArray[np.bool_]]:
+        """Return those readings, and which of all they are."""
         read = _joined(self._read)
         kept = read.time >= since
         if self._others:
             kept &= ~self._foreign(read.time)
-        return Readings(read.time[kept], read.values[kept])
+        return Readings(read.time[kept], read.values[kept]), kept
 
     def _foreign(self, time: Array) -> npt.NDArray[np.bool_]:
         """Return whether readings at some times [s] may have the plume of another ship in them, or
@@ -456,25 +484,12 @@ class SnifferOnBoard:
     def _advance(self, time: Array, place: Array, rate: Array, airspeed: Array) -> Readings:
         """Go on along a path; return what is read of it."""
         air = self._sampler.advance(time, place, rate, airspeed)
-        new = self._failed(self._sniffer.advance(air.air, air.pressure))
+        new = self._sniffer.advance(air.air, air.pressure)
+        self._gases.advance(air.air[:, CO2] - air.background_co2, air.pressure)
         self._air.append(air)
         self._read.append(new)
         self._count += len(new)
         return new
-
-    def _failed(self, read: Readings) -> Readings:
-        """Return readings as a fault leaves them: a dead sniffer repeats its last one, a saturated
-        one reads its range's end.
-        """
-        kind, values = self._fault.kind, read.values
-        good = read.time < self._fault.begins
-        if kind == SNIFFER_SATURATED:
-            values[~good] = self._full
-        elif kind == SNIFFER_DEAD:
-            if good.any():
-                self._stuck = values[good][-1].copy()
-            values[~good] = self._stuck
-        return read
 
     def evaluate(self, column: Callable[[str], Array], since: float) -> Evaluation:
         """Return readings, and figures of the passes through the plume."""
@@ -494,22 +509,32 @@ class SnifferOnBoard:
         beside = (background, plume.across, above, fraction)
         along = [np.interp(time, at, values) for values in (*air.T, *beside)]
         columns = np.column_stack(
-            [*along[: len(GASES)], readings.values[held], *along[len(GASES) :]]
+            [
+                *along[: len(GASES)],
+                readings.values[held],
+                *along[len(GASES) :],
+                *self._gases.columns(time, at, held),
+            ]
         )
         if not since < at[-1]:
             return Evaluation(columns=columns)
         flown = at >= since
         limit = self._settings.limit_percent
         fuel = self._exhaust.fuel
-        expected = expected_fsc(self._exhaust.fuel)
+        expected = expected_fsc(fuel, self._methane)
+        used, kept = self._kept(since)
         known = fuel_estimate(
-            self.readings(since),
+            used,
             self.spec,
             limit=limit,
             expected=expected,
             rule=RULES.get(self._settings.rule),
         )
         left_out = self._left_out(since, known.figures) if self._others else {}
+        of_gases, records = self._gases.estimates(used, kept)
+        document = known.document
+        if document is not None and records:
+            document = {**document, "gases": records}
         figures = {
             "sensor": self.spec.name,
             "fsc_fuel_percent": fuel.sulphur_percent,
@@ -522,9 +547,9 @@ class SnifferOnBoard:
         )
         return Evaluation(
             columns=columns,
-            figures=figures | passed | known.figures | left_out,
+            figures=figures | passed | known.figures | left_out | of_gases,
             tables={SULPHUR_TABLE: known.over_time},
-            document=known.document,
+            document=document,
         )
 
     def _left_out(self, since: float, known: Mapping[str, Any]) -> dict[str, Any]:

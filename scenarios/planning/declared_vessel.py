@@ -1,5 +1,5 @@
-"""Whether a vessel, and the reports of a file, keep to what is declared of them: the keep-out guard
-relies on it.
+"""Checks that a vessel, and the reports of a file, keep within their declared limits: the keep-out
+guard relies on them.
 """
 
 import math
@@ -25,27 +25,28 @@ from scenarios.world.vessel import (
 )
 
 _INCONSISTENCY_MAX = 0.01
-"""By how much the way of a user's track may differ from the integral of its velocity [m].
+"""Largest difference between the way of a user's track and the integral of its velocity [m].
 
-That is a sum: of curves and splines whose velocity is exact they differ by up to 0.6 mm in an hour.
+The integral is a sum: for curves and splines with exact velocity it differs by up to 0.6 mm in an
+hour.
 """
 
 _LOOKS = 10
-"""Points of a track from one look at it to the next [-], 0.5 s: in between its distance from a disc
-bends by millimetres.
+"""Number of points of a track between two checks [-], 0.5 s: between them its distance from a disc
+deviates from a straight line by millimetres.
 """
 
 _SLOWEST = 1.0
-"""Least speed by which the error of a course is reckoned with [m/s]: slower ships keep the last one
-that was sound.
+"""Least speed at which the error of a course counts [m/s]: slower ships keep their last sound
+course.
 """
 
 Array = npt.NDArray[np.float64]
 
 
 def check_vessel(scenario: Scenario, vessel: VesselTruth, limits: VesselLimits) -> None:
-    """Raise an InfeasibleError for a vessel, or reports of a file, that are beyond what is declared
-    to the keep-out guard.
+    """Raise an InfeasibleError for a vessel, or reports of a file, beyond the limits that are
+    declared to the keep-out guard.
     """
     check_declared(scenario, vessel)
     if isinstance(vessel, AisVessel) and scenario.guidance.keepout_guard:
@@ -55,8 +56,8 @@ def check_vessel(scenario: Scenario, vessel: VesselTruth, limits: VesselLimits) 
 
 
 def with_antenna_errors(scenario: Scenario, vessel: VesselTruth) -> Scenario:
-    """Return the scenario with the errors of reports as they are of the funnel: those of heading
-    and rate of turn add to them over the distance of the antenna.
+    """Return the scenario with the errors of reports at the funnel: errors of heading and rate of
+    turn add to them, over the distance of the antenna.
     """
     hull, reports = scenario.vessel.hull, scenario.reports
     distance = 0.0 if hull is None else hull.antenna_distance
@@ -83,16 +84,16 @@ def with_antenna_errors(scenario: Scenario, vessel: VesselTruth) -> Scenario:
 
 
 def check_declared(scenario: Scenario, vessel: VesselTruth) -> None:
-    """Raise an InfeasibleError for a vessel that does more than is declared to the keep-out guard.
+    """Raise an InfeasibleError for a vessel that exceeds the limits declared to the keep-out guard.
 
-    Also where it is known exactly: what it does during a turn away is not known when the turn
-    begins.
+    This also holds for a vessel that is known exactly: its motion during a turn away is not known
+    when the turn begins.
     """
     if not scenario.guidance.keepout_guard:
         return
     f, duration = scenario.following, scenario.flight.duration_max_s
     if type(vessel) is SteadyVessel:
-        # It does at any time what it does at first.
+        # Its motion is the same at all times.
         duration = 0.0
     acceleration, speed = largest_acceleration(vessel, duration), largest_speed(vessel, duration)
     relied = "on which the keep-out guard relies: declare more, or fly another time or track"
@@ -108,7 +109,7 @@ def check_declared(scenario: Scenario, vessel: VesselTruth) -> None:
             f"the vessel moves at up to {_at_least(speed)} m/s over the ground; it is declared to"
             f" stay within following.vessel_speed_max_mps = {f.vessel_speed_max_mps:g}, {relied}"
         )
-    # NaN is no agreement.
+    # NaN does not count as agreement.
     if not (off := largest_inconsistency(vessel, duration)) <= _INCONSISTENCY_MAX:
         raise InfeasibleError(
             f"vessel.track '{scenario.vessel.track}': its places and the integral of the velocity"
@@ -118,8 +119,8 @@ def check_declared(scenario: Scenario, vessel: VesselTruth) -> None:
 
 
 def fastest_turn(distance: float, acceleration: float) -> float:
-    """Return the largest rate at which a ship is taken to turn [rad/s]: at which its antenna
-    accelerates about its funnel as is declared of the vessel.
+    """Return the largest assumed rate of turn of a ship [rad/s]: at that rate its antenna has the
+    vessel's declared acceleration about its funnel.
 
     Parameters
     ----------
@@ -130,8 +131,8 @@ def fastest_turn(distance: float, acceleration: float) -> float:
 
 
 def _check_turn(scenario: Scenario, vessel: VesselTruth, duration: float) -> None:
-    """Raise an InfeasibleError for a vessel that turns faster than it is taken to, where its
-    antenna is not at the funnel.
+    """Raise an InfeasibleError for a vessel that turns faster than assumed, where its antenna is
+    not at the funnel.
     """
     hull = scenario.vessel.hull
     distance = 0.0 if hull is None or scenario.vessel_known else hull.antenna_distance
@@ -150,14 +151,13 @@ def _check_turn(scenario: Scenario, vessel: VesselTruth, duration: float) -> Non
 
 
 def _at_least(value: float) -> str:
-    """Return a positive number rounded up to four digits: it suffices to declare that."""
+    """Return a positive number rounded up to four digits, as a sufficient value to declare."""
     digit = 10.0 ** (math.floor(math.log10(value)) - 3)
     return f"{math.ceil(value / digit) * digit:.4g}"
 
 
 def _check_reports(vessel: AisVessel, limits: VesselLimits, duration: float) -> None:
-    """Raise an InfeasibleError for reports of a file from which the guard would take the vessel to
-    be elsewhere.
+    """Raise an InfeasibleError for reports of a file whose discs would not contain the vessel.
 
     The smooth track has to stay within the discs of each report to the end of the flight: all
     reports after it may be lost.
@@ -165,7 +165,7 @@ def _check_reports(vessel: AisVessel, limits: VesselLimits, duration: float) -> 
     Parameters
     ----------
     vessel : its reports, and the track
-    limits : what both are declared to keep within; errors are declared, too
+    limits : declared limits of both, including the errors
     duration : of the longest flight [s]
     """
     times = track_times(duration)[::_LOOKS]
@@ -186,8 +186,8 @@ def _check_reports(vessel: AisVessel, limits: VesselLimits, duration: float) -> 
         _check_within(vessel, report, age, way - age[:, None] * velocity, allowed, drifted)
         if limits.speed_max < math.inf:
             by_speed = radius_by_speed(limits, age)
-            # The guard keeps off it only where it is the smaller one. Nothing else checks the speed
-            # before the start.
+            # The guard keeps off this disc only where it is the smaller one. No other check covers
+            # the speed before the start.
             by_speed[by_speed >= allowed] = math.inf
             _check_within(
                 vessel,
@@ -213,7 +213,8 @@ def _check_within(
     ----------
     vessel, report : the track and the report
     age : of the report, shape (n,) [s]
-    off_centre, allowed : track from the disc's centre, shape (n, 2), and the disc's radius [m]
+    off_centre, allowed : offset of the track from the disc's centre, shape (n, 2), and the disc's
+        radius [m]
     declared : keys that the radius follows from
     """
     off = np.hypot(*off_centre.T)

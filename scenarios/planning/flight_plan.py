@@ -19,15 +19,15 @@ from scenarios.world.world import ApparentWind, World
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sensing:
-    """What the guidance learns by sensors and reports, where it does not know everything exactly.
+    """The sensors and reports of the guidance, where it does not know everything exactly.
 
     Attributes
     ----------
-    received : reports of the vessel and when each is received [s]; none where the vessel is known
-        exactly
+    received : reports of the vessel and the time at which each is received [s]; None where the
+        vessel is known exactly
     errors : of the sensors
-    traffic : the same of each of the other ships as ``received``
-    reads_plume, knows_axis : whether a sniffer is read in flight, and whether the flight is given
+    traffic : for each of the other ships, the same as ``received``
+    reads_plume, knows_axis : whether a sniffer is read in flight, and whether the guidance knows
         the plume's true axis
     """
 
@@ -40,7 +40,7 @@ class Sensing:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Start:
-    """Where a flight begins.
+    """Place and course at the start of a flight.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ class Start:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlightPlan:
-    """One flight: guidance, world, sensing, start, and when it ends. What is None is absent.
+    """One flight: guidance, world, sensing, start, and end. A part that is None is absent.
 
     Attributes
     ----------
@@ -65,20 +65,21 @@ class FlightPlan:
     start : of the UAV
     keepout_shape, keepout_radius : a sphere about the plume's origin or an upright cylinder through
         it, and its r_min [m]
-    keepout_hull : outline that r_min is measured from; None where it is the funnel
-    guarded_radius : distance from the funnel that keeps out at any heading of the ship [m]
-    speed_ratio_max : up to which a vessel is followed [-]
+    keepout_hull : outline from which r_min is measured; None where it is measured from the funnel
+    guarded_radius : distance from the funnel that keeps out of the area at any heading of the ship
+        [m]
+    speed_ratio_max : largest speed ratio at which a vessel is followed [-]
     heading_rate_max : omega_max, whether commands are cut at it or not [rad/s]
-    duration_max, crossings : when to stop [s, -]
-    after_settling : how long to go on after settling, infinite for no end [s]
+    duration_max, crossings : longest duration, and number of crossings, of the flight [s, -]
+    after_settling : time of flight after settling; infinite without an end [s]
     settling_band, settling_period : distance from the reference to stay within, and for how long,
         to be settled [m, s]
     log_interval : of the record, in guidance steps
     payload : instruments on board
-    until_verdict : whether it leaves as soon as a sniffer has enough
+    until_verdict : whether it leaves as soon as the readings of a sniffer give a verdict
     nu : speed ratio at the start; NaN without a vessel [-]
-    world : vessel, plume, air, faults; none where the reference circles without a vessel
-    sensing : sensors and reports; none where everything is known exactly
+    world : vessel, plume, air, faults; None where the reference circles without a vessel
+    sensing : sensors and reports; None where everything is known exactly
     oscillation : of the reference at that ratio
     periods : of the oscillation at equal steps of nu from 0 to ``speed_ratio_max``, where the
         reference is steered [s]
@@ -126,7 +127,9 @@ class FlightPlan:
         period: float,
         **parts: Any,
     ) -> "FlightPlan":
-        """Return the plan of a flight of a scenario; ``parts`` are those that not every flight has."""
+        """Return the plan of a scenario's flight; ``parts`` are the parts that not every flight
+        has.
+        """
         flight, g = scenario.flight, scenario.guidance
         return cls(
             flight_id=flight_id,

@@ -53,7 +53,7 @@ class Steering:
     ----------
     look_ahead : epsilon [1/m] and R [m]
     steering_max : largest |h(phi)| [rad/s]
-    bound : on what the law asks for in any state [rad/s]; infinite for a law that has none
+    bound : on the law's demand in any state [rad/s]; infinite for a law without a bound
     """
 
     look_ahead: LookAhead
@@ -62,8 +62,8 @@ class Steering:
 
 
 def steering_law(guidance: GuidanceConfig, **searched: float) -> SteeringLaw:
-    """Return the steering law of a scenario, its parameters as given or, where they were searched,
-    as found.
+    """Return the steering law of a scenario with its given parameters or, where a search found
+    them, with those.
     """
     given = guidance.model_extra or {}
     law: Any = STEERING_LAWS.get(guidance.law)
@@ -97,7 +97,7 @@ def plan_steering(
 
     Raises
     ------
-    InfeasibleError : parameters that cannot work, or none that respect omega_max
+    InfeasibleError : the parameters cannot work, or no parameters respect omega_max
     """
     g, speed = scenario.guidance, largest_speed(scenario)
     if g.tuning == "bounded":
@@ -120,8 +120,8 @@ def plan_steering(
 def search_steering(
     scenario: Scenario, heading_rate_max: float, reference_heading_rate: float
 ) -> BoundedSteering:
-    """Return the steering that converges fastest from the farthest start, while no state asks for
-    more than omega_max.
+    """Return the steering that converges fastest from the farthest start, with no demand above
+    omega_max in any state.
 
     Parameters and errors are those of ``plan_steering``.
     """
@@ -144,7 +144,7 @@ def search_steering(
 def largest_speed(scenario: Scenario) -> float:
     """Return the largest speed of vehicle and reference [m/s] for which the bound holds.
 
-    It is the largest that is commanded, and a margin where an aircraft has to follow the command.
+    It is the largest commanded speed, plus a margin where an aircraft has to follow the command.
     """
     g = scenario.guidance
     margin = g.bound_speed_margin_mps if scenario.fidelity == "six_dof" else 0.0
@@ -152,7 +152,9 @@ def largest_speed(scenario: Scenario) -> float:
 
 
 def farthest_start(scenario: Scenario) -> float:
-    """Return about how far from the reference a flight may start [m]: as far as from the vessel."""
+    """Return the approximate largest distance of a start from the reference [m]: that from the
+    vessel.
+    """
     start = scenario.start
     if start.place_m is not None:
         distance = math.hypot(*start.place_m)
@@ -170,22 +172,20 @@ TRANSIT_FRACTION = 0.5
 """Fraction of the airspeed beyond V_r that is used on the way to the reference [-]."""
 
 CONTROLLED_BANK = math.radians(17.0)
-"""The heading rate at this bank counts for omega_max, if that is less, where control counts as lost
-by a share of it [rad].
+"""Bank whose heading rate replaces a smaller omega_max in the criterion for lost control, which is
+a share of that rate [rad].
 
-Moderate turbulence turns a sound aircraft at 0.07 rad/s, at 19 m/s, which is more than that share
-at 5 degrees of bank.
+Moderate turbulence turns a sound aircraft at 0.07 rad/s, at 19 m/s, which exceeds that share at 5
+degrees of bank.
 """
 
 ROUND_BY = 0.8
-"""By how many turn radii a way round the keep-out area stays farther off than what counts as
-blocked [-].
-"""
+"""Distance between a way round the keep-out area and the blocked area, in turn radii [-]."""
 
 
 def thrust_test(scenario: Scenario, setup: VehicleSetup) -> ThrustTest | None:
-    """Return the test that a flight's thrust is lost; None for a vehicle without an engine, or one
-    whose accelerometers do not tell in the declared gusts.
+    """Return the test for a loss of thrust; None for a vehicle without an engine, or one whose
+    accelerometers cannot detect it in the declared gusts.
     """
     if setup.thrust is None:
         return None
@@ -200,7 +200,9 @@ def thrust_test(scenario: Scenario, setup: VehicleSetup) -> ThrustTest | None:
 
 
 def _gusts(scenario: Scenario) -> float:
-    """Return the standard deviation of gusts along the path [m/s]; a discrete one has several."""
+    """Return the standard deviation of gusts along the path [m/s]; a discrete gust counts as
+    several.
+    """
     air = scenario.turbulence
     sigma = air.gust_speed_mps / NOISE_DEVIATIONS
     if air.level == "none":
@@ -213,13 +215,13 @@ def slowest_without_thrust(scenario: Scenario, setup: VehicleSetup) -> float:
     """Return the airspeed to which the vehicle may fall in a turn at V_r after its engine has
     failed [m/s].
 
-    It falls until the failure is known, for which the engine may have to run down, on to the
-    airspeed of the glide, and below that while it pushes over. A throttle that is stuck takes less of the thrust, and counts as much.
-    Infinite where neither is declared.
+    The airspeed falls until the failure is detected, which may take until the engine has run down;
+    then on to the airspeed of the glide, and below it during the pushover. A stuck throttle reduces
+    thrust less, but counts the same. The result is infinite where neither fault is declared.
 
     Raises
     ------
-    InfeasibleError : one is declared, and would not be noticed in the gusts that are
+    InfeasibleError : such a fault is declared, and could not be detected in the declared gusts
     """
     failure, airspeed = part_failure(scenario, setup), scenario.guidance.airspeed_mps
     if failure is None or not scenario.declared_faults & OF_THRUST:
@@ -238,8 +240,8 @@ def slowest_without_thrust(scenario: Scenario, setup: VehicleSetup) -> float:
 
 
 def part_failure(scenario: Scenario, setup: VehicleSetup) -> PartFailure | None:
-    """Return what the failure of a part does to the vehicle, or None where the scenario declares
-    none.
+    """Return the effect of the failure of a part on the vehicle; None where the scenario declares
+    no such failure.
     """
     if not (scenario.follows and glides(scenario)):
         return None
@@ -247,15 +249,15 @@ def part_failure(scenario: Scenario, setup: VehicleSetup) -> PartFailure | None:
 
 
 def controlled_heading_rate(guidance: GuidanceConfig) -> float:
-    """Return the heading rate by a share of which control counts as lost [rad/s]."""
+    """Return the heading rate of the criterion for lost control, which is a share of it [rad/s]."""
     return max(omega_max(guidance), heading_rate_for_bank(CONTROLLED_BANK, guidance.airspeed_mps))
 
 
 def tracking_parameters(
     scenario: Scenario, setup: VehicleSetup, steering: Steering | None = None
 ) -> TrackingParameters:
-    """Return how a scenario's reference is tracked; with the steering that is given unless another
-    one was found.
+    """Return the tracking parameters of a scenario, with the given steering unless a search found
+    another.
     """
     g, time_step = scenario.guidance, 1.0 / scenario.guidance.rate_hz
     epsilon, radius = (steering or given_steering(g)).look_ahead
@@ -272,8 +274,8 @@ def tracking_parameters(
 
 
 def guidance_lag(scenario: Scenario, setup: VehicleSetup) -> float:
-    """Return how late the vehicle's heading rate follows the guidance [s]: by its own lag, and half
-    a step of holding commands.
+    """Return the lag of the vehicle's heading rate behind the guidance [s]: the vehicle's lag, and
+    half a step of holding commands.
     """
     return setup.lag + 0.5 / scenario.guidance.rate_hz
 
@@ -281,13 +283,13 @@ def guidance_lag(scenario: Scenario, setup: VehicleSetup) -> float:
 def guard_parameters(
     scenario: Scenario, setup: VehicleSetup, radius: float, errors: ErrorBudget | None = None
 ) -> GuardParameters:
-    """Return the guard that keeps a radius about wherever the vessel may be.
+    """Return the guard that keeps a radius from every possible place of the vessel.
 
     Parameters
     ----------
     scenario, setup : the flight, and its vehicle
     radius : to keep [m]
-    errors : that are reckoned with; None where all but the vehicle's response is known exactly
+    errors : error budget; None where everything but the vehicle's response is known exactly
     """
     budget = errors or ErrorBudget(response=Bias(size=setup.response_error))
     return GuardParameters(
@@ -311,7 +313,7 @@ def flight_errors(
     ----------
     scenario, setup : the flight, and its vehicle
     wind : mean wind of the flight
-    turning : how far turbulence takes a turn off its commands
+    turning : deviation of a turn from its commands by turbulence
     """
     failure = part_failure(scenario, setup)
     return error_budget(
@@ -326,16 +328,16 @@ def flight_errors(
 
 
 def turn_time(scenario: Scenario, reversal: TurnReversalResponse) -> float:
-    """Return how long half a turn takes, with what it takes to begin [s]: that of a turn away."""
+    """Return the time of half a turn, including its beginning [s]: that of a turn away."""
     return math.pi / omega_max(scenario.guidance) + reversal.delay + reversal.lag
 
 
 def satellite_noise(scenario: Scenario, setup: VehicleSetup, fastest: float) -> float:
-    """Return how much nearer noise of satellite navigation takes a vehicle [m] whose reference
-    turns at up to a rate [rad/s].
+    """Return how much nearer noise of satellite navigation may take a vehicle [m], for a reference
+    that turns at up to a rate [rad/s].
     """
     if not scenario.reports.exact:
-        # Beside the scatter of reports it adds centimetres.
+        # Compared with the scatter of reports it adds only centimetres.
         return 0.0
     noise, share = scenario.sensors, 0.0
     tracking = tracking_parameters(scenario, setup)
@@ -360,7 +362,7 @@ def satellite_noise(scenario: Scenario, setup: VehicleSetup, fastest: float) -> 
 
 
 def speed_hold(scenario: Scenario, setup: VehicleSetup) -> SpeedHold:
-    """Return how a scenario's flights keep pace with a reference that is steered."""
+    """Return the parameters by which a scenario's flights keep pace with a steered reference."""
     return design_speed_hold(
         bandwidth=setup.airspeed_bandwidth,
         speed=scenario.guidance.airspeed_mps,
@@ -397,7 +399,7 @@ def following_parameters(
     additional_distance: float,
     errors: ErrorBudget,
 ) -> FollowingParameters:
-    """Return how the plume of a moving vessel is followed.
+    """Return the parameters of following the plume of a moving vessel.
 
     Parameters
     ----------
@@ -407,7 +409,7 @@ def following_parameters(
     axis : how the plume's axis is known
     swing : courses of the reference, by its shape
     vessel_course : at the start [rad]
-    additional_distance : from the vessel, beyond what keeps out [m]
+    additional_distance : distance from the vessel in excess of that which keeps out [m]
     errors : of the flight
     """
     g, f, reports = scenario.guidance, scenario.following, scenario.reports

@@ -1,5 +1,5 @@
-"""What the guidance may ask of an aircraft, whether that can be flown and recorded, and how often
-it plans.
+"""Limits of the guidance's commands to an aircraft, checks that these can be flown and recorded,
+and the interval of its plans.
 """
 
 import math
@@ -40,7 +40,9 @@ def plan_period(guidance: GuidanceConfig) -> float:
 
 
 def check_flyable(guidance: GuidanceConfig, title: str, envelope: Envelope) -> None:
-    """Raise an InputError for an airspeed or a bank that the aircraft called ``title`` cannot fly."""
+    """Raise an InputError for an airspeed or a bank that the aircraft called ``title`` cannot
+    fly.
+    """
     airspeed = guidance.airspeed_mps
     if not envelope.airspeed_min <= airspeed <= envelope.airspeed_max:
         raise InputError(
@@ -50,20 +52,19 @@ def check_flyable(guidance: GuidanceConfig, title: str, envelope: Envelope) -> N
     bank = bank_for_heading_rate(omega_max(guidance), airspeed)
     if bank > envelope.bank_max:
         raise InputError(
-            f"guidance asks for {math.degrees(bank):.1f} deg of bank; the autopilot of {title}"
+            f"guidance demands {math.degrees(bank):.1f} deg of bank; the autopilot of {title}"
             f" stops at {math.degrees(envelope.bank_max):.0f}: lower guidance.bank_deg or"
             " guidance.heading_rate_max_rad_s"
         )
 
 
 def path_error_max(scenario: Scenario, log_rate: float) -> float:
-    """Return by how much the cubic between two samples may miss the path of a kinematic vehicle
-    [m].
+    """Return the largest error of the cubic between two samples of a kinematic vehicle's path [m].
 
-    A cubic through positions and velocities is off by no more than dt^2/16 times what the
-    acceleration differs from a constant (the integral of the kernel of its error), and reproduces a
-    constant one. Here that is the centripetal one, V omega_max, which turns by omega_max dt, and is
-    reversed by a command: at once where there is no lag, but not within a step of the guidance.
+    The error of a cubic through positions and velocities is at most dt^2/16 times the change of the
+    acceleration (the integral of the kernel of its error); a constant acceleration is reproduced.
+    Here the acceleration is the centripetal one, V omega_max. It turns by omega_max dt, and a
+    command reverses it: at once without a lag, but not within a step of the guidance.
 
     Parameters
     ----------
@@ -82,8 +83,8 @@ def check_recorded(scenario: Scenario) -> None:
     """Raise an InfeasibleError for kinematic flights that turn too fast for keep-out figures at the
     rate of their record.
 
-    An aircraft has to roll first: at 5 Hz and 60 degrees of bank even a reversal at once would be
-    seen to 4.2 cm.
+    An aircraft has to roll first: at 5 Hz and 60 degrees of bank the error would be 4.2 cm even for
+    an immediate reversal.
     """
     g, rate = scenario.guidance, scenario.flight.log_rate_hz
     error = path_error_max(scenario, rate)

@@ -1,5 +1,5 @@
-"""Plans a flight: from its scenario to the mission, its guidance and its world, all in SI, or to the
-reason why it cannot be flown.
+"""Plans a flight: from its scenario to the mission, its guidance and its world, all in SI, or to
+the reason why it cannot be flown.
 
 There are three kinds of flights. One tracks a circle, without a vessel. One tracks the paper's
 reference, which is known in advance: beside a steady vessel in still air. All others steer their
@@ -123,7 +123,7 @@ from scenarios.world.world import (
 Array = npt.NDArray[np.float64]
 
 Spreads = Callable[[Scenario], SpreadTable | None]
-"""Returns the predicted spread of the tracking error of a scenario in turbulence; none in calm air.
+"""Returns the predicted spread of the tracking error of a scenario in turbulence; None in calm air.
 """
 
 _POINTS = 720
@@ -143,7 +143,7 @@ def plan_flight(
     Parameters
     ----------
     scenario, flight_id : the flight
-    seed : of its start, air and noise, or these as a blend
+    seed : of its start, air and noise, or a blend of seeds
     setup : of its vehicle
     spreads : of the tracking error
 
@@ -201,8 +201,8 @@ def _tracking_flight(
     steering = plan_steering(scenario, omega_max(g), orbit.amplitude)
     trails = plume.axis(0.0)
     start = sampled_start(scenario.start, start_generator(noise), course=course, axis=trails)
-    # The disc that the keep-out area cuts out at the height of the flight, or lower if the aircraft
-    # sinks in a turn.
+    # The section of the keep-out area at the height of the flight, or lower if the aircraft sinks
+    # in a turn.
     lowest = max(0.0, abs(above) - setup.altitude_error)
     disc = radius
     if scenario.keepout.shape == "sphere":
@@ -272,8 +272,8 @@ def _missing_distance(
     distance: float,
     allowance: float,
 ) -> float:
-    """Return how much farther along the plume's axis an orbit has to lie than at a distance [m] for
-    the guard to leave it alone, and what the UAV may stray from it [m].
+    """Return the additional distance along the plume's axis, beyond a distance [m], at which the
+    guard does not act on an orbit [m], and the largest deviation of the UAV from it [m].
     """
     ahead, right, _ = centre_of_oscillation(distance, axis)
     nearest = math.hypot(ahead, right) - orbit.half_widths()[0] - allowance
@@ -372,8 +372,8 @@ def _following_flight(
         meets_ships=setup.meets_ships,
     )
     guard = guarded if g.keepout_guard else None
-    # What the guard knows at the start: a report of a file may be minutes old by then, and any may
-    # be wrong.
+    # The guard's knowledge at the start: a report of a file may be minutes old by then, and any
+    # report may be wrong.
     known = ReachableSet(limits)
     for report in first_reports(vessel, received):
         known.report(report)
@@ -462,7 +462,7 @@ def _check_plume(scenario: Scenario, wind: ApparentWind) -> None:
             f" nu = {f.speed_ratio_max:g}: fly faster, or in less apparent wind"
         )
     if scenario.plume_by_wind and wind.at_start < f.apparent_wind_min_mps:
-        # Exhaust trails with the wind, whatever direction the plume is given.
+        # Exhaust trails with the wind, regardless of the given direction of the plume.
         given = ", or the plume a direction (plume.direction=given)"
         raise InfeasibleError(
             f"the apparent wind is {wind.at_start:.2f} m/s; below {f.apparent_wind_min_mps:g} m/s"
@@ -473,15 +473,15 @@ def _check_plume(scenario: Scenario, wind: ApparentWind) -> None:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _PlannedOrbit:
-    """Where a flight beside a vessel crosses the plume.
+    """The orbit on which a flight beside a vessel crosses the plume.
 
     Attributes
     ----------
     orbit, periods : of the reference, and its periods at equal steps of nu [s]
-    mission : that flies it
-    margin : that it keeps from the keep-out area
-    climbed_to : distance from the vessel up to which an inclined plume is climbed along [m]
-    footprint : where the orbit lies, for other ships to leave it free
+    mission : mission that flies it
+    margin : its distance from the keep-out area
+    climbed_to : distance from the vessel up to which the flight climbs along an inclined plume [m]
+    footprint : area of the orbit that other ships have to leave free
     """
 
     orbit: PeriodicPath
@@ -501,8 +501,8 @@ def _planned_orbit(
     limits: VesselLimits,
     guard: GuardParameters,
 ) -> _PlannedOrbit:
-    """Return the orbit nearest to the vessel that keeps the margin and leaves the guard nothing to
-    do; farther where the sulphur is measured better.
+    """Return the orbit nearest to the vessel that keeps the margin and on which the guard does not
+    act; a farther one where the sulphur is measured better.
     """
     g, f, radius = scenario.guidance, scenario.following, scenario.guarded_radius
     nu = wind.at_start / g.airspeed_mps
@@ -535,8 +535,8 @@ def _planned_orbit(
         )
     nearest = radius + margin.total + orbit.half_widths()[0]
     further = additional_distance(scenario, vessel, nearest, wind.at_start)
-    # Before the orbits: a shape that cannot be steered says so, whatever else it cannot do beside a
-    # fast vessel.
+    # Before the orbits: the error of a shape that cannot be steered comes before its errors beside
+    # a fast vessel.
     swing = swing_of(g, scenario.reference)
     periods, widths = orbits(g, scenario.reference, f.speed_ratio_max)
     mission = following_parameters(
@@ -582,7 +582,7 @@ def _start_and_world(
     first, *others = scenario.faults
     fault = sampled_fault(first, generator)
     weather = sampled_weather(scenario, mean, generator)
-    # Start, air and first fault are what they are without another one.
+    # Start, air and first fault do not depend on further faults.
     faults = in_order([fault, *(sampled_fault(of, generator) for of in others)])
     covered = scenario.flight.duration_max_s + TRACK_MARGIN
     place = place_of(scenario, vessel)
@@ -655,7 +655,8 @@ def sampled_start(
 ) -> Start:
     """Return a start: given, or sampled about the plume's axis.
 
-    What is given is sampled all the same, so that nothing else of the flight depends on what is.
+    Given values are sampled as well, so that the rest of the flight does not depend on which values
+    are given.
 
     Parameters
     ----------
@@ -692,7 +693,7 @@ def placed(ahead: float, right: float, course: float) -> tuple[float, float]:
 def first_reports(
     vessel: VesselTruth, received: list[tuple[float, VesselReport]] | None
 ) -> list[VesselReport]:
-    """Return the reports that the flight begins with; of a vessel that is known exactly, its
+    """Return the reports at the start of the flight; for a vessel that is known exactly, its
     motion.
     """
     if received is None:
@@ -715,18 +716,18 @@ def check_start(
     Parameters
     ----------
     start, guard : the start, and the guard that would have to keep out; any start is accepted
-        without
-    vessel : discs in each of which it is for certain, at time 0
+        without a guard
+    vessel : discs at time 0; each of them certainly contains it
     wind : north and east [m/s]
-    known : motion by the first measurement, whose wind is as wrong as it may be at the start; None
+    known : motion by the first measurement, with the largest error of the wind at the start; None
         where it is known exactly
     airspeed : of the UAV [m/s]
     keepout_radius : r_min [m]
 
     Raises
     ------
-    InfeasibleError : the best turn away comes too close, or the vehicle lags so much that it does
-        not lead away
+    InfeasibleError : the best turn away comes too close, or does not lead away because of the
+        vehicle's lag
     """
     if guard is None:
         return
@@ -769,7 +770,9 @@ def _at_start(start: Start, wind: tuple[float, float], known: AirMotion | None) 
 
 
 def _most_of_errors(guard: GuardParameters, own: AirMotion) -> str:
-    """Return which term of the error budget takes most of the room, in words; none without one."""
+    """Return the term of the error budget that takes most of the room, in words; empty without
+    one.
+    """
     turn = math.pi / guard.heading_rate_max + guard.delay + guard.lag
     parts = guard.errors.parts(turn, own.wind_by_gusts)
     name, (distance, key) = max(parts.items(), key=lambda part: part[1].distance)
@@ -832,8 +835,8 @@ class VesselCircle:
         return (1.0 + self.nu) ** 2 * self.speed / self.radius
 
     def offset(self, time: npt.ArrayLike) -> tuple[Array, Array]:
-        """Return where the reference is from the vessel, along its course and to its right [m],
-        from right ahead on.
+        """Return the place of the reference relative to the vessel, along its course and to its
+        right [m], beginning right ahead.
         """
         bearing = np.linspace(0.0, 2.0 * np.pi, _POINTS + 1)
         tangent = bearing + 0.5 * np.pi
@@ -854,8 +857,8 @@ class VesselCircle:
 
 
 def vessel_circle(scenario: Scenario, nu: float, least: float) -> VesselCircle:
-    """Return the circle of a scenario: of the radius that it gives, or of the ``least`` that keeps
-    out [m].
+    """Return the circle of a scenario, with the given radius, or with the ``least`` radius that
+    keeps out [m].
 
     Raises
     ------
@@ -880,7 +883,9 @@ def vessel_circle(scenario: Scenario, nu: float, least: float) -> VesselCircle:
 def standoff_parameters(
     scenario: Scenario, setup: VehicleSetup, radius: float, height: AxisHeight
 ) -> StandoffParameters:
-    """Return how a vessel is circled at a radius [m], at the height of the plume's axis there."""
+    """Return the parameters of circling a vessel at a radius [m], at the height of the plume's axis
+    there.
+    """
     g = scenario.guidance
     return StandoffParameters(
         radius=radius,

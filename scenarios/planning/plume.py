@@ -1,10 +1,10 @@
-"""What is planned of a plume: how high its axis is expected to be, how it is found, and how far from
-the ship the sulphur is measured best.
+"""The plan for a plume: the expected height of its axis, the search for it, and the best distance
+from the ship to measure the sulphur.
 
-The sulphur is measured best where its uncertainty by noise falls fastest with time. A pass at a
-height z off the centre of a Gaussian plume of spreads s_y, s_z, in an apparent wind U, at a speed v
-across it, has the dose A exp(-z^2/(2 s_z^2)), A = Q/(sqrt(2 pi) n U s_z v). A sensor with a time
-constant T makes of it a pulse whose square has the integral A^2/(2T) erfcx(s_y/(v T)),
+The best distance is where the uncertainty of the sulphur by noise falls fastest with time. A pass
+at a height z off the centre of a Gaussian plume of spreads s_y, s_z, in an apparent wind U, at a
+speed v across it, has the dose A exp(-z^2/(2 s_z^2)), A = Q/(sqrt(2 pi) n U s_z v). A sensor with a
+time constant T turns it into a pulse whose square has the integral A^2/(2T) erfcx(s_y/(v T)),
 erfcx(x) = exp(x^2) erfc(x), by Parseval's theorem. The regression's uncertainty by noise falls with
 the root of the sum of these integrals. Their mean over a z of mean o and variance w^2 has the
 factor s_z/sqrt(s_z^2 + 2 w^2) exp(-o^2/(s_z^2 + 2 w^2)).
@@ -31,24 +31,26 @@ from scenarios.world.plume import emission
 from scenarios.world.vessel import VesselTruth
 
 PREDICTED_TIME, KNOWN_TIME = 20.0, 4.0
-"""Time in which the altitude follows a height that is predicted from wind under estimation, and one
-that is known [s].
+"""Time in which the altitude follows a height that is predicted from an estimated wind, and a known
+height [s].
 """
 
 _ROOM = 10.0
-"""Least room between the altitudes that are flown, to search in [m]."""
+"""Least range of altitudes for a search [m]."""
 
 _LOADS = 9
-"""Loads, evenly within their range, of which the deviation of what is emitted is taken."""
+"""Number of loads, evenly within their range, from which the deviation of the emission is
+computed.
+"""
 
 _SOURCE_ERROR, _LOAD_ERROR = 2.0, 0.3
-"""Deviation of the mouth's height [m], and of the logarithm of what is emitted [-], where neither
-has a range.
+"""Deviation of the mouth's height [m], and of the logarithm of the emission [-], where neither has
+a range.
 """
 
 _WIND_ERROR = 0.3
-"""Deviation of each component of the apparent wind as it is estimated on board [m/s]: 0.29 in 24
-flights as the search began.
+"""Deviation of each component of the apparent wind as it is estimated on board [m/s]: 0.29 at the
+start of the search in 24 flights.
 """
 
 CO2 = GASES.index("co2")
@@ -57,12 +59,12 @@ CO2 = GASES.index("co2")
 def plume_axis(
     scenario: Scenario, vessel: VesselTruth, altitude_reach: float = math.inf
 ) -> AxisParameters:
-    """Return how the guidance knows the plume's axis.
+    """Return the parameters of the guidance's knowledge of the plume's axis.
 
     Parameters
     ----------
     scenario, vessel : of the flight
-    altitude_reach : how far from the altitude that is flown a command may be [m]
+    altitude_reach : largest distance of a command from the present altitude [m]
 
     Raises
     ------
@@ -93,8 +95,8 @@ def plume_axis(
 
 
 def flown_altitudes(scenario: Scenario) -> tuple[float, float]:
-    """Return the lowest and the highest altitude that is flown while the plume is searched for and
-    followed [m].
+    """Return the lowest and the highest altitude of a flight while it searches for the plume and
+    follows it [m].
 
     Raises
     ------
@@ -121,8 +123,8 @@ def flown_altitudes(scenario: Scenario) -> tuple[float, float]:
 def axis_height(
     scenario: Scenario, vessel: VesselTruth, limits: tuple[float, float] | None = None
 ) -> AxisHeight:
-    """Return the height that the guidance expects: at the load that the speed takes, or in the
-    middle of the ranges given.
+    """Return the height that the guidance expects: at the load for the ship's speed, or in the
+    middle of the given ranges.
 
     Parameters
     ----------
@@ -155,8 +157,8 @@ def axis_height(
 
 
 def expected_emission(scenario: Scenario, vessel: VesselTruth, quantile: float) -> Emission:
-    """Return what is expected to be emitted, at a quantile of the load's range; at the load that
-    the speed takes without one.
+    """Return the expected emission at a quantile of the load's range; without a range, at the load
+    for the ship's speed.
     """
     load = scenario.following.load
     if load is not None:
@@ -168,7 +170,7 @@ def expected_emission(scenario: Scenario, vessel: VesselTruth, quantile: float) 
 def _expectation(
     scenario: Scenario, vessel: VesselTruth, limits: tuple[float, float]
 ) -> Expectation:
-    """Return what is known of ship and sensor, within the altitudes that are flown."""
+    """Return the expectation for ship and sensor, within the altitudes of the flight."""
     f, middle = scenario.following, expected_emission(scenario, vessel, 0.5)
     sources = f.source_height_m
     loads = [expected_emission(scenario, vessel, (i + 0.5) / _LOADS) for i in range(_LOADS)]
@@ -195,7 +197,7 @@ def sniffer_on_board(scenario: Scenario) -> SnifferSpec:
 
     Raises
     ------
-    InfeasibleError : there is none
+    InfeasibleError : no sniffer is on board
     """
     if "sniffer" not in scenario.payload.instruments:
         raise InfeasibleError(
@@ -222,22 +224,22 @@ def co2_sensor(spec: SnifferSpec) -> GasSensor:
 Array = npt.NDArray[np.float64]
 
 _FARTHEST, _GRID = 400.0, 41
-"""How much farther than the nearest distance is considered [m], and at how many distances."""
+"""Range of distances beyond the nearest one that are considered [m], and their number."""
 
 _HEIGHT_ERROR = 5.0
-"""Deviation of the flown height from the axis [m]: as well as it is known after some minutes."""
+"""Deviation of the flown height from the axis [m]: that of the estimate after some minutes."""
 
 _TYPICAL_WIND = 7.0
 """True wind whose turbulence is expected [m/s]: the mean over the sea."""
 
 _WIND_LEAST = 2.0
-"""Apparent wind from which on the spreads hold [m/s]."""
+"""Least apparent wind for which the spreads hold [m/s]."""
 
 
 def additional_distance(
     scenario: Scenario, vessel: VesselTruth, nearest: float, apparent_wind: float
 ) -> float:
-    """Return by how much farther than the nearest distance [m] the sulphur is known best after a
+    """Return the distance beyond the nearest one [m] at which the sulphur is known best after a
     minute [m].
 
     Parameters

@@ -1,4 +1,4 @@
-"""The reference that a scenario asks for: its oscillations over the speed ratio, or a circle."""
+"""The reference of a scenario: its oscillations over the speed ratio, or a circle."""
 
 import functools
 import math
@@ -30,11 +30,12 @@ RATIO_STEPS = 48
 """Steps of nu at which orbits are tabled."""
 
 _REACH_POINTS = 513
-"""Points of an orbit at which its reach is looked at [-]: what they miss is below 1e-4 of its width.
+"""Number of points of an orbit at which its reach is computed [-]: the error is below 1e-4 of its
+width.
 """
 
 _REACH_ROUNDING = 1e-6
-"""Excess over (11) that is rounding, where it is exact: a plume abeam or astern [m]."""
+"""Excess over (11) that counts as rounding, where (11) is exact: a plume abeam or astern [m]."""
 
 _OF_ORBIT = ("nu", "speed", "eta", "omega_0", "amplitude", "period", "crossing_interval")
 """Numbers that an orbit has."""
@@ -58,8 +59,8 @@ def shape_of(reference: ReferenceConfig) -> ReferenceShape:
 def _shape(made: Any) -> Any:
     if not _is_number(getattr(made, "turn_rate_fraction_until_tracked", None)):
         raise TypeError(
-            "a shape with a number turn_rate_fraction_until_tracked, the fraction of its heading rate"
-            " that the reference turns with until it is tracked [-], 1.0 as the sinusoid has"
+            "a shape with a number turn_rate_fraction_until_tracked, the fraction of its heading"
+            " rate that the reference turns with until it is tracked [-], 1.0 as the sinusoid has"
         )
     return made
 
@@ -171,16 +172,16 @@ def distance_kept(
     distance_min = keepout.radius_m + guidance.tracking_allowance_m
     if keepout.shape == "sphere":
         return rule(orbit, axis, distance_min)
-    # As far off horizontally as over a level plume.
+    # The horizontal distance is that for a level plume.
     return rule(orbit, PlumeAxis(heading=axis.heading), distance_min) / math.cos(axis.elevation)
 
 
 def _reach_holds(orbit: Orbit, axis: PlumeAxis) -> bool:
     """Return whether the reach by (11) holds for an orbit, so that (10) keeps it out.
 
-    Its half-widths say nothing of an orbit that reaches farther on one side than on the other. Of
-    those with equal halves it is an upper bound for a figure of eight, which is wider than long,
-    and may be short for a user's own.
+    The half-widths do not describe an orbit that reaches farther on one side than on the other. For
+    orbits with equal halves, (11) is an upper bound for a figure of eight, which is wider than
+    long; for a user's orbit it may be too small.
     """
     if not orbit.symmetric:
         return False
@@ -190,7 +191,7 @@ def _reach_holds(orbit: Orbit, axis: PlumeAxis) -> bool:
 
 
 def joined_orbit(scenario: Scenario, orbit: Orbit, course: float) -> JoinedOrbit:
-    """Return an orbit beside a vessel on a course [rad], of which a reference can be taken at any
+    """Return an orbit beside a vessel on a course [rad], from which a reference can be taken at any
     phase.
     """
     shape, time_step = shape_of(scenario.reference), 1.0 / scenario.guidance.rate_hz

@@ -21,7 +21,7 @@ from scenarios.scenario.sections.guidance import LAW_KEYS, GuidanceConfig
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ScaleFactors:
-    """How many times larger an aircraft's units are than those of the defaults [-]."""
+    """The ratios of an aircraft's units to those of the defaults [-]."""
 
     length: float
     time: float
@@ -54,18 +54,19 @@ _SCALED: dict[str, Callable[[ScaleFactors], float]] = {
     "criteria.airspeed_error_rms_mps": lambda unit: unit.speed,
     "criteria.altitude_error_max_m": lambda unit: unit.speed,
 }
-"""Keys that are scaled, and by what their defaults are multiplied. Altitude follows pitch at a
-given speed, not the turn.
+"""Keys that are scaled, and the factors of their defaults. Altitude follows pitch at a given speed,
+not the turn.
 """
 
 
 def scaled(scenario: Scenario, envelope: Envelope) -> Scenario:
-    """Return the scenario with every key that it does not set itself scaled to an aircraft.
+    """Return the scenario with every key that it does not set scaled to an aircraft.
 
     Parameters
     ----------
-    scenario : as it was read, so that it knows which keys it sets
-    envelope : of the aircraft; its airspeed and bank are flown where the scenario sets neither
+    scenario : as read from its file, so that the keys that it sets are known
+    envelope : of the aircraft; the flight uses its airspeed and bank where the scenario sets
+        neither
 
     Raises
     ------

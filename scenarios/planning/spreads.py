@@ -1,4 +1,4 @@
-"""The spread of the tracking error that turbulence will cause in a study's flights."""
+"""The predicted spread of the tracking error by turbulence in a study's flights."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -34,7 +34,7 @@ class PredictedSpreads:
     Attributes
     ----------
     tables : by level of turbulence, guidance and reference
-    refused : why there is none, where guidance or reference cannot be flown
+    refused : reason why there is no spread, where guidance or reference cannot be flown
     defaults : of the keys of the project's own steering laws, scaled to the aircraft, by their
         dotted names
     """
@@ -44,7 +44,7 @@ class PredictedSpreads:
     defaults: Mapping[str, float] = field(default_factory=dict)
 
     def __call__(self, scenario: Scenario) -> SpreadTable | None:
-        """Return the spread of a scenario's flights; none in calm air and for a kinematic vehicle.
+        """Return the spread of a scenario's flights; None in calm air and for a kinematic vehicle.
 
         Raises
         ------
@@ -66,7 +66,7 @@ class PredictedSpreads:
 def predicted_spreads(
     scenarios: Iterable[Scenario], found: Designed | None, setup: VehicleSetup | None
 ) -> PredictedSpreads:
-    """Return the predicted spread of each of some scenarios that has turbulence; of none without an
+    """Return the predicted spread of each of some scenarios with turbulence; empty without an
     aircraft.
     """
     if found is None or setup is None:
@@ -96,13 +96,13 @@ def _key(scenario: Scenario, defaults: Mapping[str, float]) -> Key:
 
 
 def _planned_for(scenario: Scenario, defaults: Mapping[str, float]) -> Scenario:
-    """Return the scenario with the steering law that its margin is planned for: its own, or another
-    with default parameters.
+    """Return the scenario with the steering law for which its margin is planned: its law, or
+    another with default parameters.
     """
     law = scenario.following.margin_law
     if law is None:
         return scenario
-    # The mission has no part in the prediction, and not every law has every mission.
+    # The prediction does not depend on the mission, and not every law supports every mission.
     return with_values(
         scenario,
         {
@@ -115,7 +115,7 @@ def _planned_for(scenario: Scenario, defaults: Mapping[str, float]) -> Scenario:
 
 
 def _spread_table(scenario: Scenario, found: Designed, setup: VehicleSetup) -> SpreadTable:
-    # They need python-control, which a flight in calm air does without.
+    # They need python-control, which a flight in calm air does not need.
     from scenarios.planning.margin.tracking_spread import tracking_spreads
     from scenarios.planning.margin.turn_spread import turn_deviation
 
@@ -143,8 +143,8 @@ def _spread_table(scenario: Scenario, found: Designed, setup: VehicleSetup) -> S
 
 
 def _orbits(scenario: Scenario) -> Iterator[tuple[float, Orbit]]:
-    """Yield the orbit at each speed ratio at which the reference's shape has one, at the lowest if
-    at any.
+    """Yield the orbit at each speed ratio at which the reference's shape has one; the lowest ratio
+    has one if any does.
     """
     for nu in SPREAD_RATIOS:
         try:

@@ -26,23 +26,21 @@ _RATIO_MAX, _POINTS = 0.99, 100
 """Largest speed ratio of a curve, and the number of its points."""
 
 _OTHERS = ("guidance.", "reference.", "keepout.", "plume.", "vessel.")
-"""Keys on which the curves depend as well: where one of them is swept, there is more than one
-curve.
-"""
+"""Keys on which the curves also depend: a sweep over one of them has more than one curve."""
 
 _OSCILLATIONS = ("sinusoid", "fastest")
-"""Shapes whose crossing intervals are shown beside each other, whichever is flown."""
+"""Shapes whose crossing intervals are always shown beside each other."""
 
 _SAME = 0.01
-"""Largest relative difference of the limits of an aircraft from those that were solved for [-]."""
+"""Largest relative difference of an aircraft's limits from those of the solution [-]."""
 
 
 def theory_over_speed_ratio(scenario: Scenario) -> dict[str, list[float]]:
-    """Return the crossing interval and r_CO over nu in still air, by names of columns; nothing
-    unless nu alone is swept.
+    """Return the crossing interval and r_CO over nu in still air, by names of columns; empty unless
+    only nu is swept.
 
-    A reference that is known in advance alone has a fixed r_CO; that of a steered one depends on
-    the margin of each flight. Beside the flown shape's crossing interval there are those of the
+    Only a reference that is known in advance has a fixed r_CO; that of a steered one depends on the
+    margin of each flight. Beside the flown shape's crossing interval there are those of the
     project's oscillations, and the shortest of any path.
     """
     if "nu" not in scenario.sweep.root or any(
@@ -80,7 +78,7 @@ def _points(
             distance = distance_kept(guidance, keepout, orbit, axis)
             others = [_crossing_interval(guidance, shape, nu) for shape in _OSCILLATIONS]
         except (InfeasibleError, PluginError):
-            # A shape of a user's own may fail at a point; flights there say why.
+            # A user's shape may fail at a point; the flights there report the reason.
             break
         points.append((nu, orbit.crossing_interval, distance, *others))
     return tuple(points)
@@ -101,7 +99,7 @@ def crossing_limit(guidance: GuidanceConfig) -> dict[str, list[float]]:
     Returns
     -------
     curves : ``limit_nu`` [-] and ``crossing_interval_limit_s`` [s]; nothing where bank or roll rate
-        are not those of the solution
+        differ from those of the solution
     """
     solved = json.loads(CROSSING_LIMITS.read_text(encoding="utf-8"))
     fastest = omega_max(guidance)

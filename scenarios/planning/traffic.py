@@ -1,5 +1,5 @@
-"""Other ships in a flight's plan: what is known of them on board, whether the start keeps off them,
-and whether they leave room for an orbit.
+"""Other ships in a flight's plan: the knowledge of them on board, and checks that the start keeps
+off them and that they leave room for an orbit.
 """
 
 import math
@@ -27,7 +27,7 @@ Received = list[tuple[float, VesselReport]]
 """Reports, with the time at which each is received [s]."""
 
 _LOOK = 1.0
-"""Time between looks at whether an orbit is free [s]."""
+"""Time between checks whether an orbit is free [s]."""
 
 _FILE_INTERVAL = (2.0, 10.0)
 """Usual time between reports of ships under way in a file [s] (ITU-R M.1371-5, table 1)."""
@@ -35,13 +35,13 @@ _FILE_INTERVAL = (2.0, 10.0)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Footprint:
-    """Where an orbit lies.
+    """The area of an orbit.
 
     Attributes
     ----------
     radius : of a circle about the centre of oscillation in which it lies [m]
     distance : of that centre from the vessel, along the plume's axis; 0 for a circle about it [m]
-    room : kept beside another ship's radius, in which the guard does not act [m]
+    room : distance kept in addition to another ship's radius, so that the guard does not act [m]
     period : of the orbit [s]
     """
 
@@ -52,7 +52,7 @@ class Footprint:
 
 
 def limits_of(scenario: Scenario, ship: OtherShip, horizon: float) -> VesselLimits:
-    """Return what another ship and its reports keep within, for turns away of a duration [s]."""
+    """Return the limits of another ship and its reports, for turns away of a duration [s]."""
     if ship.reports is not None and scenario.reports.exact:
         reports = scenario.reports.model_copy(update={"interval_s": _FILE_INTERVAL})
         scenario = scenario.model_copy(update={"reports": reports})
@@ -69,8 +69,8 @@ def traffic_parameters(
     measured_radius: float,
     meets_ships: bool = False,
 ) -> TrafficParameters | None:
-    """Return what the guidance knows of other ships before the flight; None where there are none,
-    and none can come to be known.
+    """Return the guidance's knowledge of other ships before the flight; None where no ships are
+    known and none can become known.
 
     Parameters
     ----------
@@ -78,8 +78,8 @@ def traffic_parameters(
     horizon : duration of a turn away [s]
     speed_max : largest airspeed of the vehicle [m/s]
     footprint : of the orbit
-    measured_radius : kept from the measured vessel on a way that yields [m]
-    meets_ships : whether others may come to be known in flight
+    measured_radius : distance kept from the measured vessel while giving way [m]
+    meets_ships : whether other ships may become known in flight
     """
     if not ships and not meets_ships:
         return None
@@ -104,7 +104,9 @@ def received_of(
     outages: Sequence[tuple[float, float]],
     generator: np.random.Generator,
 ) -> tuple[Received | None, ...]:
-    """Return the reports of other ships as they are received; None of one that is known exactly."""
+    """Return the reports of other ships as they are received; None for a ship that is known
+    exactly.
+    """
     received: list[Received | None] = []
     for ship in ships:
         if ship.reports is not None:
@@ -129,9 +131,10 @@ def received_of(
 
 
 def check_traffic_declared(scenario: Scenario, ships: Sequence[OtherShip]) -> None:
-    """Raise an InfeasibleError for a ship that does more than is declared to the keep-out guard.
+    """Raise an InfeasibleError for a ship that exceeds the limits declared to the keep-out guard.
 
-    Those of a file are measured, as a premise of each flight: where they are is not chosen.
+    For the ships of a file, this is a premise that each flight measures: their places are not
+    chosen.
     """
     if not scenario.guidance.keepout_guard:
         return
@@ -206,7 +209,7 @@ def check_start_beside(
 
 
 def check_room(scenario: Scenario, world: World, footprint: Footprint) -> None:
-    """Refuse an orbit that other ships leave free at no time for as long as one of its periods.
+    """Refuse an orbit that other ships never leave free for as long as one of its periods.
 
     Raises
     ------
@@ -253,7 +256,7 @@ def _centre(world: World, footprint: Footprint, time: float) -> tuple[float, flo
 
 
 def _longest(free: "np.ndarray[tuple[int], np.dtype[np.bool_]]") -> int:
-    """Return the length of the longest run of what is true."""
+    """Return the length of the longest run of true values."""
     longest = run = 0
     for is_free in free.tolist():
         run = run + 1 if is_free else 0

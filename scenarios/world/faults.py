@@ -1,4 +1,4 @@
-"""What fails in one flight, and when."""
+"""The faults of one flight and their times."""
 
 import math
 from collections.abc import Collection, Sequence
@@ -10,7 +10,7 @@ from common.faults import NO_FAULT as NONE
 from scenarios.scenario.sections.equipment import FaultConfig
 
 VESSEL_DATA, SATELLITES = "vessel_data", "satellite_navigation"
-"""Losses of what is received."""
+"""Losses of reception."""
 
 SNIFFER_DEAD, SNIFFER_SATURATED = "sniffer_dead", "sniffer_saturated"
 """Faults of a sniffer on board: it repeats its last reading, or reads the end of its range."""
@@ -28,8 +28,9 @@ class TimedFault:
 
     Attributes
     ----------
-    kind : as the scenario names it; ``none`` for none
-    begins, ends : when; for good what ends at infinity, and never what begins there [s]
+    kind : as the scenario names it; ``none`` without a fault
+    begins, ends : times; a permanent fault ends at infinity, and a fault that does not occur begins
+        there [s]
     """
 
     kind: str
@@ -37,7 +38,7 @@ class TimedFault:
     ends: float
 
     def of_aircraft(self) -> bool:
-        """Return whether it is a part of the aircraft that fails."""
+        """Return whether a part of the aircraft fails."""
         return self.kind not in NOT_OF_AIRCRAFT
 
 
@@ -64,15 +65,15 @@ class Faults:
         return tuple((of.begins, of.ends) for of in self.each if of.kind == kind)
 
     def first(self, kinds: Collection[str]) -> TimedFault:
-        """Return the first fault of one of some kinds; ``NO_FAULT`` if there is none."""
+        """Return the first fault of one of some kinds, or ``NO_FAULT``."""
         return next((of for of in self.each if of.kind in kinds), NO_FAULT)
 
     def of_aircraft(self) -> tuple[TimedFault, ...]:
-        """Return those by which a part of the aircraft fails."""
+        """Return the faults in which a part of the aircraft fails."""
         return tuple(of for of in self.each if of.of_aircraft())
 
     def begun(self, time: float) -> tuple[TimedFault, ...]:
-        """Return those that have begun by a time [s]."""
+        """Return the faults that have begun by a time [s]."""
         return tuple(of for of in self.each if of.begins <= time)
 
 

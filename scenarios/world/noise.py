@@ -1,12 +1,11 @@
-"""What is random within a flight: streams of random numbers, from one seed or from a blend of
-several.
+"""The random numbers of a flight: streams from one seed or from a blend of several.
 
 A blend is a weighted sum of the normal numbers of its parts. With squares of the weights that add
 up to 1 they are standard normal again, and uniform numbers are their distribution function. So a
 flight's noise can be changed by small steps, as Markov chains do that look for rare events
 (``scenarios.statistics.subset_simulation``): with another part of small weight reports, sensor
-errors and gusts are nearly those they were. What takes whole numbers, as JSBSim's turbulence does,
-follows from the seed alone.
+errors and gusts hardly change. Models that need whole numbers, such as JSBSim's turbulence, follow
+from the seed alone.
 """
 
 from collections.abc import Sequence
@@ -21,8 +20,8 @@ Array = npt.NDArray[np.float64]
 _STREAMS = 3
 
 PAYLOAD, EXHAUST, BACKGROUND, TRAFFIC, HEADING, OTHER_EXHAUST = 1, 2, 3, 4, 5, 6
-"""Numbers of streams beside those of ``Streams``: what uses them changes nothing of a flight that
-is without it.
+"""Numbers of streams other than those of ``Streams``: a model that uses them does not change
+flights without it.
 """
 
 
@@ -32,7 +31,7 @@ class Noise:
 
     Attributes
     ----------
-    seed : of everything, or, beside a blend, of what cannot be blended
+    seed : of everything; with a blend, of the models that cannot be blended
     blend : seed and weight of each part; empty for noise from one seed
     """
 
@@ -72,8 +71,8 @@ class Streams:
 def streams(noise: Noise) -> Streams:
     """Return the streams of a flight, each from its first number.
 
-    From one seed, sensors go on where reports have ended. In a blend they have streams of their
-    own: a report more must not change all that comes after it.
+    From one seed, the sensors' numbers follow those of the reports. In a blend both have separate
+    streams: one more report must not change all later numbers.
     """
     if not noise.blend:
         world, others = (

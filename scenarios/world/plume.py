@@ -1,4 +1,4 @@
-"""The plume: where its axis really is, the exhaust about it, and the CO2 of the air beside it.
+"""The plume: its true axis, the exhaust about it, and the CO2 of the air beside it.
 
 The axis trails behind the vessel's motion through the air, or at a given angle from its bow. Smoke
 rises, disperses, meanders and bends about it with the vessel's own track.
@@ -6,7 +6,7 @@ rises, disperses, meanders and bends about it with the vessel's own track.
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -15,6 +15,7 @@ import numpy.typing as npt
 from aircraft.wind import WindField
 from gnc.errors import InfeasibleError
 from measurement.emission import (
+    AIR_PRESSURE,
     Emission,
     Fuel,
     emission_of,
@@ -25,6 +26,7 @@ from measurement.emission import (
 from measurement.gases import GASES, PARTS
 from measurement.plume.fluctuating_plume import FluctuatingPlume, PlumeSample
 from measurement.plume.spread import MarineAir, PlumeSettings
+from measurement.species import SPECIES
 from scenarios.scenario.extension_points import PLUME_MODELS
 from scenarios.scenario.scenario import Scenario
 from scenarios.scenario.sections.traffic import TrafficEmissionConfig
@@ -32,13 +34,15 @@ from scenarios.scenario.sections.world import AirConfig, PlumeConfig
 from scenarios.world.vessel import TRACK_STEP, SteadyVessel, VesselTruth, sampled, track_times
 
 _AT_REST = 1e-9
-"""Speed through the air below which its direction is rounding alone [m/s]."""
+"""Speed through the air below which its direction is only rounding [m/s]."""
 
 Array = npt.NDArray[np.float64]
 
 
 class Plume(Protocol):
-    """The axis of a plume: a half-line from the vessel, level or rising at ``plume.elevation_deg``."""
+    """The axis of a plume: a half-line from the vessel, level or rising at
+    ``plume.elevation_deg``.
+    """
 
     def axis(self, time: float) -> float:
         """Return the course along which the plume trails at a time [s], without jumps [rad]."""
@@ -103,7 +107,7 @@ class StraightPlume:
 
 
 def _last_moving(velocity: Array) -> npt.NDArray[np.intp]:
-    """Return which row of shape (n, 2) was the last that is not at rest, for each: in still air a
+    """Return for each row, shape (n, 2), the last row up to it that is not at rest: in still air a
     plume stays in its place.
     """
     moving = np.hypot(velocity[:, 0], velocity[:, 1]) > _AT_REST
@@ -111,7 +115,7 @@ def _last_moving(velocity: Array) -> npt.NDArray[np.intp]:
 
 
 _TRACK_INTERVAL = 0.5
-"""Time between the places of the vessel that the smoke comes from [s]: at 10 m/s a turn at 1 deg/s
+"""Time between the places of the vessel from which the smoke comes [s]: at 10 m/s a turn at 1 deg/s
 is a chord to 6 mm.
 """
 
@@ -141,7 +145,7 @@ class FluctuatingSmoke(StraightPlume):
 
         Parameters
         ----------
-        emission, air : what leaves the stack, and into what
+        emission, air : the gases from the stack, and the air into which they go
         vessel, wind : motion of the vessel over the ground, and of the air
         duration : to be covered [s]
         source_height : of the stack's mouth above the sea [m]
@@ -188,7 +192,7 @@ class Dispersion(Protocol):
 
 @runtime_checkable
 class Smoke(Protocol):
-    """A plume model that has more than an axis."""
+    """A plume model with smoke in addition to an axis."""
 
     def dispersion(
         self,
@@ -207,19 +211,21 @@ class Smoke(Protocol):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Exhaust:
-    """What a vessel emits, and where it is.
+    """The exhaust of a vessel, and where it is.
 
     Attributes
     ----------
-    fuel, emission : what is burnt, and what leaves the stack
-    dispersion : of it, in the frame of the air mass
-    displacement : how far that frame has moved north and east at some times [s], in metres
+    fuel, emission : the fuel, and the gases from the stack
+    dispersion : of these gases, in the frame of the air mass
+    displacement : way of that frame north and east at some times [s], in metres
+    ratios : of gases of ``measurement.species`` to CO2, which they disperse with [unit/ppm]
     """
 
     fuel: Fuel
     emission: Emission
     dispersion: Dispersion
     displacement: Callable[[Array], tuple[Array, Array]]
+    ratios: Mapping[str, float] = field(default_factory=dict)
 
     def sample(self, time: Array, north: Array, east: Array, up: Array) -> PlumeSample:
         """Return the plume at places over the ground, each shape (n,) [s, m]."""
@@ -234,7 +240,7 @@ class Exhaust:
 
 
 def fuel_of(scenario: Scenario, of: TrafficEmissionConfig | None = None) -> Fuel:
-    """Return what the vessel of a scenario burns, or ``of`` another ship."""
+    """Return the fuel of a scenario's vessel, or that ``of`` another ship."""
     given = of or scenario.emission
     return fuel_preset(given.fuel, given.sulphur_percent)
 
@@ -246,8 +252,8 @@ def emission(
     load: float | None = None,
     of: TrafficEmissionConfig | None = None,
 ) -> Emission:
-    """Return what the vessel of a scenario emits at a speed [m/s], or at a load of its engine [-]
-    where that is given; or ``of`` another ship.
+    """Return the emission of a scenario's vessel at a speed [m/s], or at a given load of its engine
+    [-]; or that ``of`` another ship.
 
     Raises
     ------
@@ -255,10 +261,27 @@ def emission(
     """
     given = of or scenario.emission
     ship, fuel = ship_of(given.ship or ""), fuel_of(scenario, of)
-    air_temperature = scenario.wind.temperature_c + _ZERO_CELSIUS
+    about: dict[str, float] = {
+        "air_temperature": scenario.wind.temperature_c + _ZERO_CELSIUS,
+        "methane": scenario.emission.methane if of is None else 0.0,
+    }
     if load is None:
-        return emission_of(ship, fuel, speed=speed, air_temperature=air_temperature)
-    return emission_of(ship, fuel, power=load * ship.power_max, air_temperature=air_temperature)
+        return emission_of(ship, fuel, speed=speed, **about)
+    return emission_of(ship, fuel, power=load * ship.power_max, **about)
+
+
+def air_of_particles(scenario: Scenario) -> tuple[float, float]:
+    """Return temperature [deg C] and pressure [hPa] of the air that particles are counted in."""
+    return scenario.wind.temperature_c, AIR_PRESSURE / 100.0
+
+
+def _ratios(scenario: Scenario) -> dict[str, float]:
+    """Return what the measured vessel emits of gases, over its CO2 [unit/ppm]."""
+    carbon, air = fuel_of(scenario).carbon_fraction, air_of_particles(scenario)
+    return {
+        gas: SPECIES[gas].slope(SPECIES[gas].factor(carbon, air), figure)
+        for gas, figure in scenario.emission.emitted.items()
+    }
 
 
 def without_smoke(scenario: Scenario) -> str:
@@ -281,8 +304,8 @@ def exhaust_of(
     generator: np.random.Generator,
     of: TrafficEmissionConfig | None = None,
 ) -> Exhaust | None:
-    """Return the exhaust of a vessel that has any, in some wind, over a duration [s]. It is
-    that of its speed at the start.
+    """Return the exhaust of a vessel in some wind over a duration [s], for its speed at the start;
+    None for a vessel without exhaust.
 
     Parameters
     ----------
@@ -326,12 +349,13 @@ def exhaust_of(
         emission=emitted,
         dispersion=dispersion,
         displacement=lambda time: wind.displacement(time, height),
+        ratios=_ratios(scenario) if of is None else {},
     )
 
 
 _STEP = 0.05
-"""Between the times at which the background is computed, linear between them [s]: a tenth of the
-quickest sensor's response.
+"""Time between points of the background, linear between them [s]: a tenth of the fastest sensor's
+response.
 """
 
 
@@ -366,7 +390,7 @@ def sampled_background(
     ----------
     config : the ``[air]`` section
     duration : to be covered [s]
-    generator : of the background alone, so that all else of the flight is as it is without
+    generator : of the background alone, so that the rest of the flight is the same without it
     """
     if config.background == "none":
         return UNIFORM
@@ -408,4 +432,4 @@ _SHAPES: Mapping[str, Callable[[Array, float, np.random.Generator], Array]] = {
     "sine": _sine,
     "steps": _steps,
 }
-"""How each kind of background varies, over its size."""
+"""Variation of each kind of background, over its size."""

@@ -1,6 +1,4 @@
-"""The ships besides the one that is measured: those that a scenario gives, and those of a file of AIS
-reports.
-"""
+"""The ships other than the measured one: those of a scenario, and those of an AIS file."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -30,12 +28,12 @@ _SAME_PLACE = 10.0
 """Distance below which two ships are at one place [m]: they would have collided."""
 
 _FAR = 10_000.0
-"""Distance from the measured ship beyond which ships of a file are left out [m]: what flies beside
+"""Distance from the measured ship beyond which ships of a file are left out [m]: the UAV beside
 that ship does not go so far.
 """
 
 _LOOK = 10.0
-"""Time between looks at how far ships of a file are from the measured one [s]."""
+"""Time between checks of the distance of a file's ships from the measured one [s]."""
 
 
 class DisplacedVessel:
@@ -67,17 +65,17 @@ class DisplacedVessel:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OtherShip:
-    """A ship besides the one that is measured.
+    """A ship other than the measured one.
 
     Attributes
     ----------
     name : in messages, tables and maps
-    radius : that is kept from it [m]
+    radius : to keep from it [m]
     track : in the frame of the flight
-    begins, ends : between which its track is known [s]
-    reports : of a file, in the flight's time and frame; None of a ship that the scenario gives
+    begins, ends : times between which its track is known [s]
+    reports : of a file, in the flight's time and frame; None for a ship of the scenario
     key : of the scenario that has it
-    emission : what comes out of its funnel, as the scenario has it, or None
+    emission : of its funnel, as in the scenario, or None
     exhaust : its smoke in the flight's air, or None
     """
 
@@ -95,7 +93,7 @@ class OtherShip:
 def traffic_of(
     scenario: Scenario, vessel: VesselTruth, place: Place, *, margin: float
 ) -> tuple[OtherShip, ...]:
-    """Return the ships besides the one that is measured, over the longest flight.
+    """Return the ships other than the measured one, over the longest flight.
 
     Parameters
     ----------
@@ -176,8 +174,8 @@ def _duration(scenario: Scenario) -> float:
 
 
 def radius_kept(scenario: Scenario, config: TrafficConfig | None = None) -> float:
-    """Return what is kept from a ship besides the measured one, by its entry of ``traffic``, if it
-    has one [m].
+    """Return the radius to keep from a ship other than the measured one, by its entry of
+    ``traffic``, if it has one [m].
     """
     if config is not None and config.radius_m is not None:
         return config.radius_m

@@ -1,5 +1,5 @@
-"""Where the vessel really is, at any time: at constant velocity, or through its manoeuvres; and where
-on earth a flight begins.
+"""The vessel's true motion, at constant velocity or through manoeuvres, and the place on earth at
+which a flight begins.
 """
 
 import math
@@ -19,8 +19,8 @@ TRACK_STEP = 0.05
 """Time step of a tabled track [s]; between its points the track is a parabola to 1e-5 m."""
 
 _ROUNDING = 1e-6
-"""Relative error of what is taken from a table of velocities [-]: 4e-13 of vessels at their limit;
-in 5 minutes, millimetres.
+"""Relative error of values from a table of velocities [-]: 4e-13 for vessels at their limit;
+millimetres in 5 minutes.
 """
 
 Array = npt.NDArray[np.float64]
@@ -33,8 +33,8 @@ class VesselTruth(Protocol):
         """Return north, east [m] and their rates [m/s] at a time [s]."""
 
     def course(self, time: float) -> float:
-        """Return the course, clockwise from north, without jumps [rad]; of a vessel at rest, where
-        its bow points.
+        """Return the course, clockwise from north, without jumps [rad]; for a vessel at rest, the
+        direction of its bow.
         """
 
     @property
@@ -135,7 +135,7 @@ class ManoeuvringVessel(TabledVessel):
     ----------
     vessel : its manoeuvres and its course before them
     speed : before them [m/s]
-    duration : for how long it is followed [s]
+    duration : time for which its track is computed [s]
     """
 
     def __init__(self, vessel: VesselConfig, speed: float, duration: float) -> None:
@@ -167,7 +167,7 @@ def manoeuvre_ends(vessel: VesselConfig, speed: float) -> list[float]:
 
 
 def check_manoeuvres(vessel: VesselConfig, speed: float) -> None:
-    """Refuse manoeuvres that overlap: their rates would add up to what none of them says.
+    """Refuse manoeuvres that overlap: their rates would add up.
 
     Raises
     ------
@@ -201,8 +201,8 @@ def largest_speed(vessel: VesselTruth, duration: float) -> float:
 
 
 def largest_inconsistency(vessel: VesselTruth, duration: float) -> float:
-    """Return by how much, between any two times, the way of a track differs from the integral of
-    its velocity at most [m].
+    """Return the largest difference, between any two times, of the way of a track from the integral
+    of its velocity [m].
 
     It is 0 where both come from one table, and otherwise exact to the trapezoidal rule: less than a
     millimetre in an hour.
@@ -244,7 +244,7 @@ def sampled(vessel: VesselTruth, duration: float) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, kw_only=True)
 class Place:
-    """Where and when a flight begins; what is not known is NaN.
+    """Place and time of a flight's start; NaN where they are unknown.
 
     Attributes
     ----------
@@ -260,7 +260,7 @@ class Place:
 
     @cached_property
     def frame(self) -> LocalFrame:
-        """The frame that north and east metres are in."""
+        """The frame of north and east in metres."""
         return LocalFrame(self.latitude, self.longitude, self.altitude)
 
 

@@ -1,5 +1,5 @@
-"""The air that a flight goes through: its mean wind, constant or from a table or netCDF (such as ERA5
-of the Copernicus Climate Data Store, read by xarray), turbulence and discrete gusts.
+"""The air of a flight: its mean wind, constant or from a table or netCDF (such as ERA5 of the
+Copernicus Climate Data Store, read by xarray), turbulence and discrete gusts.
 """
 
 import math
@@ -26,11 +26,13 @@ from scenarios.world.vessel import Place
 STILL_AIR = Weather(wind=CALM, turbulence=None, gusts=(), seed=0)
 
 _BETWEEN = (STEPS_BETWEEN_GUSTS + 1.0) * TIME_STEP
-"""Time from the end of one gust to the next, at least [s]."""
+"""Least time from the end of one gust to the next [s]."""
 
 
 def wind_ned(wind: WindConfig) -> tuple[float, float]:
-    """Return north and east velocity of the air mass [m/s]: where the wind blows to."""
+    """Return north and east velocity of the air mass [m/s], the direction to which the wind
+    blows.
+    """
     return wind_velocity(wind.speed_mps, wind.from_deg)
 
 
@@ -53,12 +55,12 @@ def wind_of(scenario: Scenario, place: Place) -> WindField:
 
 
 def sampled_weather(scenario: Scenario, wind: WindField, generator: np.random.Generator) -> Weather:
-    """Return the air that the flight goes through, with some mean wind."""
+    """Return the air of the flight with a mean wind."""
     turbulence = scenario.turbulence
     rise = turbulence.gust_length_s
     gusts: list[Gust] = []
     for i in range(turbulence.gusts):
-        # One gust in each equal part of the flight, and after the one before it: JSBSim takes one
+        # One gust in each equal part of the flight, after the end of the one before: JSBSim has one
         # at a time.
         part = scenario.flight.duration_max_s / turbulence.gusts
         start = i * part + float(generator.uniform(0.0, max(0.0, part - 2.0 * rise)))
@@ -82,10 +84,10 @@ _FROM = "from_deg"
 _TIME_AND_HEIGHT, _SPEED_AND_DIRECTION = ("time_utc", "height_m"), ("speed_mps", _FROM)
 
 COLUMNS = (*_TIME_AND_HEIGHT, *_SPEED_AND_DIRECTION)
-"""Of a table; one of the first two may be missing."""
+"""Columns of a table; one of the first two may be missing."""
 
 _TO = "to_deg"
-"""Column of where the wind blows to."""
+"""Column of the direction to which the wind blows."""
 
 _SPEED_MAX = 100.0
 """Fastest wind that a table may have: a hurricane's is 90 m/s [m/s]."""
@@ -99,7 +101,7 @@ class TabledWind:
     ----------
     times : since 1970 in UTC, shape (n,); empty where it does not change with time [s]
     heights : above the sea, shape (m,); empty where it does not change with height [m]
-    velocity : where it blows to, north and east, shape (max(n, 1), max(m, 1), 2) [m/s]
+    velocity : of the air, north and east, shape (max(n, 1), max(m, 1), 2) [m/s]
     lines : of a table: the first and the last with a wind
     read : how the file was read, in words
     """
@@ -111,11 +113,11 @@ class TabledWind:
     read: str = ""
 
     def record(self) -> dict[str, Any]:
-        """Return for JSON how the file was read, and what it has."""
+        """Return a record for JSON: how the file was read, and its contents."""
         return {"read": self.read, "times": len(self.times), "heights_m": list(self.heights)}
 
     def described(self) -> str:
-        """Return what the file has and how it was read, in a line."""
+        """Return the file's contents and how it was read, in a line."""
         words = []
         if self.times:
             first, last = utc_text(self.times[0]), utc_text(self.times[-1])
@@ -128,7 +130,7 @@ class TabledWind:
 
 
 _HEIGHTS_SHOWN = 8
-"""Heights that a line names at most."""
+"""Largest number of heights in a line."""
 
 
 def tabled_wind(
@@ -172,7 +174,8 @@ def tabled_wind(
 
 
 def _where_it_blows(found: TabledWind, place: Place, duration: float, name: str) -> TabledWind:
-    """Return a wind without the times at which it is not known, of which a flight needs none.
+    """Return a wind without the times at which it is unknown, after a check that the flight needs
+    none of these.
 
     Raises
     ------
@@ -189,8 +192,8 @@ def _where_it_blows(found: TabledWind, place: Place, duration: float, name: str)
     if missing:
         more = f" and {len(missing) - 1} more" if len(missing) > 1 else ""
         raise InputError(
-            f"wind.table: {name} has no wind at {utc_text(times[missing[0]])}{more}, which the flight"
-            " needs; give another file, another place or another time (place.utc)"
+            f"wind.table: {name} has no wind at {utc_text(times[missing[0]])}{more}, which the"
+            " flight needs; give another file, another place or another time (place.utc)"
         )
     return replace(
         found, times=tuple(times[known].tolist()), velocity=found.velocity[known], lines=None
@@ -209,7 +212,7 @@ def first_time(table: str, place: Place, written: TableFormat = FOUND) -> float:
 
 
 def wind_file(table: str, place: Place, written: TableFormat = FOUND) -> TabledWind:
-    """Return the wind of a file, of a netCDF that at a place.
+    """Return the wind of a file; for a netCDF file, that at a place.
 
     Parameters
     ----------
@@ -260,13 +263,13 @@ def _read_table(path: Path, _stamp: tuple[int, int], written: TableFormat) -> Ta
 
 
 class _Row(NamedTuple):
-    """A row of a table of wind; not a number for what has no column.
+    """A row of a table of wind; NaN for values without a column.
 
     Attributes
     ----------
     line : in the file
     time, height : [s], [m]
-    north, east : where the wind blows to [m/s]
+    north, east : velocity of the air [m/s]
     """
 
     line: int
@@ -294,7 +297,8 @@ def _rows(path: Path, table: Table) -> Iterator[_Row]:
             )
         raise InputError(
             f"wind.table: {path}, line {table.head_line}: the header is {','.join(names)[:80]!r};"
-            f" it must be {','.join(COLUMNS)}, of which time_utc or height_m may be missing: {remedy}"
+            f" it must be {','.join(COLUMNS)}, where time_utc or height_m may be missing:"
+            f" {remedy}"
         )
     if twice := [column for column in COLUMNS if names.count(column) > 1]:
         raise InputError(
@@ -306,7 +310,7 @@ def _rows(path: Path, table: Table) -> Iterator[_Row]:
     times = table.dated_times(there["time_utc"]) if "time_utc" in there else nothing
     heights = table.numbers(there["height_m"]) if "height_m" in there else nothing
     speeds, directions = (table.numbers(there[column]) for column in _SPEED_AND_DIRECTION)
-    # Where no wind blows it comes from nowhere.
+    # Without wind the direction does not count.
     directions = np.where((speeds == 0.0) & np.isnan(directions), 0.0, directions)
     good = (
         (speeds >= 0.0)
@@ -318,9 +322,9 @@ def _rows(path: Path, table: Table) -> Iterator[_Row]:
     if not good.all():
         row = int(np.argmin(good))
         raise InputError(
-            f"wind.table: {path}, line {table.lines[row]}: {','.join(table.rows[row])[:80]!r}; every"
-            f" row has its columns: speeds go from 0 to {_SPEED_MAX:g} m/s, directions from 0 to 360"
-            " deg, heights are above 0: correct the line, or delete it"
+            f"wind.table: {path}, line {table.lines[row]}: {','.join(table.rows[row])[:80]!r};"
+            f" every row has its columns: speeds go from 0 to {_SPEED_MAX:g} m/s, directions from"
+            " 0 to 360 deg, heights are above 0: correct the line, or delete it"
         )
     for row, line in enumerate(table.lines):
         wind = wind_velocity(float(speeds[row]), float(directions[row]))
@@ -371,16 +375,16 @@ _TIMES = ("valid_time", "time")
 _PLACES = ("latitude", "longitude")
 
 _OTHER_NAMES = {"lat": "latitude", "lon": "longitude"}
-"""What other files than ERA5's call places."""
+"""Names of places in other files than ERA5's."""
 
 _CALENDARS = ("standard", "gregorian", "proleptic_gregorian")
-"""CF's names of the calendar that clocks have."""
+"""CF's names of the calendar of clocks."""
 
 _STANDARD_NAMES = {"u": "eastward_wind", "v": "northward_wind"}
-"""CF's names of a wind, whatever its variables are called."""
+"""CF's standard names of a wind; its variables may have any name."""
 
 _CLOSED = 1e-3
-"""What a grid that goes round the earth may lack to 360 deg after its last step [deg]: its
+"""Largest gap to 360 deg after the last step of a grid that goes round the earth [deg]: its
 longitudes may be single precision.
 """
 
@@ -413,7 +417,7 @@ def read_netcdf(
     except (OSError, ValueError, KeyError) as error:
         if isinstance(error, InputError):
             raise
-        # What xarray recommends after its first sentence is for programmers.
+        # xarray's advice after its first sentence is for programmers.
         reason = str(error).splitlines()[0].partition(". ")[0][:160]
         raise InputError(
             f"wind.table: {path}: cannot be read as netCDF ({reason}); check the file"
@@ -465,8 +469,8 @@ def _wind_at(
 
 
 def _of_one_version(data: Any) -> Any:
-    """Return the data of all versions as one: ERA5's final hours, and its first ones (ERA5T) where
-    there are none yet, as ``expver`` 1 and 5.
+    """Return the data of all versions as one: ERA5's final hours (``expver`` 1), and the
+    preliminary ones (ERA5T, ``expver`` 5) where there are no final ones yet.
     """
     if "expver" not in data.dims:
         return data
@@ -477,7 +481,7 @@ def _of_one_version(data: Any) -> Any:
 
 
 def _along_steps(data: Any) -> Any:
-    """Return the data of a forecast over the times that it is for, not over its steps."""
+    """Return the data of a forecast over its valid times, not over its steps."""
     if "step" not in data.dims or "time" in data.dims:
         return data
     valid = data["time"] + data["step"] if "time" in data.coords else data["step"]
@@ -518,8 +522,8 @@ def _in_metres_per_second(path: Path, data: Any, names: list[str]) -> Any:
 
 
 def _check_wind(path: Path, data: Any, time: str, names: list[str]) -> None:
-    """Refuse a wind without a time, of a calendar that no clock has, or with dimensions that are
-    neither time nor place.
+    """Refuse a wind without a time, with a calendar that no clock uses, or with dimensions other
+    than time and place.
     """
     for name in names:
         if others := [str(of) for of in data[name].dims if of not in (time, "height", *_PLACES)]:
@@ -532,8 +536,8 @@ def _check_wind(path: Path, data: Any, time: str, names: list[str]) -> None:
     )
     if calendar not in _CALENDARS:
         raise InputError(
-            f"wind.table: {path}: its times are of the calendar '{calendar}', and a flight's are of the"
-            " Gregorian one; convert them"
+            f"wind.table: {path}: its times are of the calendar '{calendar}', and a flight's are"
+            " of the Gregorian one; convert them"
         )
     if not np.issubdtype(data[time].dtype, np.datetime64):
         raise InputError(
@@ -570,7 +574,7 @@ def _at_place(path: Path, data: Any, latitude_deg: float, longitude_deg: float) 
 
 
 def _mistake(data: Any, latitude_deg: float, longitude_deg: float) -> str:
-    """Return what brings a place into the area of a grid, empty if nothing does."""
+    """Return a hint that brings a place into the area of a grid; empty without one."""
     for mistake, corrected in MISTAKES.items():
         place = corrected(latitude_deg, longitude_deg)
         within, east = _round_the_earth(data, place[1])
@@ -583,7 +587,7 @@ def _mistake(data: Any, latitude_deg: float, longitude_deg: float) -> str:
 
 
 def _round_the_earth(data: Any, longitude_deg: float) -> tuple[Any, float]:
-    """Return the data, and a longitude as its grid counts it, such as from 0 to 360; a grid that
+    """Return the data, and a longitude in the grid's convention, such as from 0 to 360; a grid that
     goes round the earth is closed.
     """
     east = np.sort(data["longitude"].values.astype(np.float64))

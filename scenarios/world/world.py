@@ -1,4 +1,4 @@
-"""The world of one flight: vessel, plume and air as they are, and what fails."""
+"""The world of one flight: the true vessel, plume and air, and the faults."""
 
 import math
 from collections.abc import Sequence
@@ -30,17 +30,17 @@ from scenarios.world.vessel import (
 from scenarios.world.wind import first_time, wind_of
 
 TRACK_MARGIN = 5.0
-"""How long the track goes on after the longest flight [s]."""
+"""Time for which the track goes on after the longest flight [s]."""
 
 _LOOK_STEP = 1.0
-"""Time between the looks at a track, or a plume, of a user's own before its flight [s]."""
+"""Time between the points at which a user's track or plume is checked before its flight [s]."""
 
 _ORIGIN_MAX = 0.01
-"""By how much a track of a user's own may begin beside the origin, for rounding [m]."""
+"""Largest distance of the beginning of a user's track from the origin, for rounding [m]."""
 
 _COURSE_MAX = math.radians(1.0)
-"""By how much its course may differ from the direction of its velocity [rad]: one to first order in
-a swing of 20 degrees does.
+"""Largest difference of its course from the direction of its velocity [rad]: that of a course to
+first order in a swing of 20 degrees.
 """
 
 _AT_REST = 0.1
@@ -49,19 +49,19 @@ _AT_REST = 0.1
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class World:
-    """What is true outside the UAV.
+    """The truth outside the UAV.
 
     Attributes
     ----------
     vessel, plume : the ship's motion and the plume's axis
     elevation, source_height : of the plume's axis, and of its origin above the sea [rad, m]
     weather : the air
-    faults : what fails, and when
-    exhaust : the vessel's smoke, or none
+    faults : of the flight, with their times
+    exhaust : the vessel's smoke, or None
     background : CO2 of the air beside it
     place : where on earth, and when
     hull : of the vessel, where it is known; the vessel's place is that of its funnel
-    traffic : ships besides the vessel
+    traffic : ships other than the vessel
     """
 
     vessel: VesselTruth
@@ -84,7 +84,7 @@ class World:
 _MOTION = numbers(4, "north, east [m] and their rates [m/s]")
 _COURSE = number("the course, clockwise from north [rad]")
 _AXIS = number("the course along which the plume trails [rad]")
-"""What a track and a plume of a user's own return."""
+"""Return values of a user's track and plume."""
 
 
 def vessel_of(scenario: Scenario) -> VesselTruth:
@@ -92,8 +92,7 @@ def vessel_of(scenario: Scenario) -> VesselTruth:
 
     Raises
     ------
-    PluginError : it has no such track, or it cannot be made, or its motion and its course are of no
-        use
+    PluginError : it has no such track, or it cannot be made, or its motion and course are unusable
     InputError : its file cannot be read, or does not cover the longest flight
     """
     config, duration = sized(scenario).vessel, scenario.flight.duration_max_s
@@ -123,12 +122,12 @@ def vessel_of(scenario: Scenario) -> VesselTruth:
 
 
 def sized(scenario: Scenario) -> Scenario:
-    """Return the scenario with the size of the ship and the place of the antenna that the file of
-    its track says, where they are not given.
+    """Return the scenario with the size of the ship and the place of the antenna from the file of
+    its track, where they are not given.
 
     Raises
     ------
-    InputError : the file cannot be read, or the size is needed and nothing says it
+    InputError : the file cannot be read, or the size is needed and not known
     """
     vessel = scenario.vessel
     if vessel.from_file:
@@ -150,8 +149,8 @@ def antenna_offset(scenario: Scenario) -> tuple[float, float]:
 
 
 def _check_track(part: str, track: VesselTruth, duration: float) -> None:
-    """Raise a PluginError for a track of a user's own that is of no use; ``check_declared``
-    compares place and velocity.
+    """Raise a PluginError for an unusable track of a user; ``check_declared`` compares place and
+    velocity.
     """
     if not isinstance(getattr(track, "manoeuvres_end", None), int | float | np.number):
         raise PluginError(
@@ -179,8 +178,8 @@ def _check_track(part: str, track: VesselTruth, duration: float) -> None:
 
 
 def place_of(scenario: Scenario, vessel: VesselTruth) -> Place:
-    """Return where and when a flight begins, as far as that is known; without a time of its own
-    when its wind does.
+    """Return place and time of a flight's start, as far as they are known; without a time in the
+    scenario, the first time of its wind.
     """
     if isinstance(vessel, AisVessel):
         return vessel.place
@@ -200,7 +199,7 @@ def plume_of(scenario: Scenario, vessel: VesselTruth) -> Plume:
 
     Raises
     ------
-    PluginError : there is no such plume model, or it cannot be made, or its axis is of no use
+    PluginError : there is no such plume model, or it cannot be made, or its axis is unusable
     """
     part, model = f"plume.model '{scenario.plume.model}'", PLUME_MODELS.get(scenario.plume.model)
     duration = scenario.flight.duration_max_s + TRACK_MARGIN
@@ -215,7 +214,7 @@ def plume_of(scenario: Scenario, vessel: VesselTruth) -> Plume:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ApparentWind:
-    """How fast a vessel moves through the air.
+    """Speed of a vessel through the air.
 
     Attributes
     ----------
@@ -228,7 +227,7 @@ class ApparentWind:
 
 
 def apparent_wind(scenario: Scenario, vessel: VesselTruth) -> ApparentWind:
-    """Return how fast a vessel moves through the air at the height of its funnel, over the longest
+    """Return the speed of a vessel through the air at the height of its funnel, over the longest
     flight.
     """
     duration = scenario.flight.duration_max_s + TRACK_MARGIN
@@ -239,7 +238,7 @@ def apparent_wind(scenario: Scenario, vessel: VesselTruth) -> ApparentWind:
 def winds_past(
     vessel: VesselTruth, wind: WindField, heights: Sequence[float], duration: float
 ) -> list[ApparentWind]:
-    """Return how fast a vessel moves through the air at each of some heights [m], over a duration
+    """Return the speed of a vessel through the air at each of some heights [m], over a duration
     [s].
     """
     if isinstance(vessel, SteadyVessel) and wind.constant:

@@ -168,6 +168,7 @@ def start():
     return trim(Fdm(X8), airspeed=20.0, altitude=100.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FLIGHTS)
 def test_local_metres_are_the_integral_of_ground_velocity_over_a_long_flight(
     x8_aircraft, start, name

@@ -80,6 +80,7 @@ def blown(x8_fdm):
     return blow
 
 
+@pytest.mark.slow
 def test_jsbsim_shakes_as_strongly_as_the_standard_says_and_has_the_spectra_of_dryden(blown):
     # Fast, so that many scale lengths go by.
     altitude, airspeed, steps = 60.0, 200.0, 160_000

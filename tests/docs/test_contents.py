@@ -3,11 +3,13 @@
 import re
 from pathlib import Path
 
+import pytest
 from generated_pages import FOLDER, pages
 
 DOCS = Path(__file__).parents[2] / "docs"
 
 
+@pytest.mark.slow
 def test_every_page_is_in_the_contents_once():
     """``make docs`` refuses a page that is not; this says so before."""
     blocks = re.findall(

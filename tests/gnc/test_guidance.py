@@ -213,7 +213,7 @@ def test_it_catches_up_only_where_the_guard_allows_that_and_does_not_intervene(
     assert guidance.guarding == (status is not GuardStatus.FREE)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("nu", [0.0, 0.1, 0.5])
 def test_from_astern_a_guarded_vehicle_settles_and_keeps_out(nu, seed):
     # Starts as in scenarios/scenario/sections/flight.py: 400 to 800 m away, within 30 degrees of
@@ -372,15 +372,6 @@ def test_no_command_exceeds_its_bound_in_gusts_from_behind():
         guidance.mission.tracker.heading_rate_command
         == guidance.heading_rate_command * guidance.own.air_ratio
     )
-
-
-def test_a_vehicle_with_a_fault_leaves_and_sinks():
-    guidance = reported(following())
-    for step in range(60):
-        guidance.step(step * TIME_STEP, readings(-400.0, 0.0, course=math.pi, servo_error=0.5))
-    assert guidance.mode is Mode.TERMINATING
-    assert guidance.airspeed_command == 17.0
-    assert guidance.altitude_command < -500.0
 
 
 # Half of the thrust of level flight, missing for a second.

@@ -249,6 +249,7 @@ def x8_grid(x8_schedule, monkeypatch):
     monkeypatch.setattr(designer, "linear_grid", lambda *_: grid)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("x8_grid")
 def test_a_design_with_too_little_margin_is_refused_with_what_it_lacks_and_not_flown(monkeypatch):
     # A second of delay: the fastest loop that leaves 45 degrees crosses over near 0.8 rad/s at
@@ -264,6 +265,7 @@ def test_a_design_with_too_little_margin_is_refused_with_what_it_lacks_and_not_f
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("x8_grid")
 def test_a_design_that_lacks_margin_under_a_perturbation_is_refused_with_what_is_required_there(
     monkeypatch,
@@ -277,6 +279,7 @@ def test_a_design_that_lacks_margin_under_a_perturbation_is_refused_with_what_is
         design_autopilot(X8)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "period"), [("x8", 3), ("T37", 2)])
 def test_the_autopilot_computes_as_seldom_as_costs_every_loop_five_degrees_of_phase_at_most(
     designs, name, period
@@ -292,6 +295,7 @@ def test_the_autopilot_computes_as_seldom_as_costs_every_loop_five_degrees_of_ph
     assert [1, *(p for p, loss in zip((2, 3), losses, strict=True) if loss <= 5.0)][-1] == period
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("x8_grid")
 def test_a_loop_with_too_little_margin_is_slowed_and_the_others_are_left(monkeypatch, x8_design):
     points, checked, check = [], [], robustness.OperatingPointMargins.check

@@ -15,7 +15,6 @@ from innerloop.synthesis import (
     control_weights,
     design_gains,
     design_weights,
-    quasi_static,
     reachable_bandwidths,
 )
 
@@ -317,34 +316,3 @@ def test_with_a_rudder_the_lateral_gains_are_those_of_a_servo_lqr_that_regulates
         )
         # The law adds its integral of beta, where the design has that of -beta and a minus.
         assert found.sideslip_integral == pytest.approx(gain[1, 5], rel=1e-5)
-
-
-def level_gains(schedule):
-    """The gains and the model with servos and engines at rest, level at each airspeed."""
-    for gains, models in zip(schedule.gains, schedule.models, strict=True):
-        yield gains[LEVEL_GAINS], quasi_static(models[LEVEL_GAINS])
-
-
-def effect(plant, state, control_input):
-    """The acceleration of a state by a control."""
-    return plant.B[plant.state_labels.index(state), plant.input_labels.index(control_input)]
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_gains_oppose_the_deviations_they_answer(designs, name):
-    for gains, plant in level_gains(designs(name).design.schedule):
-        assert gains.longitudinal.shape == (2, len(LONGITUDINAL))
-        assert gains.lateral.shape == (2, len(LATERAL))
-        # Whether a positive elevator pitches up: stock aircraft differ.
-        up = np.sign(effect(plant, "q", "elevator"))
-        elevator = dict(zip(LONGITUDINAL, up * gains.longitudinal[0], strict=True))
-        # Commands are minus gain times deviation: too high, climbing, nose up or pitching up
-        # commands nose down. Too fast commands less throttle. Too much roll or roll rate commands
-        # aileron against it.
-        assert min(elevator[state] for state in ("climb_rate", "q", "pitch", "altitude")) > 0.0
-        assert gains.longitudinal[1, LONGITUDINAL.index("airspeed")] > 0.0
-        assert gains.longitudinal_integral[1, 0] > 0.0
-        assert up * gains.longitudinal_integral[0, 1] > 0.0
-        against = np.sign(effect(plant, "p", "aileron")) * gains.lateral[0]
-        assert min(against[LATERAL.index("p")], against[LATERAL.index("roll")]) > 0.0
-        assert gains.heading_integral > 0.0

@@ -66,6 +66,19 @@ def test_a_perfect_instrument_reads_what_the_emission_says(name):
     assert expected_fsc(fuel) == pytest.approx(WORKED[name][-1], abs=5e-5)
 
 
+@pytest.mark.parametrize("methane", [0.0, 0.031, 0.064])
+def test_carbon_that_leaves_as_methane_is_missing_in_the_co2(methane):
+    fuel = fuel_preset("mgo")
+    whole = emission_of(CONTAINER, fuel, speed=12.0)
+    found = emission_of(CONTAINER, fuel, speed=12.0, methane=methane)
+    burnt = whole.rates[1] * MOLAR_MASS["co2"] / fuel.co2_per_fuel
+    # CH4 has 16.043 g/mol, and an atom of carbon as CO2 has.
+    assert whole.rates[1] - found.rates[1] == pytest.approx(burnt * methane / 0.016043, rel=1e-4)
+    assert (found.rates[0], *found.rates[2:]) == (whole.rates[0], *whole.rates[2:])
+    read = fsc_factor() * 1e3 * found.rates[0] / found.rates[1]
+    assert read == pytest.approx(expected_fsc(fuel, methane), rel=1e-12)
+
+
 def test_the_factor_between_ratio_and_sulphur():
     # Section 4.1 of the specification, four digits; 0.232 in Balzani Loov et al., AMT 7:2597
     # (2014).

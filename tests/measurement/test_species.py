@@ -33,6 +33,9 @@ def test_methane_slip_keeps_the_balance_of_carbon(slip):
     methane = SPECIES["ch4"]
     found, _ = methane.per_fuel(methane.factor(0.75, AIR), 1000.0 * escaped / burnt)
     assert found == pytest.approx(100.0 * slip, rel=1e-4)
+    # What a ship emits is the same the other way round.
+    ratio = methane.slope(methane.factor(0.75, AIR), 100.0 * slip)
+    assert ratio == pytest.approx(1000.0 * escaped / burnt, rel=1e-4)
 
 
 def test_particles_per_fuel_are_that_of_a_hand_calculation():

@@ -5,9 +5,6 @@
 import pandas as pd
 import pytest
 
-from reports.registry import content
-from reports.render.html import write_html
-from reports.run.run_data import read_run
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study
@@ -51,11 +48,3 @@ def test_the_line_of_sight_has_no_bound(directory):
     comparison = pd.read_csv(directory / "comparison.csv").set_index("flight_id")
     assert pd.isna(comparison.loc["nu_0.50_line_of_sight", "heading_rate_bound_rad_s"])
     assert comparison.loc["nu_0.50_no_preview", "heading_rate_bound_rad_s"] > 0.0
-
-
-def test_the_report_says_the_laws_largest_demand_and_with_which_look_ahead(directory, tmp_path):
-    write_html(content(read_run(directory)), tmp_path / "report.html")
-    text = (tmp_path / "report.html").read_text(encoding="utf-8")
-    assert "Heading rate demanded, largest, as a ratio to ω_max" in text
-    assert "R as searched" in text
-    assert "of the kinematic vehicle, eq. (1)" in text

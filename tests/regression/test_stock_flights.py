@@ -55,7 +55,7 @@ def test_its_airspeeds_are_named_where_the_scenario_leaves_them(t37, tmp_path):
         fly_study(tmp_path / "slow", "T37", *SHORT, "guidance.airspeed_mps=50.0")
     with pytest.raises(
         InputError,
-        match=r"asks for 45\.0 deg of bank; the autopilot of T37 stops at 35: lower guidance\.bank_deg",
+        match=r"demands 45\.0 deg of bank; the autopilot of T37 stops at 35: lower guidance\.bank_deg",
     ):
         fly_study(tmp_path / "steep", "T37", *SHORT, "guidance.bank_deg=45.0")
     assert list(tmp_path.iterdir()) == []

@@ -82,6 +82,7 @@ needs so far.
 """
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("x8_design")
 def test_what_is_not_needed_is_not_imported():
     unneeded = "if found := sorted({!r} & set(sys.modules)): sys.exit({!r} + ' imports ' + ', '.join(found))"

@@ -51,6 +51,7 @@ def asked(monkeypatch, tmp_path, designs):
     return names
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("key", "name"), PARTS.items())
 def test_a_part_of_one_file_flies_in_a_sweep_and_stands_in_the_manifest(tmp_path, asked, key, name):
     path = write_scenario(tmp_path, line_of(key, name))

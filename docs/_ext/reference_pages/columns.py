@@ -10,6 +10,7 @@ from scenarios.flight.guard_belief import GuardBelief
 from scenarios.flight.onboard import BELIEF_COLUMNS
 from scenarios.flight.record import HISTORY_COLUMNS
 from scenarios.flight.traffic_belief import TrafficBelief
+from scenarios.instruments.gas_channels import gas_columns
 from scenarios.instruments.sniffer import SnifferOnBoard
 from scenarios.measures.columns import (
     CROSSING_COLUMNS,
@@ -25,6 +26,7 @@ from scenarios.measures.columns import (
     TRAFFIC_FIGURES,
     further_faults,
 )
+from scenarios.scenario.sections.world import GAS_KEYS
 from scenarios.statistics.estimates import TABLE_COLUMNS as PREMISE_COLUMNS
 
 _INTRODUCTION = """\
@@ -44,10 +46,11 @@ SNIFFER_TITLE, SEARCH_TITLE = (
 def tables() -> dict[str, Table]:
     """Return the columns by the titles of the tables."""
     ((sulphur, of_sulphur),) = SnifferOnBoard.TABLES.items()
-    histories = HISTORY_COLUMNS | SnifferOnBoard.COLUMNS
+    histories, gases = HISTORY_COLUMNS | SnifferOnBoard.COLUMNS, gas_columns(GAS_KEYS)
     return {
         "summary.csv and comparison.csv": SUMMARY_COLUMNS,
         SNIFFER_TITLE: SnifferOnBoard.FIGURES,
+        "summary.csv, of flights with channels of other gases": gases.figures,
         "summary.csv, of flights beside a ship whose size is known": HULL_COLUMNS,
         "summary.csv, of flights with several faults": further_faults(2),
         SEARCH_TITLE: FINDING_COLUMNS,
@@ -61,6 +64,7 @@ def tables() -> dict[str, Table]:
         sulphur: FLIGHT_COLUMNS | of_sulphur,
         "flights/ID.parquet": HISTORY_COLUMNS,
         "flights/ID.parquet, of flights with a sniffer": SnifferOnBoard.COLUMNS,
+        "flights/ID.parquet, of flights with channels of other gases": gases.histories,
         "flights/ID.parquet, of flights with a keep-out guard": GuardBelief.COLUMNS,
         "flights/ID.parquet, of flights with other ships": TrafficBelief.COLUMNS,
         "flights/ID.parquet, of flights that search for the plume": BELIEF_COLUMNS,

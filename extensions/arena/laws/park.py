@@ -53,7 +53,8 @@ def point_on_line(position: Vector, course: float, distance: float) -> Vector:
 def point_on_circle(
     position: Vector, centre: Vector, radius: float, side: int, distance: float
 ) -> Vector:
-    """Return the point of a circle that is ``distance`` ahead [m], or the nearest if there is none.
+    """Return the point of a circle that is ``distance`` ahead [m], or the nearest point without
+    one.
 
     Parameters
     ----------

@@ -1,8 +1,9 @@
-"""Where a plume is, how wide and how strong, from readings that show it and readings that do not.
+"""Estimates where a plume is, how wide and how strong, from readings that show it and readings that
+do not.
 
-``PlumeGrid`` holds the cells that an estimate is spread over, and what a pass is expected to read
-in each. ``PlumeEstimator`` applies Bayes' rule to them, once for each pass over the axis. The
-mathematics is in docs/finding_the_plume.md.
+``PlumeGrid`` holds the cells of an estimate, and the readings that are expected of a pass in each.
+``PlumeEstimator`` applies Bayes' rule to them, once for each pass over the axis. The mathematics is
+in docs/finding_the_plume.md.
 """
 
 import math
@@ -34,25 +35,29 @@ from gnc.numeric import clip
 Array = npt.NDArray[np.float64]
 
 SIGNAL_TO_NOISE = 5.0
-"""Least peak of the readings over their noise of a detection [-] (Kattner 2015, of CO2)."""
+"""Least peak of the readings of a detection, over their noise [-] (Kattner 2015, of CO2)."""
 
 HIT = 0.6
-"""Concentration in a pass over that in the plume's centre from which it hits [-]."""
+"""Least concentration in a pass that counts as a hit, over that in the plume's centre [-]."""
 
 STRENGTH_STEP = 0.5
 """Step of the logarithm of strengths [-]: a plume's shape determines it to about half of it."""
 
 _FADE = 13
-"""Steps of strength from a plume's centre to where it counts as nothing [-]: e^-6.3 of it."""
+"""Steps of strength from a plume's centre to where its concentration counts as 0 [-]: at e^-6.3 of
+that in the centre.
+"""
 
 _HEIGHTS, _BEARINGS = 35, 25
 """Cells over height and bearing [-]."""
 
 _PLACE_STEP = 0.5
-"""Step of places of the centre across at one moment, over the expected spread [-]."""
+"""Step between the places of the centre across the axis at one moment, over the expected spread
+[-].
+"""
 
 _REACH = 3.0
-"""Standard deviations of the prior that the cells reach to [-]."""
+"""Standard deviations of the prior that the cells cover [-]."""
 
 _LOWEST = 5.0
 """Least height of an axis [m]."""
@@ -64,59 +69,65 @@ _MIDDLE = _SPREADS // 2
 """Index of the expected spread [-]."""
 
 _COARSE = 2
-"""Cells of height that count as one where passes to come are weighed [-]."""
+"""Cells of height that are merged into one where future passes are weighed [-]."""
 
 _STRENGTH_ERROR, _STRENGTH_OBLIQUE = 0.25, 0.2
-"""Error of the strength of a pass over itself, square to the plume, and what it grows by per way
-along it over across [-].
+"""Relative error of the strength of a pass that is square to the plume, and its growth per
+obliqueness (way along the plume over way across) [-].
 
-Of 972 passes with known strength the scatter beyond that of the meander was 0.27 square to the
-plume, and 0.45 at 1 to 2.
+In 972 passes with known strength the scatter beyond that of the meander was 0.27 square to the
+plume, and 0.45 at an obliqueness of 1 to 2.
 """
 
 _WIDTH_ERROR, _WIDTH_OBLIQUE = 0.15, 0.25
-"""Error of the logarithm of the width of a pass, square to the plume, and what it grows by per way
-along it over across [-].
+"""Error of the logarithm of the width of a pass that is square to the plume, and its growth per
+obliqueness [-].
 
-The centre moves while the vehicle crosses. Of the same passes the scatter was 0.14 square to the
-plume, 0.2 at 0.6 to 1, 0.32 at 1 to 2 and 0.69 at 2 to 4.
+The centre moves while the vehicle crosses. In the same passes the scatter was 0.14 square to the
+plume, 0.2 at an obliqueness of 0.6 to 1, 0.32 at 1 to 2 and 0.69 at 2 to 4.
 """
 
 _RANGE_MIN = 1e-3
-"""Least deviation of the stack's height over that of the rise [-], to divide by."""
+"""Least deviation of the stack's height over that of the rise [-]; the likelihood divides by it."""
 
 _TINY = 1e-300
-"""Least probability that is divided by [-]."""
+"""Least probability in a denominator [-]."""
 
 _SPREAD_MIN = 0.4
 """Least spread over that at the expected height [-]."""
 
 _FORGET = 6000.0
-"""Time in which a posterior falls back to the prior [s]: a ship may change its load."""
+"""Time constant with which a posterior falls back to the prior [s]: a ship may change its load."""
 
 _DIFFUSED = 10.0
-"""Least time between random walks of the axis [s]: in less it wanders by less than a cell."""
+"""Least time between random walks of the axis [s]: in a shorter time it wanders by less than a
+cell.
+"""
 
 _LOST = 0.01
 """Probability of a row of misses below which a plume that was found is lost again [-]."""
 
 _MEMORY = 10.0
-"""Passes that the mean of the innovations is over [-]."""
+"""Passes over which innovations are averaged [-]."""
 
 _CHANCE = 0.02
-"""Least probability of a hit or a miss that innovations are judged with [-]."""
+"""Least probability of a hit or a miss in an innovation [-]."""
 
 _BELIEVED = 0.75
-"""Exponent of a pass's likelihood [-], likeliest over 80 flights: passes share errors."""
+"""Exponent of a pass's likelihood [-]; the most likely value over 80 flights. It is below 1 since
+passes share errors.
+"""
 
 _UNLIKELY = 1e-5
-"""Probability of a height below which it does not count where passes to come are weighed [-]."""
+"""Least probability of a height that counts where future passes are weighed [-]."""
 
 _LOOK = 2.0
 """Way along the plume to an independent centre, over the meander's correlation length [-]."""
 
 _NEAREST = 0.3
-"""Least distance of a believed pass over the prior's [-]: nearer it is another plume."""
+"""Least distance from the stack of a pass that is believed, over that of the prior [-]: a plume
+that is nearer is another one.
+"""
 
 _NOMINAL_RESPONSE = 0.5
 """Largest reading over strength, before a pass has shown it [-]."""
@@ -139,10 +150,10 @@ class PlumeGrid:
     ----------
     height, strength, bearing : of the cells, shapes (h,), (c,), (b,) [m, ppm, rad]
     sigma_y, sigma_z : of the cells, shape (w, h) [m]
-    widths : spreads of pulses, at the expected height, shape (v,) [m]: as many as cells of spread
-    faint : strengths from the faintest that a cell may be read with up to the strongest, shape (p,)
-        [ppm]
-    places : of the centre across at one moment, shape (j,) [m]
+    widths : spreads of pulses at the expected height, one for each cell of spread, shape (v,) [m]
+    faint : strengths from the faintest that a pass may read in any cell up to the strongest, shape
+        (p,) [ppm]
+    places : of the centre across the axis at one moment, shape (j,) [m]
     prior, bearing_prior : probability of each cell, shapes (w, h, c) and (b,)
     """
 
@@ -182,12 +193,12 @@ class PlumeGrid:
         logs = np.arange(median.min() - reach, median.max() + reach + STRENGTH_STEP, STRENGTH_STEP)
         self.strength: Array = np.exp(logs)
         self.faint: Array = np.exp(logs[0] + STRENGTH_STEP * np.arange(1 - _FADE, len(logs)))
-        # Index of the faint strength that is so many steps less than a strength, shape (f, c).
+        # Index of the faint strength that is f steps less than each strength, shape (f, c).
         self._index = _FADE - 1 + np.arange(len(logs)) - np.arange(_FADE)[:, np.newaxis]
         self._fainter: Array = np.eye(len(self.faint))[self._index.ravel()]
-        # The other way round: so many steps more than a faint strength, shape (f, p).
+        # Index of the strength that is f steps more than each faint strength, shape (f, p).
         self._stronger = np.arange(len(self.faint)) + np.arange(_FADE)[:, np.newaxis]
-        # Distance from the centre, over the spread, at which a step of fading ends.
+        # Distance from the centre, over the spread, at which each step of fading ends.
         self._edges: Array = np.sqrt(2.0 * STRENGTH_STEP * (np.arange(_FADE) + 0.5))
         return logs
 
@@ -245,11 +256,11 @@ class PlumeGrid:
         return result
 
     def fading(self, off: Array, looks: float) -> Array:
-        """Return the probability that a pass reads so many steps less than the strength.
+        """Return the probability that a pass reads each number of steps less than the strength.
 
         The centre is z_m above the axis with z_m ~ N(0, meander_z^2), and the pulse has exp(-(h +
-        z_m - z)^2/2 sigma_z^2) of the strength; of several looks at the plume the best counts. The
-        rest to 1 is the probability of nothing.
+        z_m - z)^2/2 sigma_z^2) of the strength; the best of several looks at the plume counts. The
+        probabilities of a cell add up to 1 less that of reading nothing.
 
         Parameters
         ----------
@@ -270,7 +281,7 @@ class PlumeGrid:
         ----------
         off : height of each axis of ``coarse`` above the pass, shape (..., h') [m]
         looks : same as ``fading``
-        least : strength that is read at least [ppm]
+        least : least strength of the reading [ppm]
         sigma_z : spread in height of each axis, shape (h',) [m]
         """
         reach = np.sqrt(2.0 * np.log(np.maximum(self.strength / least, 1.0)))
@@ -313,7 +324,9 @@ class PlumeGrid:
         return result
 
     def coarse_heights(self, heights: Array) -> Array:
-        """Return the mean of each pair of heights, shape (h',); or of another quantity of them."""
+        """Return the mean over each pair of heights, shape (h',), of the heights or of another
+        quantity.
+        """
         result: Array = np.add.reduceat(heights, self._pairs) / self._paired
         return result
 
@@ -332,7 +345,8 @@ class PlumeGrid:
         reach = self._edges * sigma_z[:, np.newaxis]
         fading = _differences(self.within(reach, off[..., np.newaxis], looks))
         of_heights = weights.sum(axis=1)
-        # By height and reading, summed over the strengths that lead to it; the last is nothing.
+        # Probability of each height and reading, summed over the strengths that lead to it; the
+        # last reading is nothing.
         joint = np.empty((len(heights), len(off), len(self.faint) + 1))
         padded = np.zeros((len(heights), weights.shape[1] + 2 * (_FADE - 1)))
         padded[:, _FADE - 1 : 1 - _FADE] = weights
@@ -347,7 +361,8 @@ class PlumeGrid:
         return result
 
     def faded(self, values: Array) -> Array:
-        """Return values of ``faint`` strengths at each step less than each strength.
+        """Return the values of those ``faint`` strengths that are each number of steps below each
+        strength.
 
         Parameters
         ----------
@@ -420,16 +435,17 @@ def random_walk(cells: Array, axis: int, variance: float) -> Array:
 
 
 def _normalised(cells: Array, prior: Array) -> Array:
-    """Return probabilities of a sum of 1; those of the prior where nothing is left."""
+    """Return probabilities that add up to 1; those of the prior where all of them are 0."""
     total = float(cells.sum())
     return cells / total if total > 0.0 else prior.copy()
 
 
 def _log_likelihood_ratio(slope: Array, bend: Array, strength: Array, obliqueness: float) -> Array:
-    """Return the log likelihood of each strength at each place less that of no pulse.
+    """Return the log likelihood of each strength at each place, less the log likelihood of no
+    pulse.
 
-    A pulse of strength P fits readings that have one of P (1 + e), e ~ N(0, error^2): e has been
-    integrated out.
+    A pulse of strength P fits readings with a pulse of strength P (1 + e), e ~ N(0, error^2); the
+    likelihood is integrated over e.
 
     Parameters
     ----------
@@ -461,12 +477,13 @@ class PlumeState(Enum):
 
 
 class _Scene(NamedTuple):
-    """Likelihood of the readings of a pass, all over the same factor.
+    """Likelihood of the readings of a pass, up to one common factor.
 
     Attributes
     ----------
-    likelihood : for a plume of each spread, at each place, read with each strength, shape (w, j, p)
-    nothing : for no pulse
+    likelihood : of a plume of each spread, at each place, if it is read with each strength, shape
+        (w, j, p)
+    nothing : likelihood without a pulse
     """
 
     likelihood: Array
@@ -485,7 +502,7 @@ class PlumeEstimator:
 
     Attributes
     ----------
-    prior, grid : what was expected, and the cells
+    prior, grid : the expected plume, and the cells
     cells, bearings : probability of each, shapes (w, h, c) and (b,)
     height, height_deviation : of the axis above the sea, at the distance and in the apparent wind
         of the last pass [m]
@@ -501,7 +518,7 @@ class PlumeEstimator:
     innovation : mean normalised innovation squared of the passes, 1 where the filter is consistent
         [-]
     passes : number of passes so far [-]
-    detectable : least strength that a pass like the last one detects [ppm]
+    detectable : least strength that a pass such as the last one detects [ppm]
     """
 
     def __init__(self, prior: PlumePrior) -> None:
@@ -534,7 +551,7 @@ class PlumeEstimator:
 
     @property
     def sensor(self) -> SensorState:
-        """State of the sensor; unless it works the estimate only diffuses."""
+        """State of the sensor; while it does not work, the estimate only diffuses."""
         return self._watch.state
 
     def predict(self, time_step: float) -> None:
@@ -562,9 +579,8 @@ class PlumeEstimator:
         along, across : of the vehicle, behind the stack and to the right of the predicted axis,
             seen along it [m]
         altitude : above the sea [m]
-        reading : of CO2, newly sampled; NaN where there is none [ppm]. A constant background may be
-            in it
-        apparent_wind : past the ship now, taken for 1 m/s at least; by default the prior's [m/s]
+        reading : new reading of CO2; NaN without one [ppm]. It may contain a constant background
+        apparent_wind : past the ship now, at least 1 m/s is assumed; by default the prior's [m/s]
         """
         if not math.isnan(reading):
             self._watch.read(reading)
@@ -588,7 +604,8 @@ class PlumeEstimator:
         distance, altitude = path.at(self.offset)
         believed = distance > _NEAREST * self.prior.distance and not self._spoilt
         if believed:
-            # There the plume has another spread and strength than at the cells' distance.
+            # At that distance the plume has another spread and strength than at the cells'
+            # distance.
             self._distance = distance
             self._widened = self.prior.widened(distance, self._wind)
         self._heights = self.prior.height_at(self.grid.height, self._distance, self._wind)
@@ -619,11 +636,12 @@ class PlumeEstimator:
         return float(read.sum(axis=0) @ np.minimum(np.maximum(above, 0.0), 1.0))
 
     def prospects(self, altitudes: Array) -> tuple[Array, Array]:
-        """Return the probability of each coarse cell, and that a pass then detects the plume.
+        """Return the probability of each coarse cell, and the probability that a pass detects the
+        plume if that cell is true.
 
         Parameters
         ----------
-        altitudes : of the passes, shape (n,) or, for each height another one, (n, h) [m]
+        altitudes : of the passes [m], shape (n,), or (n, h) with another altitude for each height
 
         Returns
         -------
@@ -664,7 +682,9 @@ class PlumeEstimator:
         self.bearings += forgotten * (grid.bearing_prior - self.bearings)
 
     def _correct(self, path: Path, evidence: Evidence, altitude: float) -> None:
-        """Correct the cells with the bearing as it is believed, and the other way round."""
+        """Correct the cells given the estimate of the bearing, and the bearing given that of the
+        cells.
+        """
         grid = self.grid
         likelihood, nothing = self._scene(path, evidence)
         of_places = grid.place_likelihood(self._distance, self._widened, path.duration)
@@ -750,7 +770,7 @@ class PlumeEstimator:
 
     @property
     def measurable(self) -> float:
-        """Probability that some altitude within the limits has a detection in most passes [-]."""
+        """Probability that most passes at some altitude within the limits detect the plume [-]."""
         best = np.clip(
             self.grid.coarse_heights(self._heights), self.prior.lowest, self.prior.highest
         )

@@ -18,13 +18,17 @@ from gnc.estimation.plume.prior import BACKGROUND_DRIFT, GasSensor
 Array = npt.NDArray[np.float64]
 
 _EQUAL, _EQUAL_BY_NOISE = 10, 1e-12
-"""Equal readings of a stuck sensor, and the largest probability that noise makes so many [-, -]."""
+"""Least number of equal readings of a stuck sensor, and the largest probability that noise makes as
+many [-, -].
+"""
 
 _SILENT_INTERVALS, _SILENT_TIME = 5.0, 2.0
-"""Intervals between readings, and least time, after which a sensor counts as silent [-, s]."""
+"""Number of reading intervals without a reading, and least time, after which a sensor counts as
+silent [-, s].
+"""
 
 _TURNED = 5.0
-"""Way back across by which a pass is over [m]: more than the error of the position."""
+"""Way back across the axis after which a pass is over [m]: more than the error of the position."""
 
 _LONGEST = 25.0
 """Time after which a pass is over without a turn [s]."""
@@ -33,25 +37,28 @@ _FINE = 0.25
 """Time step of the path in the model of the sensor's lag [s]: 5 m at 20 m/s, about a spread."""
 
 _ACROSS_MIN = 0.25
-"""Least way across over that along, where the vehicle turns within the plume [-]."""
+"""Least way across over way along, where the vehicle turns within the plume [-]."""
 
 _READINGS_MIN = 4
-"""Least readings of a pass [-]: with fewer, background and pulse cannot be told apart."""
+"""Least number of readings of a pass [-]: fewer do not separate background and pulse."""
 
 _SHAPE_ERROR = 0.15
 """Error of a reading by the plume's shape, over the largest reading [-]: an assumption."""
 
 _TAIL_ERROR = 0.3
-"""Error of the rest of the last pass in the sensor, over that rest [-]."""
+"""Relative error of the gas of the last pass that is still in the sensor [-]."""
 
 _UNSEEN_DRIFT = 1.0
-"""Time of drift by which the level at a pass's end is less certain than its fit [s]."""
+"""Time for which the level drifts after a pass: so much less certain than its fit is the level at
+the end [s].
+"""
 
 _FIRST_BACKGROUND = 1e3
-"""Standard deviation of the background before anything is read [ppm]: clean air has some 400."""
+"""Standard deviation of the background before the first reading [ppm]: clean air has some 400."""
 
 BEND_MIN = 1e-12
-"""Least curvature of a likelihood [1/ppm^2]: that of a place that was not flown to."""
+"""Least curvature of a likelihood [1/ppm^2]; it stands for places that the vehicle did not reach.
+"""
 
 _STILL = 0.1
 """Least range of the readings of a pass that is believed, over the sensor's noise [-]."""
@@ -69,10 +76,10 @@ class SensorState(Enum):
 class SensorWatch:
     """Watches the readings of a sensor.
 
-    A sensor that is dead but still has the noise of one that works cannot be told from clean air. A
-    sensor whose noise is less than the step of its readings repeats them in clean air, too: it
-    takes longer to show that it is stuck (at half the step 73 readings, at a fifth 2,211), and
-    cannot where its noise is less than a sixteenth of the step.
+    The readings of a dead sensor whose noise is that of a working one look the same as clean air. A
+    sensor whose noise is less than the step of its readings repeats them in clean air, too. So it
+    takes more equal readings to show that it is stuck: 73 where the noise is half the step, 2,211
+    at a fifth. Below a sixteenth of the step no number of readings shows it.
 
     Parameters
     ----------
@@ -80,7 +87,7 @@ class SensorWatch:
 
     Attributes
     ----------
-    state : by the readings so far; it recovers with them
+    state : as the readings so far show it; it recovers when they do
     """
 
     def __init__(self, sensor: GasSensor) -> None:
@@ -114,9 +121,9 @@ class SensorWatch:
 def equal_readings(sensor: GasSensor) -> float:
     """Return the number of equal readings in a row from which a sensor counts as stuck [-].
 
-    It is infinite where noise never shows. A reading is rounded to the step d, its noise is normal
-    with the deviation s. Most equal readings are those of air at a multiple of d: each is the same
-    with the probability erf(d/(2 sqrt(2) s)).
+    It is infinite where no noise is visible in the readings. A reading is rounded to the step d,
+    its noise is normal with the deviation s. Equal readings are most likely in air at a multiple of
+    d: each repeats the one before with the probability erf(d/(2 sqrt(2) s)).
     """
     same = math.erf(sensor.resolution / (2.0 * math.sqrt(2.0) * sensor.noise))
     if same == 0.0:
@@ -168,7 +175,7 @@ class Path:
         return float(along / max(abs(self.across[i + 1] - self.across[i - 1]), _ACROSS_MIN * along))
 
     def covered(self, places: Array, weights: Array) -> float:
-        """Return the sum of the weights of those places across, in order, that the way covers."""
+        """Return the sum of the weights of the places across that the way covers; places ascend."""
         first, last = places.searchsorted((self.across.min(), self.across.max()))
         return float(weights[first:last].sum())
 
@@ -216,7 +223,7 @@ class PassCollector:
         ----------
         time : [s]
         along, across, altitude : of the vehicle, in the frame of the predicted axis [m]
-        reading : [ppm]; NaN for none
+        reading : [ppm]; NaN without one
         """
         if self._places and time <= self._places[-1].time:
             self._places.pop()
@@ -267,10 +274,10 @@ class PassCollector:
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """What the readings of a pass say of a pulse of strength P at place j with spread w.
+    """The evidence in a pass's readings for a pulse of strength P at place j with spread w.
 
-    Its log likelihood less that of no pulse is P ``slope`` - P^2 ``bend``/2, with noise, background
-    and shape error together.
+    The log likelihood of the pulse, less that of no pulse, is P ``slope`` - P^2 ``bend``/2, with
+    noise, background and shape error together.
 
     Attributes
     ----------
@@ -305,7 +312,7 @@ class _Products(NamedTuple):
     background: Array
 
     def of(self, index: int) -> "_Products":
-        """Return those of one template."""
+        """Return the products of one template."""
         return _Products(self.read[index], self.square[index], self.covered[index], self.background)
 
     def projected(self, variance: float, inner: Array) -> tuple[Array, Array]:
@@ -317,7 +324,7 @@ class _Products(NamedTuple):
 
 
 class PassReader:
-    """Compares readings with pulses that are Gaussian in the place across.
+    """Compares readings with pulses that are Gaussian across the plume.
 
     A pulse is read through the lag of the sensor, over a background that drifts. With T the
     response to a pulse of strength 1, N the columns of the background (level, slope, and the rest
@@ -402,7 +409,7 @@ class PassReader:
         Parameters
         ----------
         path : of the pass
-        unread : time since the last pass that was read, in which the level drifts [s]
+        unread : time since the end of the last pass that was read, in which the level drifts [s]
         """
         sensor = self._sensor
         since = path.read_at - path.time[0]
@@ -426,7 +433,7 @@ class PassReader:
     def templates(self, path: Path, places: Array, spreads: Array) -> Array:
         """Return the readings of pulses of strength 1; parameters same as ``read``.
 
-        They are those at every place with every spread, shape (w j, m).
+        They are the readings at every place with every spread, shape (w j, m).
         """
         off = path.across - places[:, np.newaxis]
         off *= off
@@ -434,7 +441,8 @@ class PassReader:
             len(spreads) * len(places), -1
         )
         constant = self._sensor.time_constant
-        # Air that came in from half a step before a point of the path to half a step after it.
+        # Each point of the path stands for the air from half a step before it to half a step after
+        # it.
         after = np.maximum(path.read_at[:, np.newaxis] - path.time + 0.5 * _FINE, 0.0)
         before = np.maximum(after - _FINE, 0.0)
         lag = np.exp(before / -constant) - np.exp(after / -constant)
@@ -463,7 +471,7 @@ def _inner(background: Array, variance: float) -> Array:
 
 
 def _spread_of(values: Array) -> tuple[float, float, float]:
-    """Return the least, the median (of an even number the upper one) and the largest.
+    """Return the least, the median (the upper one of an even number) and the largest value.
 
     Of few values numpy takes longer.
     """

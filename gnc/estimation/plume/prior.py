@@ -1,4 +1,4 @@
-"""What is expected of a plume before anything is read, and the data sheet of its sensor."""
+"""The plume that is expected before the first reading, and the data sheet of its sensor."""
 
 import math
 from dataclasses import dataclass
@@ -32,18 +32,18 @@ _SURFACE_SCALE = 0.72
 """Length over height at which the sea stops the spread in height [-] (AERMOD, elevated part)."""
 
 _OWN_SHARE, _OWN_HEIGHT, _OWN_FRICTION = 0.42, 40.0, 0.3
-"""Spread about the moving centre over that about the axis, across and by turbulence [-], of a
+"""Spread about the moving centre over spread about the axis, across and by turbulence [-], for a
 source at this height [m] in wind of this friction velocity [m/s].
 
 It is proportional to the fourth root of the inverse of each. A fit to the plume model, to 5 % of
-it, at 240 to 330 m behind sources of 20 to 60 m, in 3 to 12 m/s: dissipation is less higher up, and
-the 4/3 law lags behind the meander.
+it, at 240 to 330 m behind sources of 20 to 60 m, in 3 to 12 m/s: dissipation decreases with height,
+and the 4/3 law lags behind the meander.
 """
 
 _OWN_UP = 0.9
 """Largest spread about the moving centre over that about the axis, across and in height [-].
 
-In height the spread about the centre is that across: eddies of the plume's own size are the same in
+The spread about the centre in height equals that across: eddies of the plume's size are the same in
 each direction, and the sea stops the larger ones.
 """
 
@@ -60,10 +60,13 @@ _MODEL_ERROR, _SPREAD_ERROR, _BEARING_ERROR = 0.1, 0.25, 0.02
 """Errors of rise and spreads, over themselves, and of the bearing [-, -, rad]: assumptions."""
 
 _GROWTH, _NEAR = 0.85, 0.2
-"""Power of the distance with which spreads grow, and its least value over the prior's [-, -]."""
+"""Power of the distance with which spreads grow, and least value of the distance over that of the
+prior [-, -].
+"""
 
 HEIGHT_DRIFT, BEARING_DRIFT = 0.1, 0.002
-"""How far the axis wanders in a second [m, rad]; it grows with the root of time."""
+"""Distance and angle that the axis wanders in a second [m, rad]; they grow with the root of time.
+"""
 
 BACKGROUND_DRIFT = 0.1
 """Rate at which the reading of clean air may change, by drift and by altitude [ppm/s]."""
@@ -133,13 +136,14 @@ class GasSensor:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlumePrior:
-    """A plume as it is expected, where it is to be crossed. Deviations are standard deviations.
+    """The expected plume at the place where it is to be crossed. Deviations are standard
+    deviations.
 
     Attributes
     ----------
-    distance, apparent_wind : behind the stack, and past the ship; the other values are for them
-        [m, m/s]
-    source_height, source_deviation : from where the plume rises, above the sea [m]
+    distance, apparent_wind : behind the stack, and past the ship; the other values hold there [m,
+        m/s]
+    source_height, source_deviation : height above the sea from which the plume rises [m]
     height, height_deviation : of the axis above the sea, from stack, load and rise [m]
     bearing_deviation : of the axis from the one predicted from the wind [rad]
     sigma_y, sigma_z : spreads about the centre at one moment, at the expected height [m]
@@ -210,10 +214,12 @@ class PlumePrior:
         return result
 
     def widened(self, distance: float, apparent_wind: float) -> float:
-        """Return spreads and meander elsewhere over those at the prior's distance and wind [-].
+        """Return the ratio of spreads and meander elsewhere to those at the prior's distance and
+        wind [-].
 
         Turbulence makes them grow with x/U, buoyancy with x^(2/3)/U, and the source has a spread
-        from the start: within 7 % (rms) of the plume model's from 250 to 460 m to 220 to 350 m.
+        from the start. The result is within 7 % (rms) of the plume model's, from 250 to 460 m to
+        220 to 350 m.
 
         Parameters
         ----------
@@ -243,7 +249,7 @@ class PlumePrior:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Expectation:
-    """What is known beforehand of the ship's class and of the sensor.
+    """The values that are known beforehand of the ship's class and of the sensor.
 
     Attributes
     ----------
@@ -276,9 +282,9 @@ def expected_plume(
 ) -> PlumePrior:
     """Return the expected plume of a ship of a class, over the sea in neutral air.
 
-    Spreads about the moving centre are those of source, buoyancy and part of the turbulence; the
-    meander has the rest of the turbulence. That part is a fit to ``measurement.plume.spread`` at
-    200 to 500 m.
+    Source, buoyancy and a part of the turbulence make the spreads about the moving centre; the rest
+    of the turbulence makes the meander. The part is a fit to ``measurement.plume.spread`` at 200 to
+    500 m.
 
     Parameters
     ----------
@@ -303,7 +309,7 @@ def expected_plume(
     across = _SIGMA_V * friction * age
     path = _SIGMA_W * friction * age
     up = path / math.sqrt(1.0 + path / (_SURFACE_SCALE * height))
-    # And about the moving centre.
+    # Spreads about the moving centre.
     scale = _OWN_HEIGHT * _OWN_FRICTION / (expected.source_height * friction)
     own_across = across * min(_OWN_UP, _OWN_SHARE * scale**0.25)
     own_up = min(own_across, _OWN_UP * up)
@@ -311,8 +317,8 @@ def expected_plume(
     without_turbulence = math.hypot(_SOURCE_SPREAD, buoyant)
     sigma_y = math.hypot(without_turbulence, own_across)
     sigma_z = math.hypot(without_turbulence, own_up)
-    # Twice the load is twice the gas, and makes the part of the spreads by buoyancy 2^(1/3) times
-    # as wide.
+    # Twice the load gives twice the gas, and makes the buoyant part of the spreads 2^(1/3) times as
+    # wide.
     by_load = 1.0 - buoyant**2 * (1.0 / sigma_y**2 + 1.0 / sigma_z**2) / 3.0
     return PlumePrior(
         distance=distance,

@@ -1,3 +1,3 @@
-"""What air and sensors make wrong in what the vehicle knows of its own motion: the estimated wind,
-and dead reckoning.
+"""Errors of the vehicle's own motion by air and sensors: of the estimated wind, and of dead
+reckoning.
 """

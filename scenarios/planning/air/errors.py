@@ -1,8 +1,8 @@
 """The error budget of a flight beside a vessel, from what its scenario declares.
 
-By how much dead reckoning may go wrong in steady air, by errors of sensors and of the estimated
-wind, is declared, or follows from the sensors and the airspeed if that is more. The scenario's own
-air adds to it: its mean wind, its gusts, and its turbulence.
+The error of dead reckoning in steady air, by errors of sensors and of the estimated wind, is
+declared, or follows from the sensors and the airspeed if that is more. The scenario's air adds to
+it: mean wind, gusts, and turbulence.
 """
 
 import math
@@ -35,12 +35,12 @@ _CHANGING_TURNS = 0.02
 """Share of the airspeed by which dead reckoning goes wrong by itself [-]: its table of crab angles
 is that of steady turns.
 
-Twice the largest of five aircraft that weave with periods of 3 to 40 s: 0.8 % of the X8, 1.0 % of
-the Aerosonde, 0.3 % of others.
+It is twice the largest of five aircraft that weave with periods of 3 to 40 s: 0.8 % for the X8, 1.0
+% for the Aerosonde, 0.3 % for others.
 """
 
 _AGES = 200
-"""Ages of an outage at which that is looked at [-]."""
+"""Number of ages of an outage at which the error is evaluated [-]."""
 
 
 def error_budget(
@@ -60,9 +60,9 @@ def error_budget(
     scenario, setup : the flight, and its vehicle
     wind : mean wind of the flight
     turn : time of a turn away [s]
-    turning : how far turbulence takes a turn off its commands
+    turning : deviation of a turn from its commands by turbulence
     slowest : airspeed that the vehicle may fall to in a turn [m/s]
-    failed_part : how far the failure of a part takes a turn off its commands [m]
+    failed_part : deviation of a turn from its commands by the failure of a part [m]
     """
     f, altitude_error = scenario.following, setup.altitude_error
     drift = drift_rate(scenario, wind, turn, altitude_error)
@@ -95,25 +95,24 @@ def error_budget(
 def drift_rate(
     scenario: Scenario, wind: WindField, turn: float, altitude_error: float = 0.0
 ) -> float:
-    """Return how fast dead reckoning may go wrong, turbulence aside [m/s]; 0 where satellite
+    """Return the largest drift of dead reckoning without turbulence [m/s]; 0 where satellite
     navigation is not lost.
 
     Parameters
     ----------
     wind : mean wind of the flight
-    turn : time of a turn away, over which the guard reckons with an error of the velocity as large
-        [s]
+    turn : time of a turn away, for which the guard allows for an equal error of the velocity [s]
     altitude_error : by which the altitude may differ from its command [m]
     """
     if not scenario.follows or SATELLITES not in scenario.declared_faults:
         return 0.0
     outage, duration = _longest_outage(scenario), scenario.flight.duration_max_s
-    # The wind may have changed before the loss, too, and its estimate not have followed.
+    # The wind may have changed before the loss, too, without the estimate following.
     changed = largest_wind_change(scenario, wind, outage + wind_followed(scenario), altitude_error)
     age = np.linspace(0.0, min(outage, duration), _AGES)
     covered = float(np.max(_by_gusts(scenario, age) / (age + turn)))
-    # An airspeed and a heading with biases are wrong in the estimated wind, and the other way round
-    # once the vehicle has turned.
+    # Biases of airspeed and heading are in the estimated wind, and count with the opposite sign
+    # after the vehicle has turned.
     sensed = (
         _by_noise(scenario, age, turn)
         + 2.0 * wind_bias(scenario)
@@ -124,8 +123,8 @@ def drift_rate(
 
 
 def _longest_outage(scenario: Scenario) -> float:
-    """Return how long satellite navigation is lost at a time, at most, of the faults that flights
-    may have or that are declared [s].
+    """Return the longest outage of satellite navigation among the faults that flights may have or
+    that are declared [s].
     """
     return max(
         fault.satellite_navigation_s
@@ -135,13 +134,13 @@ def _longest_outage(scenario: Scenario) -> float:
 
 
 def _by_noise(scenario: Scenario, age: Array, turn: float) -> float:
-    """Return how fast dead reckoning goes wrong by the noise of the sensors, once the wind is known
-    as well as it gets [m/s].
+    """Return the drift of dead reckoning by the noise of the sensors, after the estimate of the
+    wind has converged [m/s].
 
-    The wind is wrong by what its filter leaves. Readings that are wrong by another amount at each
-    step add up to a random walk. And a compass that is noisy makes the mean velocity over the mean
-    air too low by V (1 - exp(-sigma^2/2)): once in the wind, and once, after half a turn, in what
-    is reckoned with it.
+    The wind has the error that its filter leaves. Independent errors of the readings add up to a
+    random walk. And a noisy compass makes the mean velocity over the mean air too low by V (1 -
+    exp(-sigma^2/2)): once in the wind, and once more, after half a turn, in dead reckoning with
+    that wind.
     """
     noise, g = wind_noise(scenario), scenario.guidance
     walked = NOISE_DEVIATIONS * noise * np.sqrt(age / g.rate_hz)
@@ -156,16 +155,16 @@ def _by_noise(scenario: Scenario, age: Array, turn: float) -> float:
 
 
 def velocity_error(scenario: Scenario, drift: float) -> float:
-    """Return by how much noise or bias of its sensors may make the vehicle's own velocity wrong at
-    a step [m/s].
+    """Return the largest error of the vehicle's own velocity at a step, by noise or bias of its
+    sensors [m/s].
 
-    The guard is asked at each step, and goes by the one at which the noise makes a command look
-    safe. Dead reckoning goes by airspeed and heading as they are read; the guard reckons with its
-    drift beside.
+    The guard acts at each step, so that the step counts at which the noise makes a command look
+    safe. Dead reckoning uses the readings of airspeed and heading; the guard allows for its drift
+    separately.
 
     Parameters
     ----------
-    drift : how fast dead reckoning may go wrong, by ``drift_rate`` [m/s]
+    drift : largest drift of dead reckoning, by ``drift_rate`` [m/s]
     """
     noise = NOISE_DEVIATIONS * math.hypot(
         scenario.sensors.velocity_sigma_mps, wind_noise_left(scenario)
@@ -175,16 +174,16 @@ def velocity_error(scenario: Scenario, drift: float) -> float:
 
 
 def _gust_taken_for_wind(scenario: Scenario) -> float:
-    """Return how much of a gust may be in the estimated wind when it is over [m/s]: it has the area
-    of its peak for its rise.
+    """Return the largest part of a gust in the estimated wind at the gust's end [m/s]: its area is
+    that of its peak over the time of its rise.
     """
     air = scenario.turbulence
     return air.gust_speed_mps * -float(np.expm1(-air.gust_length_s / WIND_FOLLOWED))
 
 
 def _by_gusts(scenario: Scenario, age: Array) -> Array:
-    """Return how far gusts displace at most in an outage of some age [m]: one about its peak, and
-    one after the other.
+    """Return the largest displacement by gusts in an outage of some age [m]: by one about its peak,
+    and by the gusts that follow one another.
     """
     air = scenario.turbulence
     about_the_peak = np.sin(np.minimum(0.5 * np.pi, 0.5 * np.pi * age / air.gust_length_s))

@@ -1,5 +1,5 @@
-"""The wind that guard and mission have to allow for: at which heights a flight may be, how the filter
-of the wind is set, and by how much the wind changes until its estimate has followed.
+"""The wind that guard and mission have to allow for: the heights of a flight, the filter of the
+wind, and the change of the wind before its estimate has followed.
 """
 
 import math
@@ -29,20 +29,23 @@ from scenarios.world.vessel import VesselTruth
 from scenarios.world.world import TRACK_MARGIN, winds_past
 
 _RADII, _BEYOND, _TURN_RADII = 3.0, 1000.0, 4.0
-"""How far from the vessel an inclined plume is climbed along at most: keep-out radii [-], or beyond
-one so far [m] and as many turn radii [-], if that is more. Orbits lie nearer, unless their distance
-is given or a vessel has been silent for minutes.
+"""Largest distance from the vessel up to which a flight climbs along an inclined plume: a number of
+keep-out radii [-], or, if that is more, one such radius plus a distance [m] and a number of turn
+radii [-]. Orbits lie nearer, unless their distance is given or a vessel has been silent for
+minutes.
 """
 
 _SEA = 1.0
-"""Height at which a gliding aircraft has come down [m]: below it, it is down within a second."""
+"""Height at which a gliding aircraft counts as down [m]: it reaches the sea within a second."""
 
 _LOOKED_AT = 30
-"""Heights at which the wind past the vessel is looked at [-]."""
+"""Number of heights at which the wind past the vessel is checked [-]."""
 
 
 def climbed_along(scenario: Scenario) -> float:
-    """Return the distance from the vessel up to which an inclined plume is climbed along [m]."""
+    """Return the distance from the vessel up to which a flight climbs along an inclined plume
+    [m].
+    """
     radius = scenario.guarded_radius
     turn = scenario.guidance.airspeed_mps / omega_max(scenario.guidance)
     return max(
@@ -53,26 +56,28 @@ def climbed_along(scenario: Scenario) -> float:
 
 
 def flown_heights(scenario: Scenario) -> list[float]:
-    """Return the heights that are flown: at the start, the lowest and the highest, and the sea's if
-    it may glide there [m].
+    """Return the heights of a flight: at the start, the lowest and the highest, and that of the sea
+    if the vehicle may glide there [m].
     """
     crossed = _crossed_heights(scenario, climbed_along(scenario))
     return [*crossed, _SEA] if glides(scenario) else crossed
 
 
 def glides(scenario: Scenario) -> bool:
-    """Return whether a part of the aircraft may fail, after which it leaves the vessel gliding."""
+    """Return whether a part of the aircraft may fail, after which it leaves the vessel in a
+    glide.
+    """
     return not scenario.declared_faults <= NOT_OF_AIRCRAFT
 
 
 def climbs(scenario: Scenario) -> bool:
-    """Return whether the altitude changes before anything has failed."""
+    """Return whether the altitude changes without a failure."""
     return len(set(_crossed_heights(scenario, climbed_along(scenario)))) > 1
 
 
 def _crossed_heights(scenario: Scenario, distance: float) -> list[float]:
-    """Return the height at the start, the lowest and the highest of a plume that is climbed along
-    up to a distance [m].
+    """Return the height at the start, and the lowest and highest height of a climb along a plume up
+    to a distance [m].
     """
     flight, source = scenario.flight, scenario.source_height
     if scenario.emission.ship is not None:
@@ -87,12 +92,12 @@ def _crossed_heights(scenario: Scenario, distance: float) -> list[float]:
 def check_not_outrun(
     scenario: Scenario, vessel: VesselTruth, wind: WindField, distance: float
 ) -> None:
-    """Refuse a vessel that outruns the UAV through the air at a height that is flown.
+    """Refuse a vessel that outruns the UAV through the air at a height of the flight.
 
     Parameters
     ----------
     scenario, vessel, wind : the flight, and its mean wind
-    distance : from the vessel, up to which its plume is climbed along [m]
+    distance : distance from the vessel up to which the flight climbs along its plume [m]
 
     Raises
     ------
@@ -121,36 +126,36 @@ def check_not_outrun(
 
 
 _AIRSPEED_SIGMA, _COURSE_SIGMA = 0.5, 0.03
-"""Least deviations of airspeed and course that the wind's filter takes for noise in still air
+"""Least deviations of airspeed and course that count as noise in the wind's filter in still air
 [m/s, rad].
 """
 
 _FIRST_WIND = 0.04
-"""Share of the airspeed by which the first measurement of the wind is wrong by itself [-], by roll
-and climb: the most seen of 25 starts each is 2.3 % of the X8, 2.2 % of the Aerosonde and 1.3 % of
-the c172p, and 3.3 % of an X8 that climbs.
+"""Error of the first measurement of the wind by roll and climb, over the airspeed [-]: the largest
+in 25 starts each is 2.3 % for the X8, 2.2 % for the Aerosonde, 1.3 % for the c172p, and 3.3 % for
+an X8 that climbs.
 """
 
 _WIND_DRIFT = 0.02
-"""By how much the wind may change in the root of a second [m/s]."""
+"""Change of the wind in the root of a second [m/s]."""
 
 _UNTIL_ORBIT = 120.0
-"""Time for which the wind has been measured when an orbit is joined that the guard is to leave
-alone [s]; earlier the guard may act on it.
+"""Time of wind measurements before the vehicle joins an orbit on which the guard is not to act [s];
+earlier the guard may act.
 """
 
 _UNTIL_SETTLED = 200.0
 """Time after which the variance of an estimated wind no longer changes in still air [s]."""
 
 WIND_FOLLOWED = 20.0
-"""Time within which the estimated wind follows a change [s]: of a wind that turns steadily it is
-behind by less.
+"""Time within which the estimated wind follows a change [s]: the estimate lags less behind a wind
+that turns steadily.
 """
 
 
 def navigation_parameters(scenario: Scenario, setup: VehicleSetup) -> NavigationParameters:
-    """Return what the navigation knows beforehand: how much gusts scatter what it measures the wind
-    by.
+    """Return the parameters of the navigation: among them the scatter, by gusts, of its
+    measurements of the wind.
     """
     g, time_step, gust = scenario.guidance, 1.0 / scenario.guidance.rate_hz, _gust_sigma(scenario)
     airspeed_sigma, course_sigma = _sensor_sigmas(scenario)
@@ -170,7 +175,7 @@ def navigation_parameters(scenario: Scenario, setup: VehicleSetup) -> Navigation
 
 
 def wind_noise(scenario: Scenario) -> float:
-    """Return the deviation of the wind by the noise of airspeed and heading, as they are read at a
+    """Return the deviation of the wind by the noise of the readings of airspeed and heading at a
     step [m/s].
     """
     return _wrong_by(
@@ -179,10 +184,10 @@ def wind_noise(scenario: Scenario) -> float:
 
 
 def wind_bias(scenario: Scenario) -> float:
-    """Return by how much biases of airspeed and heading make the measured wind wrong at most [m/s].
+    """Return the largest error of the measured wind by biases of airspeed and heading [m/s].
 
-    The error turns with the vehicle: an estimate keeps that of the courses flown so far. In a climb
-    the airspeed is read that is flown along it, of which a little less leads ahead.
+    The error turns with the vehicle: an estimate keeps the error of earlier courses. In a climb the
+    sensor reads the airspeed along the inclined path, whose horizontal part is a little smaller.
     """
     climbing = (
         1.0 - 1.0 / math.hypot(1.0, scenario.following.climb_gradient) if climbs(scenario) else 0.0
@@ -192,9 +197,9 @@ def wind_bias(scenario: Scenario) -> float:
 
 
 def wind_error_in_weaves(scenario: Scenario, setup: VehicleSetup) -> float:
-    """Return by how much the estimated wind is wrong at most while the vehicle weaves in still air,
-    besides what is allowed for a first measurement [m/s]: its crab angles are not those of steady
-    turns at V_r.
+    """Return the largest error of the estimated wind while the vehicle weaves in still air, in
+    excess of the allowance for a first measurement [m/s]: its crab angles differ from those of
+    steady turns at V_r.
     """
     parameters = navigation_parameters(scenario, setup)
     return max((_largest_error(weave, parameters) for weave in setup.weaves), default=0.0)
@@ -202,12 +207,12 @@ def wind_error_in_weaves(scenario: Scenario, setup: VehicleSetup) -> float:
 
 @lru_cache(maxsize=64)
 def _largest_error(weave: Weave, parameters: NavigationParameters) -> float:
-    """Return the largest error of a wind that is estimated in a weave that goes on and on, beyond
-    that of the first measurement [m/s].
+    """Return the largest error of a wind that is estimated in a lasting weave, in excess of that of
+    the first measurement [m/s].
 
-    The estimate begins in straight flight, before the first turn. It is also looked at when the
-    filter has settled: an error decays to its mean over the weave then, about which it moves within
-    each period. So it begins at the mean of single measurements.
+    The estimate begins in straight flight, before the first turn. It is also evaluated after the
+    filter has settled: by then the error has decayed to its mean over the weave, about which it
+    moves within each period. So this estimate begins at the mean of single measurements.
     """
     wind, largest, first_variance = _wind_filter(parameters), 0.0, 0.0
     for measured in _triangles(weave.entry, parameters):
@@ -232,8 +237,8 @@ def _largest_error(weave: Weave, parameters: NavigationParameters) -> float:
 def _triangles(
     samples: Samples, parameters: NavigationParameters
 ) -> list[tuple[float, float, float, float]]:
-    """Return what the wind's filter takes of some samples: airspeed, course through the air, and
-    velocity over the ground.
+    """Return the inputs of the wind's filter for some samples: airspeed, course through the air,
+    and velocity over the ground.
     """
     rolls = [sample.roll for sample in samples]
     crabs = np.interp(rolls, parameters.crab_banks, parameters.crab_offsets).tolist()
@@ -252,15 +257,17 @@ def _wind_filter(parameters: NavigationParameters) -> WindFilter:
 
 
 def wind_noise_left(scenario: Scenario) -> float:
-    """Return the deviation of the estimated wind by that noise in the end [m/s]: sqrt(k/2) of it,
-    by the filter's gain k.
+    """Return the final deviation of the estimated wind by that noise [m/s]: sqrt(k/2) of the noise,
+    with the filter's gain k.
     """
     gain = _WIND_DRIFT * math.sqrt(plan_period(scenario.guidance)) / _sensor_sigma(scenario)
     return math.sqrt(0.5 * gain) * wind_noise(scenario)
 
 
 def first_known(scenario: Scenario, setup: VehicleSetup) -> EstimatedNavigation:
-    """Return the navigation after its first measurement: how wrong the wind may be at the start."""
+    """Return the navigation after its first measurement, with the error of the wind at the
+    start.
+    """
     airspeed = scenario.guidance.airspeed_mps
     navigation = EstimatedNavigation(navigation_parameters(scenario, setup))
     navigation.update(
@@ -283,7 +290,8 @@ def turbulence_met(scenario: Scenario) -> Process:
 
 
 def wind_known_on_orbit(scenario: Scenario, setup: VehicleSetup) -> WindErrorByGusts | None:
-    """Return the error of the estimated wind by turbulence as an orbit begins; none in calm air.
+    """Return the error of the estimated wind by turbulence at the start of an orbit; None in calm
+    air.
 
     The filter runs ``_UNTIL_ORBIT`` on a straight way: its gains hardly depend on courses.
     """
@@ -300,11 +308,10 @@ def wind_known_on_orbit(scenario: Scenario, setup: VehicleSetup) -> WindErrorByG
 
 
 def wind_change(scenario: Scenario, wind: WindField, altitude_error: float) -> float:
-    """Return by how much the wind that is flown in changes at most until its estimate has followed
-    [m/s].
+    """Return the largest change of the flight's wind before its estimate has followed [m/s].
 
-    It changes with time, and with the height of a vehicle that climbs to that of the plume, or
-    differs from its command [m].
+    The wind changes with time, and with the height of a vehicle that climbs to the plume, or whose
+    height differs from its command [m].
     """
     return largest_wind_change(scenario, wind, wind_followed(scenario), altitude_error)
 
@@ -312,8 +319,8 @@ def wind_change(scenario: Scenario, wind: WindField, altitude_error: float) -> f
 def largest_wind_change(
     scenario: Scenario, wind: WindField, interval: float, altitude_error: float
 ) -> float:
-    """Return by how much the wind that is flown in changes at most within an interval [s], by time
-    and by height [m/s].
+    """Return the largest change of the flight's wind within an interval [s], by time and by height
+    [m/s].
 
     Parameters
     ----------
@@ -322,7 +329,7 @@ def largest_wind_change(
     heights, duration = flown_heights(scenario), scenario.flight.duration_max_s
     climbed = scenario.following.climb_gradient * scenario.guidance.airspeed_mps * interval
     if glides(scenario):
-        # How steeply depends on what has failed; all the way down does not take long.
+        # The gradient depends on the failure; the whole descent does not take long.
         climbed = max(climbed, scenario.altitude)
     lowest, highest = min(heights) - altitude_error, max(heights) + altitude_error
     shear = wind.largest_shear(climbed + 2.0 * altitude_error, lowest, highest, duration)
@@ -332,8 +339,8 @@ def largest_wind_change(
 def wind_followed(scenario: Scenario) -> float:
     """Return the time within which the estimated wind follows a change [s].
 
-    The filter is slower where gusts or noise hide the wind, and for a fast vehicle, of which an
-    error of the course hides more.
+    The filter is slower where gusts or noise hide the wind, and for a fast vehicle, whose error of
+    the course hides more of the wind.
     """
     across = scenario.guidance.airspeed_mps * _sensor_sigmas(scenario)[1]
     hidden_by = math.hypot(max(_sensor_sigma(scenario), across), _gust_sigma(scenario))
@@ -341,20 +348,20 @@ def wind_followed(scenario: Scenario) -> float:
 
 
 def _wrong_by(scenario: Scenario, airspeed: float, heading_deg: float) -> float:
-    """Return by how much errors of airspeed [m/s] and heading [deg] make a single measurement of
-    the wind wrong [m/s].
+    """Return the error of a single measurement of the wind by errors of airspeed [m/s] and heading
+    [deg].
     """
     return math.hypot(airspeed, scenario.guidance.airspeed_mps * math.radians(heading_deg))
 
 
 def _measured_noise(scenario: Scenario) -> float:
-    """Return the deviation of a single measurement of the wind by the noise of all sensors [m/s]."""
+    """Return the deviation of a measurement of the wind by the noise of all sensors [m/s]."""
     return math.hypot(wind_noise(scenario), scenario.sensors.velocity_sigma_mps)
 
 
 def _sensor_sigmas(scenario: Scenario) -> tuple[float, float]:
-    """Return the deviations of airspeed [m/s] and course [rad] that the wind's filter takes for
-    noise of the sensors.
+    """Return the deviations of airspeed [m/s] and course [rad] that the wind's filter allows for as
+    sensor noise.
     """
     sensors, velocity = scenario.sensors, scenario.sensors.velocity_sigma_mps
     course = math.hypot(
@@ -366,15 +373,15 @@ def _sensor_sigmas(scenario: Scenario) -> tuple[float, float]:
 
 
 def _sensor_sigma(scenario: Scenario) -> float:
-    """Return the deviation of single measurements of the wind by these [m/s]: the filter's own, or
-    of the sensors if larger.
+    """Return the deviation of single measurements of the wind by sensor noise [m/s]: the filter's
+    value, or that of the sensors if it is larger.
     """
     return max(_AIRSPEED_SIGMA, _measured_noise(scenario))
 
 
 def _gust_sigma(scenario: Scenario) -> float:
-    """Return the deviation of single measurements of the wind by turbulence [m/s], more for being
-    correlated in time.
+    """Return the deviation of single measurements of the wind by turbulence [m/s], increased
+    because it is correlated in time.
     """
     if scenario.turbulence.level == "none":
         return 0.0

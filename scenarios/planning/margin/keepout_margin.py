@@ -1,5 +1,6 @@
-"""The keep-out margin of a flight in operational conditions: how far from the keep-out area its orbit
-lies, so that errors hardly ever carry the aircraft into it and the guard leaves it alone.
+"""The keep-out margin of a flight in operational conditions: the distance of its orbit from the
+keep-out area at which errors very rarely carry the aircraft into the area, and the guard does not
+act.
 
 The margin has three parts.
 
@@ -7,22 +8,23 @@ Tracking error in turbulence
     Its spread is predicted (``tracking_spread``); by Rice's formula (S. O. Rice, "Mathematical
     Analysis of Random Noise", 1944) follows how often it exceeds a margin. Gusts that exceed the
     range of the aircraft's airspeeds carry it along as long as they last. A Gaussian process near a
-    high peak L is L (1 - (nu t)^2/2), where nu is the ratio of its rate's deviation to its own; its
-    excess over a limit adds up to a distance in closed form, which is added with the peak that is
-    passed as often as touches are allowed. Not in it is how hard the aircraft can brake. Where
-    turbulence closes the throttle, the spread is larger than predicted: 1.4 to 2.9 times on the X8
-    in moderate turbulence, which the second part of the margin made up for in 13 hours of flights.
-    In severe turbulence an X8 can lose its reference, and no such margin holds.
+    high peak L is L (1 - (nu t)^2/2), where nu is the ratio of the deviation of its rate to its
+    deviation. The integral of its excess over a limit has a closed form; the margin includes that
+    distance for the peak that is exceeded as often as touches are allowed. The margin does not
+    account for the aircraft's deceleration. Where turbulence closes the throttle, the spread is
+    larger than predicted: 1.4 to 2.9 times on the X8 in moderate turbulence, which the second part
+    of the margin compensated in 13 hours of flights. In severe turbulence an X8 can lose its
+    reference, and no such margin holds.
 Room for the guard
-    The orbit lies where a turn away from the vessel, as the guard predicts it, is always left.
+    The orbit lies where a turn away from the vessel, as the guard predicts it, is always possible.
 Scatter of what is known
     The orbit lies beside where the filter takes the vessel to be. The discs of
-    ``gnc.estimation.vessel`` lie about what single reports say, which scatters more. So a disc that
-    is no larger than planned may reach farther towards the orbit. Beside a vessel that is known
+    ``gnc.estimation.vessel`` are centred on single reports, which scatter more. So a disc that is
+    no larger than planned may reach farther towards the orbit. Beside a vessel that is known
     exactly, the vehicle's own position and velocity are noisy. The vehicle follows its reference by
-    its estimated position, with a lag: what it has not yet corrected is the distance between it and
-    its reference that guidance and guard see. Noise of the velocity, new at each step, turns and
-    stretches the predicted turn away.
+    its estimated position, with a lag: guidance and guard see the distance from the reference that
+    it has not yet corrected. Noise of the velocity, new at each step, turns and stretches the
+    predicted turn away.
 """
 
 import functools
@@ -58,8 +60,7 @@ from scenarios.scenario.sections.equipment import VesselReportsConfig
 from scenarios.vehicles.sensors import NAVIGATION_TIME
 
 VESSEL_ACCELERATION, VESSEL_MEMORY = 0.02, 40.0
-"""Standard deviation [m/s^2] and time constant [s] of the acceleration that the vessel's filter
-reckons with: a ship's.
+"""Standard deviation [m/s^2] and time constant [s] of a ship's acceleration in the vessel's filter.
 """
 
 
@@ -70,10 +71,10 @@ class Spread:
     Attributes
     ----------
     along, across : error along and across the reference's course, in the mean over the orbit [m]
-    radial, radial_rate : towards the vessel, and its rate: upper bounds [m, m/s]
-    airspeed, airspeed_rate : of the airspeed that keeping pace takes, as fast as the aircraft gives
-        it, and its rate [m/s, m/s^2]
-    airspeed_limit : how far airspeed may go from the reference's speed, to the nearer side [m/s]
+    radial, radial_rate : error towards the vessel, and its rate: upper bounds [m, m/s]
+    airspeed, airspeed_rate : of the airspeed that the aircraft flies to keep pace, and its rate
+        [m/s, m/s^2]
+    airspeed_limit : smaller distance of the reference's speed from the limits of the airspeed [m/s]
     """
 
     along: float
@@ -116,7 +117,7 @@ CALM_AIR_SPREAD = Spread(
     airspeed_rate=0.0,
     airspeed_limit=1.0,
 )
-"""The spread in air that does not move."""
+"""The spread in calm air."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -126,8 +127,8 @@ class KeepoutMargin:
     Attributes
     ----------
     tracking_sigma : predicted standard deviation of the tracking error towards the vessel [m]
-    total : that the orbit keeps from the keep-out area [m]
-    reach : how far the vessel may be from where it is taken to be, as long as its reports are not
+    total : distance of the orbit from the keep-out area [m]
+    reach : largest distance of the vessel from its estimated place, as long as its reports are not
         overdue [m]
     """
 
@@ -147,10 +148,10 @@ def filter_parameters(reports: VesselReportsConfig) -> FilterParameters:
 
 
 def vessel_limits(scenario: Scenario, horizon: float) -> VesselLimits:
-    """Return what the vessel and its reports keep within.
+    """Return the limits of the vessel and of its reports.
 
-    Errors are normally distributed and so have no limit; the one taken is exceeded as often as the
-    keep-out area may be touched.
+    Errors are normally distributed and so have no limit; the limit used here is exceeded as often
+    as the keep-out area may be touched.
 
     Parameters
     ----------
@@ -170,11 +171,11 @@ def vessel_limits(scenario: Scenario, horizon: float) -> VesselLimits:
 
 
 def _deviations(scenario: Scenario) -> float:
-    """Return how many standard deviations errors exceed as often as the keep-out area may be
-    touched [-].
+    """Return the number of standard deviations that errors exceed as often as the keep-out area may
+    be touched [-].
     """
     flight, reports = scenario.flight, scenario.reports
-    # A flight begins with a report, however rare they are.
+    # Even with very rare reports, a flight begins with one.
     reported = SECONDS_PER_HOUR / flight.duration_max_s
     if not reports.exact:
         reported += SECONDS_PER_HOUR / mean_interval(reports.interval_s)
@@ -189,19 +190,18 @@ def _deviations(scenario: Scenario) -> float:
 def widest_tube(
     limits: VesselLimits, reports: VesselReportsConfig, *, plan_period: float, noise: float = 0.0
 ) -> Tube:
-    """Return the disc about a vessel whose newest report is as old as it becomes where none is
-    missing, centre in the origin.
+    """Return the disc about a vessel whose newest report has the largest age without a missing
+    report, with its centre at the origin.
 
-    It is as much larger as discs reach farther because reports scatter
-    (``scatter_allowance``), or, about a vessel that is known exactly, because the
-    vehicle's own position and velocity do.
+    It is enlarged by the scatter of the reports (``scatter_allowance``), or, about a vessel that is
+    known exactly, by that of the vehicle's own position and velocity.
 
     Parameters
     ----------
-    limits, reports : what vessel and reports keep within, and how often reports come
-    plan_period : time between looks at them [s]
-    noise : how much nearer noise of satellite navigation takes the vehicle
-        (``noise_allowance``) [m]
+    limits, reports : limits of the vessel and its reports, and intervals of reports
+    plan_period : interval at which they are evaluated [s]
+    noise : how much nearer noise of satellite navigation takes the vehicle (``noise_allowance``)
+        [m]
     """
     age = plan_period + (0.0 if reports.exact else reports.interval_s[1] + reports.latency_max_s)
     oldest = tube(VesselReport(-age, 0.0, 0.0, 0.0, 0.0), limits, 0.0)
@@ -221,8 +221,8 @@ def widest_tube(
 def tracking_level(
     scenario: Scenario, spreads: SpreadTable | None, nu: float
 ) -> tuple[float, float]:
-    """Return the standard deviation of the tracking error towards the vessel, and what it exceeds
-    as rarely as allowed [m].
+    """Return the standard deviation of the tracking error towards the vessel, and the level that it
+    exceeds as rarely as allowed [m].
     """
     spread = spreads.at(nu) if spreads else CALM_AIR_SPREAD
     return spread.radial, planned_margin(
@@ -244,20 +244,20 @@ def planned_margin(spread: Spread, *, touches_per_hour: float) -> float:
 
 
 def level_crossed(sigma: float, sigma_rate: float, per_hour: float) -> float:
-    """Return the level that a Gaussian process goes above so often; 0 if it does so less often even
-    at its mean.
+    """Return the level that a Gaussian process crosses upwards at a rate; 0 if it crosses even its
+    mean less often.
 
-    By Rice's formula it goes above a level L ``sigma_rate/(2 pi sigma) exp(-(L/sigma)^2/2)`` times
-    a second.
+    By Rice's formula it crosses a level L ``sigma_rate/(2 pi sigma) exp(-(L/sigma)^2/2)`` times a
+    second.
 
     Parameters
     ----------
     sigma, sigma_rate : standard deviations of the process and of its rate [m, m/s]
-    per_hour : how often, above 0 [1/h]
+    per_hour : that rate, above 0 [1/h]
 
     Raises
     ------
-    ValueError : the process has a deviation and never varies
+    ValueError : the process has a deviation, but its rate has none
     """
     if sigma == 0.0:
         return 0.0
@@ -268,8 +268,8 @@ def level_crossed(sigma: float, sigma_rate: float, per_hour: float) -> float:
 
 
 def beyond_limits(spread: Spread, per_hour: float) -> float:
-    """Return how far gusts that the airspeed cannot make up carry the aircraft off its reference
-    [m], so often [1/h].
+    """Return the distance from its reference to which gusts beyond the range of airspeeds carry the
+    aircraft at a rate [1/h], in metres.
     """
     peak = level_crossed(spread.airspeed, spread.airspeed_rate, per_hour)
     excess = peak - spread.airspeed_limit
@@ -280,20 +280,20 @@ def beyond_limits(spread: Spread, per_hour: float) -> float:
 
 
 _PHASES = 24
-"""Points of half an orbit from which a turn away is predicted; the other half is its mirror image,
-or has as many [-].
+"""Number of points of half an orbit from which a turn away is predicted [-]; the other half is the
+mirror image, or has as many.
 """
 
 ASTERN = (-1.0, 0.0)
 """Direction of a plume straight astern, ahead of the vessel and to its right [-]."""
 
 _ALIGNED = 1e-9
-"""Part to the right up to which a direction counts as along the vessel's course: then half an orbit
-tells it all [-].
+"""Largest component to the right of a direction that counts as along the vessel's course [-]: then
+half an orbit is enough.
 """
 
 _FAR = 3.0
-"""Distance at which clearances are found first, over the radius to be kept [-]."""
+"""Initial distance of the search for a clearance, over the radius to keep [-]."""
 
 
 def orbit_distance(
@@ -304,15 +304,15 @@ def orbit_distance(
     *,
     wind: WindErrorByGusts | None = None,
 ) -> float:
-    """Return the smallest distance of an orbit from the vessel for which a turn away is always left
-    to the guard [m].
+    """Return the smallest distance of an orbit from the vessel at which a turn away is always
+    possible [m].
 
-    It is that of its centre less its half-width along.
+    It is the distance of the centre less the half-width along.
 
     Parameters
     ----------
     guard : its parameters
-    vessel : where it may be, as large as that becomes
+    vessel : largest disc that contains it
     orbit : about a centre of oscillation
     direction : of that centre from the vessel, a unit vector, ahead and to the right [-]
     wind : error of the estimated wind by turbulence
@@ -354,13 +354,13 @@ def circle_distance(
     *,
     wind: WindErrorByGusts | None = None,
 ) -> float:
-    """Return the smallest radius of a circle about the vessel on which a turn away is always left
-    to the guard [m].
+    """Return the smallest radius of a circle about the vessel on which a turn away is always
+    possible [m].
 
     Parameters
     ----------
     guard : its parameters
-    vessel : where it may be, as large as that becomes
+    vessel : largest disc that contains it
     speed, drift : of the vehicle and of the vessel through the air [m/s]
     wind : error of the estimated wind by turbulence
     """
@@ -392,15 +392,15 @@ def _distance(
     speed: float,
     drift: float,
 ) -> float:
-    """Return the distance at which the nearest of the motions that belong to it leaves the guard
-    nothing to do [m].
+    """Return the distance at which the guard does not have to act for the nearest of the motions at
+    that distance [m].
     """
     keeping = HeadingRateFilter(guard)
     disc = vessel._replace(time=0.0, north=0.0, east=0.0, velocity_north=drift, velocity_east=0.0)
     distance = _FAR * (guard.radius + vessel.radius)
     for _ in range(2):
-        # Clearances change as the distance does, but for the curvature of a disc: what is found is
-        # up to 0.3 m too large.
+        # Clearances change by as much as the distance, apart from the curvature of a disc: the
+        # result is up to 0.3 m too large.
         least = math.inf
         for motion in motions(distance):
             least = min(least, keeping.clearance(0.0, motion, (disc,), speed, enough=least))
@@ -409,15 +409,16 @@ def _distance(
 
 
 GUARDED_PER_HOUR = 1.0
-"""How often the discs of a vessel at constant velocity may reach farther than is allowed for here
-[1/h].
+"""How often the discs of a vessel at constant velocity may reach farther than this allowance [1/h].
 """
 
 _HOURS, _SEED = 20.0, 20261122
 """Flight time over which reports are drawn [h], and the seed: the same for every flight."""
 
 _NO_OFTENER, _LEAST = 1.0, 100
-"""Mean interval below which reports count no oftener [s], and how many are drawn at least [-]."""
+"""Shortest mean interval of reports that counts [s], and least number of reports that are drawn
+[-].
+"""
 
 _SETTLED = 50
 """Reports after which the filter's covariance no longer changes [-]."""
@@ -436,16 +437,16 @@ def scatter_allowance(
     """Return by how much a disc reaches farther than planned, ``GUARDED_PER_HOUR`` times an hour
     [m].
 
-    Looked at just before each report, when its predecessors are oldest: of the newest discs the one
-    counts that reaches least far in a direction, from where the filter takes the vessel to be.
-    Discs are compared at the end of a turn away.
+    It is evaluated just before each report, when the earlier reports are oldest. Of the newest
+    discs, the one counts that reaches least far in a direction from the filter's estimate of the
+    vessel's place. Discs are compared at the end of a turn away.
 
     Parameters
     ----------
-    limits, known : what vessel and reports keep within, and the filter of the reports
-    intervals, latency : between reports, shortest and longest, and how late they are at most [s]
-    plan_period : time between looks at them [s]
-    planned : radius of the disc that is planned with, at the end of a turn away [m]
+    limits, known : limits of the vessel and its reports, and the filter of the reports
+    intervals, latency : shortest and longest time between reports, and their largest delay [s]
+    plan_period : interval at which they are evaluated [s]
+    planned : radius of the disc in the plan, at the end of a turn away [m]
     """
     generator = np.random.default_rng(_SEED)
     mean = mean_interval(intervals)
@@ -465,8 +466,8 @@ def scatter_allowance(
 
 
 def mean_interval(intervals: tuple[float, float]) -> float:
-    """Return the mean interval [s] between reports, by the shortest and longest; looked at no
-    oftener than once a second.
+    """Return the mean interval [s] between reports, from the shortest and the longest; at least one
+    second.
     """
     return max(_NO_OFTENER, 0.5 * sum(intervals))
 
@@ -490,13 +491,14 @@ Array = npt.NDArray[np.float64]
 
 
 def noise_allowance(seen: float, turned: float, *, time_step: float) -> float:
-    """Return what both errors together exceed no oftener than ``GUARDED_PER_HOUR``, as if they were
-    new at each step [m]. A turn away comes nearest a quarter of a turn after it begins.
+    """Return the level that the sum of both errors exceeds no more often than ``GUARDED_PER_HOUR``,
+    as if they were new at each step [m]. A turn away comes nearest a quarter of a turn after it
+    begins.
 
     Parameters
     ----------
-    seen, turned : standard deviations of the error that is seen, and of the place where a turn away
-        comes nearest [m]
+    seen, turned : standard deviations of the visible error, and of the closest place of a turn away
+        [m]
     time_step : of the guidance [s]
     """
     looks = SECONDS_PER_HOUR / time_step
@@ -513,7 +515,7 @@ def position_scatter(
     airspeed_bandwidth: float,
     noise_time: float,
 ) -> float:
-    """Return the standard deviation of the error that is seen, per that of the noise, in the worst
+    """Return the standard deviation of the visible error, per that of the noise, in the worst
     direction and turn [-].
 
     In axes along and across the reference's course, which turn at omega_r, the true error e and the
@@ -547,7 +549,7 @@ def _loop(
     noise_time: float,
 ) -> Array:
     gains = dict(zip(STEERED_BY, steering_gains(tracking, turn, speed).tolist(), strict=True))
-    # A command that depends on the last one has gone where it leads to.
+    # A command that depends on the last one has converged.
     along, right, course, faster, rate = (
         gains[name] / (1.0 - gains["last"])
         for name in ("along", "right", "course", "speed", "heading_rate")
@@ -585,9 +587,9 @@ def _seen(loop: Array) -> float:
 
 
 STEERED_BY = ("along", "right", "course", "speed", "airspeed", "heading_rate", "last")
-"""What the steering law depends on, as deviations from the reference's motion
-[m, m, rad, m/s, m/s, rad/s, rad/s]: the error, the motion over the mean air, airspeed and heading
-rate as measured against the gusty air, and the last command.
+"""The inputs of the steering law, as deviations from the reference's motion [m, m, rad, m/s, m/s,
+rad/s, rad/s]: the error, the motion over the mean air, airspeed and heading rate as measured
+against the gusty air, and the last command.
 """
 
 _STEP = 1e-5
@@ -602,7 +604,7 @@ def steering_gains(guidance: TrackingParameters, turn: float, speed: float) -> A
 
     Parameters
     ----------
-    guidance : its parameters; its limit does not count
+    guidance : its parameters; its limit is not applied
     turn : omega_r, and heading rate of an aircraft that follows [rad/s]
     speed : V_r [m/s]
     """

@@ -1,21 +1,21 @@
 """The spread of the tracking error that turbulence causes, from the linear closed loop and the
 spectrum of the turbulence.
 
-It is an upper bound for the linear loop: the orbit touches the keep-out area only where it comes
-closest, and is taken to be there all the time, at its largest bank, with its error in the worst
-direction.
+It is an upper bound for the linear loop: the orbit is near the keep-out area only at its closest
+point, but the bound assumes that point, the largest bank and the worst direction of the error all
+the time.
 
 The guidance, linear about a turn, is closed around the linear aircraft frequency by frequency, with
 the hold of the commands and the step by which the last one is late. In axes along and across the
 reference's course, which turn at omega_r, the error e from aircraft to reference obeys
 e_along' = -dV + omega_r e_right and e_right' = -V dchi - omega_r e_along.
 
-The course swings through air whose gusts do not swing with it. A gust along a fixed direction is one
-along the path times the cosine of the course between them. With exp(i course) as a Fourier series
-of coefficients c_n over the orbit, the mean over the phases of cos(course now - course tau ago) is
-the sum of |c_n|^2 cos(n omega_0 tau): slow gusts come back as sidebands of the orbit's frequency,
-with these weights. For the sinusoid eta cos(omega_0 t + phase) they are J_n(eta)^2, and the mean is
-J_0(2 eta sin(omega_0 tau/2)) by Graf's addition theorem.
+The course swings through air whose gusts do not swing with it. A gust along a fixed direction is
+one along the path times the cosine of the course between them. With exp(i course) as a Fourier
+series of coefficients c_n over the orbit, the mean over the phases of cos(course now - course tau
+ago) is the sum of |c_n|^2 cos(n omega_0 tau): slow gusts come back as sidebands of the orbit's
+frequency, with these weights. For the sinusoid eta cos(omega_0 t + phase) they are J_n(eta)^2, and
+the mean is J_0(2 eta sin(omega_0 tau/2)) by Graf's addition theorem.
 """
 
 import functools
@@ -36,8 +36,8 @@ from innerloop.schedule import Schedule
 from scenarios.planning.margin.keepout_margin import STEERED_BY, Spread, steering_gains
 
 FREQUENCIES = np.logspace(-2.5, 1.9, 400)
-"""Where spectra are integrated [rad/s]: from far below the corner of a gust, V/L = 0.09, to beyond
-the hold of the commands.
+"""Frequencies over which spectra are integrated [rad/s]: from far below the corner of a gust, V/L =
+0.09, to beyond the hold of the commands.
 """
 
 _ORBIT_POINTS = 60
@@ -95,10 +95,10 @@ def _spread(
 
     Parameters
     ----------
-    oscillation, gusts : the orbit, and the spectral densities of the gusts that are met on it
-    responses, steps : to gusts, and the heading rates that they are for [rad/s]
+    oscillation, gusts : the orbit, and the spectral densities of the gusts on it
+    responses, steps : responses to gusts, and their heading rates [rad/s]
     airspeed : row of the responses that keeps pace
-    room : how far airspeed may go [m/s]
+    room : largest change of the airspeed [m/s]
     """
     densities = [np.einsum("fig,fg,fjg->fij", r, gusts, r.conj()).real for r in responses]
     now = [_integral(density) for density in densities]
@@ -158,9 +158,9 @@ def gusts_on_orbit(
     """Return the power spectral densities of ``GUSTS`` in the axes of the path, shape (frequencies,
     6), averaged over the orbit.
 
-    The variance is the integral over positive frequencies over pi. Components are taken as
-    independent: those that the course turns into each other are so in the mean over the orbit, up
-    to the difference between their spectra.
+    The variance is the integral over positive frequencies, divided by pi. Components are assumed to
+    be independent: those that the course turns into each other are independent in the mean over the
+    orbit, up to the difference between their spectra.
 
     Parameters
     ----------
@@ -184,8 +184,8 @@ def _on_orbit(
     weights: tuple[float, ...],
     at: tuple[float, ...],
 ) -> Array:
-    """Return what ``gusts_on_orbit`` does; kept, for trials in the same turbulence ask for the
-    same.
+    """Return the result of ``gusts_on_orbit``, cached: trials in the same turbulence have the same
+    one.
     """
     filters, frequencies = _filters(turbulence, airspeed=airspeed, span=span), np.array(at)
     spectra = _spectra(filters, frequencies)
@@ -209,8 +209,8 @@ def _spectra(filters: control.StateSpace, frequencies: Array) -> Array:
 
 
 RESPONSES = ("along", "right", "pace")
-"""Rows of ``tracking_response``: the error [m], and what the aircraft's own speed gives to keep
-pace, which is the commanded airspeed as far as it is followed [m/s]."""
+"""Rows of ``tracking_response``: the error [m], and the part of the commanded airspeed that the
+aircraft follows to keep pace [m/s]."""
 
 _READ = ("course_rate", "speed", "airspeed", "heading_rate")
 
@@ -228,9 +228,9 @@ def tracking_response(
 
     Parameters
     ----------
-    schedule, index, bank_index : the autopilot and where it flies, same as ``gust_loop``
-    guidance : whose steering it flies, its commands corrected by ``air_turn``
-    hold : by which it keeps pace
+    schedule, index, bank_index : the autopilot and its design point, as in ``gust_loop``
+    guidance : its steering law, with commands corrected by ``air_turn``
+    hold : speed hold by which it keeps pace
     speed : V_r [m/s]
     frequencies : [rad/s], above 0
     """

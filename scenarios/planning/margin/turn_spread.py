@@ -1,10 +1,10 @@
-"""How far turbulence takes an aircraft off a turn away that it is commanded to fly.
+"""Deviation of an aircraft from a commanded turn away by turbulence.
 
 In the turn the guidance keeps the speed over the mean air, and commands the heading rate that turns
-the motion over the mean air at omega_max (``gnc.airspeed``). Both loops are closed around the linear
-aircraft, frequency by frequency. What gusts leave is a deviation dV of the speed and one dr of the
-course's rate. From a start at which position, course and speed are measured, and in the complex
-plane of north and east, they displace the vehicle by
+the motion over the mean air at omega_max (``gnc.airspeed``). Both loops are closed around the
+linear aircraft, frequency by frequency. Gusts cause a deviation dV of the speed and a deviation dr
+of the course's rate. From a start at which position, course and speed are measured, and in the
+complex plane of north and east, they displace the vehicle by
 
     z(t) = integral over s from 0 to t of  exp(i omega s) (dV(s) + i V (X(s) - X(0))),    X' = dr.
 
@@ -25,10 +25,10 @@ from innerloop.schedule import Schedule
 from scenarios.planning.margin.tracking_spread import FREQUENCIES
 
 _TIMES = 24
-"""Intervals at which the deviation is given [-]."""
+"""Number of intervals at which the deviation is computed [-]."""
 
 _HALF_TURNS = 1.5
-"""Half turns up to which it is given [-]; a turn away takes as many at most."""
+"""Number of half turns up to which it is computed [-]: the longest turn away."""
 
 _TURNED = (("gust_along", "gust_right"), ("gust_p", "gust_q"))
 """Components that the course turns into each other."""
@@ -70,7 +70,8 @@ def turn_deviation(
         displacement_sigma(interval * i, by_speed, by_rate, density, speed, heading_rate)
         for i in range(_TIMES + 1)
     ]
-    # What the loop takes back in the end may still be there at the next turn: it only grows here.
+    # A deviation that the loop corrects later may still be there at the next turn: here it never
+    # decreases.
     grown = np.maximum.accumulate(sigmas).tolist()
     return TurnDeviation(interval=interval, sigmas=tuple(grown), key=key)
 
@@ -93,8 +94,8 @@ def _responses(
     gusts = {name: whole[:, labels.index(name), len(COMMANDS) :] for name in _READ}
     commands = {name: whole[:, labels.index(name)][:, columns] for name in _READ}
     held = np.exp(-0.5 * s * time_step) * np.sinc(0.5 * FREQUENCIES * time_step / np.pi)
-    # Commanded are the airspeed less the speed over the mean air, and omega V/V_a: both follow from
-    # the same difference.
+    # The commands are the airspeed less the speed over the mean air, and omega V/V_a: both follow
+    # from the same difference.
     difference = commands["airspeed"] - commands["speed"]
     per_difference = np.array([1.0, -heading_rate / speed])
     # c = held per_difference (difference c + gusts' difference)
@@ -114,7 +115,9 @@ _READ = ("speed", "airspeed", "course_rate")
 def _gusts_in_turn(
     turbulence: GustStatistics, airspeed: float, span: float, heading_rate: float
 ) -> Array:
-    """Return the densities of ``GUSTS`` in the axes of a path that turns, shape (frequencies, 6)."""
+    """Return the densities of ``GUSTS`` in the axes of a path that turns, shape (frequencies,
+    6).
+    """
     filters = dryden_filters(turbulence, airspeed=airspeed, span=span)
 
     def density(frequencies: Array) -> Array:

@@ -83,6 +83,16 @@ SNIFFER = Need(
     lambda s: "sniffer" in s.payload.instruments,
     "a sniffer: put 'sniffer' into payload.instruments",
 )
+
+
+def channel_of_gas(gas: str) -> Need:
+    """Return the need of what a ship emits of a gas beside those that every sniffer knows."""
+    return Need(
+        lambda s: gas in (getattr(s.payload, "channels", None) or {}),
+        f"a sniffer with a channel for it: add the table payload.channels.{gas}",
+    )
+
+
 BLOWS = Need(lambda s: s.wind.blows, "wind: set wind.speed_mps or wind.table")
 OWN_TRACK = Need(
     lambda s: not s.vessel.from_file,

@@ -17,6 +17,7 @@ from common.tables import FOUND, TableFormat, table_format
 from measurement.emission import fuel_preset, ship_of, stack_height_of
 from measurement.gases import FUEL_SULPHUR_MOST
 from measurement.plume.spread import PlumeSettings
+from measurement.species import SPECIES
 from scenarios.scenario.extension_points import PLUME_MODELS, VESSEL_TRACKS
 from scenarios.scenario.sections.needs import (
     BLOWS,
@@ -26,6 +27,7 @@ from scenarios.scenario.sections.needs import (
     SNIFFER,
     VESSEL,
     Need,
+    channel_of_gas,
     when,
 )
 from scenarios.scenario.sections.part_section import PartSection
@@ -330,6 +332,16 @@ def known_ship(given: Any) -> Any:
     return given
 
 
+GAS_KEYS = {
+    "ch4": "methane_slip_percent",
+    "bc": "black_carbon_g_kg",
+    "pn": "particle_number_1e15_kg",
+}
+"""Keys of what a ship emits of some gases of ``measurement.species``, in the unit of their
+figures.
+"""
+
+
 class EmissionConfig(Section):
     """What comes out of the funnel."""
 
@@ -346,12 +358,34 @@ class EmissionConfig(Section):
     """Load of the engine, a fraction as 0.85; if not given, that at the vessel's speed, which the
     guidance expects [-].
     """
+    methane_slip_percent: Annotated[
+        float, Field(ge=0.0, le=SPECIES["ch4"].most), EXHAUST, channel_of_gas("ch4")
+    ] = 0.0
+    """Methane that leaves unburnt, by mass of the fuel, whose CO2 is less by its carbon [% m/m]."""
+    black_carbon_g_kg: Annotated[
+        float, Field(ge=0.0, le=SPECIES["bc"].most), EXHAUST, channel_of_gas("bc")
+    ] = 0.0
+    """Black carbon per fuel [g/kg]."""
+    particle_number_1e15_kg: Annotated[
+        float, Field(ge=0.0, le=SPECIES["pn"].most), EXHAUST, channel_of_gas("pn")
+    ] = 0.0
+    """Number of particles per fuel [10^15/kg]."""
 
     @field_validator("fuel")
     @classmethod
     def _known_fuel(cls, fuel: str) -> str:
         fuel_preset(fuel)
         return fuel
+
+    @property
+    def emitted(self) -> dict[str, float]:
+        """What is emitted of the gases of ``GAS_KEYS``, in the unit of their figures."""
+        return {gas: getattr(self, key) for gas, key in GAS_KEYS.items()}
+
+    @property
+    def methane(self) -> float:
+        """Methane that leaves unburnt, by mass of the fuel [-]."""
+        return self.methane_slip_percent / 100.0
 
 
 if TYPE_CHECKING:

@@ -1,5 +1,5 @@
-"""A vessel from a file of AIS reports: the file's layout, which reports are of use, and a smooth
-track through them.
+"""A vessel from a file of AIS reports: the file's layout, the selection of usable reports, and a
+smooth track through them.
 """
 
 from scenarios.world.ais.reports import AisReports, read_ais

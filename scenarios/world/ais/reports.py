@@ -1,5 +1,5 @@
-"""Reports of one vessel from a file: a table in one of the known layouts, or NMEA sentences as received
-(``!AIVDM,...``, decoded by pyais). Unusable rows are left out and counted.
+"""Reports of one vessel from a file: a table in one of the known layouts, or NMEA sentences as
+received (``!AIVDM,...``, decoded by pyais). Unusable rows are left out and counted.
 """
 
 import math
@@ -44,7 +44,7 @@ from scenarios.world.ais.size import SIZE_COLUMNS, ShipSize, ship_size, size_of_
 
 
 class AisRow(NamedTuple):
-    """A report as its file has it; NaN where it says nothing.
+    """A report as in its file; NaN for missing values.
 
     Attributes
     ----------
@@ -65,18 +65,18 @@ class AisRow(NamedTuple):
 Array = npt.NDArray[np.float64]
 
 _SPEED_MAX_KN = 102.2
-"""Fastest that a report can say; 102.3 is "not available" (ITU-R M.1371-5, table 48) [kt]."""
+"""Largest speed in a report; 102.3 means "not available" (ITU-R M.1371-5, table 48) [kt]."""
 
 _AT_REST_KN = 0.5
 """Speed below which a report needs no course: a vessel at rest has none [kt]."""
 
 _REACH_SPEED, _REACH = 50.0, 500.0
-"""How far from its neighbours a report may lie: as far as the fastest vessel goes, and errors of
+"""Largest distance of a report from its neighbours: speed of the fastest vessel, and error of
 satellite navigation [m/s, m].
 """
 
 _IMPOSSIBLE_SPEED = 60.0
-"""Speed that no vessel has, and of which a report cannot tell (102.2 kt are 52.6 m/s) [m/s]."""
+"""Speed that no vessel reaches and that no report can contain (102.2 kt are 52.6 m/s) [m/s]."""
 
 NO_TIME, NO_PLACE, NO_SPEED, DUPLICATE, OUT_OF_ORDER, OUT_OF_REACH = (
     "without a time",
@@ -86,22 +86,24 @@ NO_TIME, NO_PLACE, NO_SPEED, DUPLICATE, OUT_OF_ORDER, OUT_OF_REACH = (
     "out of order",
     "out of reach of others",
 )
-"""Why rows are not used."""
+"""Reasons why rows are not used."""
 
 _DROPPED_MOST = 0.1
 """Share of a vessel's rows that may be dropped without a warning; duplicates do not count."""
 
 _METRES_PER_DEGREE = 111_195.0
-"""Of latitude, on a sphere."""
+"""Length of a degree of latitude, on a sphere."""
 
 _HOUR = 3600.0
 """[s]"""
 
 _ALONE = 3600.0
-"""Time to the nearest report of a vessel from which on a clock may be wrong [s]."""
+"""Least time to the nearest report of a vessel that suggests a wrong clock [s]."""
 
 _SECTORS, _SECTOR_ROWS = 12, 3
-"""Directions of travel that are told apart, and dropped rows of one that are no chance."""
+"""Number of sectors of the direction of travel, and number of dropped rows in a sector that is no
+chance.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -117,10 +119,10 @@ class AisReports:
     latitude, longitude : [rad]
     speed, course : over the ground, course from true north [m/s, rad]
     rows : of the vessel in the file
-    dropped : number of rows of no use, by why they are
-    size : of the vessel, where the file says it
-    size_remark : what the file says of it that is not used, or that other rows contradict
-    lost_directions : directions of travel [deg], by sectors, of which all rows were dropped
+    dropped : number of unusable rows, by the reason
+    size : of the vessel, where the file has it
+    size_remark : values of the size in the file that are not used, or that other rows contradict
+    lost_directions : directions of travel [deg], by sectors, whose rows were all dropped
     """
 
     path: Path
@@ -140,12 +142,12 @@ class AisReports:
 
     @property
     def warning(self) -> str:
-        """What a reader of results has to know of the reports that were dropped; else empty."""
+        """Warning to the reader of results about dropped reports; empty without one."""
         if self.lost_directions:
             towards = ", ".join(f"{course} deg" for course in self.lost_directions)
             return (
-                f"{self.path.name}: all reports of MMSI {self.mmsi} on the way towards {towards} were"
-                " dropped: its track there is not known"
+                f"{self.path.name}: all reports of MMSI {self.mmsi} on the way towards {towards}"
+                " were dropped: its track there is not known"
             )
         lost = sum(count for why, count in self.dropped.items() if why != DUPLICATE)
         share = lost / self.rows
@@ -154,7 +156,7 @@ class AisReports:
         return f"{self.path.name}: {share:.0%} of the reports of MMSI {self.mmsi} were dropped"
 
     def jumps(self, part: slice = slice(None)) -> list[Jump]:
-        """Return the ways between neighbouring reports that no vessel goes in the time."""
+        """Return the ways between neighbouring reports that are too long for any vessel."""
         return _jumps(
             self.time[part],
             np.degrees(self.latitude[part]),
@@ -162,11 +164,13 @@ class AisReports:
         )
 
     def lines(self) -> list[str]:
-        """Return what a console says of the file: how it was used, and a warning if there is one."""
+        """Return the file's lines for a console: how it was used, and a warning if there is one."""
         return [self.described(), *([f"warning: {self.warning}"] if self.warning else [])]
 
     def record(self) -> dict[str, Any]:
-        """Return for JSON how the file was used, and the ship's size where it says one."""
+        """Return a record for JSON: how the file was used, and the ship's size where the file has
+        it.
+        """
         return {
             "read": self.read,
             "rows": self.rows,
@@ -192,13 +196,13 @@ def read_ais(path: str | Path, mmsi: int | None = None, **table: str) -> AisRepo
     Parameters
     ----------
     path : of a table in one of the known layouts, or of NMEA sentences (docs/howto/ais_and_wind.md)
-    mmsi : of the vessel; may be left out where the file has one vessel alone
-    table : how a table is written, where that is not found: ``separator``, ``decimal``,
+    mmsi : of the vessel; may be left out where the file has only one vessel
+    table : format of a table, where it is not found automatically: ``separator``, ``decimal``,
         ``encoding``, ``time_format``, ``time_unit``, as in a section ``[table]``
 
     Raises
     ------
-    InputError : as ``read_reports``, or ``table`` has an unknown key or a value of no use
+    InputError : as in ``read_reports``, or ``table`` has an unknown key or an unusable value
     """
     try:
         return read_reports(path, mmsi, table_format(table))
@@ -211,13 +215,13 @@ def read_reports(path: str | Path, mmsi: int | None, written: TableFormat) -> Ai
 
     Parameters
     ----------
-    path, mmsi : as of ``read_ais``
+    path, mmsi : as in ``read_ais``
     written : how a table is written, as far as it is given
 
     Raises
     ------
     InputError : the file cannot be read, its layout is unknown, fewer than two rows of the vessel
-        are of use, or its units are others; or ``mmsi`` is no whole number
+        are usable, or its units are wrong; or ``mmsi`` is not a whole number
     """
     path = Path(path)
     if mmsi is not None and (isinstance(mmsi, bool) or not isinstance(mmsi, Integral)):
@@ -234,8 +238,8 @@ def read_reports(path: str | Path, mmsi: int | None, written: TableFormat) -> Ai
         if jumps:
             why += f"; {jumps[0].described([row.line for row in found.placed])}"
         raise InputError(
-            f"{path}: {len(kept)} of {len(rows)} rows of MMSI {identity} used, two are needed;{f' dropped: {why};' if why else ''}"
-            " correct the rows, or give another file"
+            f"{path}: {len(kept)} of {len(rows)} rows of MMSI {identity} used, two are"
+            f" needed;{f' dropped: {why};' if why else ''} correct the rows, or give another file"
         )
     reports = _reports(path, identity, rows, found, sizes, read)
     mistaken = [jump for jump in reports.jumps() if jump.mistake]
@@ -259,14 +263,14 @@ def read_others(
     end: float,
     written: TableFormat = FOUND,
 ) -> list[AisReports]:
-    """Read the reports of all vessels of a file but one, in some time.
+    """Read the reports of all vessels of a file but one, between two times.
 
-    Rows of no use are left out, and so are vessels with fewer than two others, and those of which
-    neighbouring reports lie so far apart that no vessel goes there: as two that share an MMSI.
+    Unusable rows are left out, and so are vessels with fewer than two usable rows, and vessels
+    whose neighbouring reports are too far apart for any vessel, such as two that share an MMSI.
 
     Parameters
     ----------
-    path : of the file, as of ``read_ais``
+    path : of the file, as in ``read_ais``
     without, only : MMSI of a vessel that is left out; or of the only one that is read
     begin, end : of the time, since 1970 [s]
     written : how a table is written, as far as it is given
@@ -304,7 +308,7 @@ def read_others(
 _HOUR_OF_DAY = re.compile(
     r"(?:(\d{4})-(\d\d)-(\d\d)[ T]|(\d\d)/(\d\d)/(\d{4}) )(\d\d):[\d:.]*\s*([+-]\d)?"
 )
-"""Date and hour of the known layouts; what follows where an offset to UTC is given."""
+"""Date and hour in the known layouts, and the text after them where an offset to UTC is given."""
 
 
 def _may_be_within(begin: float, end: float) -> Callable[[str], bool]:
@@ -329,8 +333,9 @@ def _may_be_within(begin: float, end: float) -> Callable[[str], bool]:
 
 
 class _SortedOut(NamedTuple):
-    """Rows of a vessel, sorted out: those of use in the order of their times, those that had a
-    possible place, numbers of those that were dropped by why, and the first line of each.
+    """Rows of a vessel after the selection: the usable rows in the order of their times, the rows
+    with a possible place, the number of dropped rows by the reason, and the first line of each
+    reason.
     """
 
     kept: list[AisRow]
@@ -340,7 +345,7 @@ class _SortedOut(NamedTuple):
 
 
 def _sorted_out(rows: list[AisRow]) -> _SortedOut:
-    """Return the rows of a vessel that are of use."""
+    """Return the usable rows of a vessel."""
     dropped: Counter[str] = Counter()
     first: dict[str, int] = {}
     kept = placed = rows
@@ -365,7 +370,7 @@ def _reports(
     sizes: Sequence[tuple[ShipSize, str]],
     read: str,
 ) -> AisReports:
-    """Return the reports of a vessel of a file from its rows, and from those of use."""
+    """Return the reports of a vessel of a file from its rows and its usable rows."""
     size, size_remark = size_of_all(sizes)
     columns = np.array(found.kept).T
     directed = np.isfinite(columns[5]) & (columns[5] < 360.0)
@@ -377,7 +382,7 @@ def _reports(
         time=columns[1],
         latitude=np.radians(columns[2]),
         longitude=np.radians(columns[3]),
-        # A speed without a course is next to none, and has no direction.
+        # A speed without a course is almost 0, and has no direction.
         speed=METRES_PER_SECOND_PER_KNOT * np.where(directed, columns[4], 0.0),
         course=np.radians(np.where(directed, columns[5], 0.0)),
         rows=len(rows),
@@ -389,8 +394,8 @@ def _reports(
 
 
 def why_unused(rows: Sequence[AisRow]) -> list[str]:
-    """Return why a row is not used by its own values, empty where it is: ITU-R M.1371-5 has 91,
-    181, 102.3 and 360 for none.
+    """Return why each row is unusable by its values; empty for a usable one. In ITU-R M.1371-5, 91,
+    181, 102.3 and 360 mean "not available".
     """
     reasons = []
     for row in rows:
@@ -406,8 +411,8 @@ def why_unused(rows: Sequence[AisRow]) -> list[str]:
 
 
 def _by_their_clock(rows: Sequence[AisRow]) -> list[str]:
-    """Return why each row is of no use by its clock: it is far before or after all others in time,
-    and stands among them in the file.
+    """Return why each row is unusable by its clock: its time is far from all others, although it
+    stands among them in the file.
     """
     lines = {row.line for row in rows}
     ends = (min(lines), max(lines)) if lines else ()
@@ -422,7 +427,9 @@ def _by_their_clock(rows: Sequence[AisRow]) -> list[str]:
 
 
 def _by_their_times(rows: Sequence[AisRow]) -> list[str]:
-    """Return why each row is of no use by its time: of rows at the same time the first one stays."""
+    """Return why each row is unusable by its time: the first of several rows at the same time is
+    kept.
+    """
     return [
         DUPLICATE if number and row.time == rows[number - 1].time else ""
         for number, row in enumerate(rows)
@@ -430,9 +437,9 @@ def _by_their_times(rows: Sequence[AisRow]) -> list[str]:
 
 
 def _lost_directions(rows: Sequence[AisRow], kept: Sequence[AisRow]) -> tuple[int, ...]:
-    """Return the directions of travel in which rows were dropped, and none was kept [deg].
+    """Return the directions of travel whose rows were all dropped [deg].
 
-    The direction is that of the way to the next place, whatever the row says of its course.
+    The direction is that of the way to the next place; the course in the row does not count.
     """
     used = {row.line for row in kept}
     taken: Counter[int] = Counter()
@@ -454,8 +461,8 @@ def _lost_directions(rows: Sequence[AisRow], kept: Sequence[AisRow]) -> tuple[in
 
 
 def _by_their_places(rows: Sequence[AisRow]) -> list[str]:
-    """Return why a row is not used by its place: a vessel could not have come from the row
-    before, nor gone to the next.
+    """Return why each row is unusable by its place: a vessel could not have come from the row
+    before, nor reached the next.
     """
     _, time, latitude, longitude, _, _ = (
         (np.array(column) for column in zip(*rows, strict=True)) if rows else np.empty((6, 0))
@@ -466,7 +473,7 @@ def _by_their_places(rows: Sequence[AisRow]) -> list[str]:
     near = (apart <= _REACH + _REACH_SPEED * np.diff(time)).tolist()
     if len(near) < 2:
         return [""] * len(rows)
-    # At an end the only neighbour decides, where that one fits to its own other neighbour.
+    # At an end the only neighbour decides, if that one fits its other neighbour.
     alone = [
         not near[0] and near[1],
         *(not (before or after) for before, after in pairwise(near)),
@@ -494,22 +501,23 @@ def _jumps_of_rows(rows: Sequence[AisRow]) -> list[Jump]:
 
 
 _NAMED = 5
-"""Vessels of a file that a message names at most."""
+"""Largest number of vessels of a file in a message."""
 
 _COUNTED = 100_000
-"""Rows of a file in which other vessels are looked for, where it has none of the vessel asked for.
+"""Number of rows of a file in which other vessels are searched for, where it has no rows of the
+requested vessel.
 """
 
 _SHOWN = 60
-"""Letters of a header that a message quotes at most."""
+"""Largest number of letters of a header in a message."""
 
 
 _LOOKED_AT = 200
-"""Lines of a file in which a sentence of AIS is looked for."""
+"""Number of lines of a file in which a sentence of AIS is searched for."""
 
 _SIGNED_SPEED, _SIGNED_COURSE = 102.4, 409.6
-"""What negative speeds and courses lack in Marine Cadastre's files of 2015 to 2017: their ten and
-twelve bits were read as signed numbers [kt, deg]."""
+"""Correction of negative speeds and courses in Marine Cadastre's files of 2015 to 2017: their ten
+and twelve bits were read as signed numbers [kt, deg]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -554,7 +562,7 @@ and those of NOAA's Marine Cadastre ("MMSI,BaseDateTime,LAT,LON,...", and
 
 
 class _Said(NamedTuple):
-    """What a line of a file says of a vessel: a report, its size, or both."""
+    """A vessel's data in a line of a file: a report, its size, or both."""
 
     mmsi: int
     row: AisRow | None = None
@@ -562,12 +570,12 @@ class _Said(NamedTuple):
 
 
 class _Contents(NamedTuple):
-    """What a file says of vessels.
+    """The data of vessels in a file.
 
     Attributes
     ----------
     read : how it was read, in words
-    said : in its order; of others than the vessel that is asked for not all
+    said : in the order of the file; not all rows of other vessels than the requested one
     """
 
     read: str
@@ -591,18 +599,19 @@ def _contents(
     written: TableFormat,
     of_use: Callable[[str], bool] = bool,
 ) -> _Contents:
-    """Return what a file says; of a table, lines that are of no use may be left out.
+    """Return the contents of a file; unusable lines of a table may be left out.
 
     Raises
     ------
-    InputError, TableError : its layout is unknown, or it is no table as ``written`` says
+    InputError, TableError : its layout is unknown, or it is not a table in the format of
+        ``written``
     OSError : it cannot be opened
     """
     with path.open("rb") as file:
         begin = b"".join(islice(file, _LOOKED_AT))
     if not begin.strip():
         raise InputError(f"{path}: the file is empty; give a file of AIS reports")
-    # Whatever the file is called, and whatever other receivers write above the first report.
+    # Regardless of the file's name, and of the lines of other receivers above the first report.
     if SENTENCE.search(begin.decode("latin-1")) or path.suffix.lower() == ".nmea":
         if given := written.given():
             raise InputError(
@@ -622,8 +631,8 @@ def _from_table(
     def keep(line: str) -> bool:
         return identifier in line and of_use(line)
 
-    # Files of a day have millions of lines: those of other vessels, or of another time, are passed
-    # over as they are.
+    # Files of a day have millions of lines: those of other vessels, or of another time, are skipped
+    # unread.
     table = read_table(path, written, head=names, keep=keep)
     heads = {name.lower(): name for name in reversed(table.names)}
     layout = next((layout for layout in LAYOUTS if set(layout.columns) <= set(heads)), None)
@@ -631,8 +640,8 @@ def _from_table(
         plain = LAYOUTS[0].columns
         remedy = other_units(heads, plain) or "rename the columns to these"
         raise InputError(
-            f"{path}, line {table.head_line}: the header is {','.join(table.names)[:_SHOWN]!r}; known"
-            " are those of the Danish Maritime Authority and of Marine Cadastre, and"
+            f"{path}, line {table.head_line}: the header is {','.join(table.names)[:_SHOWN]!r};"
+            " known are those of the Danish Maritime Authority and of Marine Cadastre, and"
             f" {','.join(plain)}: {remedy}"
         )
     lower = [name.lower() for name in table.names]
@@ -658,8 +667,8 @@ def _said_by_rows(
     columns: Sequence[Array],
     size_of: Callable[[int], tuple[ShipSize, str] | None],
 ) -> Iterator[_Said]:
-    """Yield what the rows of a table say, with the names of its columns of identities, and those of
-    a report as numbers.
+    """Yield the contents of a table's rows: identities under the names of their columns, and the
+    columns of a report as numbers.
     """
     for number, (line, identity) in enumerate(
         zip(table.lines, table.column(identities), strict=True)
@@ -672,7 +681,7 @@ def _said_by_rows(
 
 
 def _sizes(table: Table, heads: Mapping[str, str]) -> Callable[[int], tuple[ShipSize, str] | None]:
-    """Return the size that each row of a table says, by its number."""
+    """Return the size in each row of a table, by the row's number."""
     known = {
         dimension: table.numbers(heads[name], words=True)
         for dimension, names in SIZE_COLUMNS.items()
@@ -690,7 +699,7 @@ class VesselRows(NamedTuple):
     ----------
     identity : its MMSI
     rows : in the order of the file
-    sizes : of the vessel, as often as they are said
+    sizes : of the vessel, one for each row that has it
     read : how the file was read, in words
     """
 
@@ -706,7 +715,7 @@ def rows_of(path: Path, mmsi: int | None, written: TableFormat) -> VesselRows:
     Parameters
     ----------
     path : of a table with one of ``LAYOUTS``, or of NMEA sentences
-    mmsi : of the vessel; may be left out where the file has one vessel alone
+    mmsi : of the vessel; may be left out where the file has only one vessel
     written : how a table is written, as far as it is given
 
     Raises
@@ -737,13 +746,14 @@ def rows_of(path: Path, mmsi: int | None, written: TableFormat) -> VesselRows:
 
 
 def _no_row(path: Path, mmsi: int | None, written: TableFormat) -> InputError:
-    """Return what says that the file has no row of the vessel, and whose rows it has."""
+    """Return the error that the file has no row of the vessel, with the vessels that it has."""
     with _refusing(path):
         said = islice(_contents(path, None, written).said, _COUNTED)
         counts = Counter(of.mmsi for of in said if of.row is not None)
     if counts:
         return InputError(
-            f"{path}: no row of MMSI {mmsi}; it has {_most(counts)}: check the number (vessel.mmsi; --mmsi of an estimate)"
+            f"{path}: no row of MMSI {mmsi}; it has {_most(counts)}: check the number"
+            " (vessel.mmsi; --mmsi of an estimate)"
         )
     return InputError(
         f"{path}: no row below the header has an MMSI in digits, as 219999001, in the column of its"
@@ -760,15 +770,15 @@ def _most(counts: Counter[int]) -> str:
 
 
 _AROUND_TIMES = " \t\r\n,;"
-"""What may stand between a time and its sentence."""
+"""Separators between a time and its sentence."""
 
 _DATE_FROM = 10_000_000_000_000
-"""Times since 1970 from which on they are no time, but a date without its marks, as 20260601100000,
-of milliseconds from the year 2286 on."""
+"""Least number that is not a time since 1970, but a date without separators, such as
+20260601100000; milliseconds reach it in the year 2286."""
 
 
 def _from_sentences(path: Path) -> Iterator[_Said]:
-    """Yield what each sentence says; lines that cannot be decoded are passed over.
+    """Yield the contents of each sentence; lines that cannot be decoded are skipped.
 
     Raises
     ------
@@ -842,37 +852,37 @@ def _seconds_of(text: str) -> float:
 
 
 _PAIRS_MIN = 10
-"""Pairs of neighbouring reports from which on they are judged: of fewer, scattered places decide.
+"""Least number of pairs of neighbouring reports for a check: with fewer, the scatter of places
+decides.
 """
 
 _WAY_MIN, _TIME_MAX = 30.0, 60.0
-"""Least way between the places of a pair [m], which scatter by some, and longest time [s]: in it
-the vessel goes nearly straight.
+"""Least way between the places of a pair [m], since places scatter by some metres, and longest time
+[s], in which the vessel goes nearly straight.
 """
 
 _TURN_MAX, _FASTER_MAX = math.radians(10.0), 1.2
-"""Change of course [rad], and larger over smaller speed [-], up to which it went straight and
-evenly in a longer time.
+"""Largest change of course [rad], and largest ratio of speeds [-], of a straight and even stretch
+in a longer time.
 """
 
 _RATIO = (0.7, 1.4)
-"""Speeds over those between places, in the median [-]: metres per second for knots are 0.51, km/h
-are 1.85.
+"""Limits of the median ratio of speeds to those between places [-]: it is 0.51 for metres per
+second in place of knots, 1.85 for km/h.
 """
 
 _CLOSE = 0.3
-"""Share of these that places which are swapped have to keep to: then they fit, and not by chance.
-"""
+"""Share of these limits for swapped places: within it they fit, and not by chance."""
 
 _OFF_MAX = 30.0
-"""Difference of courses from those between places, in the median [deg]."""
+"""Largest median difference of courses from those between places [deg]."""
 
 
 def check_units(
     path: Path, time: Array, latitude: Array, longitude: Array, speed: Array, course: Array
 ) -> None:
-    """Raise an InputError where speeds [m/s] or courses [rad] are not those between places [rad],
-    in the median of all pairs.
+    """Raise an InputError where speeds [m/s] or courses [rad] differ from those between places
+    [rad], in the median of all pairs.
     """
     judged = _against_places(time, latitude, longitude, speed, course)
     if judged is None or _agree(*judged):
@@ -900,8 +910,8 @@ def check_units(
 def _against_places(
     time: Array, latitude: Array, longitude: Array, speed: Array, course: Array
 ) -> tuple[float, float] | None:
-    """Return the median ratio of speeds to those between places [-], and of differences of course
-    [deg]; none of too few pairs.
+    """Return the median ratio of speeds to those between places [-], and the median difference of
+    courses [deg]; None with too few pairs.
     """
     way = np.diff(cartesian(latitude, longitude), axis=0)
     apart, passed = np.linalg.norm(way, axis=-1), np.diff(time)
@@ -927,8 +937,8 @@ def _against_places(
 
 
 def _straight(passed: Array, speed: Array, course: Array) -> npt.NDArray[np.bool_]:
-    """Return which pairs, shape (n - 1,), that a track bridges lie within a straight and even
-    stretch, with both neighbours.
+    """Return which of the pairs that a track bridges, shape (n - 1,), lie with both neighbours
+    within a straight and even stretch.
     """
     turned = np.abs(np.angle(np.exp(1j * np.diff(course))))
     slower, faster = np.minimum(speed[1:], speed[:-1]), np.maximum(speed[1:], speed[:-1])
@@ -939,8 +949,8 @@ def _straight(passed: Array, speed: Array, course: Array) -> npt.NDArray[np.bool
 
 
 def _agree(ratio: float, off: float, share: float = 1.0) -> bool:
-    """Return whether speeds and courses are those between places, within a share of what is
-    allowed.
+    """Return whether speeds and courses agree with those between places, within a share of the
+    limits.
     """
     return (
         1.0 + share * (_RATIO[0] - 1.0) <= ratio <= 1.0 + share * (_RATIO[1] - 1.0)

@@ -14,25 +14,25 @@ TAG_TIME = re.compile(r"[\\,]c:(\d+)")
 """Time of reception in a tag block of NMEA 4.10: seconds since 1970, or milliseconds."""
 
 MILLISECONDS_FROM = 100_000_000_000
-"""Times since 1970 from which on they are milliseconds, of seconds from the year 5138 on."""
+"""Least number that is a time since 1970 in milliseconds; in seconds it is the year 5138."""
 
 POSITION_REPORTS = (1, 2, 3, 18, 19)
 """Message types with position, speed and course (ITU-R M.1371-5): class A, and class B."""
 
 _SIDES = ("bow", "stern", "port", "starboard")
-"""Sides of the ship that messages have the antenna's distances from."""
+"""Sides of the ship from which messages give the antenna's distances."""
 
 _GROUPS_MAX = 64
-"""Messages whose sentences may be incomplete at a time [-]: ten groups on two channels, and more of
+"""Largest number of incomplete messages at a time [-]: ten groups on two channels, and more with
 several receivers."""
 
 
 class Message(NamedTuple):
-    """A message of AIS, once all of its sentences have come.
+    """A message of AIS with all of its sentences.
 
     Attributes
     ----------
-    before, after : what stands on the line of its last sentence before that, and after it
+    before, after : text before and after its last sentence on the line
     said : its fields, as pyais names them
     """
 
@@ -51,14 +51,15 @@ class Message(NamedTuple):
         return self.said["msg_type"] in POSITION_REPORTS
 
     def value(self, name: str) -> float:
-        """Return a field, NaN where it is not said."""
+        """Return a field; NaN where the message does not have it."""
         value = self.said.get(name)
         return float("nan") if value is None else float(value)
 
     @property
     def size(self) -> tuple[ShipSize, str] | None:
-        """The ship's size, and what of it is not used, as of ``ship_size``; None of a message
-        without any. Of a boat of a ship pyais has that ship's identity instead of dimensions.
+        """The ship's size, and a remark on values that are not used, as in ``ship_size``; None for
+        a message without size. For a ship's boat, pyais has that ship's identity instead of
+        dimensions.
         """
         if "to_bow" not in self.said:
             return None
@@ -75,7 +76,7 @@ class SentenceDecoder:
 
     Attributes
     ----------
-    unreadable : number of lines that are no sentence of NMEA, or whose sentence says nothing
+    unreadable : number of lines that are not a sentence of NMEA, or whose sentence has no content
 
     Raises
     ------
@@ -98,7 +99,8 @@ class SentenceDecoder:
         """Return the message that a line completes, or None."""
         found = SENTENCE.search(line)
         if found is None or (self._checked and not _checksum_fits(found[0])):
-            # Other instruments on the line, as "$GPGGA,...", are not damaged.
+            # Sentences of other instruments on the line, such as "$GPGGA,...", do not count as
+            # unreadable.
             self.unreadable += bool(line.strip()) and (found is not None or "$" not in line)
             return None
         whole = self._completed(found[0])
@@ -112,7 +114,7 @@ class SentenceDecoder:
         return Message(line[: found.start()], line[found.end() :], said)
 
     def _completed(self, sentence: str) -> list[str]:
-        """Return the sentences of the message that this one completes, or none."""
+        """Return the sentences of the message that this one completes, or an empty list."""
         _, count, part, group, channel, *_ = sentence.split(",")
         if count == "1":
             return [sentence]
@@ -130,7 +132,7 @@ class SentenceDecoder:
 
 
 def _checksum_fits(sentence: str) -> bool:
-    """Return whether a sentence has the checksum of what stands between ``!`` and ``*``."""
+    """Return whether a sentence has the checksum of the text between ``!`` and ``*``."""
     body, _, stated = sentence[1:].partition("*")
     checksum = 0
     for letter in body.encode("ascii", "replace"):

@@ -1,4 +1,4 @@
-"""A ship's size and the place of the antenna on it, as reports say them."""
+"""A ship's size and the place of the antenna on it, from reports."""
 
 import math
 from collections import Counter
@@ -13,7 +13,7 @@ SIZE_COLUMNS: Mapping[str, tuple[str, ...]] = {
     "port": ("c", "size c", "to_port", "dim_c"),
     "starboard": ("d", "size d", "to_starboard", "dim_d"),
 }
-"""What tables call each dimension, in lower case. A to D are the letters of ITU-R M.1371-5."""
+"""Names of each dimension in tables, in lower case. A to D are the letters of ITU-R M.1371-5."""
 
 _LENGTH_END, _BEAM_END = 511.0, 63.0
 """Largest distances that a report can say: they stand for these and all above (ITU-R M.1371-5,
@@ -26,7 +26,7 @@ them upwards [m]."""
 
 @dataclass(frozen=True, slots=True)
 class ShipSize:
-    """A ship's size as its reports say it; None is what they do not say.
+    """A ship's size from its reports; None for values that they do not have.
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ class ShipSize:
 
     @property
     def known(self) -> int:
-        """Number of dimensions that are said."""
+        """Number of known dimensions."""
         return sum(getattr(self, each.name) is not None for each in fields(self))
 
 
@@ -70,7 +70,7 @@ def ship_size(
     port: float = math.nan,
     starboard: float = math.nan,
 ) -> tuple[ShipSize, str]:
-    """Return the size that one report says, and what of it is not used and why, else empty.
+    """Return the size in one report, and a remark on values that are not used; empty without one.
 
     Parameters
     ----------
@@ -78,9 +78,9 @@ def ship_size(
     bow, stern, port, starboard : distances of the antenna from them: A, B, C and D of ITU-R
         M.1371-5, figure 41 [m]
 
-    0 and what is not a number say nothing. With 0 to bow and port the place of the antenna is not
-    known, and the other two are length and beam. 511 m and 63 m stand for more as well, and say
-    nothing, either.
+    0 and NaN mean "unknown". With 0 to bow and port the place of the antenna is unknown, and the
+    other two are length and beam. 511 m and 63 m also stand for larger values, and count as
+    unknown.
     """
     along = _across("length", length, "A + B", bow, stern, _LENGTH_END)
     aside = _across("width", beam, "C + D", port, starboard, _BEAM_END)
@@ -105,9 +105,9 @@ def _across(
 
     Parameters
     ----------
-    name, whole : of the dimension, and as it is said [m]
-    names, before, after : of its two parts, and as they are said [m]
-    end : largest part that can be said [m]
+    name, whole : of the dimension, and its reported value [m]
+    names, before, after : of its two parts, and their reported values [m]
+    end : largest part that can be reported [m]
     """
     stated = whole if whole > 0.0 else None
     if not before + after > 0.0 or min(before, after) < 0.0:
@@ -121,9 +121,9 @@ def _across(
 
 
 def size_of_all(said: Iterable[tuple[ShipSize, str]]) -> tuple[ShipSize | None, str]:
-    """Return the size that reports of one ship say, and a remark where they do not agree.
+    """Return the size from the reports of one ship, and a remark where they do not agree.
 
-    It is the one that most of them say, of those that say the most.
+    Of the most complete sizes, it is the most frequent one.
     """
     counts: Counter[tuple[ShipSize, str]] = Counter(
         (size, remark) for size, remark in said if size.known or remark

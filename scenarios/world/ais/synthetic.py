@@ -17,7 +17,9 @@ from scenarios.scenario.sections.world import VesselConfig
 from scenarios.world.vessel import ManoeuvringVessel
 
 SYNTHETIC = {"synthetic_danish.csv": 219999001, "synthetic_marine_cadastre.csv": 366999002}
-"""Their names, and the MMSI of the ship: of Denmark and of the United States, and of no ship."""
+"""Names of the files, and the MMSI of the ship in each: numbers of Denmark and of the United States
+that no ship has.
+"""
 
 _DURATION = 4200.0
 _START = datetime(2026, 6, 1, 10, 0, tzinfo=UTC).timestamp()
@@ -33,8 +35,8 @@ _DANISH = (
     " position fixing device,Draught,Destination,ETA,Data source type,A,B,C,D"
 )
 _MARINE_CADASTRE = (
-    "mmsi,base_date_time,longitude,latitude,sog,cog,heading,vessel_name,imo,call_sign,vessel_type,status,length,width,draft,cargo,"
-    "transceiver"
+    "mmsi,base_date_time,longitude,latitude,sog,cog,heading,vessel_name,imo,call_sign,"
+    "vessel_type,status,length,width,draft,cargo,transceiver"
 )
 
 
@@ -64,11 +66,12 @@ def danish_file() -> str:
 
 
 def marine_cadastre_file() -> str:
-    """Return reports of a ship off Oregon, about one a minute, as the Marine Cadastre keeps them."""
+    """Return reports of a ship off Oregon, about one a minute, in the Marine Cadastre's layout."""
     ship = _ship(speed_kn=11.0, course_deg=185.0, turn_deg=-90.0)
     times = _report_times(ship, slow=60.0, fast=60.0, lost=0.0)
     rows = [
-        f"{SYNTHETIC['synthetic_marine_cadastre.csv']},{datetime.fromtimestamp(time, UTC):%Y-%m-%d %H:%M:%S},{longitude:.5f},{latitude:.5f},"
+        f"{SYNTHETIC['synthetic_marine_cadastre.csv']},"
+        f"{datetime.fromtimestamp(time, UTC):%Y-%m-%d %H:%M:%S},{longitude:.5f},{latitude:.5f},"
         f"{speed:.1f},{course:.1f},511,MADE SHIP,,,70,0,,,,70,A"
         for time, latitude, longitude, speed, course in _reports(
             ship, times, place=(44.6, -124.6), seed=2

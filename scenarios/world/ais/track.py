@@ -1,5 +1,5 @@
-"""A vessel on a smooth track through the reports of a file, and reports of any vessel as they arrive
-on board: every few seconds, noisy, late, or not at all.
+"""A vessel on a smooth track through the reports of a file, and reports of any vessel as they
+arrive on board: every few seconds, noisy, late, or not at all.
 """
 
 import math
@@ -31,18 +31,18 @@ if TYPE_CHECKING:
 Array = npt.NDArray[np.float64]
 
 AT_THE_FUNNEL = (0.0, 0.0)
-"""Offset of an antenna that is at the funnel, or taken to be there [m]."""
+"""Offset of an antenna that is at the funnel, or assumed to be there [m]."""
 
 _TURN_TIME = 20.0
-"""Time over which a rate of turn is the mean at least [s]: a course is wrong by a degree, and so
-the rate by 0.05 deg/s."""
+"""Least time over which a rate of turn is averaged [s]: with an error of the course of a degree,
+the rate is wrong by 0.05 deg/s."""
 
 _AROUND = 600.0
-"""Reports of this time before a flight and after it have a part in its smooth track [s]."""
+"""Time before a flight and after it whose reports contribute to its smooth track [s]."""
 
 _KNOWN_BEFORE = 60.0
-"""Reports of this time before a flight are known at its start [s], the last one before it in any
-case.
+"""Time before a flight whose reports are known at its start [s]; the last report before it always
+is.
 """
 
 _AT_REST = 0.3
@@ -52,10 +52,10 @@ _MANOEUVRE, _MANOEUVRE_TIME = 0.03, 30.0
 """Mean acceleration over some time above which a vessel manoeuvres [m/s^2, s]."""
 
 _OTHERS_KEPT = 64
-"""Other ships of a track that a process keeps."""
+"""Number of other ships' tracks that a process caches."""
 
 _KEPT = 4
-"""Tracks that a process keeps: flights of a study mostly share one."""
+"""Number of tracks that a process caches: flights of a study mostly share one."""
 
 
 class AisVessel(TabledVessel):
@@ -67,13 +67,13 @@ class AisVessel(TabledVessel):
     altitude : at which metres are counted [m]
     start : time of the start, since 1970 [s]
     duration : of the longest flight [s]
-    margin : for how long the track goes straight on after it [s]
+    margin : time for which the track goes straight on after it [s]
     antenna : place that reports are of, ahead of the funnel and to starboard of it [m]
 
     Attributes
     ----------
     place : where and when the flight begins: the origin is on the smooth track of the funnel
-    reports : those of the file, in the flight's time and frame
+    reports : of the file, in the flight's time and frame
     source : the file's
     """
 
@@ -119,7 +119,7 @@ class AisVessel(TabledVessel):
             self.reports = _at_the_funnel(self.reports, antenna)
             flown = int(np.count_nonzero(np.diff(times))) + 1
             turning = _turning(course[:flown], antenna)
-            # It goes straight on after that.
+            # After that the track goes straight on.
             track = track + turning[np.minimum(np.arange(len(track)), flown - 1)]
         super().__init__(track, course, _manoeuvres_end(track))
 
@@ -136,11 +136,11 @@ def _turning(heading: Array, antenna: tuple[float, float]) -> Array:
 
 
 def _at_the_funnel(reports: list[VesselReport], antenna: tuple[float, float]) -> list[VesselReport]:
-    """Return the reports of an antenna as they are of the funnel, by what is known when each is
-    received.
+    """Return the reports of an antenna converted to the funnel, with the knowledge at the time of
+    each report.
 
-    The ship's heading is taken for its course, and its rate of turn is the mean over the reports of
-    ``_TURN_TIME`` at least.
+    The ship's heading is assumed to be its course, and its rate of turn is the mean over the
+    reports of at least ``_TURN_TIME``.
     """
     times = np.array([report.time for report in reports])
     course = _course_of(np.array([report[3:5] for report in reports]))
@@ -168,9 +168,9 @@ def ais_vessel(
     ----------
     config : the ``[vessel]`` section
     altitude : at which metres are counted [m]
-    utc : of the start; the first report's if not given
-    duration, margin : of the longest flight, and for how long the track goes on after it [s]
-    written : how the file is written if it is a table, as far as it is given
+    utc : of the start; by default that of the first report
+    duration, margin : of the longest flight, and time for which the track goes on after it [s]
+    written : format of the file if it is a table, as far as it is given
 
     Raises
     ------
@@ -214,7 +214,7 @@ def with_size_of_file(config: VesselConfig, written: TableFormat = FOUND) -> Ves
 
 
 def _file_of(config: VesselConfig) -> tuple[Path, tuple[int, int]]:
-    """Return the file of a track, and what tells one state of it from another.
+    """Return the file of a track, and a key of the file's present state.
 
     Raises
     ------
@@ -254,8 +254,8 @@ def _check_covered(reports: AisReports, begin: float, end: float, gap_max: float
 
 
 def _check_jumps(reports: AisReports, begin: float, end: float) -> None:
-    """Raise an InputError where reports that have a part in the track of a flight between two times
-    [s] lie so far apart that no vessel goes there.
+    """Raise an InputError where reports that contribute to the track of a flight between two times
+    [s] are too far apart for any vessel.
     """
     part = _around(reports.time, begin, end)
     jumps = reports.jumps(part)
@@ -429,8 +429,8 @@ def usual_intervals(vessel: AisVessel) -> tuple[float, float]:
 
 
 def _around(time: Array, begin: float, end: float) -> slice:
-    """Return which reports have a part in the track of a flight between two times [s]: the last
-    before it and the first after it, however long a gap they bound."""
+    """Return which reports contribute to the track of a flight between two times [s]; the last
+    before it and the first after it always do."""
     first = min(np.searchsorted(time, begin - _AROUND), np.searchsorted(time, begin, "right") - 1)
     last = max(np.searchsorted(time, end + _AROUND, "right"), np.searchsorted(time, end) + 1)
     return slice(int(first), int(last))
@@ -449,11 +449,11 @@ def _in_frame(
 
 
 def _course_of(velocity: Array) -> Array:
-    """Return the course over the ground without jumps; a vessel at rest keeps the last one [rad]."""
+    """Return the course over the ground without jumps [rad]; a vessel at rest keeps the last."""
     moving = np.hypot(velocity[:, 0], velocity[:, 1]) > _AT_REST
     if not moving.any():
         return np.zeros(len(velocity))
-    # Before it first moves, it points where it then goes.
+    # Before its first motion, the vessel points in the direction of that motion.
     last = np.maximum(
         np.maximum.accumulate(np.where(moving, np.arange(len(velocity)), -1)),
         int(np.argmax(moving)),
@@ -473,12 +473,12 @@ def _manoeuvres_end(velocity: Array) -> float:
 
 
 POSITION_SIGMA, VELOCITY_SIGMA = 5.0, 0.15
-"""Errors of a report that the motion is smoothed by, one sigma: satellite navigation on board,
-whose fix is up to a second old [m, m/s]."""
+"""Errors of a report in the smoothing, one sigma: satellite navigation on board, whose fix is up to
+a second old [m, m/s]."""
 
 JERK_DENSITY = 5e-4
-"""Density of the white noise that the rate of acceleration is taken for: in 20 s a ship's
-acceleration changes by 0.1 m/s^2 and more [m^2/s^5]."""
+"""Density of the white noise that models the rate of acceleration: in 20 s a ship's acceleration
+changes by 0.1 m/s^2 and more [m^2/s^5]."""
 
 
 def smooth_motion(time: Array, place: Array, velocity: Array) -> "BPoly":
@@ -497,7 +497,7 @@ def smooth_motion(time: Array, place: Array, velocity: Array) -> "BPoly":
     from scipy.interpolate import BPoly
 
     filtered, predicted = [], []
-    # Nothing is known of the acceleration at first but that it is a ship's.
+    # At first only the usual size of a ship's acceleration is known.
     state = np.stack([place[0], velocity[0], np.zeros(2)])
     covariance = np.diag([POSITION_SIGMA**2, VELOCITY_SIGMA**2, 0.1**2])
     errors = np.diag([POSITION_SIGMA**2, VELOCITY_SIGMA**2])
@@ -553,17 +553,17 @@ def received_reports(
     """Return the reports that are received, with the time at which each is [s], in the order in
     which they are received.
 
-    The first one, at time 0, always is: a flight begins with a vessel that is known.
+    The first one, at time 0, is always received: a flight begins with a known vessel.
 
     Parameters
     ----------
-    reports : how they come; exact knowledge needs none of this
+    reports : how reports are sent and received; exact knowledge does not need them
     vessel : its motion
     duration : of the flight [s]
-    outages : nothing is received between these times [s]
+    outages : times between which nothing is received [s]
     generator : of the random numbers
-    antenna : place that reports are of, ahead of the funnel and to starboard of it [m]; what is
-        received of it is taken to the funnel
+    antenna : place to which reports refer, ahead of the funnel and to starboard of it [m]; received
+        reports are converted to the funnel
     heading_generator : of the errors of heading and rate of turn, where the antenna is elsewhere
     """
     if isinstance(vessel, AisVessel):
@@ -597,12 +597,12 @@ def _by_antenna(
     antenna: tuple[float, float],
     generator: np.random.Generator,
 ) -> VesselReport:
-    """Return what is made on board of the report of an antenna.
+    """Return the report of the funnel that is computed on board from one of the antenna.
 
     Parameters
     ----------
-    funnel : motion that would be reported of the funnel
-    vessel, reports, antenna, generator : as of ``received_reports``
+    funnel : motion that a report of the funnel would have
+    vessel, reports, antenna, generator : as in ``received_reports``
     """
     time, off = funnel.time, generator.standard_normal(2)
     heading, rate = vessel.course(time), _turn_rate(vessel, time)
@@ -626,8 +626,8 @@ def _received_from_file(
     outages: Sequence[tuple[float, float]],
     generator: np.random.Generator,
 ) -> list[tuple[float, VesselReport]]:
-    """Return the file's own reports as they are received: late or missing where the scenario says
-    so, but for those before.
+    """Return the file's reports as they are received: late or missing where the scenario says so,
+    except for those before the flight.
     """
     return _received(reports, vessel.reports, outages=outages, generator=generator)
 

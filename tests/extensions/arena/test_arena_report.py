@@ -2,7 +2,6 @@
 
 import json
 import math
-import re
 from dataclasses import replace
 
 import pandas as pd
@@ -12,22 +11,18 @@ from snapshots import assert_reads_as_before
 
 from extensions.arena.entrants import Entrant
 from extensions.arena.paired_bootstrap import Estimate
-from extensions.arena.record import CROSSINGS, ERROR, PLUME_TIME, SULPHUR, Figure, read_arena
+from extensions.arena.record import ERROR, read_arena
 from extensions.arena.report import (
     _headline,
-    _interval,
     arena_content,
     by_condition_table,
-    merit_chart,
-    plume_table,
     tracking_table,
 )
 from extensions.arena.results import estimates
-from extensions.arena.window import WINDOW_COLUMNS
 from reports.registry import content
 from reports.run.run_data import read_run
 from scenarios.scenario.files import load_study
-from tests.reports.report_parts import built, flown, numbers_on_page_1
+from tests.reports.report_parts import flown, numbers_on_page_1
 
 pytestmark = pytest.mark.slow
 
@@ -53,54 +48,6 @@ def run(path):
 @pytest.fixture(scope="module")
 def arena(run):
     return read_arena(run)
-
-
-def test_both_reports_are_built_with_a_place_for_each_part(path):
-    text = built(path)
-    for anchor in ("tracking", "standoff", "plume", "tuning"):
-        assert f'id="{anchor}"' in text
-    assert "<b>" in text.partition('id="tracking"')[2]
-
-
-def test_the_best_mean_of_each_figure_is_bold_and_first_where_it_ranks(arena):
-    table = tracking_table(arena, tracking=True)
-    # NPFG feeds the curvature forward; pure pursuit knows nothing of it (guidance-laws.md, section
-    # 8: 37 m and more).
-    assert [row[1] for row in table.rows] == ["npfg", "pure pursuit"]
-    assert (0, 2) in table.bold
-    assert (1, 2) not in table.bold
-    assert re.fullmatch(r"\d+\.\d\d \(\d+\.\d\d–\d+\.\d\d\)", table.rows[0][2])
-
-
-def test_the_limit_of_any_path_is_listed_where_it_is_known(arena):
-    # 5 + 4 nu at nu = 0.5 in calm air.
-    table = by_condition_table(arena, CROSSINGS)
-    assert table.rows[-1][1:3] == ["limit of any path", "7.00"]
-
-
-def test_what_a_minute_is_worth_to_the_measurement_is_drawn_and_listed(arena):
-    sulphur, inside, crossings = merit_chart(arena, (SULPHUR, PLUME_TIME, CROSSINGS)).panels
-    assert [panel.x_label for panel in (sulphur, inside, crossings)] == [
-        "Sulphur error of a minute [% m/m]", "In the plume [s/min]", "Crossings [1/min]"
-    ]  # fmt: skip
-    assert {len(panel.y_names) for panel in (sulphur, inside, crossings)} == {3}
-    table = plume_table(arena)
-    column = table.head.index("Sulphur error of a minute [% m/m]")
-    for row in table.rows:
-        mean, low, high = re.fullmatch(
-            r"([\d.]+|∞) \(([\d.]+|∞)–([\d.]+|∞)\)", row[column]
-        ).groups()
-        # Flights of 40 s about the vessel may not meet the plume at all, and then leave it unknown.
-        assert (
-            float(low.replace("∞", "inf"))
-            <= float(mean.replace("∞", "inf"))
-            <= float(high.replace("∞", "inf"))
-        )
-    # Information adds up: what is shown is the inverse root of the mean, and less of it is better.
-    shown = {entrant.name: arena.of(SULPHUR, entrant, "all") for entrant in arena.entrants}
-    best = min(shown.values(), key=lambda estimate: estimate.mean)
-    assert best.best
-    assert not math.isnan(arena.of(PLUME_TIME, arena.entrants[0], "wind").mean)
 
 
 def with_errors(arena, *errors):
@@ -142,24 +89,6 @@ def test_the_headline_says_which_laws_cannot_be_told_from_the_best(arena, errors
     assert (
         _headline(found)
         == f"Tracking: {words}; Circling: only npfg (circle) is compared, 3.00 m rms"
-    )
-
-
-def test_of_one_flight_in_each_condition_no_law_is_called_best(run, monkeypatch):
-    once = replace(read_arena(run), flights=1)
-    monkeypatch.setattr("extensions.arena.report.read_arena", lambda _: once)
-    found = arena_content(run)
-    assert ", each flown once in each of " in found.flown
-    assert " cannot be told apart, " in found.verdict.headline
-    assert "no law can be told from the others" in found.verdict.detail
-
-
-def test_a_mean_of_single_flights_stands_without_an_interval():
-    error = Figure(column=WINDOW_COLUMNS[ERROR], greater_first=False, shown=float)
-    assert _interval(Estimate(mean=0.12, flights=2), error) == "0.12"
-    assert (
-        _interval(Estimate(mean=0.12, low=0.1, high=0.15, flights=4), error)
-        == "0.12 (0.10\N{EN DASH}0.15)"
     )
 
 
@@ -227,14 +156,6 @@ def test_where_each_law_lacks_another_flight_none_is_called_best(run, tmp_path):
         run, tmp_path, "calm_npfg_kinematic_00000|wind_pure_pursuit_kinematic_00001"
     ).verdict.headline
     assert "Tracking: no law is compared, as each lacks flights; Circling: only npfg" in headline
-
-
-def test_an_arena_that_was_not_evaluated_is_reported_as_flights(path, run):
-    (path / "arena.json").rename(path / "gone")
-    try:
-        assert "plume" not in {section.anchor for section in arena_content(run).sections}
-    finally:
-        (path / "gone").rename(path / "arena.json")
 
 
 def test_every_number_on_page_1_is_that_of_the_evaluation(path, tmp_path):

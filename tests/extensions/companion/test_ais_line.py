@@ -9,7 +9,7 @@ import pytest
 
 from common.physics import METRES_PER_SECOND_PER_KNOT
 from extensions.companion.ais_line import AisReceiver
-from extensions.companion.ports import heard, opened
+from extensions.companion.ports import opened, opened_input
 from scenarios.world.ais.size import ShipSize
 from tests.extensions.companion.served import companion, free_port, served
 from tests.in_process import assert_refused
@@ -46,7 +46,7 @@ def receiver():
     """Return a receiver on a UDP port, and what sends it lines and returns its reports."""
     address = f"udp://127.0.0.1:{free_port(socket.SOCK_DGRAM)}"
     with (
-        closing(heard("--ais", address)) as line,
+        closing(opened_input("--ais", address)) as line,
         closing(opened("--ais", address, listening=False)) as sender,
     ):
         found = AisReceiver(line, clock=lambda: NOW)
@@ -55,7 +55,7 @@ def receiver():
         def said(*lines):
             for text in lines:
                 sender.send(text.encode() + b"\r\n", peer)
-            return found.hear()
+            return found.receive()
 
         yield found, said
 
@@ -121,16 +121,16 @@ def test_a_static_message_says_the_size_of_the_reports_after_it(receiver):
 def test_a_receiver_over_tcp_is_connected_to():
     port = free_port()
     with socket.create_server(("127.0.0.1", port)) as server:
-        with closing(heard("--ais", f"tcp://127.0.0.1:{port}")) as line:
+        with closing(opened_input("--ais", f"tcp://127.0.0.1:{port}")) as line:
             stream, _ = server.accept()
             found = AisReceiver(line)
             text = sentence().encode() + b"\r\n"
             with stream:
                 # Pieces of a stream are no lines.
                 stream.sendall(text[:20])
-                assert found.hear() == []
+                assert found.receive() == []
                 stream.sendall(text[20:] + text)
-                reports = found.hear()
+                reports = found.receive()
         assert [report.mmsi for report in reports] == [219999001, 219999001]
     assert found.unreadable == 0
 

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from extensions.companion.ports import opened
-from extensions.companion.sniffer_line import HeardSniffer, reading_line, reading_of
+from extensions.companion.sniffer_line import ReceivedSniffer, reading_line, reading_of
 from scenarios.scenario.files import load_study
 from tests.extensions.companion.served import companion, free_port, served
 
@@ -47,11 +47,11 @@ def test_readings_have_the_time_at_which_they_were_true(tmp_path):
     line = opened("--sniffer", f"udpin://{address}", listening=False)
     sender = opened("--sniffer", f"udp://{address}", listening=False)
     try:
-        sniffer = HeardSniffer(line, scenario)
+        sniffer = ReceivedSniffer(line, scenario)
         (peer,) = sender.connected()
         for text in (b"age_s,so2_ppb,co2_ppm\n0.5,10,450\n0.25,11,", b"460\nrubbish\n0.3,1,1\n"):
             sender.send(text, peer)
-            sniffer.hear(20.0)
+            sniffer.receive(20.0)
         # Of 19.7 s, when 19.75 s is there already, and the header and the rubbish.
         assert sniffer.unreadable == 3
         read = sniffer.readings(0.0)

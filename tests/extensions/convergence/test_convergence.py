@@ -1,9 +1,7 @@
-import math
 import multiprocessing
 import signal
 import time
 
-import numpy as np
 import pytest
 
 from extensions.convergence.motion import Vehicle
@@ -16,7 +14,6 @@ from extensions.convergence.study import (
     convergence_blocks,
     convergence_table,
     counterexamples,
-    trajectory_of,
 )
 from gnc.paper import look_ahead
 from scenarios.engine.processes import InProcessExecutor, LocalExecutor
@@ -158,52 +155,3 @@ def test_a_trajectory_that_has_too_little_time_is_a_counterexample(monkeypatch):
     assert set(missed["outcome"]) == {"time_up"}
     assert missed["message"].str.contains("raise time_max").all()
     assert len(missed) + (rows["outcome"] == "converged").sum() == 30
-
-
-@pytest.fixture(scope="module")
-def of_each_kind():
-    """One trajectory of each kind of reference under each law."""
-    return study(trajectories=3, laws=("lyapunov", "cascade", "cascade_cut"), seed=3)
-
-
-@pytest.mark.parametrize(
-    ("law", "trajectory"),
-    [
-        ("lyapunov", 0),
-        ("lyapunov", 1),
-        ("lyapunov", 2),
-        ("cascade", 1),
-        ("cascade_cut", 0),
-        ("cascade_cut", 2),
-    ],
-)
-def test_a_row_flown_again_ends_where_it_ended(law, trajectory, of_each_kind):
-    (row,) = (
-        row
-        for _, row in of_each_kind.iterrows()
-        if (row["law"], row["trajectory"]) == (law, trajectory)
-    )
-    track = trajectory_of(row, vehicle=VEHICLE, settling_band=BAND)
-    first, last = track.iloc[0], track.iloc[-1]
-    assert first[["north_m", "east_m"]].tolist() == row[["start_north_m", "start_east_m"]].tolist()
-    assert first["phi_rad"] == row["start_phi_rad"]
-    assert math.cos(first["course_rad"] - row["start_course_rad"]) == pytest.approx(1.0, abs=1e-12)
-    # Smaller steps, so not the same to the bit; both runs end within 0.02 m of the reference, or at
-    # the same time just before.
-    assert last["distance_m"] < 0.03
-    # Steps that err by up to 1e-4 m, ten of them in the time in which d decays, move the moment of
-    # passing 0.02 m by some 5 % of that time, which is 6 s of a circle and up to 100 s of a weak
-    # oscillation.
-    assert last["time_s"] == pytest.approx(row["duration_s"], abs=10.0)
-    # Rounding of times in the thousands.
-    assert np.diff(track["time_s"]).max() <= 0.5 + 1e-11
-    # Both move at V along their courses, which law (24) may change on the spot at the start. A step
-    # is 0.5 s long, at up to some 0.5 rad/s: its chord is shorter than its arc by (0.25 rad)^2/24 =
-    # 0.1 %, and has the course of its middle to 1e-2 rad.
-    later = track[track["time_s"] > 60.0]
-    for prefix in ("", "reference_"):
-        north, east = np.diff(later[f"{prefix}north_m"]), np.diff(later[f"{prefix}east_m"])
-        assert np.hypot(north, east) == pytest.approx(SPEED * np.diff(later["time_s"]), rel=0.01)
-        course = np.unwrap(later[f"{prefix}course_rad"])
-        off = np.arctan2(east, north) - 0.5 * (course[1:] + course[:-1])
-        assert np.abs(np.sin(0.5 * off)).max() < 0.005

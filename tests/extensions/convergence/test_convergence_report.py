@@ -6,11 +6,11 @@ import numpy as np
 import pandas as pd
 import pytest
 from convergence_runs import LAWS, REFERENCES, TRAJECTORIES, write_convergence_run
-from report_parts import blocks_of, built, draw_all_but, numbers_on_page_1
+from report_parts import blocks_of, numbers_on_page_1
 from snapshots import assert_reads_as_before
 
 from extensions.convergence.report import FAILED_ROWS, settled_time
-from reports.build import build_reports, export_run
+from reports.build import build_reports
 from reports.document.blocks import Table
 from reports.errors import ReportError
 from reports.registry import content
@@ -54,16 +54,6 @@ def test_counter_examples_are_named_with_their_reasons(failed):
     assert [row[0] for row in lyapunov.rows] == ["3"]
     assert [row[0] for row in cascade.rows] == ["7", "200"]
     assert len(cut.rows) == FAILED_ROWS < 40
-
-
-def test_an_unfinished_study_is_not_called_complete(tmp_path):
-    report = small(tmp_path, state="interrupted", planned=100)
-    assert report.verdict.holds
-    assert not report.verdict.complete
-    assert report.verdict.headline.startswith(
-        "INTERRUPTED after 60 of 200 trajectories. All 60 trajectories converged; "
-    )
-    assert "continue it with --resume" in report.verdict.detail
 
 
 def test_trajectories_that_were_lost_with_their_process_are_no_counter_examples(tmp_path):
@@ -116,33 +106,6 @@ def test_the_table_counts_and_orders_as_the_run_did(failed_path, failed):
         assert [row[2] for row in table.rows[4 * i : 4 * i + 3]] == ["400", "400", "400"]
 
 
-def test_both_reports_are_built_and_self_contained(failed_path, monkeypatch):
-    # Page 1 has the figures of distances again.
-    draw_all_but(monkeypatch, "first")
-    assert "<option" not in built(failed_path)
-
-
-@pytest.mark.parametrize("kept", [0, 1])
-def test_a_study_without_rows_or_with_next_to_none_can_be_reported_on(kept, tmp_path):
-    path = write_convergence_run(tmp_path / "run", 3, state="interrupted")
-    rows = pd.read_csv(path / "summary.csv")
-    rows.head(kept).to_csv(path / "summary.csv", index=False)
-    html, _ = build_reports(path)
-    text = html.read_text(encoding="utf-8")
-    assert ("Nothing was flown" in text) == (kept == 0)
-    shown = re.sub(r"<script.*?</script>", "", text[text.index("<h1>") :], flags=re.DOTALL)
-    assert not re.search(r"\bnan\b", shown)
-
-
-@pytest.mark.usefixtures("sketched")
-def test_a_study_in_which_nothing_ever_settles_can_be_reported_on(tmp_path):
-    path = write_convergence_run(
-        tmp_path / "run", 4, failures=[(law, i, "time_up") for law in LAWS for i in range(4)]
-    )
-    html, _ = build_reports(path)
-    assert "0 of 8 trajectories converged" in html.read_text(encoding="utf-8")
-
-
 def change(path, how):
     how(pd.read_csv(path / "summary.csv")).to_csv(path / "summary.csv", index=False)
 
@@ -190,13 +153,6 @@ def test_a_share_had_settled_when_so_many_had():
     assert settled_time(pd.Series(np.arange(1.0, 301.0)), 0.99) == "297"
     assert settled_time(pd.Series([30.0, 10.0, np.nan, 20.0]), 0.5) == "20"
     assert settled_time(pd.Series([30.0, 10.0, np.nan, 20.0]), 0.99) == "–"
-
-
-@pytest.mark.parametrize("exporter", ["tracks_csv", "kmz", "geojson"])
-def test_trajectories_are_no_flights_to_export(tmp_path, exporter):
-    write_convergence_run(tmp_path / "run", 4)
-    with pytest.raises(ReportError, match="has no time histories of flights"):
-        export_run(tmp_path / "run", exporter)
 
 
 def test_every_number_on_page_1_is_that_of_the_summary(failed_path, tmp_path):

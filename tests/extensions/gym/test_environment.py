@@ -109,12 +109,6 @@ def test_the_papers_guidance_as_a_policy_flies_the_flight_of_a_run_to_the_last_b
     assert total == pytest.approx(np.minimum(1.0, 200.0 / crossed).sum(), rel=0.02)
 
 
-def test_a_kinematic_episode_is_the_flight_of_a_run_as_well(kinematic):
-    followed(kinematic, "nu_0.60")
-    flown = fly("sweep_nu", flight_id="nu_0.60", **KINEMATIC)
-    assert np.array_equal(column(kinematic, "east_m"), flown.history["east_m"].to_numpy())
-
-
 @pytest.mark.usefixtures("x8_design")
 def test_an_episode_in_a_simulation_that_has_flown_before_is_the_same():
     env = make(**SHORT)

@@ -120,11 +120,6 @@ def test_the_same_patrol_is_flown_again_to_the_last_bit_in_this_process_or_anoth
         assert (tmp_path / "again" / name).read_bytes() == (tmp_path / "one" / name).read_bytes()
 
 
-def test_a_complete_run_that_is_resumed_flies_nothing(run):
-    _, out = run
-    assert not run_study(patrol(), "patrol", out, resume=True).changed
-
-
 def test_ships_stay_apart_in_one_wind_and_every_patrol_has_others():
     scenario = patrol(
         "patrol.ships=6",

@@ -10,7 +10,6 @@ import pytest
 from snapshots import assert_reads_as_before
 
 from extensions.patrol.report import (
-    _matters,
     counts_of,
     oracle_table,
     patrol_content,
@@ -67,28 +66,11 @@ def test_patrols_that_served_no_ship_are_red_and_claim_no_share(run, oracle):
     assert figures["Wrong verdicts"] is None
 
 
-def test_verdicts_without_any_of_an_oracle_show_nothing(run):
-    found = of_row(run, correct=0, wrong=1, verdicts=1, open=0, oracle_verdicts=0)
-    assert found.headline.endswith("0 right, 1 wrong, 0 open, of the 0 that an oracle reaches")
-    # Without a wrong one, too, nothing was shown.
-    assert of_row(run, correct=0, wrong=0, verdicts=0, open=1, oracle_verdicts=0).tone != "good"
-
-
 def test_a_violation_and_a_lost_aircraft_stand_on_page_1(run):
     found = of_row(run, keepout_violations=2, aircraft_lost=True, criteria_met=False)
     assert found.headline.startswith("2 keep-out violations. ")
     assert found.tone == "bad"
     assert {card.name: card.value for card in found.cards}["Aircraft lost"] == "1"
-
-
-def test_the_patrol_that_is_drawn_is_the_one_with_a_wrong_verdict(run):
-    rows = run.summary.to_dict("records")
-    patrols = [
-        replace(patrol, number=i, row=pd.Series(rows[0] | {"wrong": wrong}))
-        for i, wrong in enumerate((0, 1))
-        for patrol in read_patrols(run)
-    ]
-    assert [patrol.number for patrol in sorted(patrols, key=_matters)] == [1, 0]
 
 
 @pytest.mark.parametrize(
@@ -102,16 +84,6 @@ def test_the_closest_approach_to_each_ship_is_judged_by_the_keep_out_radius(run,
     for distance, value, met in ((199.99, "199.9 m", False), (200.0, "200.0 m", True)):
         (card,) = [card for card in of_row(run, **{figure: distance}).figures if card.name == name]
         assert (card.value, card.limit, card.met) == (value, "≥ 200 m", met)
-
-
-def test_names_that_a_spreadsheet_would_compute_are_found_in_every_table(run, tmp_path):
-    for name in ("ships.csv", "phases.csv"):
-        table = pd.read_csv(run.path / name)
-        named = table.assign(patrol="'=p_00000", flight_id="'=p_00000_" + table["ship"].astype(str))
-        named.to_csv(tmp_path / name, index=False)
-    renamed = replace(run, path=tmp_path, summary=run.summary.assign(flight_id="=p_00000"))
-    (patrol,) = read_patrols(renamed)
-    assert (len(patrol.ships), len(patrol.phases)) == (2, len(pd.read_csv(run.path / "phases.csv")))
 
 
 def test_a_patrol_that_failed_is_a_row_of_dashes_with_its_reason(run):

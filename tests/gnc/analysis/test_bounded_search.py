@@ -25,6 +25,7 @@ from gnc.laws import CascadeLaw
 from gnc.paper import look_ahead
 
 
+@pytest.mark.slow
 @examples(15)
 @given(
     limit=st.floats(0.1, 2.0),

@@ -54,6 +54,7 @@ FREE, INTERVENING, LOST = GuardStatus.FREE, GuardStatus.INTERVENING, GuardStatus
 # Keeping out ----------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @LAGS
 @pytest.mark.parametrize("nu", [0.0, 0.5, 0.9])
 def test_no_commands_lead_in(lag, delay, nu):
@@ -73,6 +74,7 @@ def test_no_commands_lead_in(lag, delay, nu):
     assert acted >= 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("speed_error", "acceleration"), [(0.5, 0.0), (0.0, 0.2), (1.0, 0.1)])
 def test_a_disc_that_hunts_the_vehicle_within_its_bounds_does_not_reach_it(
     speed_error, acceleration
@@ -98,37 +100,6 @@ def test_a_guard_that_does_not_know_the_hunters_acceleration_is_caught():
     disc = Hunter((0.0, 0.0), acceleration=1.0, speed_max=0.9 * SPEED, error=(0.0, 0.0))
     start = (-400.0, 0.0, 0.0, 0.0)
     assert fly_guarded(DiscGuard(), start, aim_at_the_centre, disc, lag=0.4)[0] < RADIUS - 0.5
-
-
-@pytest.mark.parametrize(
-    ("speed", "heading_rate_max", "radius"),
-    [(15.0, 0.4, 200.0), (30.0, 0.33, 300.0), (60.0, 0.16, 500.0), (SPEED, 0.5, 60.0)],
-)
-def test_other_vehicles_are_kept_out_of_other_discs(speed, heading_rate_max, radius):
-    generator = np.random.default_rng(2)
-    for share in (0.0, 0.5, 0.85):
-        guard = DiscGuard(radius=radius, heading_rate_max=heading_rate_max)
-        bearing = generator.uniform(-math.pi, math.pi)
-        start = polar(radius + 4.0 * speed / heading_rate_max, bearing, bearing + math.pi)
-
-        def want(*where, limit=heading_rate_max):
-            return aim_at_the_centre(*where, heading_rate_max=limit)
-
-        disc = Steady(random_velocity(generator, share * speed))
-        assert fly_guarded(guard, start, want, disc, lag=0.4, speed=speed)[0] >= radius
-
-
-@pytest.mark.parametrize("nu", [0.0, 0.5, 0.8])
-def test_without_the_guard_those_vehicles_do_get_in(nu):
-    class Idle:
-        status = FREE
-
-        def limit(self, command, *_, **__):
-            return command
-
-    start, disc = (500.0, 0.0, math.pi, 0.0), Steady((nu * SPEED, 0.0))
-    closest, _ = fly_guarded(Idle(), start, aim_at_the_centre, disc, lag=0.4)
-    assert closest < 0.5 * RADIUS
 
 
 # What passes, and what is flown instead -------------------------------------------------------

@@ -83,6 +83,7 @@ def test_without_a_way_it_tracks_from_the_first_step_on_and_overrides_nothing(mi
     assert all(math.isnan(value) for value in centre)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("nu", "bearing"), [(0.1, 0.0), (0.1, -2.0), (0.5, 0.3), (0.5, -2.0)])
 def test_from_ahead_it_goes_round_the_vessel_and_settles_where_law_and_guard_alone_take_longer(
     nu, bearing

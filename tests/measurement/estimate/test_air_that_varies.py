@@ -1,6 +1,6 @@
 """The estimate in air as it often is, by logs of a simulator that shares no code with it.
 
-The table with 100 logs and more of every regime is in docs/howto/measuring.md; here a few short logs
+The table with 25 logs and more of every regime is in docs/howto/measuring.md; here a few short logs
 of each hold it.
 """
 
@@ -38,15 +38,15 @@ def estimates_of(name, logs):
 
 @pytest.fixture(scope="module")
 def estimates():
-    """Return a table of estimates, four of every regime."""
-    return pd.DataFrame([row for name in REGIMES for row in estimates_of(name, 4)])
+    """Return a table of estimates, two of every regime."""
+    return pd.DataFrame([row for name in REGIMES for row in estimates_of(name, 2)])
 
 
 def test_intervals_hold_the_content_where_the_background_varies(estimates):
     given = estimates[estimates["given"] & estimates["row"].isin(COVERED)]
     content = given["true_percent"]
     held = (given["low_percent"] <= content) & (content <= given["high_percent"])
-    assert len(given) > 0.8 * 4 * len(COVERED)
+    assert len(given) > 0.8 * 2 * len(COVERED)
     # Of intervals that hold it with 95 % as many do with a probability of 99.9 %.
     assert held.sum() >= binom.ppf(0.001, len(given), 0.95)
 
@@ -61,8 +61,8 @@ def test_intervals_are_no_wider_than_they_need_to_be(estimates):
 def test_less_than_one_verdict_of_a_hundred_is_wrong(estimates):
     told = estimates[~estimates["row"].isin(NOT_TOLD)]
     verdicts = told["verdicts"].sum()
-    assert verdicts > 100
-    # At 1 % no more are wrong with a probability of 99.9 %: 7 of 190.
+    assert verdicts > 50
+    # At 1 % no more are wrong with a probability of 99.9 %: 5 of 95.
     assert told["wrong"].sum() <= binom.ppf(0.999, verdicts, 0.01)
 
 

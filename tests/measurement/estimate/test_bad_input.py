@@ -96,7 +96,7 @@ def assert_no_verdict(found, reason):
 def test_a_flight_that_met_no_plume_has_no_result():
     spec = sensor_preset("electrochemical")
     still = crossings(0.25, peak=0.0)
-    for seed in range(10):
+    for seed in range(4):
         found = estimate(read(spec, still, seed=seed), spec)
         assert_no_verdict(found, "no pass through a plume: CO2 is nowhere 5.0 ppm")
         assert math.isnan(found.fsc_percent)
@@ -104,19 +104,18 @@ def test_a_flight_that_met_no_plume_has_no_result():
         assert all(math.isnan(verdict.probability_above) for verdict in found.verdicts)
 
 
-@pytest.mark.parametrize("sigma", [0.0, 0.1, 0.3, 0.5, 0.7, 1.0, 3.0])
-def test_clean_air_in_whole_numbers_has_no_verdict(sigma):
+def test_clean_air_in_whole_numbers_has_no_verdict():
     # Nothing is known of the noise, and rounding hides it: more than a tenth of the second
     # differences are 0.
     verdicts, time = 0, np.arange(300.0)
-    for seed in range(20):
+    for seed, sigma in enumerate(6 * [0.0, 0.1, 0.3, 0.5, 0.7, 1.0, 3.0]):
         generator, values = np.random.default_rng(seed), np.full((300, 4), np.nan)
         for column, level in ((0, 2.0), (1, 420.0)):
             values[:, column] = np.round(level + sigma * generator.normal(size=300))
         verdicts += estimate(Readings(time, values), sensor_preset("unspecified")).quality != "C"
-    # Noise that is not rounded is taken for a pass in 1.5 % of such records: of 20 records one at
-    # most, 0.3 are expected.
-    assert verdicts <= 1
+    # Noise that is not rounded is taken for a pass in 1.5 % of such records: of 42 records 0.6 are
+    # expected, and more than two in 3 of 100 such tests.
+    assert verdicts <= 2
 
 
 def test_the_noise_of_whole_numbers_is_that_before_rounding_and_of_rounding():
@@ -199,10 +198,12 @@ def test_readings_that_a_sensor_cannot_have_leave_no_verdict(change, reason):
 
 
 @pytest.mark.parametrize(
-    ("name", "noise"),
-    [("electrochemical", "its noise is 2.5 ppb"), ("unspecified", "is about 1 ppb")],
+    ("name", "noise", "fsc"),
+    [
+        ("electrochemical", "its noise is 2.5 ppb", 0.001),
+        ("unspecified", "is about 1 ppb", 0.25),
+    ],
 )
-@pytest.mark.parametrize("fsc", [0.001, 0.25])
 def test_so2_in_ppm_has_no_verdict(name, noise, fsc):
     readings, _ = flight("electrochemical", fsc, 1)
     # As in a log: rounded to a tenth of a ppb.
@@ -222,8 +223,10 @@ def test_an_so2_sensor_that_is_dead_has_no_verdict(name):
     assert_no_verdict(estimate(dead, sensor_preset(name)), "SO2 reads the same throughout")
 
 
-@pytest.mark.parametrize("analyst", ["electrochemical", "fast", "laser", "unspecified"])
-@pytest.mark.parametrize("decimals", [0, 1, 3])
+@pytest.mark.parametrize(
+    ("analyst", "decimals"),
+    [("electrochemical", 0), ("fast", 1), ("laser", 0), ("unspecified", 3)],
+)
 def test_a_clean_ship_with_ordinary_noise_is_no_dead_sensor(analyst, decimals):
     # The quietest preset has 0.3 ppb, which rounding to whole numbers does not hide.
     readings, spec = flight("laser" if analyst == "unspecified" else analyst, 0.001, 1)
@@ -239,15 +242,6 @@ def test_rounding_that_is_known_to_be_coarse_is_no_dead_sensor():
     coarse = with_column(readings, 0, 0.0)
     found = estimate(coarse, changed(spec, "so2", resolution=100.0))
     assert "another unit" not in " ".join(found.quality_reasons)
-
-
-def test_a_record_that_is_mostly_gap_has_no_verdict():
-    readings, spec = flight("electrochemical", 0.5, 1)
-    rows = (readings.time < 60.0) | (readings.time > 200.0)
-    assert_no_verdict(
-        estimate(Readings(readings.time[rows], readings.values[rows]), spec),
-        "gaps make up 47 % of the record",
-    )
 
 
 def test_a_gap_longer_than_the_pieces_of_the_background_leaves_no_verdict():

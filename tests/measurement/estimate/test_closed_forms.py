@@ -22,7 +22,7 @@ TAU = 20.0 / math.log(10.0)
 
 
 @pytest.mark.parametrize("method", ["regression", "areas"])
-@pytest.mark.parametrize("t90", [1.0, 4.0, 20.0])
+@pytest.mark.parametrize("t90", [1.0, 20.0])
 def test_equal_responses_are_unbiased_by_both_methods(method, t90):
     # Equal channels are the same filter of the same air: their ratio is that of the air, whatever
     # the plume does.
@@ -113,7 +113,7 @@ def test_areas_of_overlapping_passes_read_what_is_predicted():
     # The issue asks for 10 %; 1.9 % were measured. Sums of exponentials with the dose of each pass,
     # against areas without noise.
     spec = plain_sniffer(20.0, 4.0)
-    for seed in range(5):
+    for seed in range(3):
         record = checked_record(read(spec, crossings(0.25, seed=seed)), spec)
         found = area_ratio(
             record, spec, find_passes(record, changed(spec, "co2", noise=1.0).known("co2"))
@@ -123,8 +123,7 @@ def test_areas_of_overlapping_passes_read_what_is_predicted():
         assert 0.2 < found.share < 0.5
 
 
-@pytest.mark.parametrize("preset", ["laser", "fast"])
-@pytest.mark.parametrize("duration", [60.0, 180.0])
+@pytest.mark.parametrize(("preset", "duration"), [("laser", 60.0), ("fast", 180.0)])
 def test_areas_of_separate_passes_are_whole_wherever_between_two_samples_they_come(
     preset, duration
 ):
@@ -154,19 +153,9 @@ def test_areas_and_doses_do_not_depend_on_the_gains(interval):
     assert np.array(results[1:]) == pytest.approx(np.array(3 * [results[0]]), rel=0.02, abs=0.001)
 
 
-def test_areas_do_not_depend_on_the_origin_of_time():
-    # Windows that end where the next pass begins were no longer recognised among seconds since
-    # 1970, which are known to 2e-7.
-    spec = plain_sniffer(20.0, 4.0, so2_noise=1.0, co2_noise=1.0)
-    readings = read(spec, crossings(0.25))
-    since_1970 = Readings(readings.time + 1_750_000_000.0, readings.values)
-    found, other = (estimate(each, spec, method="areas") for each in (readings, since_1970))
-    assert other.fsc_percent == pytest.approx(found.fsc_percent, abs=1e-5)
-
-
 def test_the_overlap_is_what_areas_would_read_more_of_separate_passes():
     spec = sensor_preset("fast")
-    for seed in range(6):
+    for seed in range(2):
         readings = read(spec, crossings(0.2, duration=200.0, seed=seed + 50), seed=seed)
         record = checked_record(readings, spec)
         areas = area_ratio(record, spec, find_passes(record, spec.known("co2")))
@@ -191,12 +180,11 @@ def test_areas_of_separate_passes_are_unbiased():
     assert "overlap in an SO2 channel with a t90 of 20 s" in crossed.quality_reasons[0]
 
 
-@pytest.mark.parametrize("delay", [0.0, 10.0])
 @pytest.mark.parametrize("estimated", [False, True], ids=["stated", "estimated"])
-def test_gaps_in_a_plume_leave_a_delayed_channel_nothing_that_was_not_read(delay, estimated):
+def test_gaps_in_a_plume_leave_a_delayed_channel_nothing_that_was_not_read(estimated):
     # Gaps of 4 s beside the passes, once a minute: a delay of 10 s gave 0.39 % of 0.25, with a
     # standard uncertainty of 0.02.
-    spec = plain_sniffer(5.0, 3.0, so2_noise=0.5, co2_noise=0.5, delay_s=delay)
+    spec = plain_sniffer(5.0, 3.0, so2_noise=0.5, co2_noise=0.5, delay_s=10.0)
     readings = read(
         spec, crossings(0.25, duration=450.0, interval=30.0, meander=0.0, width=2.0), seed=1
     )

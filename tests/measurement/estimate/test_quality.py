@@ -33,28 +33,27 @@ def later(readings, gas, seconds):
 
 @pytest.mark.parametrize(
     ("preset", "fsc", "seconds"),
-    [("electrochemical", 0.25, 3.0), ("electrochemical", 0.25, -3.0), ("fast", 0.1, 1.5)],
+    [("electrochemical", 0.25, -3.0), ("fast", 0.1, 1.5)],
 )
 def test_columns_of_two_clocks_have_no_verdict(preset, fsc, seconds):
     # Near half of the 9.5 s between passes the slope is near 0, and a small step of the delay
     # changes nothing: with the deviation of the slope alone, a fuel of 0.25 % was called below 0.10
     # %. The preset's delay is known to 0.3 s, or 0.1 s.
-    for seed in range(2):
-        readings, spec = flight(preset, fsc, seed)
-        assert not reasons(readings, spec)
-        told = reasons(later(readings, 1, seconds), spec)
-        shown, side = told.split("SO2 fits CO2 best ")[1].split()[::2][:2]
-        assert side == ("earlier" if seconds > 0.0 else "later")
-        # To a third: each flight draws delays and responses of its instrument, which shape the
-        # passes and move the best fit.
-        assert float(shown) == pytest.approx(abs(seconds), rel=1.0 / 3.0)
+    readings, spec = flight(preset, fsc, 0)
+    assert not reasons(readings, spec)
+    told = reasons(later(readings, 1, seconds), spec)
+    shown, side = told.split("SO2 fits CO2 best ")[1].split()[::2][:2]
+    assert side == ("earlier" if seconds > 0.0 else "later")
+    # To a third: each flight draws delays and responses of its instrument, which shape the passes
+    # and move the best fit.
+    assert float(shown) == pytest.approx(abs(seconds), rel=1.0 / 3.0)
 
 
 @pytest.mark.parametrize("preset", ["electrochemical", "fast"])
 def test_a_clean_fuel_is_not_taken_for_one_of_another_clock(preset):
     # What NO and NO2 leave uncorrected may follow the CO2 of another pass a little better than its
     # own.
-    for seed in range(20):
+    for seed in range(5):
         assert "SO2 fits CO2 best" not in reasons(*flight(preset, 0.0, seed, duration=150.0))
 
 
@@ -80,16 +79,6 @@ def test_readings_that_are_cut_off_at_zero_have_no_verdict(noise):
     assert "SO2 reads 0 ppb, and never less, " in reasons(cut, analyst)
 
 
-@pytest.mark.parametrize("decimals", [0, 1, 2])
-def test_whole_flights_rounded_to_any_step_are_not_cut_off(decimals):
-    for seed in range(4):
-        readings, spec = flight("electrochemical", 0.25, seed)
-        for analyst in (spec, sensor_preset("unspecified")):
-            assert "cut off" not in reasons(
-                Readings(readings.time, readings.values.round(decimals)), analyst
-            )
-
-
 @pytest.mark.parametrize(("column", "gas"), [(2, "NO"), (3, "NO2")])
 def test_no_and_no2_in_ppm_have_no_verdict(column, gas):
     readings, spec = flight("electrochemical", 0.25, 1)
@@ -104,8 +93,10 @@ def test_no_and_no2_in_ppm_have_no_verdict(column, gas):
     assert "scatters" not in reasons(in_ppm, deaf)
 
 
-@pytest.mark.parametrize(("one", "other", "fsc"), [(2, 3, 0.25), (2, 3, 0.0), (0, 2, 0.0)])
-@pytest.mark.parametrize("preset", ["electrochemical", "fast"])
+@pytest.mark.parametrize(
+    ("preset", "one", "other", "fsc"),
+    [("electrochemical", 2, 3, 0.25), ("fast", 2, 3, 0.0), ("electrochemical", 0, 2, 0.0)],
+)
 def test_no2_that_exceeds_no_has_no_verdict_where_so2_responds_to_both(preset, one, other, fsc):
     # Columns exchanged: NO and NO2, or SO2 and NO of a fuel without sulphur. The ship has nine
     # times as much NO as NO2.
@@ -117,10 +108,9 @@ def test_no2_that_exceeds_no_has_no_verdict_where_so2_responds_to_both(preset, o
 
 
 @pytest.mark.parametrize("method", ["regression", "areas"])
-@pytest.mark.parametrize("preset", ["electrochemical", "alphasense_a4"])
-def test_the_same_air_by_channels_of_other_gains_is_judged_alike(preset, method):
-    # NO2 takes hundreds of ppb from the SO2 reading of the second preset.
-    readings, spec = flight(preset, 0.25, 1)
+def test_the_same_air_by_channels_of_other_gains_is_judged_alike(method):
+    # NO2 takes hundreds of ppb from the SO2 reading.
+    readings, spec = flight("alphasense_a4", 0.25, 1)
     gains = {"so2": 2.0, "co2": 0.5, "no": 0.4, "no2": 5.0}
     values, other = readings.values.copy(), spec
     for gas in spec.gases:
@@ -156,7 +146,7 @@ def test_no2_that_ozone_makes_of_no_is_no_exchange_of_columns():
 def test_a_cell_of_which_nothing_is_said_gives_no_wrong_verdict():
     # An unfiltered cell reads NO2 as -160 % of SO2: fuel of 0.8 % seemed to be below 0.5 % in 18 of
     # 40 flights.
-    for seed in range(8):
+    for seed in range(4):
         readings, _ = flight("alphasense_a4", 0.8, seed)
         found = estimate(readings, sensor_preset("unspecified"))
         assert "below" not in [verdict.verdict for verdict in found.verdicts], seed
@@ -187,12 +177,11 @@ def test_the_stated_noise_of_areas_includes_the_drift_of_the_zero():
     )
 
 
-@pytest.mark.parametrize("each", [3, 5, 7])
-def test_a_log_with_rows_missing_here_and_there_has_no_dead_sensor(each):
+def test_a_log_with_rows_missing_here_and_there_has_no_dead_sensor():
     # Samples in their place are interpolated: straight lines, which scatter by nothing.
     spec = plain_sniffer(so2_noise=2.5, co2_noise=1.0)
     readings = read(spec, crossings(0.25))
-    rows = np.arange(len(readings)) % each != 1
+    rows = np.arange(len(readings)) % 3 != 1
     found = estimate(Readings(readings.time[rows], readings.values[rows].round(2)), spec)
     assert found.quality in "AB"
 
@@ -231,14 +220,13 @@ def test_co2_in_steps_larger_than_its_noise_has_no_lower_content():
     assert np.mean(differences) == pytest.approx(0.0, abs=0.004)
 
 
-@pytest.mark.parametrize("step", [50.0, 100.0])
-def test_co2_in_steps_as_high_as_the_passes_has_no_verdict(step):
+def test_co2_in_steps_as_high_as_the_passes_has_no_verdict():
     # A hundredth of a per cent by volume is 100 ppm: such a fuel of 0.25 % read 0.14 to 0.17 %,
     # with quality A.
     spec = plain_sniffer(so2_noise=2.5, co2_noise=1.0)
-    told = reasons(in_steps(read(spec, crossings(0.25)), 1, step), spec)
+    told = reasons(in_steps(read(spec, crossings(0.25)), 1, 50.0), spec)
     assert "CO2" in told
-    assert "steps of 50 ppm, and a pass is" in told or "no pass through a plume" in told
+    assert "steps of 50 ppm, and a pass is" in told
 
 
 def test_so2_in_steps_that_its_noise_carries_it_through_is_as_it_is_stated():
@@ -256,22 +244,22 @@ def test_readings_of_two_values_only_have_an_estimate():
     assert estimate(readings, sensor_preset("unspecified")).quality in "BC"
 
 
-@pytest.mark.parametrize("spike", [2000.0, 65535.0])
-def test_a_spike_of_co2_has_no_verdict_also_where_so2_is_noisy(spike):
+def test_a_spike_of_co2_has_no_verdict_also_where_so2_is_noisy():
     # A t90 of 4 s leaves 56 % of an excess a second later, 32 % if it were 2 s. Such a fuel of 0.25
     # % was called below 0.10 %.
     spec = plain_sniffer(so2_noise=25.0, co2_noise=1.0)
     readings = read(spec, crossings(0.25, seed=1), seed=1)
     assert reasons(readings, spec) == ""
-    readings.values[70, 1] = spike
-    assert f"CO2 falls from {spike:.1f} to" in reasons(readings, spec)
+    readings.values[70, 1] = 2000.0
+    assert "CO2 falls from 2000.0 to" in reasons(readings, spec)
     assert "in 1 s at 70 s, faster than a t90 of 4 s allows: leave spikes empty" in reasons(
         readings, spec
     )
 
 
-@pytest.mark.parametrize("preset", ["electrochemical", "fast", "laser"])
-@pytest.mark.parametrize("analyst", ["itself", "unspecified"])
+@pytest.mark.parametrize(
+    ("preset", "analyst"), [("electrochemical", "itself"), ("laser", "unspecified")]
+)
 def test_sensors_that_follow_a_plume_have_no_spikes(preset, analyst):
     # The laser's CO2 has a t90 of 0.5 s, of which the unspecified instrument takes 3 s; times are
     # uneven by a third of a period.
@@ -317,15 +305,13 @@ def frozen(readings, gases, start, end=301, toggle=0.0):
     return Readings(readings.time, values)
 
 
-@pytest.mark.parametrize("analyst", ["electrochemical", "unspecified"])
 @pytest.mark.parametrize(
-    ("gas", "start", "toggle", "message"),
+    ("analyst", "gas", "start", "toggle", "message"),
     [
-        ("so2", 20, 0.0, "SO2 reads the same for 280 s from 20 s on"),
-        ("so2", 20, 0.1, "SO2 reads the same within 0.1 ppb for 280 s from 20 s on"),
-        ("so2", 60, 0.0, "SO2 reads the same for 240 s from 60 s on"),
-        ("co2", 100, 0.0, "CO2 reads the same for 200 s from 100 s on"),
-        ("no2", 60, 0.0, "NO2 reads the same for 240 s from 60 s on"),
+        ("electrochemical", "so2", 20, 0.0, "SO2 reads the same for 280 s from 20 s on"),
+        ("unspecified", "so2", 20, 0.1, "SO2 reads the same within 0.1 ppb for 280 s from 20 s on"),
+        ("electrochemical", "co2", 100, 0.0, "CO2 reads the same for 200 s from 100 s on"),
+        ("unspecified", "no2", 60, 0.0, "NO2 reads the same for 240 s from 60 s on"),
     ],
 )
 def test_a_sensor_that_sticks_has_no_verdict(analyst, gas, start, toggle, message):
@@ -380,14 +366,13 @@ def late_plume(fsc):
 
 
 @pytest.mark.parametrize("noise", ["stated", "not stated"])
-@pytest.mark.parametrize("step", [10.0, 20.0, 50.0])
-def test_clean_air_in_a_coarse_sensor_is_no_stuck_sensor(step, noise):
+def test_clean_air_in_a_coarse_sensor_is_no_stuck_sensor(noise):
     # Noise of 2 ppb of SO2, NO and NO2 is less than half a step: they read 0 for 200 s; so does
     # CO2, of 0.5 ppm, in steps of 10.
     readings, spec = late_plume(1.0)
     for gas in GASES:
         spec = changed(spec, gas, **({} if noise == "stated" else {"noise": math.nan}))
-    values = np.round(readings.values / step) * step
+    values = np.round(readings.values / 10.0) * 10.0
     assert STUCK not in told(Readings(readings.time, values), spec)
 
 
@@ -402,31 +387,18 @@ def test_a_sensor_that_cuts_off_what_is_below_zero_is_none_that_sticks():
 @pytest.mark.parametrize(
     "preset", ["electrochemical", "fast", "laser", "alphasense_a4", "alphasense_b4"]
 )
-@pytest.mark.parametrize("fsc", [0.0, 0.25, 2.7])
-def test_flights_of_living_sensors_stick_in_no_step(preset, fsc):
-    readings, spec = flight(preset, fsc, 3)
-    for decimals in (0, 1, 3):
+def test_flights_of_living_sensors_are_neither_stuck_nor_cut_off_in_any_step(preset):
+    for fsc, decimals in ((0.0, 1), (0.25, 0), (2.7, 3)):
+        readings, spec = flight(preset, fsc, 3)
         rounded = Readings(readings.time, readings.values.round(decimals))
         for analyst in (spec, sensor_preset("unspecified")):
-            assert STUCK not in told(rounded, analyst)
-
-
-def two_ships(spec, *, coincide):
-    """Return readings of a plume of 0.08 % over every pass, and of one of 0.5 % beside it."""
-    own, other = crossings(0.08, seed=1), crossings(0.5, seed=1 if coincide else 2)
-    return read(spec, own + other - BACKGROUND)
+            found = told(rounded, analyst)
+            assert STUCK not in found
+            assert "cut off" not in found
 
 
 def test_another_plume_in_other_places_of_the_passes_has_no_verdict():
     # It comes 0.5 s before or after the ship's own (sd), with heights of its own.
     spec = plain_sniffer(8.0, 4.0, so2_noise=2.5, co2_noise=1.0)
-    assert "at least two ratios" in reasons(two_ships(spec, coincide=False), spec)
-
-
-def test_two_plumes_that_coincide_in_every_pass_read_as_one_fuel():
-    # No log can tell: the same air is that of a ship with the mean of both fuels and NO and NO2 of
-    # both.
-    spec = plain_sniffer(8.0, 4.0, so2_noise=2.5, co2_noise=1.0)
-    found = estimate(two_ships(spec, coincide=True), spec)
-    assert found.quality in "AB"
-    assert found.fsc_percent == pytest.approx(0.29, abs=2.0 * found.total_percent)
+    air = crossings(0.08, seed=1) + crossings(0.5, seed=2) - BACKGROUND
+    assert "at least two ratios" in reasons(read(spec, air), spec)

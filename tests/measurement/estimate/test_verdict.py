@@ -1,7 +1,6 @@
 """Verdicts with their guard bands and words, quality classes, the estimate over time."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,17 +10,14 @@ from scipy.stats import norm, truncnorm
 from measurement.estimate.estimator import estimate, over_time, time_to_verdict
 from measurement.estimate.quality import quality_class
 from measurement.estimate.verdict import (
-    content_words,
     decide,
     interval,
     judged,
     needed,
     next_step,
     probability_above,
-    suspect_words,
     verdict_words,
 )
-from measurement.gases import limit_words
 from measurement.rules import RULES
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import sensor_preset
@@ -49,18 +45,7 @@ def test_a_probability_knows_that_no_fuel_has_less_than_nothing():
     assert judged(0.1, -0.5, 0.3, admitted=True).probability_above > 0.3
 
 
-def test_fuels_at_the_limit_are_called_above_in_five_of_a_hundred_at_most():
-    generator = np.random.default_rng(0)
-    for deviation in (0.005, 0.03, 0.1, 0.5):
-        found = 0.1 + deviation * generator.standard_normal(4000)
-        above = np.mean(
-            [judged(0.1, float(f), deviation, admitted=True).verdict == "above" for f in found]
-        )
-        # Of 4000 at 5 % the share is known to 0.35 %; three times that.
-        assert above == pytest.approx(0.05, abs=0.011)
-
-
-@pytest.mark.parametrize("fsc", [-3.0, -0.5, 0.0, 0.4, 1.0, 1.6, 1.7, 2.5, 4.0])
+@pytest.mark.parametrize("fsc", [-3.0, 0.0, 1.0, 1.7, 4.0])
 def test_interval_and_probability_are_those_of_one_sampled_distribution(fsc):
     # Contents that are not negative, of a reading with a standard uncertainty of 1: sampled by the
     # inverse of a normal distribution cut at 0, scipy's. 400,000 samples know a share of 5 % to
@@ -103,7 +88,7 @@ def test_an_interval_is_not_empty_and_not_negative():
     assert all(math.isnan(end) for end in interval(math.nan, math.nan))
 
 
-@pytest.mark.parametrize("fuel", [0.0, 0.5, 1.0, 1.645, 2.5, 3.0, 5.0])
+@pytest.mark.parametrize("fuel", [0.0, 1.645, 3.0])
 def test_of_repeated_readings_of_one_fuel_93_to_97_5_percent_have_intervals_that_hold_it(fuel):
     # An interval of a bounded mean holds it with 1/1.05 of 95 %, 90.5 %, at least (Roe and
     # Woodroofe 2000, Phys. Rev. D 63, 013009). Of 4000 the share is known to 0.4 %; three times
@@ -158,16 +143,6 @@ def test_quality_is_stated_with_its_reason(change, quality, reason):
     assert found == quality
     assert reason in " ".join(reasons)
     assert bool(reasons) == (quality != "A")
-
-
-def test_high_sulphur_is_called_above_and_low_sulphur_below_half_a_percent():
-    found = {
-        fsc: [estimate(*flight("electrochemical", fsc, seed, duration=120.0)) for seed in range(12)]
-        for fsc in (0.05, 0.5)
-    }
-    assert all(e.verdicts[0].verdict == "above" for e in found[0.5])
-    assert all(e.verdicts[1].verdict == "below" for e in found[0.05])
-    assert not any(e.verdicts[0].verdict == "above" for e in found[0.05])
 
 
 def test_an_estimate_is_given_over_time():
@@ -230,16 +205,6 @@ def test_uneven_times_are_laid_on_a_grid():
     assert estimate(Readings(late, values), spec).fsc_percent == pytest.approx(0.25, rel=0.005)
 
 
-def test_a_record_is_for_json():
-    readings, spec = flight("laser", 0.1, 1, duration=60.0)
-    record = estimate(readings, spec).record()
-    assert record["quality"] in ("A", "B")
-    assert record["common_percent"]["calibration"] > 0.0
-    assert "signals" not in record
-    weak = replace(estimate(readings, spec), agreement=math.nan).record()
-    assert weak["agreement"] is None
-
-
 def test_an_instrument_that_is_not_the_one_stated_is_noticed():
     readings, spec = flight("electrochemical", 2.7, 1)
     assert estimate(readings, spec).quality != "C"
@@ -250,21 +215,6 @@ def test_an_instrument_that_is_not_the_one_stated_is_noticed():
         in mistaken.quality_reasons[-1]
     )
     assert estimate(readings, sensor_preset("unspecified")).quality != "C"
-
-
-@pytest.mark.parametrize(
-    ("limit", "words"),
-    [(0.1, "0.10 %"), (0.5, "0.50 %"), (1.0, "1.00 %"), (0.001, "0.001 %"), (0.125, "0.125 %")],
-)
-def test_a_limit_is_printed_with_as_many_decimals_as_it_has(limit, words):
-    assert limit_words(limit) == words
-    assert f"above the limit of {words}; probability above it: 99.0 %" in verdict_words(
-        "above", limit, 0.99
-    )
-
-
-def test_a_content_that_rounds_to_0_has_no_sign():
-    assert content_words(-0.0004, 0.0, 0.0196) == "0.000 % m/m, 95 % interval 0.000 to 0.020 %"
 
 
 def test_an_open_verdict_beyond_the_probability_names_the_guard_band():
@@ -294,7 +244,7 @@ def test_an_open_verdict_says_which_part_of_the_uncertainty_to_lower():
     )
 
 
-@pytest.mark.parametrize("deviation", [0.005, 0.02, 0.05, 0.3])
+@pytest.mark.parametrize("deviation", [0.005, 0.05, 0.3])
 def test_a_verdict_states_where_it_begins_and_how_often_it_is_wrong_at_the_limit(deviation):
     verdict = judged(0.1, 0.1, deviation, admitted=True)
     # The ends are those at which the verdict changes, and not a thousandth nearer.
@@ -352,13 +302,3 @@ def test_a_record_without_a_verdict_has_no_decision():
     nothing = decide(RULES["eca_0.15"], math.nan, math.nan, admitted=True)
     assert nothing.suspect is None
     assert math.isnan(nothing.false_alarm)
-
-
-def test_a_flights_rule_is_told_with_its_rates_and_nothing_without_one():
-    assert suspect_words(True, 0.05, 0.02).startswith("suspect by the rule")
-    told = suspect_words(False, 0.05, 0.02)
-    assert told.startswith("not suspect")
-    assert "5.0 %" in told
-    assert "2.0 %" in told
-    assert suspect_words(None, 0.05, 0.02) == ""
-    assert suspect_words(math.nan, math.nan, math.nan) == ""

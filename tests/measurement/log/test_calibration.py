@@ -164,19 +164,6 @@ def test_calibrations_before_and_after_a_flight_are_interpolated(logged, tmp_pat
 
 
 @BRIEFLY
-def test_drift_since_a_calibration_is_in_the_uncertainty(logged, tmp_path):
-    configured(logged)
-    deviations = []
-    for drift in (0.0, 0.1):
-        found = calibrated(tmp_path / "a.csv", drift_per_h=drift, gain=1.0, t90=20.0, delay=1.0)
-        assert with_calibrations(logged, found) == 0
-        deviations.append(estimated(logged)["instrument"]["used"]["so2"]["gain_sd"])
-    # 47.5 minutes from the middle of the calibration to that of the flight.
-    assert deviations[1] == pytest.approx(0.1 * 47.5 / 60.0, rel=0.1)
-    assert deviations[0] < 0.02
-
-
-@BRIEFLY
 def test_a_leak_is_in_the_uncertainty_and_leaves_no_verdict(logged, tmp_path):
     configured(logged)
     found = calibrated(tmp_path / "a.csv", leak=0.25, gain=1.0, t90=20.0, delay=1.0)
@@ -299,9 +286,3 @@ def test_a_log_that_is_no_calibration_is_refused_in_a_line(
     printed = capsys.readouterr().err
     assert message in printed
     assert printed.count("\n") == 1
-
-
-def test_a_calibration_without_a_date_is_refused(tmp_path, capsys):
-    path = zero_and_span(tmp_path / "zero.csv")
-    assert main([str(path), "--instrument=x"]) == 2
-    assert "give --time" in capsys.readouterr().err

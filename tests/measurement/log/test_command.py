@@ -12,7 +12,6 @@ from crossings import flight
 from logged_flights import run
 from scipy.stats import norm
 
-from common.provenance import provenance
 from measurement.log.command import main
 
 pytestmark = pytest.mark.slow
@@ -52,23 +51,6 @@ def test_a_flight_is_estimated_printed_and_written(logged, capsys):
         "manifest.json",
         "samples.csv",
     ]
-
-
-@BRIEFLY
-def test_readings_that_no_channel_uses_are_named(logged, capsys):
-    configured(
-        logged,
-        "[instrument.channels.so2]\ncross = { no = 0.015, no2 = -0.16 }\n"
-        "[instrument.channels.co2]\n[instrument.channels.no2]\n",
-    )
-    assert run(logged) == 0
-    printed = capsys.readouterr().out
-    assert "NO is not used to correct SO2" in printed
-    assert "add a table channels.no\n" in printed
-    assert "NO2 is not used" not in printed
-    configured(logged, 'instrument = "electrochemical"\n')
-    assert run(logged) == 0
-    assert "not used" not in capsys.readouterr().out
 
 
 @BRIEFLY
@@ -126,16 +108,6 @@ def test_the_record_has_the_instrument_and_the_hashes_of_its_files(logged):
 
 
 @BRIEFLY
-def test_seconds_since_1970_are_written_in_full(logged):
-    table = pd.read_csv(logged)
-    table["time_s"] += 1714560000.25
-    table.to_csv(logged, index=False)
-    assert run(logged) == 0
-    written = pd.read_csv(logged.parent / "out" / "samples.csv")
-    np.testing.assert_array_equal(written["time_s"], table["time_s"])
-
-
-@BRIEFLY
 def test_a_missing_reading_leaves_a_verdict_and_saturation_does_not(logged, capsys):
     table = pd.read_csv(logged)
     table.loc[100, "so2_ppb"] = np.nan
@@ -147,18 +119,6 @@ def test_a_missing_reading_leaves_a_verdict_and_saturation_does_not(logged, caps
     assert run(logged) == 0
     assert "SO2 is saturated at 20000 ppb" in capsys.readouterr().out
     assert recorded(logged)["estimate"]["quality"] == "C"
-
-
-@BRIEFLY
-def test_places_without_a_fix_are_printed_and_recorded(logged, capsys):
-    table = pd.read_csv(logged).drop(columns=["north_m", "east_m"])
-    table["latitude_deg"], table["longitude_deg"] = 57.0, 11.0
-    table.loc[50:59, ["latitude_deg", "longitude_deg"]] = 0.0
-    table.to_csv(logged, index=False)
-    assert run(logged) == 0
-    remark = recorded(logged)["flight"]["place_remark"]
-    assert "10 rows" in remark
-    assert f"places: {remark}" in capsys.readouterr().out
 
 
 @BRIEFLY
@@ -222,7 +182,7 @@ def test_a_directory_that_cannot_be_written_is_refused(logged, capsys):
 
 
 @BRIEFLY
-@pytest.mark.parametrize("manifest", ['{"study": "flights", "state": "complete"}', "[]", "{"])
+@pytest.mark.parametrize("manifest", ['{"study": "flights", "state": "complete"}', "{"])
 def test_the_command_does_not_write_over_a_run_of_another_kind(logged, capsys, manifest):
     out = logged.parent / "out"
     out.mkdir()
@@ -266,20 +226,3 @@ def test_a_new_estimate_leaves_no_report_of_the_older_one(logged):
         "manifest.json",
         "samples.csv",
     ]
-
-
-@BRIEFLY
-@pytest.mark.parametrize("console", [True, False])
-def test_command_and_revision_are_recorded_as_those_of_flights(
-    logged, monkeypatch, tmp_path, console
-):
-    arguments = [str(logged), "--out", "m", "--no-report"]
-    monkeypatch.chdir(tmp_path)
-    if console:
-        monkeypatch.setattr("sys.argv", ["/anywhere/bin/plume-flight", "estimate", *arguments])
-    assert main(arguments) == 0
-    manifest = json.loads((tmp_path / "m" / "manifest.json").read_text(encoding="utf-8"))
-    program = "plume-flight estimate" if console else "python -m measurement.estimate"
-    # Without the folders of this machine.
-    assert manifest["command"] == f"{program} flight.csv --out m --no-report"
-    assert manifest["git_revision"] == provenance()["git_revision"]

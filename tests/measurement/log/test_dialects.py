@@ -59,20 +59,6 @@ def test_a_european_log_is_read(table, expected, tmp_path, encoding):
     assert "semicolons, decimal comma" in found.about.table
 
 
-def test_local_dates_are_asked_for_and_then_read(table, expected, tmp_path):
-    table["Zeit"] = table["Zeit"].dt.strftime("%d.%m.%Y %H:%M:%S.%f")
-    given = '[table]\ntime_format = "%d.%m.%Y %H:%M:%S.%f"\n'
-    found = read(table, tmp_path, given)
-    is_the_flight(found, expected)
-    assert found.about.first_utc == START.to_pydatetime()
-
-
-def test_local_dates_without_their_order_are_refused(table, tmp_path):
-    table["Zeit"] = table["Zeit"].dt.strftime("%d.%m.%Y %H:%M:%S")
-    with pytest.raises(MeasurementError, match=r'time_format = "%d\.%m\.%Y %H:%M:%S"'):
-        read(table, tmp_path)
-
-
 def test_masses_of_sulphur_dioxide_are_read_as_such(table, expected, tmp_path):
     # 2.663 ug/m3 per ppb at 20 deg C and 1013.25 hPa: M p/(R T).
     table["SO2 [ppb]"] *= 64.064 * 101325.0 / (8.314462618 * 293.15) / 1000.0
@@ -84,15 +70,6 @@ def test_masses_of_sulphur_dioxide_are_read_as_such(table, expected, tmp_path):
     assert cold.readings.values[50, 0] / found.readings.values[50, 0] == pytest.approx(
         273.15 / 293.15
     )
-
-
-def test_a_gas_without_a_unit_is_asked_for(table, tmp_path):
-    log, toml = tmp_path / "other.csv", tmp_path / "other.toml"
-    table.rename(columns={"SO2 [ppb]": "SO2"}).to_csv(log, index=False)
-    toml.write_text(NAMES.replace("SO2 [ppb]", "SO2"), encoding="utf-8")
-    config = read_config(toml)
-    with pytest.raises(MeasurementError, match=r"'SO2' does not say its unit.*so2 = \"ppb\""):
-        read_flight(log, config)
 
 
 @pytest.mark.parametrize("factor", [1, 1000, 1_000_000])

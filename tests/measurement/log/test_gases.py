@@ -146,21 +146,14 @@ def test_humid_air_needs_its_effect_to_be_stated(gases, text, quality):
         ("[gases]\nn2o = 44.0\n", "gases.n2o is 44.0; give a table [gases.n2o]"),
         ("[columns]\nn2o = 'N2O [ppb]'\n", "[columns] has the key 'n2o'"),
         ("[columns]\nch4 = 'methane'\n", "no CH4 column 'methane'"),
-        ("[columns]\nch4 = 'height_m'\n", "column 'height_m'"),
         ("[units]\nch4 = 'kg'\n", "units.ch4: 'kg' is no unit of this quantity"),
-        ("[channels.n2o]\nt90_s = 2.0\n", "[channels] has the key 'n2o'"),
         ("[channels.nox]\nt90_s = 2.0\n", "[channels] has nox, and the log no column of it"),
         ("[channels.ch4]\nt90 = 2.0\n", "channel 'ch4' has the key 't90'"),
         ("[channels.ch4]\ncross = { no = 0.1 }\n", "only SO2, NO and NO2 may have one"),
         ("[engine]\nkeel_laid = 'May'\n", "engine.keel_laid is 'May'; give a date"),
         ("[engine]\nrated_rpm = 'slow'\n", "engine.rated_rpm is 'slow'; give a number"),
-        ("[engine]\nrated_rpm = 5\n", "engine.rated_rpm is 5 1/min"),
-        ("[engine]\ncontrol_area = 'baltics'\n", "did you mean 'baltic'"),
-        ("[engine]\nspeed_mps = 99.0\n", "engine.speed_mps is 99 m/s"),
         ("[humidity]\nso2 = -5.0\n", "humidity.so2 is -5.0; give its effect"),
         ("[columns]\nhumidity = 'RH'\n", "no humidity column 'RH'"),
-        ("[columns]\nhumidity = 'co2_ppm'\n", "[columns] has the column 'co2_ppm'"),
-        ("[columns]\nhumidity = 'so2_true_ppb'\n[columns.x]\n", "[columns] has the key 'x'"),
         ("calibration_hours = 0\n", "calibration_hours is 0"),
         ("serial = true\n", "serial is True"),
     ],
@@ -232,12 +225,12 @@ def test_the_page_shows_what_the_command_prints_and_a_calculator_agrees(tmp_path
             assert float(number) == pytest.approx(float(shown_number), rel=0.1, abs=1.0)
     [nox] = json.loads((tmp_path / "out" / "estimate.json").read_text(encoding="utf-8"))["gases"]
     # The steps of the page, with its rounding.
-    per_fuel = round(241.0 / 12.0, 1) / 1000.0 * 46.0 * 72.4
+    per_fuel = round(233.0 / 12.0, 1) / 1000.0 * 46.0 * 72.4
     assert per_fuel == pytest.approx(nox["per_fuel"], rel=0.05)
     assert pytest.approx(nox["load"], rel=0.01) == (12.0 / 13.0) ** 3
     assert per_fuel * 0.208 == pytest.approx(nox["value"], rel=0.05)
-    assert np.linalg.norm((0.84, 0.69, 0.49, 0.47)) == pytest.approx(1.28, abs=0.01)
-    assert nox["total"] == pytest.approx(1.32, rel=0.1)
+    assert np.linalg.norm((0.81, 0.66, 0.39, 0.32)) == pytest.approx(1.16, abs=0.01)
+    assert nox["total"] == pytest.approx(1.20, rel=0.1)
     assert nox["verdict"]["limit"] == pytest.approx(44.0 * 500.0**-0.23)
 
 

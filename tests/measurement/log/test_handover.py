@@ -1,7 +1,6 @@
 """The record to hand over: it fits its schema, loses nothing, and a changed figure is noticed."""
 
 import copy
-import csv
 import hashlib
 import json
 
@@ -11,7 +10,7 @@ from logged_flights import run
 
 from measurement.errors import MeasurementError
 from measurement.log.calibration import write_calibration
-from measurement.log.handover import items_csv, read_record, schema
+from measurement.log.handover import read_record, schema
 from tests.measurement.log.test_calibration import calibrated
 
 BRIEFLY = pytest.mark.usefixtures("briefly")
@@ -150,22 +149,6 @@ def test_a_record_of_a_log_that_says_nothing_fits_the_schema_too(logged):
     assert problems(record) == []
     assert record["figures"][0]["value"] is None
     assert record["figures"][0]["quality"] == "C"
-
-
-@BRIEFLY
-def test_the_table_of_inspection_items_says_that_nobody_has_approved_it(handed):
-    record = written(handed)
-    text = (handed / "record.thetis-eu.csv").read_text(encoding="utf-8")
-    assert text == items_csv(record)
-    rows = {row["item"]: row for row in csv.DictReader(text.splitlines())}
-    assert rows["status of this table"]["value"] == "not approved by anybody"
-    assert rows["IMO identification number"]["value"] == "9074729"
-    assert rows["flag State"] == {
-        "item": "flag State",
-        "value": "",
-        "from": "not known from the air",
-    }
-    assert rows["record, SHA-256"]["value"] == record["sha256"]
 
 
 @pytest.mark.parametrize(

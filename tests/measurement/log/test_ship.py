@@ -166,9 +166,3 @@ def test_places_of_a_ship_that_cannot_be_are_refused(tmp_path, text, words):
     (tmp_path / "log.toml").write_text(f"[flight]\n{text}\n", encoding="utf-8")
     with pytest.raises(MeasurementError, match=words):
         read_config(tmp_path / "log.toml")
-
-
-def test_the_record_of_a_flight_has_the_distances(table, logged, ship):
-    table.to_csv(logged, index=False)
-    about = read_flight(logged, LogConfig(), [ship]).about
-    assert dataclasses.asdict(about)["ships"] == about.record()["ships"] == about.ships

@@ -24,7 +24,7 @@ def plane(distance, half_width=350.0, top=350.0):
 
 
 @pytest.mark.parametrize("settings", [{}, {"mean": True}, {"meander": False}], ids=str)
-@pytest.mark.parametrize("distance", [100.0, 200.0, 350.0, 500.0])
+@pytest.mark.parametrize("distance", [100.0, 500.0])
 def test_what_passes_a_plane_is_what_was_emitted(distance, settings):
     plume = straight(WIND, TRUE_WIND, seed=4, **settings)
     places, area = plane(distance)

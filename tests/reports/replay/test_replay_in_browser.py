@@ -259,15 +259,19 @@ def test_figures_are_as_wide_in_print_whatever_the_window_and_as_before_after_it
         "[...document.querySelectorAll('.js-plotly-plot')].map((plot) => plot._fullLayout.width)"
     )
     wide = "[...document.querySelectorAll('.panels')].map((of) => of.getBoundingClientRect().width)"
+    # Plotly follows the window a tenth of a second later.
+    later = "new Promise((done) => setTimeout(() => done(true), 500))"
     for width in (520, 1200):
         show(browser, page, width)
+        browser.run(later)
         before = browser.run(drawn)
         browser.run("dispatchEvent(new Event('beforeprint'))")
         # The width of the page's text in print.
         browser.settle()
         assert set(filter(None, browser.run(wide))) == {1040}
+        assert max(browser.run(drawn)) <= 1040
         browser.run("dispatchEvent(new Event('afterprint'))")
-        browser.settle()
+        browser.run(later)
         assert browser.run(drawn) == before
     assert browser.errors == []
 

@@ -5,8 +5,12 @@ one line.
 import math
 from dataclasses import dataclass
 
+import pytest
+
 from scenarios import fly, run
 from scenarios.api.scenario import load
+
+pytestmark = pytest.mark.slow
 
 SHORT = {
     "title": "One short flight",

@@ -103,28 +103,6 @@ def test_a_single_flight_is_that_of_the_run(file, by_program, tmp_path, flight_i
     assert len(flight.crossings) == 4
 
 
-@pytest.mark.usefixtures("x8_design")
-def test_an_aircraft_flies_the_same_in_both(tmp_path):
-    arguments = (
-        "--set",
-        "sweep.nu=[0.6]",
-        "--set",
-        "flight.crossings=4",
-        "--seed",
-        "5",
-        "--no-report",
-        "--jobs",
-        "1",
-    )
-    assert (
-        run_command("scenarios.run", "sweep_nu", "--out", tmp_path / "run", *arguments).status == 0
-    )
-    flight = fly("sweep_nu", nu=0.6, flight={"crossings": 4}, seed=5)
-    assert flight.met
-    recorded = tmp_path / "run" / "flights" / "nu_0.60.parquet"
-    assert flight.export(tmp_path / "flight.parquet").read_bytes() == recorded.read_bytes()
-
-
 def test_a_scenario_is_changed_as_by_the_command_line(file):
     scenario = load(file).set(nu=0.4, wind={"speed_mps": 3.0}, **{"guidance.rate_hz": 10})
     assert scenario.changes == ("sweep.nu=[0.4]", "wind.speed_mps=3.0", "guidance.rate_hz=10")

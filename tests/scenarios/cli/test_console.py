@@ -2,14 +2,10 @@
 
 import json
 import re
-from pathlib import Path
 
 import pytest
 
-from measurement.log.command import main as estimate_logged
-from tests.in_process import assert_refused, run_command
-
-ROOT = Path(__file__).parents[3]
+from tests.in_process import run_command
 
 SHORT = """
 title = "Two short flights"
@@ -83,21 +79,3 @@ def test_a_run_is_flown_reported_and_exported(file, tmp_path):
         json.loads((out / "export" / "short.nu_0.50.geojson").read_text(encoding="utf-8"))["type"]
         == "FeatureCollection"
     )
-
-
-@pytest.mark.slow
-def test_a_log_is_estimated_as_by_the_program_that_stands_alone(tmp_path, capsys):
-    log, config = (
-        ROOT / "docs" / "examples" / "example_flight.csv",
-        ROOT / "docs" / "examples" / "example_instrument.toml",
-    )
-    ended = console("estimate", log, "--config", config, "--out", tmp_path / "one", "--no-report")
-    assert (
-        ended.status
-        == estimate_logged(
-            [str(log), "--config", str(config), "--out", str(tmp_path / "two"), "--no-report"]
-        )
-        == 0
-    )
-    assert ended.out.replace("one", "two") == capsys.readouterr().out
-    assert_refused(console("estimate", tmp_path / "none.csv"), "none.csv")

@@ -10,7 +10,6 @@ import pytest
 from jsonschema import Draft4Validator
 
 from scenarios.cli.schema import file_schema
-from scenarios.cli.template import template
 from scenarios.errors import InputError
 from scenarios.scenario.files import bases, catalog, load_study
 
@@ -65,11 +64,6 @@ def test_it_is_a_schema_of_draft_4(validator):
 @pytest.mark.parametrize("path", [*catalog().values(), *bases().values()], ids=lambda of: of.stem)
 def test_every_scenario_of_the_project_is_accepted(path, validator):
     assert wrong(validator, path.read_text(encoding="utf-8")) == []
-
-
-@pytest.mark.parametrize("name", ["sweep_nu", "falsify", "convergence"])
-def test_a_new_file_is_accepted(name, validator):
-    assert wrong(validator, template(name, "mine.toml")) == []
 
 
 @pytest.mark.parametrize("text", [*examples()])

@@ -116,6 +116,7 @@ def memory():
     )
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(
     sys.platform != "linux", reason="other systems do not hold a process to its limit of data"
 )

@@ -1,12 +1,9 @@
 """What a resumed run rewrites, removes and begins anew."""
 
-import functools
-import multiprocessing
 import os
-import time
 
 import pytest
-from engine_cases import TABLE, Squares, SquareStudy, begun, fly, interrupt_at
+from engine_cases import TABLE, Squares, SquareStudy, fly
 
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
@@ -23,21 +20,6 @@ def state_of(out):
         for path in sorted(out.rglob("*"))
         if path.is_file()
     }
-
-
-def test_a_resumed_run_makes_what_is_missing_and_leaves_the_rest(marks, out):
-    study = SquareStudy(Squares(marks=marks))
-    fly(study, out)
-    (out / "report.html").touch()
-    before = state_of(out)
-    (out / TABLE).unlink()
-    assert fly(study, out, resume=True).changed
-    after = state_of(out)
-    assert after[TABLE][0] == before[TABLE][0]
-    differing = {name for name in {*before, *after} if before.get(name) != after.get(name)}
-    assert differing == {TABLE, "manifest.json"}
-    # Nothing is flown for it.
-    assert [begun(marks, number) for number in range(8)] == [1] * 8
 
 
 @pytest.mark.parametrize("resume", [False, True])
@@ -81,28 +63,3 @@ def resume(study, out, barrier, results):
         results.put(str(fly(study, out, resume=True).all_met))
     except InputError as error:
         results.put(str(error))
-
-
-def test_of_two_that_resume_at_once_one_is_refused_in_a_line(marks, out, whole):
-    # Each takes longer than the other needs to come.
-    work = Squares(marks=marks, does=dict.fromkeys(range(3, 8), functools.partial(time.sleep, 0.1)))
-    fly(SquareStudy(work), out, progress=interrupt_at(2))
-    context = multiprocessing.get_context("fork")
-    barrier, results = context.Barrier(2), context.Queue()
-    both = [
-        context.Process(target=resume, args=(SquareStudy(work), out, barrier, results))
-        for _ in range(2)
-    ]
-    for process in both:
-        process.start()
-    refused, done = sorted(
-        (results.get(timeout=30), results.get(timeout=30)), key=lambda text: text == "True"
-    )
-    for process in both:
-        process.join()
-    assert done == "True"
-    assert (
-        refused
-        == f"another program is writing to '{out}'; wait until it has ended, or choose another --out"
-    )
-    assert (out / TABLE).read_bytes() == whole

@@ -46,7 +46,6 @@ def test_an_instrument_that_fills_a_column_that_is_filled_already_is_a_row_with_
 
 EVALUATED = """
 import numpy as np
-from dataclasses import dataclass
 from common.columns import Column
 from scenarios.instruments.instrument import Evaluation
 
@@ -62,70 +61,18 @@ class Peak(Bare):
         tables = {"y.csv": [{"y_ppb": 1.0, "flight_id": "another"}]}
         return Evaluation(columns=super().evaluate(column, since).columns, figures={"y_peak_ppb": 3.0}, tables=tables)
 
-class Undeclared(Peak):
-    FIGURES = ()
-class UndeclaredTable(Peak):
-    TABLES = {}
-class Short(Bare):
-    def evaluate(self, column, since): return Evaluation(columns=np.ones((3, 1)))
-class Plain(Bare):
-    def evaluate(self, column, since): return [1.0]
 class Late(Bare):
     def evaluate(self, column, since): raise ValueError("late")
-class Misspelt(Bare):
-    def evaluate(self, column, since): return column("times_s")
-class WithoutArguments(Bare):
-    def __init__(self): pass
-
-class Reads:
-    COLUMNS = ("x_ppb",)
-    def __init__(self, *_): pass
-class ReadsTwo(Reads):
-    def read(self, *_): return 1.0, 2.0
-class ReadsNone(Reads):
-    def read(self, *_): return None
-class ReadsText(Reads):
-    def read(self, *_): return ("high",)
-class ReadsAtOnce(Reads):
-    def read(self, time): return (1.0,)
-
-class Gain(Reads):
-    @dataclass(frozen=True)
-    class SETTINGS:
-        gain_factor: float = 2.0
-    def __init__(self, scenario, world, generator): self.gain = scenario.payload.settings(type(self)).gain_factor
-    def read(self, *_): return (self.gain,)
-class GainOfTheSection(Gain):
-    def __init__(self, scenario, world, generator): self.gain = scenario.payload.gain_factor
 
 class Safe(Bare):
     FIGURES = ("keepout_violations", "min_distance_m")
-class Replaced(Bare):
-    TABLES = {"crossings.csv": ("y_ppb",)}
 class Folder(Bare):
     TABLES = {"../y.csv": ("y_ppb",)}
-class Renamed(Bare):
-    TABLES = {"y.csv": ("flight_id", "y_ppb")}
-class Text(Bare):
-    FIGURES = "y_peak_ppb"
 class Also(Bare):
     COLUMNS = ("z_ppb",)
     FIGURES = ("y_peak_ppb",)
 class Numbered(Bare):
     FIGURES = {"y_peak_ppb": 3}
-class Described(Bare):
-    COLUMNS = {"y_ppb": Column("of y", title="Y")}
-    FIGURES = {"y_peak_ppb": "largest y"}
-class Nameless:
-    def read(self, *_): return ()
-class OfItsOwn(Bare):
-    def __init__(self, *_): self.COLUMNS = ("own_ppb",)
-class Pair(Bare):
-    FIGURES = ("y_peak_ppb",)
-    def evaluate(self, column, since):
-        return Evaluation(columns=np.ones((len(column("time_s")), 1)), figures={"y_peak_ppb": np.ones(2)})
-class Words(Bare):
-    def evaluate(self, column, since): return Evaluation(columns=np.full((len(column("time_s")), 1), "x"))
 """
 
 
@@ -173,4 +120,4 @@ def test_an_aircraft_that_is_gone_is_gone_whatever_fails_after_it(
     monkeypatch.setattr(flight_runner, "flight_figures", gone)
     row = evaluated(tmp_path, "Late").row
     assert (row["outcome"], row["kept_out"], row["criteria_met"]) == (outcome, kept_out, False)
-    assert "failed: ValueError: late (own.py:28)" in row["message"]
+    assert "failed: ValueError: late (own.py:19)" in row["message"]

@@ -44,33 +44,6 @@ def test_the_example_measures_with_its_own_sniffer_beside_its_own_ship(run, tmp_
     assert "own cells" in page.read_text(encoding="utf-8")
 
 
-def test_its_flight_is_replayed_and_its_run_resumed(run):
-    replayed = run_command(
-        "scenarios.run",
-        run / "flights" / "own_ship_00000",
-        "--out",
-        run.parent / "again",
-        "--no-report",
-    )
-    assert "every value of its row agrees to the last bit" in replayed.out
-    keys = [word for key in QUICK for word in ("--set", key)]
-    resumed = run_command("scenarios.run", EXAMPLE, *keys, "--out", run, "--resume", "--no-report")
-    assert resumed.status == 0, resumed
-    other = run_command(
-        "scenarios.run",
-        EXAMPLE,
-        *keys,
-        "--set",
-        "emission.ship.speed_max=10",
-        "--out",
-        run,
-        "--resume",
-        "--no-report",
-    )
-    assert other.status == 2
-    assert "emission.ship" in other.errors
-
-
 def toml(table):
     words = (f"{key}={value!r}" for key, value in table.items())
     return "{" + ", ".join(words) + "}"

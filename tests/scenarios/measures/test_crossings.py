@@ -16,17 +16,6 @@ def straight(start, velocity, duration=20.0, step=0.1):
     return time, np.array(start) + np.outer(time, velocity), np.tile(velocity, (len(time), 1))
 
 
-def test_a_straight_path_is_cut_where_geometry_says():
-    # From 100 m left of the axis, 210 m astern, at 19.42 m/s square across: cut after 100/19.42 s
-    # at 210 m. Exact but for rounding.
-    crossings = find_crossings(*straight((-210.0, -100.0, 0.0), (0.0, 19.42, 0.0)), axis())
-    assert len(crossings) == 1
-    assert crossings[0].time == pytest.approx(100.0 / 19.42, abs=1e-9)
-    assert crossings[0].distance == pytest.approx(210.0, abs=1e-9)
-    assert crossings[0].axis_distance == pytest.approx(210.0, abs=1e-9)
-    assert crossings[0].angle == pytest.approx(math.pi / 2, abs=1e-9)
-
-
 def test_a_curved_path_is_timed_far_better_than_its_samples():
     # A circle of 38.6 m at 0.503 rad/s (45 degrees of bank), sampled at 10 Hz. It cuts the axis
     # where its phase says. A cubic through positions and velocities errs by R (omega dt)^4/384 =

@@ -53,7 +53,11 @@ vessel.speed_mps = 8.0
 wind = { speed_mps = 5.0, from_deg = 80.0 }
 plume = { model = "fluctuating", source_height_m = 35.0 }
 emission = { ship = "container", fuel = "vlsfo", sulphur_percent = 0.3 }
-payload = { instruments = ["sniffer"], sensor = "fast" }
+payload.instruments = ["sniffer"]
+payload.sensor = "fast"
+payload.channels.ch4 = { t90_s = 1.0, delay_s = 0.2, noise = 2.0 }
+payload.channels.bc = { t90_s = 1.0, delay_s = 0.2, noise = 20.0 }
+payload.channels.pn = { t90_s = 1.0, delay_s = 0.2, noise = 50.0 }
 air = { background = "sine", background_s = 20.0 }
 flight.crossings = 0
 flight.after_settling_s = 20.0
@@ -146,6 +150,7 @@ VALUES = {
     "traffic.0.emission.load": 0.7,
     "plume.direction": "apparent_wind", "plume.heading_deg": 170.0, "plume.elevation_deg": 10.0, "plume.source_height_m": 80.0,
     "emission.ship": "cruise", "emission.fuel": "mgo", "emission.sulphur_percent": 0.2, "emission.load": 0.5,
+    "emission.methane_slip_percent": 3.0, "emission.black_carbon_g_kg": 0.3, "emission.particle_number_1e15_kg": 8.0,
     "wind.temperature_c": 30.0, "wind.stability_per_s": 0.03, "flight.after_settling_s": 60.0, "flight.measured_s": 15.0,
     "flight.altitude_min_m": 80.0, "flight.altitude_max_m": 40.0,
     "keepout.radius_m": 180.0, "keepout.shape": "cylinder", "wind.speed_mps": 3.0, "wind.from_deg": 100.0,

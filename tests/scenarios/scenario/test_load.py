@@ -1,7 +1,5 @@
 import pytest
 
-from scenarios.errors import InputError
-from scenarios.experiment.requests import Experiment
 from scenarios.scenario.files import load_study
 from scenarios.studies.base import TrialStudy
 
@@ -18,29 +16,6 @@ from scenarios.studies.base import TrialStudy
 def test_overrides_set_any_key(override, value):
     key = override.split("=")[0].strip().split(".")[1]
     assert getattr(load_study("sweep_nu", [override]).guidance, key) == value
-
-
-@pytest.mark.parametrize(
-    ("cases", "words"),
-    [
-        (
-            '[[cases]]\nname = "a"\nset = { "sweep.nu" = [0.3, 0.5] }\n',
-            ["case 'a' has sweep.nu = [0.3, 0.5]; give it one speed ratio"],
-        ),
-        ('[[cases]]\nname = "a"\nset = { fidelity = "kinematic" }\n', ["case 'a' sets fidelity"]),
-        (
-            '[[cases]]\nname = "a"\nset = { "guidance.gain" = 1.0 }\n',
-            ["case 'a': unknown key 'guidance.gain'"],
-        ),
-    ],
-)
-def test_cases_that_cannot_be_flown_are_refused_by_name(tmp_path, cases, words):
-    path = tmp_path / "cases.toml"
-    path.write_text(f'study = "paper"\ntitle = "cases"\n{cases}', encoding="utf-8")
-    with pytest.raises(InputError) as refusal:
-        Experiment("cases", load_study(str(path)))
-    for word in words:
-        assert word in str(refusal.value)
 
 
 @pytest.mark.slow

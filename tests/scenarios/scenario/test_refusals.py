@@ -8,6 +8,7 @@ from scenarios.errors import InputError
 from scenarios.scenario.files import load_study
 
 DIGITS = "9" * 5000
+CELL = "{t90_s=2,delay_s=0.5,noise=5}"
 
 VALUES = [
     (
@@ -148,6 +149,15 @@ TOGETHER = [
     ("sulphur", ["plume.meander=false", "plume.meander_length_up=1"], "leave plume.meander out"),
     ("sulphur", ["plume.mean=true", "plume.structure_intensity=0.3"], "leave plume.mean out"),
     ("sea_wind", ["plume.model=fluctuating", "plume.richardson=0.5"], "set emission.ship"),
+    ("sulphur", ["emission.methane_slip_percent=3"], "add the table payload.channels.ch4"),
+    ("sulphur", ["emission.black_carbon_g_kg=30", "payload.channels.bc=" + CELL], "is 30; input"),
+    ("sulphur", ["emission.particle_number_1e15_kg=-1"], "particle_number_1e15_kg is -1; input"),
+    ("sulphur", ["emission.methane_slip=3"], "did you mean 'emission.methane_slip_percent'?"),
+    ("sulphur", ["payload.channels.co=" + CELL], "the key 'co'"),
+    ("sulphur", ["payload.channels.ch4={t90_s=2}"], "no t90_s, delay_s or noise"),
+    ("sulphur", ["payload.channels.ch4={t90=2}"], "did you mean 't90_s'?"),
+    ("sulphur", ["payload.channels.ch4=3"], "give a table [channels.ch4]"),
+    ("sulphur", ["payload.channels=3"], "channels is 3; input should be a valid dictionary"),
     ("plume_search", ["wind.height_m=20"], "'wind.height_m' has no effect here"),
     (
         "sulphur",

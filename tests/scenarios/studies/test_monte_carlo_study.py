@@ -10,7 +10,6 @@ from scenarios.engine.journal import Journal
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import ExecutorFactory
-from scenarios.errors import InputError
 from scenarios.scenario.files import load_study
 from scenarios.statistics.sensitivity import sensitivity_indices
 from scenarios.studies.base import run_study, study_of
@@ -160,19 +159,3 @@ def test_a_study_stops_by_itself_where_the_interval_it_was_asked_for_is_tight_en
     )
     assert again.verdict.counts.done == 32
     assert [p for p in flown if p[0] == "flying"] == [("flying", 32, 100)]
-
-
-@pytest.mark.parametrize(
-    ("override", "words"),
-    [
-        ("sampling=halton", ["sampling", "'halton'", "sobol"]),
-        ("statistics.confidence=1.5", ["statistics.confidence", "1.5", "less than 1"]),
-        ("flights=0", ["flights is 0; input should be greater than or equal to 1"]),
-    ],
-)
-def test_bad_values_are_refused_in_one_line(override, words):
-    with pytest.raises(InputError) as refused:
-        load_study("monte_carlo", [override])
-    for word in words:
-        assert word in str(refused.value)
-    assert "\n" not in str(refused.value)

@@ -10,7 +10,6 @@ import pytest
 from common.intervals import clopper_pearson
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.engine.runner import ExecutorFactory
-from scenarios.errors import InputError
 from scenarios.experiment.sampling import beyond_declared
 from scenarios.scenario.files import load_study
 from scenarios.studies.base import run_study, study_of
@@ -235,33 +234,3 @@ def test_a_lost_flight_is_not_flown_again_once_others_depend_on_it(rare, whole, 
     done = len(pd.read_csv(out / "summary.csv"))
     assert [p[1] for p in flown if p[0] == "flying"] == [done - 1]
     assert statistics_of(out) == statistics_of(whole[1])
-
-
-@pytest.mark.parametrize(
-    ("overrides", "words"),
-    [
-        (["method=subsett"], ["method", "'subsett'", "did you mean 'subset'"]),
-        (
-            ["method=subset", "statistics.violation_upper=0.1"],
-            ["method is 'subset'", "statistics.violation_upper", "leave them out"],
-        ),
-        (
-            ["method=subset", "draws=[]"],
-            ["method is 'subset'", "draws is empty", "set method to 'plain'"],
-        ),
-        (
-            ["method=subset", "subset.flights_per_level=60"],
-            ["6 flights that pass on", "must be 10", "100 or more"],
-        ),
-        (
-            ["method=subset", "subset.conditional_probability=0.7"],
-            ["subset.conditional_probability", "0.7", "0.5"],
-        ),
-    ],
-)
-def test_what_does_not_fit_is_refused_in_one_line(overrides, words):
-    with pytest.raises(InputError) as refused:
-        load_study("monte_carlo", overrides)
-    for word in words:
-        assert word in str(refused.value)
-    assert "\n" not in str(refused.value)

@@ -87,6 +87,7 @@ def test_a_table_of_no_use_is_refused_in_one_line(table, text, changes, words):
         assert word in str(refusal.value)
 
 
+@pytest.mark.slow
 def test_a_flight_in_a_wind_that_changes_knows_it_and_crosses_as_predicted(table):
     # From 4 m/s ahead to 8 m/s from abeam within 20 minutes.
     rows = "time_utc,speed_mps,from_deg\n2026-06-01T10:00:00Z,4.0,0\n2026-06-01T10:20:00Z,8.0,90\n"

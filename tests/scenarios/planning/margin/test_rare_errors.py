@@ -12,6 +12,8 @@ from scenarios.planning.margin.keepout_margin import vessel_limits
 from scenarios.scenario.files import load_study, with_values
 from scenarios.vehicles.sensors import NAVIGATION_TIME
 
+pytestmark = pytest.mark.slow
+
 TOUCHES = 0.5
 """Declared [1/h]: often enough to be counted."""
 

@@ -9,7 +9,6 @@ import pytest
 
 from gnc.reference.reference import CirclingReference
 from gnc.tracker import Tracker
-from scenarios.api.flying import fly
 from scenarios.planning.guidance import speed_hold, tracking_parameters
 from scenarios.planning.margin.keepout_margin import (
     GUARDED_PER_HOUR,
@@ -97,17 +96,3 @@ def test_the_allowance_is_exceeded_no_oftener_than_allowed():
     # The probability that a normal error exceeds it, times the steps of an hour at 20 Hz.
     deviations = noise_allowance(0.3, 0.4, time_step=0.05) / 0.5
     assert 72_000.0 * 0.5 * math.erfc(deviations / math.sqrt(2.0)) < GUARDED_PER_HOUR
-
-
-@pytest.mark.parametrize("mission", ["follow", "standoff"])
-def test_the_guard_does_not_act_on_an_orbit_beside_a_vessel_that_is_known_exactly_for_noise_of_the_own_position(
-    mission,
-):
-    # Without the allowance it acted again and again, each time until the UAV was up to 370 m off
-    # its orbit.
-    vessel = {"draws": [], "wind.speed_mps": 0.0, "vessel.speed_mps": 14.0, "start.range_m": 600.0}
-    noise = {"guidance.mission": mission, "sensors.position_sigma_m": 3.0}
-    flown = {"flights": 1, "flight_seed": 7, "flight.crossings": 0, "flight.duration_max_s": 250.0}
-    row = fly("sea_wind", **KINEMATIC, **vessel, **noise, **flown).row
-    assert row["guard_interventions"] == 0
-    assert row["tracking_error_end_m"] < 15.0
