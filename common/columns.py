@@ -28,6 +28,8 @@ _UNITS = {
     "_ppm_s": "ppm s",
     "_ppm": "ppm",
     "_ppb": "ppb",
+    "_g_kg": "g/kg",
+    "_1e15_kg": "10^15/kg",
     "_hz": "Hz",
     "_c": "degC",
     "_m": "m",
