@@ -36,6 +36,9 @@ _NEGATIVE_SIGMA = 3.0
 uncertainties].
 """
 
+_DIGITS_MOST = 8
+"""Decimals to which an uncertainty is printed at most, so that it differs from what it exceeds."""
+
 
 def quality_class(
     *,
@@ -71,9 +74,12 @@ def quality_class(
     good = UNCERTAINTY_GOOD * (abs(fsc) if limit is None else limit)
     if deviation > good:
         why = ", as the response of SO2 to NO and NO2 is not stated (cross)"
+        digits = species.digits
+        while f"{deviation:.{digits}f}" == f"{good:.{digits}f}" and digits < _DIGITS_MOST:
+            digits += 1
         reasons.append(
-            f"standard uncertainty is {_printed(deviation, species)}"
-            f"{'' if responses_stated else why}; class A needs {_printed(good, species)}"
+            f"standard uncertainty is {deviation:.{digits}f} {_unit(species)}"
+            f"{'' if responses_stated else why}; class A needs {good:.{digits}f} {_unit(species)}"
         )
     if passes < PASSES_GOOD:
         counted = "1 pass" if passes == 1 else f"{passes} passes"

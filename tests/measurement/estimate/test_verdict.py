@@ -116,6 +116,7 @@ GOOD = {
         ({}, "A", ""),
         ({"snr": 12.0}, "B", "CO2 signal to noise is 12.0; class A needs 20"),
         ({"deviation": 0.03}, "B", "standard uncertainty is 0.030 %; class A needs 0.020 %"),
+        ({"deviation": 0.0203}, "B", "standard uncertainty is 0.0203 %; class A needs 0.0200 %"),
         (
             {"deviation": 0.03, "responses_stated": False},
             "B",
