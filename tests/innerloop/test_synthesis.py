@@ -148,6 +148,7 @@ def similar(model):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["x8", "aerosonde"])
 def test_a_dynamically_similar_aircraft_gets_the_similar_autopilot(monkeypatch, designs, name):
     schedule = designs(name).design.schedule
@@ -247,6 +248,7 @@ def allowed(design, i):
     return control_weights(schedule.models[i][LEVEL_GAINS], design.bandwidths, schedule.weights)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_the_longitudinal_gains_are_those_of_a_servo_lqr(designs, name):
     design = designs(name).design

@@ -14,6 +14,8 @@ from scenarios.world.ais.size import ShipSize
 from tests.extensions.companion.served import companion, free_port, served
 from tests.in_process import assert_refused
 
+pytestmark = pytest.mark.slow
+
 encode = pytest.importorskip("pyais.encode", reason="pyais is an extra")
 
 NOW = 1780308000.0

@@ -14,6 +14,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from tests.extensions.companion.served import companion, served
 
+pytestmark = pytest.mark.slow
+
 FLIGHT = ("comparison.nu=[]", "sweep.nu=[0.5]", "fidelity=kinematic", "flight.crossings=2")
 
 PATIENCE = 60.0

@@ -10,6 +10,8 @@ from extensions.companion.reported_ships import Seen
 from extensions.companion.simulation import MMSI
 from tests.extensions.companion.served import companion, served
 
+pytestmark = pytest.mark.slow
+
 LANE = ("reports.interval_s=[10,10]", "flight.crossings=12", "fidelity=kinematic", "flights=1",
         "vessel.speed_mps=5", "wind.speed_mps=5", "wind.from_deg=20", "draws=[]",
         "guidance.rate_hz=10")  # fmt: skip

@@ -18,6 +18,8 @@ from measurement.species import SPECIES
 from tests.measurement.simulator.gas_estimate import estimate_log
 from tests.measurement.simulator.gases import run, simulate_gas
 
+pytestmark = pytest.mark.slow
+
 AIR = (20.0, 1013.25)
 ENGINE = Engine(keel_laid=date(2012, 1, 1), rated_rpm=120.0, design_speed_mps=8.0, speed_mps=7.0)
 

@@ -13,6 +13,8 @@ from measurement.log.command import main
 from measurement.log.config import read_config
 from measurement.log.read import read_flight
 
+pytestmark = pytest.mark.slow
+
 BRIEFLY = pytest.mark.usefixtures("briefly")
 
 ENGINE = """

@@ -13,6 +13,8 @@ from measurement.log.calibration import write_calibration
 from measurement.log.handover import read_record, schema
 from tests.measurement.log.test_calibration import calibrated
 
+pytestmark = pytest.mark.slow
+
 BRIEFLY = pytest.mark.usefixtures("briefly")
 
 CONFIG = """

@@ -15,6 +15,8 @@ from reports.measurement.content import gas_sections, samples_chart, stage_chart
 from reports.registry import content
 from reports.run.run_data import read_run
 
+pytestmark = pytest.mark.slow
+
 EXAMPLE = Path(__file__).parents[3] / "docs" / "examples" / "example_flight.csv"
 
 CONFIG = """

@@ -21,6 +21,8 @@ from scenarios.world.traffic import DisplacedVessel
 from scenarios.world.vessel import SteadyVessel
 from scenarios.world.world import plume_of
 
+pytestmark = pytest.mark.slow
+
 KINEMATIC = {
     "extends": "sulphur",
     "fidelity": "kinematic",
