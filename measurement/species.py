@@ -33,6 +33,9 @@ PER_FUEL_PERCENT, PER_FUEL_G, PER_FUEL_1E15 = "% of the fuel", "g/kg", "10^15/kg
 PER_ENERGY = "g/kWh"
 """Unit of an emission per work of the engine's shaft."""
 
+SLOT = "so2"
+"""Gas whose place another gas takes in readings and fit."""
+
 _AMOUNT = {"ppb": 1e-3, "ng/m3": 1e-6, "1/cm3": 1e12}
 """What 1 of a reading's unit is over 1 ppm of CO2, in mol, kg or particles: per mole of CO2 for
 "ppb"; the others are per mole of CO2 and per molar volume of air [m3/mol]."""

@@ -31,10 +31,7 @@ from measurement.sniffer.channel import Channel
 from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
-from measurement.species import PER_ENERGY, SPECIES, Species
-
-SLOT = "so2"
-"""Gas whose place another gas takes in the fit."""
+from measurement.species import PER_ENERGY, SLOT, SPECIES, Species
 
 NO2_SHARE_SD = 0.03
 """Standard deviation of the share of NO2 in NOx that is not measured [-]: 0.05 to 0.15, evenly."""
@@ -301,25 +298,15 @@ def estimate_gas(
         figure = _with_error(figure, "air", AIR_SD)
     per_fuel, unit = figure.value, species.result
     found = [*measured.problems, *measured.pending_problem(figure.value, figure.total)]
-    limit, no_verdict, consumption = None, "no limit on this gas", math.nan
-    load = (math.nan, math.nan)
+    limit, no_verdict = _limit(species, engine)
+    load, consumption = (math.nan, math.nan), math.nan
     if species.per_energy and engine is not None:
-        unit = PER_ENERGY
+        unit, load = PER_ENERGY, engine.load or load
         consumption, by_load, by_engine = engine.consumption()
-        figure = Figure(
-            value=consumption * figure.value,
-            noise=consumption * figure.noise,
-            common={name: consumption * size for name, size in figure.common.items()},
-            assumed=consumption * figure.assumed,
-        )
-        figure = _with_error(_with_error(figure, "load", by_load), "consumption", by_engine)
-        limit, no_verdict, load = engine.limit(), engine.limit_problem(), engine.load or load
+        figure = _with_error(_scaled(figure, consumption), "load", by_load)
+        figure = _with_error(figure, "consumption", by_engine)
         if problem := engine.load_problem():
             found.append(problem)
-    elif species.per_energy:
-        no_verdict = "no verdict: give [engine], whose consumption and stage lead to g/kWh"
-    elif species.judged:
-        no_verdict = "judged by the limits of the configuration"
     value, total = figure.value, figure.total
     instrument = measured.ratio.instrument
     table, snr = signals_table(make_signals(measured.record, instrument), measured.ratio.ratio)
@@ -382,6 +369,27 @@ _KWH_MOST = 0.4
 def _most_over_fuel(unit: str, species: Species) -> float:
     """Return the factor of the largest figure per fuel in a unit [-]."""
     return _KWH_MOST if unit == PER_ENERGY and species.per_energy else 1.0
+
+
+def _limit(species: Species, engine: Engine | None) -> tuple[Limit | None, str]:
+    """Return the limit of the engine, or None and why there is no verdict on it."""
+    if species.per_energy and engine is not None:
+        return engine.limit(), engine.limit_problem()
+    if species.per_energy:
+        return None, "no verdict: give [engine], whose consumption and stage lead to g/kWh"
+    if species.judged:
+        return None, "judged by the limits of the configuration"
+    return None, "no limit on this gas"
+
+
+def _scaled(figure: Figure, factor: float) -> Figure:
+    """Return a figure in another unit."""
+    return Figure(
+        value=factor * figure.value,
+        noise=factor * figure.noise,
+        common={name: factor * size for name, size in figure.common.items()},
+        assumed=factor * figure.assumed,
+    )
 
 
 def _with_error(figure: Figure, name: str, relative: float) -> Figure:

@@ -11,7 +11,6 @@ not describe the readings within their noise.
 """
 
 import hashlib
-import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
@@ -21,12 +20,12 @@ from typing import Any
 
 import numpy as np
 
-from common.files import write_json
 from common.tables import TableError, TableFormat, read_table, unit_factor, unit_in
 from measurement.errors import MeasurementError, naming
 from measurement.estimate.record import shown_scatter, shown_step
 from measurement.estimate.result import plain
 from measurement.gases import UNITS
+from measurement.log.hashed import HashedFile, content_hash, write_hashed
 from measurement.sniffer.channel import Channel
 from measurement.sniffer.lag import Array
 from measurement.species import SPECIES
@@ -145,13 +144,6 @@ class Calibration:
     def sha256(self) -> str:
         """Hash of the content."""
         return content_hash(self.content())
-
-
-def content_hash(content: Mapping[str, Any]) -> str:
-    """Return the SHA-256 of a JSON object without its entry ``sha256``, however it is laid out."""
-    bare = {key: value for key, value in content.items() if key != "sha256"}
-    text = json.dumps(bare, sort_keys=True, separators=(",", ":"), ensure_ascii=True)
-    return hashlib.sha256(text.encode("ascii")).hexdigest()
 
 
 # From a log of zero and span to a calibration
@@ -301,30 +293,33 @@ def _channel(
     covariance = variance * np.linalg.pinv(whole.T @ whole, hermitian=True)
     gain, gain_drift, offset, offset_drift = (float(value) for value in linear)
     deviations = np.sqrt(np.maximum(np.diagonal(covariance), 0.0))
+    gain_sd, gain_drift_sd, offset_sd, offset_drift_sd, log_constant_sd, delay_sd = (
+        float(value) for value in deviations
+    )
     t90 = math.log(10.0) * math.exp(float(fit.x[0]))
     drifts = [
         f"{what} of {name} drifts by {value:+.3g} {per} per hour"
         for what, value, sd, per in (
-            ("the gain", gain_drift, deviations[1], "of 1"),
-            ("the zero", offset_drift, deviations[3], unit),
+            ("the gain", gain_drift, gain_drift_sd, "of 1"),
+            ("the zero", offset_drift, offset_drift_sd, unit),
         )
-        if abs(value) > _SIGNIFICANT * float(sd)
+        if abs(value) > _SIGNIFICANT * sd
     ]
     return CalibratedChannel(
         unit=unit,
         span=span,
         gain=gain,
-        gain_sd=math.hypot(float(deviations[0]), span_sd * abs(gain), slow),
+        gain_sd=math.hypot(gain_sd, span_sd * abs(gain), slow),
         offset=offset,
-        offset_sd=float(deviations[2]),
+        offset_sd=offset_sd,
         gain_drift=gain_drift,
-        gain_drift_sd=float(deviations[1]),
+        gain_drift_sd=gain_drift_sd,
         offset_drift=offset_drift,
-        offset_drift_sd=float(deviations[3]),
+        offset_drift_sd=offset_drift_sd,
         t90_s=t90,
-        t90_sd_s=t90 * float(deviations[4]),
+        t90_sd_s=t90 * log_constant_sd,
         delay_s=float(fit.x[1]),
-        delay_sd_s=float(deviations[5]),
+        delay_sd_s=delay_sd,
         noise=noise,
         misfit=misfit,
         slow=slow,
@@ -373,6 +368,16 @@ def _leaks(name: str, gain: float, slow: float) -> list[str]:
 # The file
 
 
+_FILE = HashedFile(
+    name="calibration",
+    kind=("kind", KIND),
+    version=("format", FORMAT),
+    version_words="the format",
+    made_by="a file of plume-flight calibrate",
+    remedy="calibrate again",
+)
+
+
 def write_calibration(path: Path, calibration: Calibration) -> None:
     """Write a calibration with the hash of its content.
 
@@ -380,10 +385,8 @@ def write_calibration(path: Path, calibration: Calibration) -> None:
     ------
     MeasurementError : the file cannot be written
     """
-    content = calibration.content()
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write_json(path, content | {"sha256": content_hash(content)})
+        write_hashed(path, calibration.content())
     except OSError as error:
         raise MeasurementError(f"'{path}' cannot be written: {error.strerror}") from None
 
@@ -395,23 +398,7 @@ def read_calibration(path: Path) -> Calibration:
     ------
     MeasurementError : it cannot be read, is none, is of another version, or was changed
     """
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError) as error:
-        raise MeasurementError(
-            f"'{path}' cannot be read: {error}; give a file of plume-flight calibrate"
-        ) from None
-    if not isinstance(content, dict) or content.get("kind") != KIND:
-        raise MeasurementError(f"'{path}' is no calibration; give a file of plume-flight calibrate")
-    if content.get("format") != FORMAT:
-        raise MeasurementError(
-            f"'{path}' has the format {content.get('format')!r}; this program reads {FORMAT}:"
-            " calibrate again"
-        )
-    if content.get("sha256") != content_hash(content):
-        raise MeasurementError(
-            f"'{path}' was changed after it was written: its hash does not fit; calibrate again"
-        )
+    content = _FILE.read(path)
     try:
         channels = {gas: _channel_from(values) for gas, values in content["channels"].items()}
         return Calibration(

@@ -20,15 +20,17 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from common.files import write_json, write_whole
+from common.files import write_whole
 from common.provenance import provenance
 from measurement.errors import MeasurementError
-from measurement.estimate.gas import SCREENING, GasEstimate
+from measurement.estimate.gas import SCREENING, GasEstimate, GasVerdict
 from measurement.estimate.result import FscEstimate, plain
+from measurement.estimate.verdict import Verdict
 from measurement.gases import MASS_PERCENT, limit_words
 from measurement.log.analysis import Analysis, GasAnalysis
-from measurement.log.calibration import Calibration, content_hash
+from measurement.log.calibration import Calibration
 from measurement.log.config import LogConfig
+from measurement.log.hashed import HashedFile, content_hash, with_hash, write_hashed
 from measurement.log.read import LoggedFlight
 from measurement.log.run_files import sha256, version
 from measurement.sniffer.spec import SnifferSpec
@@ -137,7 +139,7 @@ def record_of(
         "scope": SCOPE,
     }
     content = json.loads(json.dumps(plain(content)))
-    return {**content, "sha256": content_hash(content)}
+    return with_hash(content)
 
 
 def instrument_hash(instrument: SnifferSpec) -> str:
@@ -175,14 +177,11 @@ def _sulphur(found: FscEstimate) -> dict[str, Any]:
         "quality": found.quality,
         "reasons": list(found.quality_reasons),
         "verdicts": [
-            {
-                "limit": verdict.limit_percent,
-                "rule": f"sulphur in the fuel, limit of {limit_words(verdict.limit_percent)}",
-                "verdict": verdict.verdict,
-                "probability_above": verdict.probability_above,
-                "false_alarm": verdict.false_alarm,
-                "miss": verdict.miss,
-            }
+            _verdict_entry(
+                verdict.limit_percent,
+                f"sulphur in the fuel, limit of {limit_words(verdict.limit_percent)}",
+                verdict,
+            )
             for verdict in found.verdicts
         ],
         "no_verdict": "",
@@ -194,18 +193,11 @@ def _figure(found: GasEstimate) -> dict[str, Any]:
     """Return the figure of another gas."""
     verdicts = []
     if found.verdict is not None and found.stage is not None:
-        verdict = found.verdict
-        verdicts.append(
-            {
-                "limit": verdict.limit,
-                "rule": f"MARPOL Annex VI, regulation 13, stage {found.stage.stage};"
-                f" {found.stage.cycle_g_kwh:.2f} g/kWh over the test cycle",
-                "verdict": verdict.verdict,
-                "probability_above": verdict.probability_above,
-                "false_alarm": verdict.false_alarm,
-                "miss": verdict.miss,
-            }
+        rule = (
+            f"MARPOL Annex VI, regulation 13, stage {found.stage.stage};"
+            f" {found.stage.cycle_g_kwh:.2f} g/kWh over the test cycle"
         )
+        verdicts.append(_verdict_entry(found.verdict.limit, rule, found.verdict))
     return {
         "gas": found.gas,
         "figure": found.figure,
@@ -225,7 +217,27 @@ def _figure(found: GasEstimate) -> dict[str, Any]:
     }
 
 
+def _verdict_entry(limit: float, rule: str, found: Verdict | GasVerdict) -> dict[str, Any]:
+    """Return a verdict on a limit by a rule."""
+    return {
+        "limit": limit,
+        "rule": rule,
+        "verdict": found.verdict,
+        "probability_above": found.probability_above,
+        "false_alarm": found.false_alarm,
+        "miss": found.miss,
+    }
+
+
 # Files
+
+_FILE = HashedFile(
+    name="record",
+    kind=("format", FORMAT),
+    version=("version", VERSION),
+    version_words="version",
+    made_by="a file of estimate --record",
+)
 
 
 def write_record(path: Path, record: Mapping[str, Any]) -> Path:
@@ -237,8 +249,7 @@ def write_record(path: Path, record: Mapping[str, Any]) -> Path:
     """
     table = path.with_suffix(".thetis-eu.csv")
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write_json(path, dict(record))
+        write_hashed(path, record)
         write_whole(table, lambda part: part.write_text(items_csv(record), encoding="utf-8"))
     except OSError as error:
         raise MeasurementError(f"'{path}' cannot be written: {error.strerror}") from None
@@ -252,19 +263,7 @@ def read_record(path: Path) -> dict[str, Any]:
     ------
     MeasurementError : it cannot be read, is none, is of another version, or was changed
     """
-    try:
-        record = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError) as error:
-        raise MeasurementError(f"'{path}' cannot be read: {error}; give a record") from None
-    if not isinstance(record, dict) or record.get("format") != FORMAT:
-        raise MeasurementError(f"'{path}' is no record; give a file of estimate --record")
-    if record.get("version") != VERSION:
-        raise MeasurementError(
-            f"'{path}' has version {record.get('version')!r}; this program reads {VERSION}"
-        )
-    if record.get("sha256") != content_hash(record):
-        raise MeasurementError(f"'{path}' was changed after it was written: its hash does not fit")
-    return record
+    return _FILE.read(path)
 
 
 def items_csv(record: Mapping[str, Any]) -> str:

@@ -1,16 +1,27 @@
 """Knowledge of a flight besides its log: calibrations, humid air, and the speed of its ship."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+
+import numpy as np
 
 from measurement.engine import Engine
 from measurement.log.calibration import Applied, Calibration, applied
 from measurement.log.config import LogConfig
-from measurement.log.humidity import in_humid_air, is_humid
 from measurement.log.read import LoggedFlight
 from measurement.log.ship import ShipTrack, speed_of
 from measurement.sniffer.channel import Channel
+from measurement.sniffer.lag import Array
 from measurement.sniffer.spec import SnifferSpec, channel_of
+
+HUMID_PERCENT = 80.0
+"""Least relative humidity whose effect has to be stated [%].
+
+Of eight systems that measured side by side at the Elbe seven read too little sulphur, possibly in
+air of more than 80 % relative humidity (Beecken et al., AMT 16:5883, 2023, doi
+10.5194/amt-16-5883-2023). A log without humidity allows no conclusion.
+"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,7 +78,7 @@ def prepare(
             for of in _of(gas, config):
                 problems.setdefault(of, []).extend(found.problems(gas))
         remarks += list(_calibration_remarks(found))
-    if is_humid(flight.humidity):
+    if _is_humid(flight.humidity):
         instrument, channels = _in_humid_air(flight, config, instrument, channels, problems)
     engine = _with_speed(config.engine, flight, ships)
     changed = instrument != config.instrument or channels != dict(config.channels)
@@ -107,6 +118,32 @@ def _calibration_remarks(found: Applied) -> list[str]:
     return lines
 
 
+def _is_humid(humidity: Array | None) -> bool:
+    """Return whether the air was humid in half of the rows with a humidity."""
+    if humidity is None or not np.isfinite(humidity).any():
+        return False
+    return float(np.nanmedian(humidity)) > HUMID_PERCENT
+
+
+def _channel_in_humid_air(
+    channel: Channel, effect: tuple[float, float] | None
+) -> tuple[Channel, str]:
+    """Return a channel in humid air, and why there can be no verdict, or an empty text.
+
+    Parameters
+    ----------
+    effect : on the reading, relative to it, and its standard deviation [-]; None if not stated
+    """
+    if effect is None:
+        return channel, (
+            f"the air had more than {HUMID_PERCENT:g} % relative humidity, and its effect on"
+            " {gas} is not stated; give it in [humidity]"
+        )
+    share, deviation = effect
+    gain_sd = math.hypot(channel.gain_sd, deviation / (1.0 + share))
+    return replace(channel, gain=channel.gain * (1.0 + share), gain_sd=gain_sd), ""
+
+
 def _in_humid_air(
     flight: LoggedFlight,
     config: LogConfig,
@@ -122,7 +159,7 @@ def _in_humid_air(
     for gas, parts in made.items():
         for own in parts:
             channel = instrument.channel(own) or channels.get(own) or channel_of(own)
-            changed, problem = in_humid_air(channel, config.humidity.get(gas))
+            changed, problem = _channel_in_humid_air(channel, config.humidity.get(gas))
             if problem:
                 problems.setdefault(gas, []).append(problem.format(gas=gas.upper()))
             elif instrument.channel(own):

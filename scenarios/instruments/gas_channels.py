@@ -18,7 +18,7 @@ from measurement.gases import GASES
 from measurement.sniffer.channel import Channel
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec, channel_of
-from measurement.species import PER_FUEL_1E15, PER_FUEL_G, PER_FUEL_PERCENT, SPECIES, Species
+from measurement.species import PER_FUEL_1E15, PER_FUEL_G, PER_FUEL_PERCENT, SLOT, SPECIES, Species
 from scenarios.instruments.failing_sniffer import FailingSniffer
 from scenarios.instruments.instrument import Declarations
 from scenarios.scenario.scenario import Scenario
@@ -33,7 +33,7 @@ CLEAN_AIR = {"ch4": 1900.0, "bc": 50.0, "pn": 400.0}
 1900 ppb in 2021; the others are assumptions. A level that does not vary has no part in an estimate.
 """
 
-_SLOT = GASES.index("so2")
+_SLOT = GASES.index(SLOT)
 """Column in which another gas is read."""
 
 _ENDS = {

@@ -108,7 +108,7 @@ class SentenceDecoder:
             return None
         try:
             said: dict[str, Any] = self._decode(*whole).asdict()
-        except Exception:  # noqa: BLE001 - whatever radio and decoder make of a line, it is one that says nothing
+        except Exception:  # noqa: BLE001 - of any kind, by a line that the radio damaged
             self.unreadable += 1
             return None
         return Message(line[: found.start()], line[found.end() :], said)

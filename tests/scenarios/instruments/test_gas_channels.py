@@ -1,4 +1,4 @@
-"""Methane, black carbon and particles that the measured ship emits are read and estimated in flight."""
+"""Methane, black carbon and particles of the measured ship are read and estimated in flight."""
 
 import json
 
