@@ -1,11 +1,11 @@
-"""Figures of the paper's study, of flights that are none of the paper's."""
+"""Figures of the paper's study, made of flights of another one."""
 
 import json
+import shutil
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from trial_runs import small_trials
 
 from common.run_layout import time_history_path
 from reports.paper.content import sim_3_charts
@@ -16,9 +16,9 @@ pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module")
-def sim_3(tmp_path_factory):
+def sim_3(small_run, tmp_path_factory):
     """Return a run whose only flight is called as the paper's third simulation."""
-    run = read_run(small_trials(tmp_path_factory.mktemp("paper")))
+    run = read_run(shutil.copytree(small_run, tmp_path_factory.mktemp("paper") / "run"))
     config = json.loads(json.dumps(run.manifest["trials"]["steady"]))
     history = run.history("steady_00000")
     # Well above the funnel's mouth, so that a sphere's distance is another than a cylinder's.

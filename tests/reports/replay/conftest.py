@@ -2,7 +2,6 @@
 
 import pytest
 from report_parts import flown
-from trial_runs import small_trials
 
 OVERRIDES = {
     "sweep_nu": ("sweep.nu=[0.5]", "flight.crossings=3", "comparison={}"),
@@ -16,18 +15,14 @@ OVERRIDES = {
 
 
 @pytest.fixture(scope="session")
-def run_of(tmp_path_factory):
+def run_of(small_run, tmp_path_factory):
     """A function from a study's name to its run directory."""
-    paths = {}
+    paths = {"trials": small_run}
 
     def run(name):
         if name not in paths:
-            given = ("fidelity=kinematic", "guidance.rate_hz=10", *OVERRIDES.get(name, ()))
-            paths[name] = (
-                small_trials(tmp_path_factory.mktemp("replay"))
-                if name == "trials"
-                else flown(tmp_path_factory, name, given)
-            )
+            given = ("fidelity=kinematic", "guidance.rate_hz=10", *OVERRIDES[name])
+            paths[name] = flown(tmp_path_factory, name, given)
         return paths[name]
 
     return run

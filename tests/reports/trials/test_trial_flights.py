@@ -21,8 +21,8 @@ from reports.run.run_data import read_run
 from reports.run.trials import read_trials
 
 
-def test_a_missing_history_is_said_and_other_flights_are_looked_at_instead(run_path, tmp_path):
-    path = shutil.copytree(run_path, tmp_path / "copy")
+def test_a_missing_history_is_said_and_other_flights_are_looked_at_instead(small_run, tmp_path):
+    path = shutil.copytree(small_run, tmp_path / "copy")
     (path / "flights" / "steady_00000.parquet").unlink()
     bare = read_run(path)
     shown = [str(row["flight_id"]) for _, row, _ in picked_flights(read_trials(bare))]

@@ -31,12 +31,12 @@ pytestmark = pytest.mark.slow
 BRIEF = pytest.mark.usefixtures("without_single_flights")
 
 
-def test_trials_are_reported_on_screen_and_in_print(run_path, report, tmp_path, monkeypatch):
+def test_trials_are_reported_on_screen_and_in_print(small_run, report, tmp_path, monkeypatch):
     # Drawing takes nearly all of this test's time: one flight tells whether they are. Page 1's
     # figure is drawn in its own tests.
     draw_all_but(monkeypatch, "first")
     monkeypatch.setattr("reports.flights.selection.PICKED_MAX", 1)
-    html, pdf = build_reports(shutil.copytree(run_path, tmp_path / "copy"))
+    html, pdf = build_reports(shutil.copytree(small_run, tmp_path / "copy"))
     text = html.read_text(encoding="utf-8")
     assert pdf.read_bytes().startswith(b"%PDF")
     for anchor in re.findall(r'href="#(\w+)"', text):
@@ -171,7 +171,7 @@ def test_flights_that_failed_a_criterion_are_counted_whatever_its_limits(
     assert shown in [[*row[1:3], row[-1]] for row in rows]
 
 
-def test_a_report_that_cannot_be_drawn_is_one_line(run_path, run, tmp_path, monkeypatch):
+def test_a_report_that_cannot_be_drawn_is_one_line(small_run, run, tmp_path, monkeypatch):
     def fails(*_, **__):
         raise ValueError("no such glyph\nat line 3")
 
@@ -180,7 +180,7 @@ def test_a_report_that_cannot_be_drawn_is_one_line(run_path, run, tmp_path, monk
         monkeypatch.setattr(f"reports.render.{writer}", fails)
     words = r"^the report of '.*' could not be drawn: ValueError: no such glyph$"
     with pytest.raises(ReportError, match=words):
-        build_reports(shutil.copytree(run_path, tmp_path / "copy"))
+        build_reports(shutil.copytree(small_run, tmp_path / "copy"))
     for name in ("report.html", "report.pdf"):
         with pytest.raises(ReportError, match=words):
             write_report(run, tmp_path / name)
@@ -194,8 +194,8 @@ def test_a_report_in_memory_of_a_damaged_run_is_refused_in_one_line(run, tmp_pat
         )
 
 
-def test_a_run_without_any_history_and_with_a_trial_not_begun_is_reported_on(run_path, tmp_path):
-    path = shutil.copytree(run_path, tmp_path / "copy")
+def test_a_run_without_any_history_and_with_a_trial_not_begun_is_reported_on(small_run, tmp_path):
+    path = shutil.copytree(small_run, tmp_path / "copy")
     shutil.rmtree(path / "flights")
     whole = read_run(path)
     steady = whole.summary[whole.summary["trial"] == "steady"]
@@ -262,7 +262,7 @@ def test_trials_read_as_before(report):
     assert_reads_as_before("trials", report)
 
 
-def test_every_number_on_page_1_is_that_of_the_verdict(run_path, run, tmp_path):
+def test_every_number_on_page_1_is_that_of_the_verdict(small_run, run, tmp_path):
     whole, counts = run.verdict.whole, run.verdict.counts
     distance, radius = whole.closest.distance_m, whole.closest.radius_m
     assert distance == run.summary["min_distance_m"].min()
@@ -275,4 +275,4 @@ def test_every_number_on_page_1_is_that_of_the_verdict(run_path, run, tmp_path):
     for of in judged:
         known |= {f"{float(f'{scales[of.key] * of.worst_of_all.value:.3g}'):g}"}
         known |= {f"{float(f'{scales[of.key] * limit:.3g}'):g}" for limit in of.limits}
-    assert numbers_on_page_1(run_path, tmp_path) <= known
+    assert numbers_on_page_1(small_run, tmp_path) <= known
