@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pandas as pd
 import pytest
+from report_parts import blocks_of
 
 from common.columns import Column
 from common.run_layout import COLUMNS
@@ -79,17 +80,11 @@ def run(paths):
     return read_run(paths[0])
 
 
-def blocks_of(page, kind):
-    return [
-        block for section in page.sections for block in section.blocks if isinstance(block, kind)
-    ]
-
-
 def test_the_run_says_what_its_columns_are(paths):
-    told = json.loads((paths[0] / COLUMNS).read_text(encoding="utf-8"))
+    found = json.loads((paths[0] / COLUMNS).read_text(encoding="utf-8"))
     header = (paths[0] / "summary.csv").read_text(encoding="utf-8").splitlines()[0].split(",")
-    assert list(told["summary.csv"]) == header
-    assert told["summary.csv"]["glow_peak_ppb"] == {
+    assert list(found["summary.csv"]) == header
+    assert found["summary.csv"]["glow_peak_ppb"] == {
         "title": "Peak of the glow",
         "symbol": "",
         "unit": "ppb",
@@ -98,10 +93,10 @@ def test_the_run_says_what_its_columns_are(paths):
         "worse": "higher",
         "part": "meter.py:Meter",
     }
-    assert told["flights"]["glow_ppb"]["title"] == "Glow of the exhaust"
+    assert found["flights"]["glow_ppb"]["title"] == "Glow of the exhaust"
 
 
-def test_a_figure_stands_in_a_table_over_the_flights_and_in_one_of_each_flight(run):
+def test_figures_and_readings_stand_in_tables_and_charts(run):
     page = content(run)
     peaks = run.summary["glow_peak_ppb"]
     over, each = (
@@ -114,23 +109,16 @@ def test_a_figure_stands_in_a_table_over_the_flights_and_in_one_of_each_flight(r
         *(f"{of:.3f}" for of in (peaks.min(), peaks.median(), peaks.max())),
     ]
     assert row[6] == run.summary["flight_id"][int(peaks.argmax())]
-    assert each.head == ["Flight", "Peak of the glow [ppb]", "Kind of glow"]
-    assert [of[1:] for of in each.rows] == [[f"{peak:.3f}", "dim"] for peak in peaks]
-
-
-def test_a_figure_has_a_panel_over_what_was_swept_with_its_name_and_unit(run):
-    panels = [panel for chart in blocks_of(content(run), Chart) for panel in chart.panels]
+    panels = [panel for chart in blocks_of(page, Chart) for panel in chart.panels]
     (panel,) = (of for of in panels if of.y_label == "Peak of the glow [ppb]")
-    drawn = np.concatenate([line.y for line in panel.lines])
-    assert sorted(drawn) == pytest.approx(sorted(run.summary["glow_peak_ppb"]))
+    assert sorted(np.concatenate([line.y for line in panel.lines])) == pytest.approx(sorted(peaks))
     assert "ν" in panel.x_label
-
-
-def test_what_is_read_has_a_panel_among_the_time_histories_of_a_flight(run):
-    (picker,) = blocks_of(content(run), FlightPicker)
+    (picker,) = blocks_of(page, FlightPicker)
     charts = [chart for flight in picker.flights for chart in flight.charts]
     labels = [panel.y_label for chart in charts for panel in chart.panels]
     assert labels.count("Glow of the exhaust [ppb]") == 2
+    assert each.head == ["Flight", "Peak of the glow [ppb]", "Kind of glow"]
+    assert [of[1:] for of in each.rows] == [[f"{peak:.3f}", "dim"] for peak in peaks]
 
 
 def test_a_figure_is_compared_between_runs(paths, tmp_path):

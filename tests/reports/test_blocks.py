@@ -3,8 +3,6 @@
 import re
 from dataclasses import replace
 
-import pytest
-
 from reports.document.blocks import (
     Card,
     Content,
@@ -12,12 +10,10 @@ from reports.document.blocks import (
     FlightPicker,
     Heading,
     Section,
-    Table,
     Text,
     Verdict,
 )
 from reports.registry import _figures
-from reports.render.html import write_html
 from reports.render.pdf import write_pdf
 from reports.run.letterhead import Letterhead
 
@@ -45,18 +41,6 @@ def a_report(blocks):
     )
 
 
-def html_of(blocks, tmp_path):
-    write_html(a_report(blocks), tmp_path / "report.html")
-    text = (tmp_path / "report.html").read_text(encoding="utf-8")
-    # Page 1 and the contents are what page 1's own tests are about.
-    return text[text.index("<nav>") :]
-
-
-def pages(path):
-    """Return the number of a PDF's pages."""
-    return int(re.search(rb"/Type/Pages/Count (\d+)", path.read_bytes())[1])
-
-
 def headings(path):
     """Return the titles of a PDF's outline, in any order."""
     return {title.decode() for title in re.findall(rb"/Title\((.*?)\)/Dest", path.read_bytes())}
@@ -72,15 +56,6 @@ def test_flights_that_are_not_printed_have_a_page_only_where_all_are_asked_for(t
     write_pdf(report, tmp_path / "all.pdf", all_flights=True)
     assert headings(tmp_path / "some.pdf") & {"Page a", "Page b", "Page c"} == {"Page b"}
     assert headings(tmp_path / "all.pdf") >= {"Page a", "Page b", "Page c"}
-
-
-@pytest.mark.parametrize(
-    ("rows", "classes"), [(14, 'class="scroll whole"'), (15, 'class="scroll"')]
-)
-def test_a_short_table_stays_on_one_printed_page_and_a_long_one_may_go_on_over_the_next(
-    rows, classes, tmp_path
-):
-    assert classes in html_of([Table(head=["a"], rows=[["1"]] * rows, widths=[1.0])], tmp_path)
 
 
 def test_what_page_1_has_no_room_for_stands_below_further_figures_and_nothing_twice():

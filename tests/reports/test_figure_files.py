@@ -3,7 +3,6 @@
 import os
 
 import numpy as np
-import pytest
 from matplotlib.figure import Figure
 
 from reports.document.chart import Chart, Line, Panel
@@ -47,13 +46,3 @@ def test_several_processes_draw_where_there_is_enough_to_draw(tmp_path, monkeypa
     drawers = {path.name for path in tmp_path.iterdir() if path.is_file()}
     assert drawers
     assert str(os.getpid()) not in drawers
-
-
-def test_what_cannot_be_drawn_is_told_as_by_one_process(tmp_path, monkeypatch):
-    def fails(chart):
-        raise ValueError(f"{chart.name} is too large")
-
-    monkeypatch.setattr(figure_files, "draw", fails)
-    for processes in (1, 2):
-        with pytest.raises(ValueError, match="chart0 is too large"):
-            drawn_by(tmp_path / str(processes), processes, monkeypatch)
