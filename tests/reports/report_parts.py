@@ -32,6 +32,15 @@ def flown(tmp_path_factory, scenario, overrides):
     return path
 
 
+def flown_text(tmp_path_factory, name, text):
+    """Fly the text of a scenario under a name and return the directory of the run."""
+    folder = tmp_path_factory.mktemp(name)
+    (folder / f"{name}.toml").write_text(text, encoding="utf-8")
+    study = load_study(str(folder / f"{name}.toml"))
+    run_study(study, name, folder / "run", executor_factory=InProcessExecutor)
+    return folder / "run"
+
+
 def built(path):
     """Build both reports of a run and return the HTML, once it is known to load nothing and to link
     to what it holds.
@@ -46,8 +55,8 @@ def built(path):
 
 
 def draw_all_but(monkeypatch, *names):
-    """Have the charts of these names printed as empty pictures: those of which another one of the
-    report has all that is drawn.
+    """Have the charts of these names printed as empty pictures: another one of the report has all
+    that is drawn in them.
     """
 
     def drawn(chart):

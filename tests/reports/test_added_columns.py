@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pandas as pd
 import pytest
-from report_parts import blocks_of
+from report_parts import blocks_of, flown
 
 from common.columns import Column
 from common.run_layout import COLUMNS
@@ -17,9 +17,6 @@ from reports.document.chart import Chart
 from reports.registry import content
 from reports.run.run_data import read_run
 from scenarios.api.results import Run
-from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.files import load_study
-from scenarios.studies.base import run_study
 
 pytestmark = pytest.mark.slow
 
@@ -59,20 +56,15 @@ def paths(tmp_path_factory):
     """Fly the same short sweep with two keep-out radii, which scale what the instrument reads."""
     folder = tmp_path_factory.mktemp("added")
     (folder / "meter.py").write_text(METER, encoding="utf-8")
-    for name, radius in (("first", 200.0), ("other", 210.0)):
+    paths = []
+    for radius in (200.0, 210.0):
         given = [
             *SWEEP,
             f'payload=["{folder / "meter.py"}:Meter"]',
             f"keepout.radius_m={radius}",
         ]
-        run_study(
-            load_study("sweep_nu", given),
-            "sweep_nu",
-            folder / name,
-            executor_factory=InProcessExecutor,
-            overrides=given,
-        )
-    return folder / "first", folder / "other"
+        paths.append(flown(tmp_path_factory, "sweep_nu", given))
+    return paths
 
 
 @pytest.fixture(scope="module")
@@ -166,17 +158,10 @@ class SpareWork(FlightRunner):
 """
 
 
-def test_a_study_declares_its_figures_in_the_same_way(tmp_path):
+def test_a_study_declares_its_figures_in_the_same_way(tmp_path, tmp_path_factory):
     (tmp_path / "mystudy.py").write_text(STUDY, encoding="utf-8")
     given = [*SWEEP, "sweep.nu=[0.5]", f"study={tmp_path / 'mystudy.py'}:Spare"]
-    run_study(
-        load_study("sweep_nu", given),
-        "sweep_nu",
-        tmp_path / "run",
-        executor_factory=InProcessExecutor,
-        overrides=given,
-    )
-    run = read_run(tmp_path / "run")
+    run = read_run(flown(tmp_path_factory, "sweep_nu", given))
     (spare,) = run.summary["min_distance_m"] - run.summary["keepout_radius_m"]
     (over,) = (
         table

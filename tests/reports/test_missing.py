@@ -3,15 +3,13 @@
 import shutil
 
 import pytest
+from report_parts import flown_text
 
 from reports.document.blocks import Table
 from reports.output import flight_figure
 from reports.registry import content
 from reports.run.run_data import read_run
 from reports.run.trials import read_trials
-from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.files import load_study
-from scenarios.studies.base import run_study
 from tests.in_process import assert_refused, run_command
 from tests.run_tables import change_manifest, manifest_of, write_manifest
 from tests.scenarios.short_trial import short_trial
@@ -24,15 +22,7 @@ def whole(tmp_path_factory):
     """A run whose manifest says that it had a file of each kind; statistics and a design it has
     not, as if they were gone.
     """
-    folder = tmp_path_factory.mktemp("runs")
-    (folder / "short.toml").write_text(short_trial(flights=2, duration=8.0), encoding="utf-8")
-    run_study(
-        load_study(str(folder / "short.toml")),
-        "short",
-        folder / "run",
-        executor_factory=InProcessExecutor,
-    )
-    return folder / "run"
+    return flown_text(tmp_path_factory, "short", short_trial(flights=2, duration=8.0))
 
 
 @pytest.fixture

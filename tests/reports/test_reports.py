@@ -12,6 +12,7 @@ from report_parts import (
     blocks_of,
     built,
     draw_all_but,
+    flown,
 )
 from snapshots import assert_reads_as_before
 
@@ -23,9 +24,6 @@ from reports.output import flight_figure
 from reports.registry import content
 from reports.render.html import write_html
 from reports.run.run_data import read_run
-from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.files import load_study
-from scenarios.studies.base import run_study
 from tests.run_tables import change_manifest, manifest_of, write_manifest
 
 pytestmark = pytest.mark.slow
@@ -37,10 +35,7 @@ OVERRIDES = ["sweep.nu=[0.5, 0.9, 1.0]", "flight.crossings=3", "comparison.nu=[0
 
 @pytest.fixture(scope="module")
 def run_path(tmp_path_factory):
-    path = tmp_path_factory.mktemp("reports") / "run"
-    scenario = load_study("sweep_nu", OVERRIDES)
-    run_study(scenario, "sweep_nu", path, executor_factory=InProcessExecutor)
-    return path
+    return flown(tmp_path_factory, "sweep_nu", OVERRIDES)
 
 
 @pytest.fixture(scope="module")

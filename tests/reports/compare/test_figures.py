@@ -48,9 +48,10 @@ def test_what_is_common_to_both_flights_of_a_pair_is_no_difference():
     # The sums are exact to the rounding of 50.
     assert (found.low, found.high) == pytest.approx((0.01, 0.01), abs=1e-13)
     assert found.excludes_zero
+    assert differences(pairs_of(common, common - 0.01))["tracking_error_rms_m"].excludes_zero
 
 
-def test_pairs_of_which_one_flight_lacks_the_figure_are_left_out():
+def test_pairs_with_a_flight_that_lacks_the_figure_are_left_out():
     found = differences(pairs_of([1.0, math.nan, 3.0], [2.0, 5.0, math.nan]))[
         "tracking_error_rms_m"
     ]
@@ -102,20 +103,27 @@ def test_the_table_counts_lower_and_higher_and_marks_an_interval_without_0():
     assert (row, 5) in table.bold
 
 
+def test_small_figures_have_two_digits_of_the_lesser_median():
+    pairs = pairs_of(np.full(6, 0.003), np.full(6, 0.0061))
+    table = difference_table(pairs, differences(pairs))
+    row = next(cells for cells in table.rows if cells[0].startswith("Tracking error"))
+    assert row[2:5] == ["0.0030", "0.0061", "+0.0031"]
+
+
 def test_pairs_that_share_their_random_sample_count_as_one():
-    # Three seeds at two points of a sweep: differences of one seed are alike, and six pairs are
-    # three samples.
+    # Three seeds at two points of a sweep: six pairs are three samples, with mean differences of 1,
+    # 2.5 and 5.
     rows = [
         rows_of(range(3), prefix=f"p{point}_", tracking_error_rms_m=[1.0, 1.0, 1.0])
         for point in (0, 1)
     ]
     moved = [
-        rows_of(range(3), prefix=f"p{point}_", tracking_error_rms_m=[2.0, 3.0, 5.0 + point])
+        rows_of(range(3), prefix=f"p{point}_", tracking_error_rms_m=[2.0, 3.0 + point, 6.0])
         for point in (0, 1)
     ]
     pairs = paired(made_run("A", [*rows[0], *rows[1]]), made_run("B", [*moved[0], *moved[1]]))
     found = differences(pairs)["tracking_error_rms_m"]
     assert len(found.known) == 6
-    assert found.median == 2.0
+    assert found.median == 2.5
     assert math.isnan(found.low)
     assert math.isnan(found.high)

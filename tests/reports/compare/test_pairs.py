@@ -129,7 +129,7 @@ def test_a_figure_that_one_run_alone_has_differs():
     assert pairs.differing_figures() == ["spread_m"]
 
 
-def test_flights_whose_criteria_changed_are_told_by_the_direction():
+def test_flights_whose_criteria_changed_are_known_by_the_direction():
     before, after = ([True, True, False, False], [True, False, True, False])
     pairs = paired(
         made_run("A", rows_of(range(4), criteria_met=before)),

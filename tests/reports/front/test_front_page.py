@@ -8,10 +8,8 @@ from dataclasses import replace
 
 import pypdfium2
 import pytest
-from matplotlib.figure import Figure
 
 from common.verdict import INTERRUPTED, MET, NOT_MET, UNEXPLAINED
-from reports.build import build_reports
 from reports.document.blocks import (
     Card,
     LossCard,
@@ -22,9 +20,7 @@ from reports.document.blocks import (
 from reports.document.chart import Chart
 from reports.document.numbering import figures_in
 from reports.flights.first_page import telling_and_typical
-from reports.flights.selection import picked_flights
 from reports.registry import content
-from reports.render import matplotlib_charts
 from reports.render.pdf import write_pdf
 from reports.run.run_data import read_run
 from reports.run.trials import read_trials
@@ -65,66 +61,12 @@ def report(run_path):
     return content(read_run(run_path))
 
 
-@pytest.fixture(scope="module")
-def built(run_path):
-    """Return the text of the page for the screen, and that of each printed page, of whose figures
-    page 1's alone is drawn.
-    """
-
-    def drawn(chart):
-        return (
-            matplotlib_charts.draw(chart) if chart.name == "first" else Figure(figsize=(1.0, 1.0))
-        )
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("reports.render.figure_files.draw", drawn)
-        html, pdf = build_reports(run_path)
-    return html.read_text(encoding="utf-8"), pages_of(pdf)
-
-
 def pages_of(path):
     """Return the text of each page of a PDF."""
     document = pypdfium2.PdfDocument(path)
     texts = [page.get_textpage().get_text_range() for page in document]
     document.close()
     return texts
-
-
-def card(report, name):
-    (found,) = (card for card in report.verdict.figures if card.name.startswith(name))
-    return found
-
-
-def test_page_1_says_when_and_what_was_flown_and_shows_the_closest_flight_and_a_typical_one(report):
-    assert re.fullmatch(r"\d{4}-\d\d-\d\d \d\d:\d\d UTC", report.letterhead.when)
-    assert re.fullmatch(
-        r"5 flights \(\d\.\d min simulated\) of the kinematic vehicle, eq\. \(1\), beside a vessel at 8 m/s, in still air\.",
-        report.flown,
-    )
-    titles = [panel.title for panel in report.picture.panels]
-    assert [title.split(":")[0] for title in titles] == ["Closest", "Typical"]
-
-
-def test_the_closest_and_the_median_flight_are_those_of_the_summary(run_path, report):
-    rows = read_run(run_path).summary.sort_values("min_distance_m")
-    shown = [float(re.search(r"([\d.]+) m$", panel.title)[1]) for panel in report.picture.panels]
-    # Titles have a digit after the point.
-    assert shown == [round(float(rows["min_distance_m"].iloc[i]), 1) for i in (0, 2)]
-
-
-def test_page_1_holds_everything_that_is_for_the_client(built, report):
-    first, second, *others = built[1]
-    flat = " ".join(first.split())
-    for words in (
-        report.title,
-        report.letterhead.when,
-        report.verdict.headline,
-        "Figure 1.",
-        *(c.value for c in report.verdict.cards),
-    ):
-        assert " ".join(words.split()) in flat
-    assert f"page 1 of {2 + len(others)}" in flat
-    assert "short" in second.splitlines()[0]
 
 
 def test_page_1_is_one_page_however_much_failed(report, tmp_path):
@@ -185,7 +127,8 @@ def test_the_box_has_the_colour_of_its_worst_tile_and_is_never_better_than_the_e
     assert (card in verdict.cards) is (card.tone in ("missed", "open"))
 
 
-def test_every_kind_of_study_has_its_exit_status_from_one_place(report, run_path):
+@pytest.mark.usefixtures("without_single_flights")
+def test_every_kind_of_study_has_its_exit_status_from_one_place(run_path):
     run = read_run(run_path)
     for study in ("flights", "trials", "monte_carlo", "falsify", "premises"):
         of_study = replace(run, manifest=run.manifest | {"study": study})
@@ -240,18 +183,3 @@ def test_the_typical_flight_is_at_the_median_of_all_flights_or_nearest_to_it(
         assert shown == [round(distances[rank], 1) for rank in (closest, typical)]
         words = "of these the one nearest" if 2 in gone else "the one whose closest approach is"
         assert re.search(rf"Typical: short_0000\d, {words}", picture.caption)
-
-
-def test_flights_shown_one_by_one_have_one_at_the_median_of_all_or_nearest_to_it(
-    run_path, tmp_path
-):
-    for gone, why in (
-        ((3, 4), "median of closest approaches"),
-        ((2,), "nearest to the median of closest approaches"),
-    ):
-        run, distances = without_histories(run_path, tmp_path / str(len(gone)), gone)
-        # As of flights that met their criteria: one that did not is shown as such.
-        trial = read_trials(replace(run, summary=run.summary.assign(criteria_met=True)))[0]
-        found = {reason: float(row["min_distance_m"]) for _, row, reason in picked_flights([trial])}
-        left = [distance for rank, distance in enumerate(distances) if rank not in gone]
-        assert found[why] == min(left, key=lambda distance: abs(distance - distances[2]))

@@ -4,14 +4,12 @@ import shutil
 
 import pytest
 from PIL import Image
+from report_parts import flown_text
 
 from reports.errors import ReportError
 from reports.registry import content
 from reports.run.letterhead import parse_settings
 from reports.run.run_data import read_run
-from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.files import load_study
-from scenarios.studies.base import run_study
 from tests.in_process import run_command
 from tests.run_tables import change_manifest, manifest_of, write_manifest
 
@@ -29,15 +27,7 @@ report.author = "A. Author"
 
 @pytest.fixture(scope="module")
 def flown(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("letterhead")
-    (folder / "short.toml").write_text(SHORT, encoding="utf-8")
-    run_study(
-        load_study(str(folder / "short.toml")),
-        "short",
-        folder / "run",
-        executor_factory=InProcessExecutor,
-    )
-    return folder / "run"
+    return flown_text(tmp_path_factory, "short", SHORT)
 
 
 @pytest.fixture
@@ -120,12 +110,3 @@ def test_a_logo_that_the_run_has_lost_is_named_among_its_missing_files(run_path)
     assert report.letterhead.logo is None
     (section,) = (section for section in report.sections if section.anchor == "missing")
     assert ["logo.png", "cannot be read", "the logo"] in section.blocks[-1].rows
-
-
-@pytest.mark.parametrize("version", [0, 2, "3"])
-def test_a_run_directory_of_another_version_is_refused_in_one_line(version, run_path):
-    change_manifest(run_path, format=version)
-    said = (
-        f"is a run of format {version!r}, and this version reads 1; use the version that made it\n"
-    )
-    assert refused(run_path).endswith(said)

@@ -12,14 +12,12 @@ import pypdfium2
 import pytest
 from judged_runs import judged
 from matplotlib.figure import Figure
+from report_parts import flown_text
 from scipy.stats import beta
 
 from common.verdict import read_verdict
 from reports.output import write_report
 from reports.run.run_data import read_run
-from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.files import load_study
-from scenarios.studies.base import run_study
 
 pytestmark = pytest.mark.slow
 
@@ -57,33 +55,25 @@ FIXED = (
 """What has digits and is no figure: dates, names, and what the scenario gives."""
 
 
-def flown(tmp_path_factory, name, text):
-    folder = tmp_path_factory.mktemp(name)
-    (folder / f"{name}.toml").write_text(text, encoding="utf-8")
-    study = load_study(str(folder / f"{name}.toml"))
-    run_study(study, name, folder / "run", executor_factory=InProcessExecutor)
-    return read_run(folder / "run")
-
-
 @pytest.fixture(scope="module")
 def five(tmp_path_factory):
-    return flown(tmp_path_factory, "short", f"{SHORT}flights = 5\n")
+    return read_run(flown_text(tmp_path_factory, "short", f"{SHORT}flights = 5\n"))
 
 
 @pytest.fixture(scope="module")
 def one(tmp_path_factory):
-    return flown(tmp_path_factory, "short", f"{SHORT}flights = 1\n")
+    return read_run(flown_text(tmp_path_factory, "short", f"{SHORT}flights = 1\n"))
 
 
 @pytest.fixture(scope="module")
 def sweep(tmp_path_factory):
     text = SHORT.replace("vessel.speed_mps = 8.0\n", "")
-    return flown(tmp_path_factory, "short", f"{text}[sweep]\nnu = [0.2, 0.4]\n")
+    return read_run(flown_text(tmp_path_factory, "short", f"{text}[sweep]\nnu = [0.2, 0.4]\n"))
 
 
 @pytest.fixture(scope="module")
 def sulphur(tmp_path_factory):
-    return flown(tmp_path_factory, "short", SULPHUR)
+    return read_run(flown_text(tmp_path_factory, "short", SULPHUR))
 
 
 @pytest.fixture

@@ -10,6 +10,7 @@ import pandas as pd
 import pytest
 from report_parts import (
     assert_axes_read_quantity_and_unit,
+    flown,
     named_charts,
     numbers_on_page_1,
 )
@@ -21,9 +22,6 @@ from reports.measurement.data import flown_facts
 from reports.registry import content
 from reports.render import plotly_charts
 from reports.run.run_data import read_run
-from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.files import load_study
-from scenarios.studies.base import run_study
 
 pytestmark = pytest.mark.slow
 
@@ -34,18 +32,12 @@ QUICK = (
 )  # fmt: skip
 
 
-def flown(directory, *overrides):
-    scenario = load_study("sulphur", (*QUICK, *overrides))
-    run_study(scenario, "sulphur", directory, executor_factory=InProcessExecutor)
-    return directory
-
-
 CONTENT = r"0\.\d{3} % m/m, 95 % interval 0\.\d{3} to 0\.\d{3} %"
 
 
 @pytest.fixture(scope="module")
 def one(tmp_path_factory):
-    path = flown(tmp_path_factory.mktemp("one") / "run", "flight.after_settling_s=130")
+    path = flown(tmp_path_factory, "sulphur", (*QUICK, "flight.after_settling_s=130"))
     return content(read_run(path))
 
 
@@ -57,7 +49,7 @@ def several_path(tmp_path_factory):
         "sweep.guidance.bank_deg=[45]",
         "flights=1",
     )
-    return flown(tmp_path_factory.mktemp("several") / "run", *sweeps)
+    return flown(tmp_path_factory, "sulphur", (*QUICK, *sweeps))
 
 
 @pytest.fixture(scope="module")

@@ -4,9 +4,8 @@ shown of.
 
 import math
 
-import numpy as np
-import pyarrow.parquet as pq
 import pytest
+from report_parts import flown
 
 from common.physics import wind_velocity
 from reports.flights.single_flight import flight_charts
@@ -14,16 +13,13 @@ from reports.flights.tracks import flight_view
 from reports.run.run_data import read_run
 from reports.run.surroundings import surroundings
 from reports.run.trials import read_trials
-from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.files import load_study
-from scenarios.studies.base import run_study
 
 RISING = [(0.0, 2.0), (100.0, 6.0)]
 """Time [s] and speed [m/s] of a wind from the west."""
 
 
 @pytest.fixture(scope="module")
-def flown(tmp_path_factory):
+def windy(tmp_path_factory):
     folder = tmp_path_factory.mktemp("wind")
     rows = "\n".join(
         f"2026-06-01T12:{time // 60:02.0f}:{time % 60:02.0f}Z,{speed},270" for time, speed in RISING
@@ -36,29 +32,12 @@ def flown(tmp_path_factory):
         "comparison.variants=[]",
     ]
     keys += ["flight.duration_max_s=100", "flight.crossings=0"]
-    run_study(
-        load_study("sweep_nu", keys),
-        "sweep_nu",
-        folder / "run",
-        overrides=keys,
-        executor_factory=InProcessExecutor,
-    )
-    trial = read_trials(read_run(folder / "run"))[0]
+    trial = read_trials(read_run(flown(tmp_path_factory, "sweep_nu", keys)))[0]
     return trial, trial.rows.iloc[0]
 
 
-def test_the_time_history_has_the_true_wind_of_each_time(flown):
-    trial, row = flown
-    history = trial.run.history(str(row["flight_id"]))
-    assert history["true_wind_north_mps"].to_numpy() == pytest.approx(0.0, abs=1e-9)
-    expected = np.interp(history["time_s"], *zip(*RISING, strict=True))
-    assert history["true_wind_east_mps"].to_numpy() == pytest.approx(expected, abs=1e-9)
-    schema = pq.read_schema(trial.run.path / "flights" / f"{row['flight_id']}.parquet")
-    assert schema.field("true_wind_east_mps").metadata[b"unit"] == b"m/s"
-
-
-def test_the_figure_over_time_shows_the_wind_as_it_changes(flown):
-    view = flight_view(*flown)
+def test_the_figure_over_time_shows_the_wind_as_it_changes(windy):
+    view = flight_view(*windy)
     (panel,) = [panel for panel in flight_charts(view)[1].panels if panel.y_label == "Wind [m/s]"]
     (east,) = [line for line in panel.lines if line.label == "true wind, east"]
     assert (east.y[0], east.y[-1]) == (pytest.approx(2.0), pytest.approx(6.0, abs=0.05))
@@ -67,8 +46,8 @@ def test_the_figure_over_time_shows_the_wind_as_it_changes(flown):
     assert len(looks) == len(set(looks.values())) == len(panel.lines) == 4
 
 
-def test_a_map_has_the_wind_of_its_moment(flown):
-    trial, row = flown
+def test_a_map_has_the_wind_of_its_moment(windy):
+    trial, row = windy
     history = trial.run.history(str(row["flight_id"]))
     config = trial.flight_config(row)
     for at in (0, len(history) // 2, len(history) - 1):

@@ -1,4 +1,4 @@
-"""Maps of flights: the guard's stretches, the ship, her plume and what was about them."""
+"""Maps of flights: the guard's stretches, the ship, its plume and what was about them."""
 
 import math
 
@@ -14,7 +14,6 @@ from reports.flights.tracks import (
     FlightView,
     flight_view,
     track_chart,
-    track_picture,
 )
 from reports.run.surroundings import surroundings
 from reports.run.time_history import about_the_plume, guard_stretches, vessel_heading
@@ -83,27 +82,11 @@ def test_the_panel_of_the_distance_shows_the_orbit_also_where_that_is_far_off_th
     assert f"Distances above {panel.y_range[1]:.0f} m are not shown." in chart.caption
 
 
-def test_the_track_begins_and_ends_where_the_flight_does_and_the_reference_lies_over_it(flight):
-    chart = flight_charts(flight_view(*flight))[0]
-    whole = chart.panels[0]
-    lines, names = {line.label: line for line in whole.lines}, [line.label for line in whole.lines]
-    flown = lines["flown"]
-    assert (lines["start"].x[0], lines["end"].y[0]) == (flown.x[0], flown.y[-1])
-    assert names.index("reference") > names.index("flown")
-    assert lines["reference"].style == "thin"
-    assert "150 m by 23 m" in chart.caption
-    # Nothing is cut off: ship, keep-out area and track lie within the panel.
-    for name in ("ship, size not known", "keep-out area, r_min", "flown", "reference"):
-        line = lines[name]
-        assert whole.x_range[0] < line.x.min() < line.x.max() < whole.x_range[1], name
-        assert whole.y_range[0] < line.y.min() < line.y.max() < whole.y_range[1], name
-
-
-def test_the_ship_on_the_map_heads_and_trails_her_plume_as_she_did(flight):
+def test_the_ship_on_the_map_heads_and_trails_its_plume_as_it_did(flight):
     trial, row = flight
     view = flight_view(trial, row)
     about = surroundings(trial.config, row, view.whole)
-    # She goes north; the plume trails along the wind less her own way.
+    # It goes north; the plume trails along the wind less the ship's velocity.
     north, east = (
         row["wind_speed_mps"] * f(math.radians(row["wind_from_deg"]) + math.pi)
         for f in (math.cos, math.sin)
@@ -126,27 +109,8 @@ def test_a_ship_at_rest_heads_as_configured_and_one_that_stops_as_before():
     assert vessel_heading(stops, 0.0) == pytest.approx(math.pi / 2)
 
 
-def test_a_picture_has_a_panel_for_each_flight_with_a_time_history(run, flight):
-    trial, row = flight
-    trials = read_trials(run)
-    unknown = row.copy()
-    unknown["flight_id"] = "nobody"
-    shown = [
-        (trial, row, "closest"),
-        (trial, unknown, "none"),
-        (trials[1], trials[1].rows.iloc[0], "typical"),
-    ]
-    picture = track_picture(shown, " Told.")
-    assert [panel.title for panel in picture.panels] == ["closest", "typical"]
-    assert (picture.columns, picture.last_height, picture.caption[-6:]) == (2, 0.0, " Told.")
-    assert len(track_picture(shown[:2]).panels) == len(
-        flight_charts(flight_view(trial, row))[0].panels
-    )
-    assert track_picture(shown[1:2]) is None
-
-
 def test_the_ground_lies_along_the_way_of_a_ship_that_goes_far(run):
-    # The ship goes north at 5 to 14 m/s for some two minutes, and the track about her is some
+    # The ship goes north at 5 to 14 m/s for some two minutes, and the track about it is some
     # hundred metres wide.
     trial = read_trials(run)[0]
     charts = [flight_charts(flight_view(trial, row))[0] for _, row in trial.rows.iterrows()]

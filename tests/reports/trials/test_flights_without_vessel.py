@@ -5,7 +5,7 @@ and nothing to keep out of.
 import pytest
 from report_parts import blocks_of, flown
 
-from reports.document.blocks import FlightPicker, Table
+from reports.document.blocks import Table
 from reports.registry import content
 from reports.run.run_data import read_run
 
@@ -53,9 +53,3 @@ def test_their_tables_are_filled_and_judge_what_needs_no_vessel(report):
     assert all(
         0.0 < float(row[settled]) < 300.0 and 0.0 < float(row[error]) < 1.5 for row in flights.rows
     )
-
-
-def test_page_1_shows_the_track_of_the_first_and_the_section_of_flights_its_histories(report):
-    assert report.picture.caption.endswith("paper_00000, the first with a time history.")
-    (picker,) = blocks_of(report, FlightPicker)
-    assert [flight.title for flight in picker.flights] == ["paper_00000: without a vessel"]

@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from report_parts import blocks_of
+from report_parts import blocks_of, flown_text
 
 from common.text import as_json_cell, cell, from_json_cell
 from reports.document.blocks import FlightPicker
@@ -24,10 +24,8 @@ from reports.run.flight_config import flight_config, flight_configs, with_value
 from reports.run.run_data import RunData, read_overrides, read_run
 from reports.run.surroundings import plume_shape
 from reports.run.trials import read_trials
-from scenarios.engine.processes import InProcessExecutor
 from scenarios.experiment.requests import Experiment, differing_keys
 from scenarios.scenario.files import load_study
-from scenarios.studies.base import run_study
 
 pytestmark = pytest.mark.slow
 
@@ -59,15 +57,7 @@ OWN = [("sphere", 20.0), ("sphere", 60.0), ("cylinder", 20.0), ("cylinder", 60.0
 
 @pytest.fixture(scope="module")
 def apart(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("apart")
-    (folder / "apart.toml").write_text(APART, encoding="utf-8")
-    run_study(
-        load_study(str(folder / "apart.toml")),
-        "apart",
-        folder / "run",
-        executor_factory=InProcessExecutor,
-    )
-    return read_run(folder / "run")
+    return read_run(flown_text(tmp_path_factory, "apart", APART))
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
-from report_parts import blocks_of
+from report_parts import blocks_of, flown_text
 
 from reports.document.blocks import FlightPicker, Table
 from reports.errors import ReportError
@@ -21,9 +21,6 @@ from reports.registry import content
 from reports.run.columns import column
 from reports.run.run_data import read_run
 from reports.run.trials import read_trials
-from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.files import load_study
-from scenarios.studies.base import run_study
 
 pytestmark = pytest.mark.slow
 
@@ -42,28 +39,12 @@ title = "Short"
 [sweep]
 nu = [0.2, 0.4]
 "keepout.radius_m" = [150.0, 200.0]
-"guidance.law" = ["cascade", "line_of_sight"]
 """
 
 
 @pytest.fixture(scope="module")
 def trial(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("swept")
-    (folder / "short.toml").write_text(SHORT, encoding="utf-8")
-    run_study(
-        load_study(str(folder / "short.toml")),
-        "short",
-        folder / "run",
-        executor_factory=InProcessExecutor,
-    )
-    return read_trials(read_run(folder / "run"))[0]
-
-
-def test_a_flight_is_called_by_all_that_was_swept(trial):
-    assert (
-        flight_name(trial, trial.rows.iloc[0])
-        == "ν = 0.20, keep-out radius 150 m, guidance law cascade"
-    )
+    return read_trials(read_run(flown_text(tmp_path_factory, "short", SHORT)))[0]
 
 
 def test_a_flight_that_was_lost_with_its_process_is_called_as_in_the_files(trial):
@@ -80,7 +61,7 @@ def test_a_flight_that_was_lost_with_its_process_is_called_as_in_the_files(trial
     assert flight_name(lost, trial.rows.iloc[1]) == flight_name(trial, trial.rows.iloc[1])
 
 
-def test_page_1_tells_of_flights_with_different_radii_how_far_each_stayed_beyond_its_own(trial):
+def test_page_1_says_how_far_flights_with_different_radii_stayed_beyond_their_own(trial):
     found = content(trial.run)
     kept = column(trial.rows, "min_distance_m") - column(trial.rows, "keepout_radius_m")
     least = f"{kept.min():.1f} m"
@@ -104,15 +85,6 @@ def test_page_1_tells_of_flights_with_different_radii_how_far_each_stayed_beyond
     ]
 
 
-def test_the_speed_ratio_that_was_swept_is_in_a_table_of_the_run_beside_the_one_that_was_flown(
-    windy_run,
-):
-    drawn = windy_run.draws
-    assert list(drawn["vessel.speed_ratio"]) == [0.3, 0.3, 0.6, 0.6]
-    # As in the column of flown ratios below; of what was not flown it is that over the ground.
-    assert list(drawn["nu"].round(2)[:3]) == [0.3, 0.81, 0.6]
-
-
 WINDY = f"""
 title = "Windy"
 {KINEMATIC}
@@ -130,21 +102,8 @@ nu = [0.3, 0.6]
 
 
 @pytest.fixture(scope="module")
-def windy_run(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("windy")
-    (folder / "windy.toml").write_text(WINDY, encoding="utf-8")
-    run_study(
-        load_study(str(folder / "windy.toml")),
-        "windy",
-        folder / "run",
-        executor_factory=InProcessExecutor,
-    )
-    return read_run(folder / "run")
-
-
-@pytest.fixture(scope="module")
-def windy(windy_run):
-    return content(windy_run)
+def windy(tmp_path_factory):
+    return content(read_run(flown_text(tmp_path_factory, "windy", WINDY)))
 
 
 NAMES = [f"ν = {nu}, wind speed {wind} m/s" for nu in ("0.30", "0.60") for wind in (0, 10)]

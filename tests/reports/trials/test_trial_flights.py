@@ -1,6 +1,5 @@
 """Figures of the flights of trials, and which flights have any."""
 
-import json
 import math
 import shutil
 from dataclasses import replace
@@ -10,8 +9,7 @@ import pytest
 from report_parts import blocks_of
 from trial_runs import with_values
 
-from reports.document.blocks import FlightPicker, Table
-from reports.document.chart import Chart
+from reports.document.blocks import FlightPicker
 from reports.flights.selection import PICKED_MAX, picked_flights
 from reports.flights.single_flight import flight_charts
 from reports.flights.tracks import flight_view
@@ -115,23 +113,3 @@ def test_no_more_flights_are_shown_than_stated_and_every_trial_has_its_share(run
     picked = picked_flights(trials)
     assert len(picked) == PICKED_MAX
     assert {trial.key for trial, _, _ in picked} == {trial.key for trial in trials}
-
-
-@pytest.mark.usefixtures("without_single_flights")
-def test_any_key_that_was_swept_is_what_flights_are_named_and_drawn_by(run):
-    manifest = json.loads(json.dumps(run.manifest))
-    manifest["trials"]["steady"]["sweep"] = {"wind.speed_mps": [2.0, 4.0]}
-    manifest["trials"]["turns"]["sweep"] = {"turbulence.level": ["none", "light"]}
-    draws = run.draws.assign(
-        **{
-            "wind.speed_mps": [2.0, 4.0, 3.0, 3.0],
-            "turbulence.level": ["none", "none", "none", "light"],
-        }
-    )
-    report = content(replace(run, manifest=manifest, draws=draws))
-    table = blocks_of(report, Table, "trial1")[0]
-    assert [table.head[0], *(row[0] for row in table.rows)] == ["Wind speed", "2 m/s", "4 m/s"]
-    charts = blocks_of(report, Chart, "trial1")
-    assert {panel.x_label for chart in charts for panel in chart.panels} == {"Wind speed [m/s]"}
-    (words,) = blocks_of(report, Chart, "trial2")
-    assert [name for _, name in words.panels[0].y_names] == ["none", "light"]

@@ -4,20 +4,16 @@ become of one.
 
 import json
 import math
-import re
 import shutil
 from dataclasses import replace
 
 import pytest
 from judged_runs import changed, judged
-from report_parts import blocks_of, draw_all_but, numbers_on_page_1
 from snapshots import assert_reads_as_before
 from trial_runs import rows_of, with_criterion, with_values
 
 from reports.build import build_reports
-from reports.document.blocks import Table
 from reports.errors import ReportError
-from reports.flights.criteria import MEASURED
 from reports.flights.trials.charts import PanelsOver, by_violation
 from reports.output import write_report
 from reports.registry import content
@@ -29,39 +25,6 @@ from tests.reports.run_columns import RUN_COLUMNS
 pytestmark = pytest.mark.slow
 
 BRIEF = pytest.mark.usefixtures("without_single_flights")
-
-
-def test_trials_are_reported_on_screen_and_in_print(small_run, report, tmp_path, monkeypatch):
-    # Drawing takes nearly all of this test's time: one flight tells whether they are. Page 1's
-    # figure is drawn in its own tests.
-    draw_all_but(monkeypatch, "first")
-    monkeypatch.setattr("reports.flights.selection.PICKED_MAX", 1)
-    html, pdf = build_reports(shutil.copytree(small_run, tmp_path / "copy"))
-    text = html.read_text(encoding="utf-8")
-    assert pdf.read_bytes().startswith(b"%PDF")
-    for anchor in re.findall(r'href="#(\w+)"', text):
-        assert f'id="{anchor}"' in text
-    figures = json.loads(re.search(r'id="flight-figures">(.*?)</script>', text, re.DOTALL)[1])
-    assert [flight_id.rsplit("_", 1)[0] for flight_id in figures] == ["steady"]
-    assert all(len(charts) == 2 for charts in figures.values())
-    # The kinematic vehicle is no aircraft, and of a list of trials each has a seed of its own.
-    assert "of the kinematic vehicle, eq. (1)" in report.flown
-    assert dict(blocks_of(report, Table, "provenance")[0].rows)["Seed"] == "each trial's own"
-
-
-@BRIEF
-def test_of_nothing_flown_nothing_is_claimed(run):
-    unflown = run.summary.assign(
-        duration_s=math.nan,
-        min_distance_m=math.nan,
-        keepout_violations=math.nan,
-        criteria_met=False,
-        outcome="infeasible",
-    )
-    empty = changed(run, summary=unflown)
-    verdict = content(empty).verdict
-    assert verdict.tone == "bad"
-    assert verdict.headline.startswith("Nothing was flown: of 4, 4 infeasible")
 
 
 @BRIEF
@@ -91,18 +54,6 @@ def test_a_criterion_without_a_figure_counts_as_failed(run):
         row for row in rows_of(content(steady.run), "Steady")[1:] if row[0].startswith("Mean")
     )
     assert row[4:] == ["2 of 2", "1"]
-
-
-@BRIEF
-@pytest.mark.parametrize(
-    ("measured", "shown"), [(0.63712, "0.637 m"), (0.0063712, "0.006 m"), (12.345, "12.3 m")]
-)
-def test_a_figure_has_three_digits_and_none_below_a_thousandth_of_its_limit(run, measured, shown):
-    both = with_values(
-        with_values(run, 0, tracking_error_rms_m=measured), 1, tracking_error_rms_m=measured
-    )
-    rows = rows_of(content(with_criterion(both, "steady", "tracking_error_rms_m", 1.5)), "Steady")
-    assert next(row for row in rows if row[0].startswith("Tracking error"))[2] == shown
 
 
 @BRIEF
@@ -187,13 +138,6 @@ def test_a_report_that_cannot_be_drawn_is_one_line(small_run, run, tmp_path, mon
     assert not list(tmp_path.glob("report.*"))
 
 
-def test_a_report_in_memory_of_a_damaged_run_is_refused_in_one_line(run, tmp_path):
-    with pytest.raises(ReportError, match="is damaged"):
-        write_report(
-            replace(run, summary=run.summary.drop(columns="outcome")), tmp_path / "report.html"
-        )
-
-
 def test_a_run_without_any_history_and_with_a_trial_not_begun_is_reported_on(small_run, tmp_path):
     path = shutil.copytree(small_run, tmp_path / "copy")
     shutil.rmtree(path / "flights")
@@ -260,19 +204,3 @@ def test_altitudes_that_have_to_be_kept_are_a_criterion_on_the_time_outside(run)
 
 def test_trials_read_as_before(report):
     assert_reads_as_before("trials", report)
-
-
-def test_every_number_on_page_1_is_that_of_the_verdict(small_run, run, tmp_path):
-    whole, counts = run.verdict.whole, run.verdict.counts
-    distance, radius = whole.closest.distance_m, whole.closest.radius_m
-    assert distance == run.summary["min_distance_m"].min()
-    judged = [of for of in whole.criteria if of.key in MEASURED and of.worst_of_all]
-    scales = {of.key: run.column(of.column).scale for of in judged}
-    known = {
-        f"{number}" for number in (counts.planned, counts.flown, counts.kept_out, counts.completed)
-    }
-    known |= {f"{distance:.1f}", f"{distance - radius:.1f}", f"{radius:g}"}
-    for of in judged:
-        known |= {f"{float(f'{scales[of.key] * of.worst_of_all.value:.3g}'):g}"}
-        known |= {f"{float(f'{scales[of.key] * limit:.3g}'):g}" for limit in of.limits}
-    assert numbers_on_page_1(small_run, tmp_path) <= known
