@@ -1,6 +1,4 @@
-"""Marks of logarithmic axes, lengths in kilometres, and what a caption says of curves that leave
-their panels.
-"""
+"""Marks of logarithmic axes, shared abscissas, and lengths in kilometres."""
 
 from dataclasses import replace
 
@@ -8,10 +6,8 @@ import numpy as np
 import pytest
 
 from reports.document.axes import (
-    about_values,
     in_kilometres,
     log_axis,
-    mark_text,
     with_one_abscissa,
 )
 from reports.document.chart import Chart, Line, Panel
@@ -34,52 +30,12 @@ def test_a_logarithmic_axis_has_three_marks_at_least_and_powers_of_ten_where_the
     assert log_axis(limits, [])[1] == pytest.approx(marks)
 
 
-def test_an_axis_of_many_decades_leaves_marks_out():
-    assert len(log_axis((1e-20, 1.0), [])[1]) <= 8
-
-
 def test_limits_that_are_not_given_hold_the_positive_data_with_room_to_spare():
     (low, high), _ = log_axis(None, [np.array([0.0, 2.0, np.nan]), np.array([50.0, -1.0])])
     assert 1.5 < low < 2.0
     assert 50.0 < high < 65.0
     low, high = log_axis(None, [np.zeros(2)])[0]
     assert 0.0 < low < high
-
-
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [
-        (0.001, "0.001"),
-        (30.0, "30"),
-        (1e5, "10⁵"),
-        (3e-7, "3·10⁻⁷"),
-        (1e-12, "10⁻¹²"),
-        (2e4, "20000"),
-    ],
-)
-def test_marks_are_plain_figures_or_powers_of_ten(value, text):
-    assert mark_text(value) == text
-
-
-def test_a_logarithmic_axis_stays_in_metres_where_another_is_in_kilometres():
-    line = Line(x=np.array([0.0, 9.0]), y=np.array([0.1, 2e4]), label="", colour="blue")
-    panel = Panel(x_label="a [s]", y_label="b [m]", lines=[line])
-    assert in_kilometres(panel).y_label == "b [km]"
-    assert in_kilometres(replace(panel, log_y=True)).y_label == "b [m]"
-
-
-NEARLY_THE_SAME = np.array([0.50493, 0.50497])
-"""Largest heading rates of two flights in a side wind, both at ω_max [rad/s]."""
-
-
-def test_no_axis_has_an_offset_where_its_limits_are_given_and_near_to_each_other():
-    line = Line(
-        x=np.array([0.3, 0.6]), y=NEARLY_THE_SAME, label="flight", colour="blue", style="points"
-    )
-    panel = Panel(x_label="x [-]", y_label="y [rad/s]", lines=[line], y_range=(0.50492, 0.50498))
-    figure = matplotlib_charts.draw(Chart(name="a", caption="", panels=[panel]))
-    figure.canvas.draw()
-    assert figure.axes[0].yaxis.get_offset_text().get_text() == ""
 
 
 def test_panels_that_share_their_abscissa_have_the_same_limits_of_it_in_every_column():
@@ -104,13 +60,6 @@ def test_panels_that_share_their_abscissa_have_the_same_limits_of_it_in_every_co
     assert {axes.get_xlim() for axes in matplotlib_charts.draw(chart).axes[:3]} == {(0.0, 3600.0)}
 
 
-def test_limits_of_values_that_differ_are_left_to_the_axis():
-    # 0.5 and 0.501 differ by 2 in a thousand.
-    assert about_values([np.array([0.5, 0.501])]) is None
-    assert about_values([np.zeros(3)]) is None
-    assert about_values([]) is None
-
-
 @pytest.mark.parametrize(
     ("reach", "equal", "labels"),
     [
@@ -130,9 +79,3 @@ def test_far_flights_are_shown_in_kilometres(reach, equal, labels):
     shown = [1000.0 if "[km]" in label else 1.0 for label in labels]
     assert panel.lines[1].x[0] * shown[0] == pytest.approx(-reach[0], rel=1e-12)
     assert panel.lines[1].y[1] * shown[1] == pytest.approx(-reach[1], rel=1e-12)
-
-
-def test_what_has_another_unit_than_metres_stays_as_it_is():
-    time = Line(x=np.array([0.0, 20_000.0]), y=np.array([0.0, 1.0]), label="", colour="blue")
-    panel = Panel(x_label="Time [s]", y_label="Distance [m]", lines=[time])
-    assert in_kilometres(panel) is panel

@@ -1,31 +1,18 @@
-"""Hull, arrows, scale bar and plume of a map."""
+"""Hull and plume of a map."""
 
 import math
-import tomllib
-from importlib.resources import files
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from measurement.emission import ship_of
-from reports.document.chart import Line, Panel
 from reports.document.ship_map import (
     area_outline,
-    arrow,
     hull_line,
     hull_words,
-    on_map,
     plume_lines,
 )
-from reports.run.flight_config import ANY, HULLS, Hull, hull_of, outline_of
-from reports.run.time_history import turned
-
-
-def a_map(**kinds):
-    x = np.array([-300.0, 500.0])
-    line = Line(x=x, y=np.array([0.0, 400.0]), label="track", colour="blue")
-    return on_map(Panel(x_label="East [m]", y_label="North [m]", lines=[line]), **kinds)
+from reports.run.flight_config import Hull, hull_of, outline_of
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.7, math.pi, -2.0])
@@ -42,20 +29,6 @@ def test_a_hull_is_to_scale_with_its_bow_at_the_angle(angle):
     assert (line.x[0], line.y[0]) == pytest.approx((line.x[-1], line.y[-1]))
 
 
-def test_an_arrow_points_where_its_angle_says():
-    shaft, head = arrow(1.0, 2.0, math.radians(90.0), 4.0, "sky")
-    # To the right: from x = -1 to 3, at y = 2.
-    assert (shaft.x[0], shaft.y[0]) == pytest.approx((-1.0, 2.0))
-    assert (head.x.max(), head.y[0]) == pytest.approx((3.0, 2.0))
-
-
-def test_the_scale_bar_is_as_long_as_it_says():
-    panel = a_map(north=None)
-    bar, text = panel.lines[2], panel.notes[0].text
-    assert text == " 100 m"
-    assert np.ptp(bar.x) == pytest.approx(100.0)
-
-
 def test_a_plume_begins_at_the_funnel_and_is_as_wide_as_given():
     width, axis = plume_lines(
         np.array([0.0, 100.0]), np.array([2.0, 10.0]), math.radians(90.0), x=1.0
@@ -64,36 +37,6 @@ def test_a_plume_begins_at_the_funnel_and_is_as_wide_as_given():
     assert (axis.x.tolist(), axis.y) == (pytest.approx([1.0, 101.0]), pytest.approx([0.0, 0.0]))
     assert (width.y.min(), width.y.max()) == pytest.approx((-10.0, 10.0))
     assert [line.label for line in plume_lines(np.array([0.0, 100.0]), None)] == ["plume's axis"]
-
-
-def test_a_course_that_is_up_is_up():
-    right, up = turned(np.array([3.0]), np.array([4.0]), math.atan2(4.0, 3.0))
-    assert (right[0], up[0]) == pytest.approx((0.0, 5.0))
-
-
-def test_every_ship_that_is_known_has_a_hull_that_is_a_ships():
-    ships = set(
-        tomllib.loads(files("measurement").joinpath("ships.toml").read_text(encoding="utf-8"))
-    )
-    assert set(HULLS) == ships
-    for hull in (ANY, *HULLS.values()):
-        # Merchant ships are five to eight and a half times as long as they are wide; an assumption
-        # of this table.
-        assert 5.0 < hull.length / hull.beam < 8.5
-    # The most powerful is the longest.
-    assert max(HULLS, key=lambda name: HULLS[name].length) == max(
-        ships, key=lambda name: ship_of(name).power_max
-    )
-    assert hull_of({"emission": {"ship": "coaster"}}).length == HULLS["coaster"].length
-    assert hull_of({"emission": {"ship": None}}) == hull_of({}) == ANY
-
-
-def test_a_ship_whose_size_is_not_known_is_not_drawn_as_one_to_scale():
-    own = hull_line(hull_of({"emission": {"ship": {"title": "ferry of 5 MW", "stroke": 4}}}), 0.0)
-    known = hull_line(hull_of({"emission": {"ship": "coaster"}}), 0.0)
-    assert (own.label, known.label) == ("ship, size not known", "ship, to scale")
-    assert own.style != known.style
-    assert own.opacity < known.opacity
 
 
 GIVEN = {

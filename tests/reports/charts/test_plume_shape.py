@@ -9,7 +9,7 @@ from measurement.emission import emission_of, fuel_preset, ship_of
 from measurement.plume.fluctuating_plume import FluctuatingPlume
 from measurement.plume.spread import MarineAir, PlumeSettings
 from reports.run.flight_config import source_height
-from reports.run.surroundings import LINE_HALF_WIDTH, SPREADS, plume_shape
+from reports.run.surroundings import LINE_HALF_WIDTH, plume_shape
 
 SPEED, WIND, HEIGHT, LENGTH = 12.0, 7.0, 35.0, 800.0
 LINE = {
@@ -27,7 +27,7 @@ def shape_of(config, apparent_wind=10.0, speed=SPEED):
     return plume_shape(config, speed=speed, wind=WIND, apparent_wind=apparent_wind, length=LENGTH)
 
 
-def test_an_axis_alone_has_no_width_of_its_own_and_rises_as_configured():
+def test_an_axis_alone_has_the_width_of_a_line_and_rises_as_configured():
     shape = shape_of(LINE)
     assert not shape.smoke
     assert shape.half_width == pytest.approx(np.full(len(shape.distance), LINE_HALF_WIDTH))
@@ -58,16 +58,6 @@ def test_at_its_edge_the_mean_plume_has_exp_of_minus_two_of_its_axis():
     assert edge.axis_height == pytest.approx(shape.height[far], abs=0.05)
 
 
-def test_smoke_rises_and_widens_with_distance_and_in_weaker_wind_past_the_funnel():
-    wide, narrow = shape_of(SMOKE, apparent_wind=6.0), shape_of(SMOKE, apparent_wind=14.0)
-    assert wide.smoke
-    assert wide.distance[[0, -1]] == pytest.approx([0.0, LENGTH])
-    assert np.all(np.diff(wide.half_width) > 0.0)
-    assert np.all(np.diff(narrow.height) > 0.0)
-    # The same distance is reached at a greater age.
-    assert np.all(wide.half_width[1:] > narrow.half_width[1:])
-
-
 def test_smoke_begins_at_the_funnel_of_its_ship_unless_a_height_is_given():
     # measurement/ships.toml: 16 m.
     coaster = SMOKE["emission"] | {"ship": "coaster", "load": 0.5}
@@ -77,24 +67,6 @@ def test_smoke_begins_at_the_funnel_of_its_ship_unless_a_height_is_given():
         # Downwash in the funnel's wake is a metre at most.
         assert shape_of(config).height[0] == pytest.approx(height, abs=1.0)
     assert source_height(LINE | {"plume": LINE["plume"] | {"source_height_m": None}}) == 60.0
-
-
-def test_smoke_is_lower_in_warmer_air():
-    cold, warm = (
-        shape_of(SMOKE | {"wind": {"temperature_c": celsius, "stability_per_s": 0.0}})
-        for celsius in (-10.0, 40.0)
-    )
-    # Near the funnel momentum carries it, and that is less of colder air: further on it is
-    # buoyancy.
-    assert cold.height[-1] > warm.height[-1] + 1.0
-
-
-def test_far_away_the_mean_plume_is_as_wide_as_the_turbulence_makes_it():
-    # Of ambient turbulence sigma_y is at most sigma_v t, with sigma_v = 1.9 u* and u* about 0.035
-    # of the wind over sea: 0.47 m/s (the sources of MarineAir); buoyancy and source add some. Age
-    # 80 s at 800 m.
-    sigma = shape_of(SMOKE).half_width[-1] / SPREADS
-    assert 0.5 * 0.47 * 80.0 < sigma < 1.2 * 0.47 * 80.0
 
 
 @pytest.mark.parametrize(

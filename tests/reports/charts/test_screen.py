@@ -1,22 +1,11 @@
-"""Charts as data for the library in the page, and that library itself."""
+"""Charts as data for the library in the page."""
 
 import base64
-import re
 
 import numpy as np
 
-from reports.document.chart import Band, Chart, Line, Note, Panel
-from reports.render.html import PLOTLY
+from reports.document.chart import Chart, Line, Panel
 from reports.render.plotly_charts import draw
-
-
-def test_the_bundled_library_is_the_version_that_its_page_names_under_its_licence():
-    head = PLOTLY.read_text(encoding="utf-8")[:400]
-    version = re.search(r"plotly\.js \(cartesian - minified\) v([\d.]+)", head)[1]
-    page = (PLOTLY.parent / "README.md").read_text(encoding="utf-8")
-    assert f"plotly.js {version}" in page
-    assert f"npm pack plotly.js-cartesian-dist-min@{version}" in page
-    assert "MIT" in (PLOTLY.parent / "plotly-LICENSE").read_text(encoding="utf-8")
 
 
 def drawn(**kinds):
@@ -51,15 +40,3 @@ def test_axes_are_logarithmic_equally_long_or_named_where_a_panel_asks_for_it():
     layout = drawn(y_names=[(0.0, "approach"), (1.0, "tracking")])["panels"][0]["layout"]
     assert layout["yaxis"]["tickvals"] == [0.0, 1.0]
     assert layout["yaxis"]["ticktext"] == ["approach", "tracking"]
-
-
-def test_words_and_bands_stand_where_a_panel_has_them():
-    found = drawn(
-        notes=[Note(x=2.0, y=3.0, text="1 min", align="left")],
-        bands=[Band(start=4.0, end=5.0, label="guard changed commands", colour="purple")],
-    )
-    layout = found["panels"][0]["layout"]
-    (note,), (band,) = layout["annotations"], layout["shapes"]
-    assert (note["x"], note["y"], note["text"], note["xanchor"]) == (2.0, 3.0, "1 min", "left")
-    assert (band["x0"], band["x1"]) == (4.0, 5.0)
-    assert list(found["bands"]) == ["guard changed commands"]
