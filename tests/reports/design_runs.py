@@ -207,9 +207,7 @@ def robustness(case, i, airspeed, bank_deg):
 
 
 def loop_shape(name, i):
-    """Return an integrator with two lags and a delay, of which some phase is written a turn too
-    high.
-    """
+    """Return an integrator with two lags and a delay; the phase of some is a turn too high."""
     frequency = np.logspace(-2.0, 2.0, 161)
     s = 1j * frequency
     loop = 6.0 / (1 + i) / s / (1.0 + s / 25.0) ** 2 * (1.0 + 0.3 * i / (1.0 + s))

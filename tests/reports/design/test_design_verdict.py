@@ -9,7 +9,7 @@ from reports.design.verdict import design_verdict
 
 
 def changed(**rows):
-    """Return a design of which the first row of each list named is changed as said."""
+    """Return a design whose named lists have another first row."""
     design = record()
     for name, change in rows.items():
         design[name][0] |= change
@@ -61,7 +61,7 @@ def test_a_limit_cycle_by_play_in_servos_is_said_with_period_and_amplitudes():
     verdict = design_verdict(complete(record() | {"limit_cycle": cycle}))
     # 0.00494 rad are 0.283 deg.
     assert "limit cycle of 5.2 s, altitude ±0.31 m and bank ±0.28°" in verdict.detail
-    # No margin is asked of it: the design is judged as before.
+    # It has no margin to meet: the design is judged as before.
     assert (verdict.holds, verdict.complete) == (True, True)
     small = cycle | {"is_flown": False, "period_s": None, "altitude_m": 0.02}
     detail = design_verdict(complete(record() | {"limit_cycle": small})).detail

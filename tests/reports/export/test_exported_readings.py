@@ -54,9 +54,3 @@ def test_geojson_has_an_array_of_readings_for_the_times_of_the_track(sniffed):
     assert not {key for key in (*by_what["uav"], *by_what["vessel"]) if "reading" in key} - set(
         READ
     )
-
-
-def test_flights_without_a_sniffer_have_no_word_of_readings(run_path):
-    assert "reading" not in exported(run_path, "geojson").read_text(encoding="utf-8")
-    with zipfile.ZipFile(exported(run_path, "kmz")) as archive:
-        assert b"reading" not in archive.read("doc.kml")

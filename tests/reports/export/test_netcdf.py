@@ -91,8 +91,8 @@ def test_readings_have_the_names_and_units_of_the_conventions(measured):
         "no_reading_ppb": ("mole_fraction_of_nitrogen_monoxide_in_air", "1e-9"),
     }
     with opened(exported(measured, "netcdf")) as data:
-        for name, told in names.items():
-            assert (data[name].attrs["standard_name"], data[name].attrs["units"]) == told
+        for name, known in names.items():
+            assert (data[name].attrs["standard_name"], data[name].attrs["units"]) == known
             assert_read(data[name].to_numpy(), name)
         assert set(names) == set(READ)
         # Its instrument has none.
@@ -149,7 +149,7 @@ def test_it_keeps_to_the_conventions(measured, tmp_path):
     pytest.importorskip("xarray", reason="xarray is an extra")
     pytest.importorskip("compliance_checker", reason="compliance-checker is for developers")
     path = exported(measured, "netcdf")
-    # In a process of its own: the checker's own packages warn as they are imported.
+    # In another process: packages of the checker warn as they are imported.
     checker = Path(sys.executable).with_name("compliance-checker")
     checked = subprocess.run(
         [checker, "-t", "cf:1.8", path],

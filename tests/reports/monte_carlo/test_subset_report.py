@@ -80,12 +80,6 @@ def test_the_headline_is_about_what_the_simulation_bounds(reached, unreached):
     assert percent(plain["upper"]).startswith("0.994")
 
 
-def test_tiny_probabilities_are_powers_of_ten():
-    assert percent(3.14e-7) == "3.1·10⁻⁷"
-    assert percent(2e-5) == "0.002\N{NO-BREAK SPACE}%"
-    assert percent(0.0) == "0\N{NO-BREAK SPACE}%"
-
-
 def test_every_level_has_a_row_with_the_flights_of_all_simulations(reached):
     (levels,) = (table for table in blocks_of(reached, Table) if table.head[0] == "Level")
     simulations = reached["simulations"]
