@@ -7,7 +7,6 @@ import pandas as pd
 import pytest
 from report_parts import blocks_of, flown
 
-from common.columns import Column
 from common.run_layout import COLUMNS
 from reports.compare.content import compare, comparison_content
 from reports.compare.pairs import read_runs
@@ -16,7 +15,6 @@ from reports.document.blocks import FlightPicker, Table
 from reports.document.chart import Chart
 from reports.registry import content
 from reports.run.run_data import read_run
-from scenarios.api.results import Run
 
 pytestmark = pytest.mark.slow
 
@@ -58,11 +56,7 @@ def paths(tmp_path_factory):
     (folder / "meter.py").write_text(METER, encoding="utf-8")
     paths = []
     for radius in (200.0, 210.0):
-        given = [
-            *SWEEP,
-            f'payload=["{folder / "meter.py"}:Meter"]',
-            f"keepout.radius_m={radius}",
-        ]
+        given = [*SWEEP, f'payload=["{folder / "meter.py"}:Meter"]', f"keepout.radius_m={radius}"]
         paths.append(flown(tmp_path_factory, "sweep_nu", given))
     return paths
 
@@ -127,15 +121,6 @@ def test_a_figure_is_compared_between_runs(paths, tmp_path):
     write_differences(compared, tmp_path / "differences.csv")
     written = pd.read_csv(tmp_path / "differences.csv")
     assert written["glow_peak_ppb_difference"].to_numpy() == pytest.approx(found.change)
-
-
-def test_python_has_its_unit_and_meaning(paths):
-    run = Run(paths[0], lines=())
-    assert run.summary.attrs["units"]["glow_peak_ppb"] == "ppb"
-    assert run.summary.attrs["meanings"]["glow_peak_ppb"] == "largest brightness"
-    flight = next(iter(run.flights.values()))
-    assert flight.history.attrs["units"]["glow_ppb"] == "ppb"
-    assert isinstance(run.columns["summary.csv"]["glow_word"], Column)
 
 
 STUDY = """

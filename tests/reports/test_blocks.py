@@ -60,10 +60,7 @@ def test_flights_that_are_not_printed_have_a_page_only_where_all_are_asked_for(t
 
 def test_what_page_1_has_no_room_for_stands_below_further_figures_and_nothing_twice():
     verdict = Verdict(
-        headline="",
-        detail="",
-        failures=[f"flight {i}" for i in range(7)],
-        figures=[],
+        headline="", detail="", failures=[f"flight {i}" for i in range(7)], figures=[]
     )
     heading, *more = _figures(verdict)
     assert heading == Heading("More failures and remarks")

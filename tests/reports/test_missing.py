@@ -51,20 +51,6 @@ def had(run, *names):
     write_manifest(run, manifest)
 
 
-def test_flights_of_a_scenario_whose_name_is_all_digits_are_found(copy):
-    for table in copy.glob("*.csv"):
-        table.write_text(
-            table.read_text(encoding="utf-8").replace(",short,", ",2026,"), encoding="utf-8"
-        )
-    manifest = manifest_of(copy)
-    manifest["trials"] = {"2026": manifest["trials"]["short"]}
-    write_manifest(copy, manifest)
-    run = read_run(copy)
-    (trial,) = read_trials(run)
-    assert list(trial.rows["flight_id"]) == ["short_00000", "short_00001"]
-    assert len(flight_figure(run, "short_00001").axes) > 1
-
-
 @pytest.mark.parametrize(
     ("name", "shows"),
     [
@@ -140,13 +126,6 @@ def test_an_export_of_a_run_with_a_name_that_leads_elsewhere_is_refused(copy, na
     assert sorted(copy.parent.parent.rglob("*")) == before
 
 
-def test_an_export_into_a_link_is_refused(copy, tmp_path):
-    (tmp_path / "elsewhere").mkdir()
-    (copy / "export").symlink_to(tmp_path / "elsewhere")
-    assert_refused(run_command("reports.build", copy, "--export", "tracks_csv"), "is a link")
-    assert list((tmp_path / "elsewhere").iterdir()) == []
-
-
 @pytest.mark.parametrize(
     ("change", "words"),
     [
@@ -167,3 +146,24 @@ def test_a_table_that_was_cut_or_saved_otherwise_is_refused_with_its_name_and_th
     (line,) = ended.errors.splitlines()
     assert f"'{table}{words}" in line
     assert line.endswith("repeat the run's command with --resume, which writes the tables anew")
+
+
+def test_flights_of_a_scenario_whose_name_is_all_digits_are_found(copy):
+    for table in copy.glob("*.csv"):
+        table.write_text(
+            table.read_text(encoding="utf-8").replace(",short,", ",2026,"), encoding="utf-8"
+        )
+    manifest = manifest_of(copy)
+    manifest["trials"] = {"2026": manifest["trials"]["short"]}
+    write_manifest(copy, manifest)
+    run = read_run(copy)
+    (trial,) = read_trials(run)
+    assert list(trial.rows["flight_id"]) == ["short_00000", "short_00001"]
+    assert len(flight_figure(run, "short_00001").axes) > 1
+
+
+def test_an_export_into_a_link_is_refused(copy, tmp_path):
+    (tmp_path / "elsewhere").mkdir()
+    (copy / "export").symlink_to(tmp_path / "elsewhere")
+    assert_refused(run_command("reports.build", copy, "--export", "tracks_csv"), "is a link")
+    assert list((tmp_path / "elsewhere").iterdir()) == []

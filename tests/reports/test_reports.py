@@ -8,12 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from judged_runs import changed, judged
-from report_parts import (
-    blocks_of,
-    built,
-    draw_all_but,
-    flown,
-)
+from report_parts import blocks_of, built, draw_all_but, flown
 from snapshots import assert_reads_as_before
 
 from reports.build import build_reports
@@ -53,13 +48,6 @@ def flights_of(report):
     return picker.flights
 
 
-def charts_of(report):
-    return [
-        *blocks_of(report, Chart),
-        *(chart for flight in flights_of(report) for chart in flight.charts),
-    ]
-
-
 def test_both_reports_are_built_from_disk_alone(copy, monkeypatch):
     # Those of single flights are drawn in the report of trials, and page 1's in its own tests.
     draw_all_but(monkeypatch, "first", "tracks", "histories")
@@ -68,19 +56,6 @@ def test_both_reports_are_built_from_disk_alone(copy, monkeypatch):
     figures = json.loads(re.search(r'id="flight-figures">(.*?)</script>', text, re.DOTALL)[1])
     assert set(figures) == {"nu_0.50", "nu_0.90", "nu_1.00"}
     assert figures["nu_1.00"] == []
-
-
-def test_no_curve_is_empty_and_no_name_of_a_file_or_an_anchor_stands_twice(report):
-    anchors = ["summary", *(section.anchor for section in report.sections)]
-    names = [chart.name for chart in blocks_of(report, Chart)]
-    assert len(set(anchors)) == len(anchors)
-    assert len(set(names)) == len(names)
-    for chart in charts_of(report):
-        for panel in chart.panels:
-            assert any(np.isfinite(line.y).any() for line in panel.lines), (
-                chart.name,
-                panel.y_label,
-            )
 
 
 def test_a_flight_of_a_comparison_is_drawn(run_path):

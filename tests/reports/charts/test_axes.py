@@ -5,11 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reports.document.axes import (
-    in_kilometres,
-    log_axis,
-    with_one_abscissa,
-)
+from reports.document.axes import in_kilometres, log_axis, with_one_abscissa
 from reports.document.chart import Chart, Line, Panel
 from reports.render import matplotlib_charts, plotly_charts
 

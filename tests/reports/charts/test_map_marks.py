@@ -6,12 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from reports.document.ship_map import (
-    area_outline,
-    hull_line,
-    hull_words,
-    plume_lines,
-)
+from reports.document.ship_map import area_outline, hull_line, hull_words, plume_lines
 from reports.run.flight_config import Hull, hull_of, outline_of
 
 

@@ -149,27 +149,6 @@ def test_a_flight_that_met_in_neither_run_and_cannot_be_flown_any_more_is_worse(
     assert {cells[name][2] for name in cells if "[" in name} == {"–"}
 
 
-def test_several_runs_are_each_compared_with_the_first(first, larger, same):
-    runs = read_runs([first, larger, same])
-    report = comparison_content(runs, compare(runs))
-    anchors = [section.anchor for section in report.sections]
-    assert anchors == ["changed", "figures", "flightsb", "flightsc", "provenance"]
-    (figures,) = blocks_of(report, Table, "figures")
-    assert figures.head == ["", "A", "B", "C", "B − A", "C − A"]
-    assert all(cell in ("0", "–") for row in figures.rows for cell in row[5:])
-    assert len({chart.name for chart in blocks_of(report, Chart)}) == len(blocks_of(report, Chart))
-
-
-def test_flights_without_a_time_history_have_no_tracks(first, larger):
-    runs = read_runs([first, larger])
-    # Page 1 has the tracks of two runs.
-    assert comparison_content(runs, compare(runs)).picture.caption.startswith(
-        "The flight that differs most"
-    )
-    runs = [replace(run, data=replace(run.data, path=run.data.path / "nowhere")) for run in runs]
-    assert comparison_content(runs, compare(runs)).picture is None
-
-
 def test_another_verdict_on_the_fuel_is_counted_and_not_green(first, same):
     runs = read_runs([first, same])
     for run, verdicts in zip(

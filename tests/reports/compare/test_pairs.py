@@ -4,7 +4,6 @@ import math
 
 import pytest
 
-from reports.compare.content import pairing_sentences
 from reports.compare.pairs import paired
 from reports.errors import ReportError
 from tests.reports.compare.compared_runs import made_run, rows_of
@@ -19,15 +18,6 @@ def test_flights_of_the_same_trial_name_and_seed_are_paired_in_the_order_of_the_
     assert paired_names(pairs) == [("00001", "00001"), ("00002", "00002")]
     assert pairs.alone == (1, 1)
     assert pairs.same_name == 0
-
-
-def test_another_seed_is_another_flight():
-    other = rows_of([0, 1])
-    other[1]["seed"] += 1
-    pairs = paired(made_run("A", rows_of([0, 1])), made_run("B", other))
-    assert paired_names(pairs) == [("00000", "00000")]
-    assert pairs.alone == (1, 1)
-    assert pairs.same_name == 1
 
 
 def test_a_trial_that_was_flown_alone_is_paired_with_itself_in_a_list():
@@ -100,33 +90,12 @@ def test_flights_of_one_seed_may_differ_in_what_was_sampled_and_that_is_counted_
     assert pairs.differing_inputs() == {"wind.speed_mps": 1}
 
 
-def test_a_speed_ratio_of_the_flight_is_said_to_follow_from_the_speeds_and_is_not_called_swept():
-    # Another aircraft has another airspeed, and with it another ratio to the same vessel.
-    draws = [
-        {"flight_id": ["00000", "00001"], "trial": "sea", "nu": ratios}
-        for ratios in ([0.3, 0.5], [0.1, 0.5])
-    ]
-    pairs = paired(
-        made_run("A", rows_of([0, 1]), draws[0]), made_run("B", rows_of([0, 1]), draws[1])
-    )
-    _, said = pairing_sentences(pairs)
-    assert (
-        said
-        == "The speed ratio ν, which follows from the speeds of vessel, UAV and air, differs in 1."
-    )
-
-
 def test_a_figure_differs_from_one_that_is_missing_and_two_that_are_missing_agree():
     before = rows_of([0, 1], settling_time_s=[math.nan, math.nan], spread_m=[1.0, 2.0])
     after = rows_of([0, 1], settling_time_s=[math.nan, math.nan], spread_m=[1.0, math.nan])
     pairs = paired(made_run("A", before), made_run("B", after))
     assert pairs.differing_figures() == ["spread_m"]
     assert pairs.differing_figures(apart=["spread_m"]) == []
-
-
-def test_a_figure_that_one_run_alone_has_differs():
-    pairs = paired(made_run("A", rows_of([0])), made_run("B", rows_of([0], spread_m=[1.0])))
-    assert pairs.differing_figures() == ["spread_m"]
 
 
 def test_flights_whose_criteria_changed_are_known_by_the_direction():

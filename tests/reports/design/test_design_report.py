@@ -7,16 +7,12 @@ import numpy as np
 import pypdfium2
 import pytest
 from design_runs import AIRSPEEDS, BANKS_DEG, LOOPS, record, write_design
-from report_parts import (
-    blocks_of,
-    built,
-    numbers_on_page_1,
-)
+from report_parts import blocks_of, built, numbers_on_page_1
 from snapshots import assert_reads_as_before
 
 from reports.build import build_reports
 from reports.design.charts import disk_region, margin_chart, turned
-from reports.design.data import complete, excess_overshoot, where
+from reports.design.data import complete, where
 from reports.document.blocks import Table
 from reports.errors import ReportError
 from reports.registry import content
@@ -98,15 +94,6 @@ def test_a_phase_written_a_whole_turn_too_high_is_drawn_at_the_same_place():
     higher = {**loop, "phase_deg": [phase + 360.0 for phase in loop["phase_deg"]]}
     assert turned(higher) == pytest.approx(turned(loop))
     assert -360.0 < turned(loop)[np.argmin(np.abs(loop["gain_db"]))] <= 0.0
-
-
-def test_the_overshoot_is_counted_beyond_that_of_the_reference_model():
-    design = complete(record())
-    overshoot = {
-        r["kind"]: r["overshoot"] for r in design["responses"] if r["command"] == "heading_rate"
-    }
-    assert excess_overshoot(design) == pytest.approx(overshoot["flown"] - overshoot["model"])
-    assert excess_overshoot(design) > 0.0
 
 
 @pytest.mark.parametrize(

@@ -5,10 +5,7 @@ import re
 
 import numpy as np
 import pytest
-from report_parts import (
-    flown,
-    numbers_on_page_1,
-)
+from report_parts import flown, numbers_on_page_1
 from snapshots import assert_reads_as_before
 
 from reports.finding.search_view import search_view

@@ -1,18 +1,12 @@
 """Tables and figures of searches that are made up, so that every number of them is known."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from reports.finding.searches import (
-    height_table,
-    hits_over_time,
-    search_table,
-    variants_of,
-)
+from reports.finding.searches import height_table, hits_over_time, search_table, variants_of
 from reports.run.run_data import RunData
 from reports.run.trials import Trial
 
@@ -86,17 +80,6 @@ def test_a_plume_that_was_not_found_counts_against_the_share(trial):
     row = search_table([study]).rows[0]
     # Times are 10 s, 50 s and never: the second is the median, the last the 95 % quantile.
     assert row[3:5] == ["50", "not found"]
-
-
-@pytest.mark.parametrize(
-    ("times", "median"),
-    [([15.1, 34.8], "25"), ([9.0, math.nan], "not found"), ([math.nan] * 2, "not found")],
-)
-def test_the_median_time_of_an_even_number_of_flights_is_the_mean_of_the_two_in_the_middle(
-    trial, times, median
-):
-    variant = replace(variants_of(trial)[0], rows=ROWS.iloc[:2].assign(time_to_find_s=times))
-    assert search_table([variant]).rows[0][3] == median
 
 
 def test_flights_are_compared_with_those_of_the_same_case(trial):

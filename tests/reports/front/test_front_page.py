@@ -10,13 +10,7 @@ import pypdfium2
 import pytest
 
 from common.verdict import INTERRUPTED, MET, NOT_MET, UNEXPLAINED
-from reports.document.blocks import (
-    Card,
-    LossCard,
-    Table,
-    UndecidedCard,
-    Verdict,
-)
+from reports.document.blocks import Card, LossCard, Table, UndecidedCard, Verdict
 from reports.document.chart import Chart
 from reports.document.numbering import figures_in
 from reports.flights.first_page import telling_and_typical
@@ -137,14 +131,6 @@ def test_every_kind_of_study_has_its_exit_status_from_one_place(run_path):
             verdict = content(replace(of_study, judgement=judgement)).verdict
             assert verdict.exit_status == judgement.exit_status
             assert verdict.headline.startswith("INTERRUPTED") is interrupted
-
-
-def test_a_run_without_time_histories_shows_its_first_figure(run_path, tmp_path):
-    copy = shutil.copytree(run_path, tmp_path / "run")
-    shutil.rmtree(copy / "flights")
-    report = content(read_run(copy))
-    assert report.picture is not None
-    assert "Closest" not in [panel.title.split(":")[0] for panel in report.picture.panels]
 
 
 def without_histories(run_path, tmp_path, gone):

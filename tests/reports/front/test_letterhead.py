@@ -11,7 +11,7 @@ from reports.registry import content
 from reports.run.letterhead import parse_settings
 from reports.run.run_data import read_run
 from tests.in_process import run_command
-from tests.run_tables import change_manifest, manifest_of, write_manifest
+from tests.run_tables import change_manifest
 
 SHORT = """
 title = "Short"
@@ -33,13 +33,6 @@ def flown(tmp_path_factory):
 @pytest.fixture
 def run_path(flown, tmp_path):
     return shutil.copytree(flown, tmp_path / "run")
-
-
-def refused(*arguments):
-    ended = run_command("reports.build", *arguments)
-    assert ended.status == 2
-    assert ended.errors.count("\n") == 1
-    return ended.errors
 
 
 @pytest.mark.usefixtures("sketched")
@@ -65,20 +58,6 @@ def test_reports_of_a_run_that_exists_take_another_title_and_logo_and_leave_the_
     assert (run_path / "manifest.json").read_bytes() == before
 
 
-def test_a_run_without_a_date_or_settings_has_the_scenarios_title(run_path):
-    manifest = manifest_of(run_path)
-    del manifest["begun_utc"], manifest["report"]
-    write_manifest(run_path, manifest)
-    report = content(read_run(run_path))
-    assert report.title == "Short"
-    assert (report.letterhead.when, report.letterhead.signature, report.letterhead.logo) == (
-        "date not recorded",
-        "",
-        None,
-    )
-    assert parse_settings([]) == {}
-
-
 @pytest.mark.parametrize(
     ("override", "said"),
     [
@@ -93,15 +72,6 @@ def test_a_setting_that_reports_do_not_have_is_refused(override, said):
     with pytest.raises(ReportError) as error:
         parse_settings([override])
     assert said in str(error.value)
-
-
-def test_a_logo_that_is_no_picture_ends_the_command_with_status_2(run_path):
-    (run_path / "text.png").write_text("no picture", encoding="utf-8")
-    said = refused(run_path, "--set", f"report.logo={run_path / 'text.png'}")
-    assert (
-        said
-        == "error: report.logo: 'text.png' is not a picture; give a whole PNG, JPEG or SVG file\n"
-    )
 
 
 def test_a_logo_that_the_run_has_lost_is_named_among_its_missing_files(run_path):

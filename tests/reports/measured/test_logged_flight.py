@@ -23,14 +23,13 @@ from report_parts import (
 )
 from snapshots import assert_reads_as_before
 
-from common.text import moment, span_words
 from measurement.log.command import main
 from reports.document.blocks import Card, Table
 from reports.document.provenance import provenance_section
 from reports.errors import ReportError
-from reports.measurement.charts import over_time_chart, regression_chart
+from reports.measurement.charts import regression_chart
 from reports.measurement.content import gas_sections, samples_chart, stage_chart
-from reports.measurement.data import errors, position_words
+from reports.measurement.data import errors
 from reports.measurement.instrument_tables import instrument_table
 from reports.measurement.verdict import measurement_verdict
 from reports.registry import content
@@ -181,15 +180,6 @@ def test_parts_of_the_uncertainty_add_to_the_whole(record):
     )
 
 
-def test_an_estimate_below_0_says_so_beside_its_interval(record):
-    record["estimate"] |= {"fsc_percent": -0.058, "low_percent": 0.0, "high_percent": 0.072}
-    detail = measurement_verdict(record).detail
-    assert detail.startswith(
-        "Fuel sulphur content -0.058 % m/m, which is below 0; 95 % interval 0.000 to 0.072 %,"
-        " given that no fuel has less than 0, from"
-    )
-
-
 @pytest.mark.parametrize(
     ("verdict", "chance", "holds", "complete", "words"),
     [
@@ -228,20 +218,6 @@ def test_quality_c_gives_no_verdict_and_says_what_to_do_next(record):
     assert not found.complete
 
 
-def test_limits_are_written_with_all_their_decimals(record):
-    record["estimate"]["verdicts"][0]["limit_percent"] = 0.125
-    record["time_to_verdict_s"] = {"0.125": 40.0}
-    found = measurement_verdict(record)
-    assert "the limit of 0.125 %" in found.headline
-    assert {"Probability above the limit of 0.125 %", "Time to a verdict on 0.125 %"} <= {
-        card[0] for card in found.figures
-    }
-    for row in record["over_time"]:
-        row["verdict_0.125"] = "above"
-    notes = {note.text.strip() for note in over_time_chart(record).panels[0].notes}
-    assert "limit 0.125 %" in notes
-
-
 def test_where_the_result_is_by_areas_the_regression_is_still_shown(run_directory, record):
     samples = pd.read_csv(run_directory / "samples.csv")
     swapped = record | {"estimate": record["other"], "other": record["estimate"]}
@@ -273,25 +249,11 @@ def test_a_flight_without_a_result_says_why(run_directory, tmp_path, record):
     built(tmp_path)
 
 
-def test_a_perfect_instrument_is_shown_where_it_is_known(run_directory, tmp_path, record):
-    changed = changed_run(run_directory, tmp_path, record | {"true_percent": 0.25})
-    report = content(read_run(changed))
-    assert "a perfect instrument" in [line.label for line in report.picture.panels[0].lines]
-    assert Card("A perfect instrument reads", "0.250 % m/m") in report.verdict.figures
-
-
 def test_without_samples_the_report_says_so(run_directory, tmp_path):
     report = content(read_run(changed_run(run_directory, tmp_path, samples=False)))
     assert report.sections[0].anchor == "missing"
     assert "samples.csv" in blocks_of(report, Table, "missing")[0].rows[0][0]
     assert set(named_charts(report)) == {"budget", "gas-samples"}
-
-
-def test_samples_without_a_place_have_no_track(run_directory, tmp_path):
-    directory = changed_run(run_directory, tmp_path)
-    table = pd.read_csv(directory / "samples.csv")
-    table.drop(columns=["north_m", "east_m"]).to_csv(directory / "samples.csv", index=False)
-    assert "track" not in named_charts(content(read_run(directory)))
 
 
 @pytest.mark.parametrize("text", ["", "[]", '{"estimate": 3}', "\x00"])
@@ -374,15 +336,6 @@ def test_times_and_positions_of_the_log_are_said_to_be_those(
     assert found["Place"].endswith(
         "from 56.70000° N, 11.52000° E to 56.71000° S, 12.00000° W (first and last of the log)"
     )
-
-
-def test_places_and_times_are_written_alike_everywhere():
-    assert position_words(57.2, 11.3) == "57.20000° N, 11.30000° E"
-    assert position_words(-0.00001, -179.99999) == "0.00001° S, 179.99999° W"
-    at = moment("2026-06-01T12:00:00+02:00")
-    assert span_words(at, at) == "2026-06-01 10:00:00 UTC"
-    assert moment("soon") is None
-    assert moment(float("nan")) is None
 
 
 # The instrument.

@@ -8,12 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pytest
-from report_parts import (
-    assert_axes_read_quantity_and_unit,
-    flown,
-    named_charts,
-    numbers_on_page_1,
-)
+from report_parts import assert_axes_read_quantity_and_unit, flown, named_charts, numbers_on_page_1
 from scipy.stats import beta
 
 from reports.document.blocks import Table, Text
@@ -207,19 +202,6 @@ def test_a_content_below_0_has_the_interval_that_its_verdict_rests_on():
     assert table.rows[0][table.head.index("95 % interval [% m/m]")] == "0.000 to 0.039"
 
 
-def test_quality_c_gives_no_verdict_in_words_either():
-    row = {
-        **ROW,
-        "sulphur_verdict": "open",
-        "sulphur_quality": "C",
-        "sulphur_reason": "SO2 is saturated",
-    }
-    run = SimpleNamespace(summary=pd.DataFrame([row]))
-    assert flights.sulphur_cards(run)[1].value == "no verdict: quality C"
-    assert flights.sulphur_headline(run).startswith("No verdict, as quality C gives none: ")
-    assert "chance" not in flights.sulphur_headline(run)
-
-
 @pytest.mark.parametrize(
     ("own", "minutes"),
     [(None, [4.0, 9.0]), (60.0, [1.0, 1.0]), ("swept", [1.0, 2.25]), (600.0, [6.0, 10.0])],
@@ -266,16 +248,6 @@ def test_an_operating_curve_of_two_limits_has_a_line_for_each():
     # A fuel without sulphur has no place on a logarithmic axis.
     curve[0]["fsc_fuel_percent"] = 0.0
     assert not method.operating_curve({"operating_curve": curve}).panels[0].log_x
-
-
-def test_a_share_of_nothing_is_a_dash():
-    entry = {
-        "sensor": "fast", "method": "areas", "fsc_fuel_percent": None, "flights": 4, "bias_percent": 0.0, "share_read": None,
-        "share_predicted": None, "spread_percent": 0.01, "stated_percent": 0.01, "stated_noise_percent": 0.01, "coverage": 1.0,
-        "coverage_interval": [0.4, 1.0],
-    }  # fmt: skip
-    (row,) = method.accuracy_table({"accuracy": [entry], "confidence": 0.95}).rows
-    assert row[4:6] == ["–", "–"]
 
 
 def test_page_1_has_place_and_time_where_the_scenario_has_them():

@@ -18,10 +18,8 @@ from reports.document.blocks import Table
 from reports.document.chart import Chart
 from reports.document.tables import minus
 from reports.monte_carlo.content import monte_carlo_sections, percent, violation_table
-from reports.monte_carlo.names import input_label, input_unit
 from reports.registry import content
 from reports.run.run_data import RunData
-from scenarios.scenario.documentation import documented_keys
 from scenarios.scenario.files import load_study
 from scenarios.statistics.estimates import study_statistics
 from scenarios.studies.manifest import initial_manifest, parameters
@@ -183,23 +181,6 @@ def test_bars_are_as_long_as_the_indices_and_coloured_by_the_noise_floor(run, se
         first["delta"] - first["delta_error"],
         first["delta"] + first["delta_error"],
     ]
-
-
-def test_of_too_few_flights_for_indices_there_is_no_section_on_them():
-    rows, inputs = study_rows(50)
-    anchors = [section.anchor for section in monte_carlo_sections(run_of(rows, inputs))]
-    assert anchors == ["study", "spread"]
-
-
-def test_keys_that_name_their_unit_have_the_one_that_is_documented():
-    # Those of a search or an arena are no inputs of flights; two keys of a plume name none.
-    keys = [
-        of for of in documented_keys() if of.unit and not of.key.startswith(("draws.", "arena."))
-    ]
-    other = {of.key for of in keys if input_unit(of.key) != of.unit}
-    assert len(keys) > 150
-    assert other == {"plume.age_max", "plume.parcel_interval"}
-    assert input_label("wind.temperature_c") == "Wind temperature [degC]"
 
 
 def test_a_monte_carlo_study_reads_as_before(run):

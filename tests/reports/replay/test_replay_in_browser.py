@@ -11,10 +11,9 @@ import pytest
 from browser import PROGRAM, Browser
 from report_parts import blocks_of
 
-from reports.document.blocks import Content, FlightPicker, Section, Text, Verdict
+from reports.document.blocks import FlightPicker
 from reports.registry import content
 from reports.render.html import write_html
-from reports.run.letterhead import Letterhead
 from reports.run.run_data import read_run
 
 pytestmark = [
@@ -252,21 +251,6 @@ def test_figures_are_as_wide_in_print_in_any_window_and_as_before_after_it(brows
     assert browser.errors == []
 
 
-def test_another_flight_is_picked_and_those_without_a_history_have_no_replay(browser, runs, page):
-    show(browser, page)
-    before = picked(browser, "trials/")
-    browser.run("document.getElementById('next').click()")
-    flight = picked(browser)
-    assert flight != before
-    history = runs["trials"].history(flight.removeprefix("trials/"))
-    browser.run("window.replay.play(false), window.replay.seek(0)")
-    assert browser.run("window.replay.place()")["north"] == pytest.approx(
-        history["north_m"].iloc[0], abs=0.05
-    )
-    browser.run("window.replay.show('no such flight')")
-    assert browser.run("document.getElementById('replay').hidden") is True
-
-
 def test_a_flight_opens_with_its_aircraft_in_the_picture(browser, page):
     show(browser, page)
     place = (
@@ -293,22 +277,6 @@ def test_a_flight_opens_with_its_aircraft_in_the_picture(browser, page):
         assert browser.run(f"(window.replay.place(), {far})") == pytest.approx(turned_by_hand), kind
 
 
-def test_distances_are_shown_as_far_as_in_the_figures_and_words_say_where_they_are_not(
-    browser, runs, page
-):
-    show(browser, page)
-    for kind in KINDS:
-        flight = picked(browser, f"{kind}/").removeprefix(f"{kind}/")
-        panel = browser.run("window.replay.plot.panels[0]")
-        values, times = np.array(panel["values"]), np.array(browser.run("window.replay.plot.times"))
-        settled = runs[kind].summary.set_index("flight_id").loc[flight, "settling_time_s"]
-        after = values[times >= settled]
-        assert np.all((after > panel["low"]) & (after < panel["high"]))
-        assert panel["beyond"] == (
-            f"above {panel['high']:.0f} m: not shown" if values.max() > panel["high"] else ""
-        )
-
-
 def test_without_webgl_a_sentence_stands_in_its_place_and_the_curves_stay(browser, page):
     without = """{
         const known = HTMLCanvasElement.prototype.getContext;
@@ -331,35 +299,3 @@ def test_without_webgl_a_sentence_stands_in_its_place_and_the_curves_stay(browse
         assert browser.errors == []
     finally:
         browser.send("Page.removeScriptToEvaluateOnNewDocument", identifier=script)
-
-
-TITLES = (
-    "Trials", "Criteria", "Speed ratio", "Comparison", "Failed flights", "Single flights", "Autopilot", "Parameters", "Provenance",
-)  # fmt: skip
-
-WIDTHS = (320, 1000)
-"""Of windows [px]."""
-
-
-def test_every_link_of_the_navigation_is_within_the_window(browser, tmp_path):
-    """The head of a page in a narrow window: nothing runs off its edge."""
-    sections = [
-        Section(anchor=f"s{i}", title=title, blocks=[Text("Words.")])
-        for i, title in enumerate(TITLES)
-    ]
-    verdict = Verdict(
-        holds=True, complete=True, headline="All well", detail="", failures=[], figures=[]
-    )
-    head = Letterhead(run="run", when="2026-11-23 08:00 UTC")
-    words = {"title": "Title", "description": "", "changes": "", "flown": ""}
-    report = Content(**words, letterhead=head, verdict=verdict, picture=None, sections=sections)
-    write_html(report, tmp_path / "report.html")
-    browser.open(tmp_path / "report.html", width=WIDTHS[0])
-    for width in WIDTHS:
-        browser.resize(width)
-        rights = browser.run(
-            "[...document.querySelectorAll('nav a')].map((link) => link.getBoundingClientRect().right)"
-        )
-        # The link to the summary beside those to the sections.
-        assert len(rights) == 1 + len(TITLES)
-        assert max(rights) <= width

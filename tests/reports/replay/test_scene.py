@@ -107,14 +107,6 @@ def test_any_column_arrives_to_half_a_step(values):
     assert np.abs(sent - values).max() <= 0.5001 * 0.01 + 1e-6
 
 
-def test_stretches_of_the_guard_say_whether_it_held(trial, row):
-    time = history_of(trial, row)["time_s"]
-    guard = np.select(
-        [(time >= 10.0) & (time < 12.0), (time >= 12.0) & (time < 13.0)], [1.0, 2.0], 0.0
-    )
-    assert with_history(trial, row, guard=guard).guard == [(10.0, 12.0, True), (12.0, 13.0, False)]
-
-
 def test_courses_have_no_jumps_and_what_is_not_known_stays(trial, row):
     time = history_of(trial, row)["time_s"].to_numpy()
     heading = np.mod(0.1 * time, 2.0 * np.pi)
@@ -146,18 +138,6 @@ def test_the_track_is_coloured_by_the_gas_above_its_background(measured):
     at = np.interp(0.2 * np.arange(len(scene.columns["gas"])), history["time_s"], read)
     assert scene.columns["gas"] == pytest.approx(at - background, abs=1e-6)
     assert 0.0 < scene.gas.most < np.nanmax(read) - background
-
-
-def test_the_estimate_in_the_scene_is_that_of_the_runs_table(measured):
-    _, flight = measured
-    history = history_of(*measured)
-    estimate = flight_scene(*measured, history).estimate
-    final = estimate.rows[-1]
-    assert final[1:4] == pytest.approx([
-        flight["fsc_percent"], flight["fsc_low_percent"], flight["fsc_high_percent"]
-    ])  # fmt: skip
-    assert list(estimate.limits) == [flight["sulphur_limit_percent"]]
-    assert final[0] <= history["time_s"].iloc[-1] + 1.0
 
 
 def test_one_can_go_to_the_closest_approach_and_to_what_happened(trial, row):
@@ -214,16 +194,6 @@ def test_an_axis_without_smoke_drifts_with_the_air_past_the_ship(trial, row):
     )
 
 
-def test_a_vessel_at_rest_points_along_its_course(trial, row):
-    still = dict.fromkeys(("vessel_velocity_north_mps", "vessel_velocity_east_mps"), 0.0)
-    turned = replace(
-        trial, config={**trial.config, "vessel": {**trial.config["vessel"], "course_deg": 90.0}}
-    )
-    assert with_history(turned, row, **still).columns["vessel_heading"] == pytest.approx(
-        np.pi / 2.0
-    )
-
-
 @pytest.mark.parametrize("samples", [0, 1, 2])
 def test_without_a_time_history_of_some_length_there_is_no_scene(trial, row, samples):
     history = history_of(trial, row).iloc[:samples] if samples else None
@@ -239,10 +209,6 @@ def test_a_damaged_time_history_makes_no_page_that_cannot_be_read(trial, row, va
         scene = with_history(trial, row, **{name: damaged})
         if scene is not None:
             json.dumps(replay.draw_scene(scene), allow_nan=False)
-
-
-def test_without_a_vessel_there_is_no_scene(trial, row):
-    assert with_history(trial, row, vessel_north_m=np.nan) is None
 
 
 class Scripts(HTMLParser):

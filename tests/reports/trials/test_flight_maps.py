@@ -7,14 +7,7 @@ import pandas as pd
 import pytest
 
 from reports.flights.single_flight import flight_charts
-from reports.flights.tracks import (
-    GUARD,
-    GUARD_LOST,
-    TIMES,
-    FlightView,
-    flight_view,
-    track_chart,
-)
+from reports.flights.tracks import GUARD, GUARD_LOST, TIMES, FlightView, flight_view, track_chart
 from reports.run.surroundings import surroundings
 from reports.run.time_history import about_the_plume, guard_stretches, vessel_heading
 from reports.run.trials import read_trials
@@ -59,27 +52,6 @@ def test_stretches_of_the_guard_are_marked_in_the_track_and_over_time(flight):
         (GUARD, time[16], time[20]),
         (GUARD_LOST, time[8], time[12]),
     ]
-
-
-def test_the_panel_of_the_distance_shows_the_orbit_also_where_that_is_far_off_the_keep_out_area(
-    flight,
-):
-    view = flight_view(*flight)
-    settled = view.time >= view.row["settling_time_s"]
-    # As of an area half as large beside the same orbit, which is left after a fault: 1.6 r_min lies
-    # below it.
-    view.radius = 0.4 * float(np.median(view.distance[settled]))
-    view.distance = np.where(view.time > view.ends[1] - 10.0, 3.0 * view.distance, view.distance)
-    chart = flight_charts(view)[1]
-    (panel,) = [panel for panel in chart.panels if panel.y_label == "Distance [m]"]
-    assert panel.y_range[1] == pytest.approx(1.05 * np.max(view.distance[settled]))
-    # One that never settled has no orbit, and is still seen.
-    view.row = view.row.copy()
-    view.row["settling_time_s"] = math.nan
-    chart = flight_charts(view)[1]
-    (panel,) = [panel for panel in chart.panels if panel.y_label == "Distance [m]"]
-    assert panel.y_range[1] == pytest.approx(1.05 * np.quantile(view.distance, 0.9))
-    assert f"Distances above {panel.y_range[1]:.0f} m are not shown." in chart.caption
 
 
 def test_the_ship_on_the_map_heads_and_trails_its_plume_as_it_did(flight):

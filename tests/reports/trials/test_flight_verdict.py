@@ -133,17 +133,6 @@ def test_a_flight_that_could_not_be_flown_is_told_and_makes_no_other_flights_fig
     assert row[-2:] == ["1 of 2", "0"]
 
 
-def test_of_a_run_in_which_nothing_was_flown_no_figure_is_met_and_no_picture_shown(run):
-    nothing = changed(run, summary=run.summary.assign(**NOT_FLOWN))
-    report = content(nothing)
-    assert report.verdict.headline == "Nothing was flown: of 4, 4 infeasible"
-    assert [tuple(card) for card in report.verdict.figures] == [
-        ("Flights flown", "0 of 4", "all", False, "")
-    ]
-    assert report.picture is None
-    assert report.verdict.tone == "bad"
-
-
 def test_the_verdict_claims_what_was_flown_and_the_bound_that_follows(run):
     again = run.summary.assign(
         flight_id=[f"{flight_id}_again" for flight_id in run.summary["flight_id"]]
@@ -191,13 +180,6 @@ def test_a_flight_that_could_not_be_flown_counts_as_a_violation_in_the_bound(run
     assert verdict.figures[0].note.replace("\N{NO-BREAK SPACE}", " ") == (
         "1 unknown; rate of violations below 26.4 % at 95 %, with 1 unknown as violated"
     )
-
-
-def test_a_handful_of_flights_states_no_bound_as_it_would_say_nothing(run):
-    # None of four, 1 - 0.05^(1/4): 52.7 %; none of the two of a trial: 77.6 %.
-    report = content(run)
-    assert report.verdict.figures[0].note == "too few for a bound on the rate"
-    assert rows_of(report, "Steady")[0][6] == "–"
 
 
 def test_a_premise_that_did_not_hold_is_named_with_its_largest_ratio(run):

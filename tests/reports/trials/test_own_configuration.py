@@ -20,9 +20,8 @@ from reports.flights.tracks import flight_view
 from reports.flights.trials.tables import fault_table
 from reports.registry import content
 from reports.replay.flight_scene import flight_scene
-from reports.run.flight_config import flight_config, flight_configs, with_value
+from reports.run.flight_config import flight_config, with_value
 from reports.run.run_data import RunData, read_overrides, read_run
-from reports.run.surroundings import plume_shape
 from reports.run.trials import read_trials
 from scenarios.experiment.requests import Experiment, differing_keys
 from scenarios.scenario.files import load_study
@@ -99,21 +98,6 @@ def test_replay_map_and_export_have_the_flights_own_keep_out_area_and_funnel(apa
     assert [heights[row["flight_id"]] for row in rows] == [height for _, height in OWN]
 
 
-def test_the_plume_that_is_drawn_is_that_of_the_sampled_load(apart, trial):
-    row = trial.rows.iloc[0]
-    load = float(apart.draws["emission.load"].iloc[0])
-    air = {"speed": 8.0, "wind": 8.0, "apparent_wind": 8.0, "length": 800.0}
-    own = trial.config | {"emission": trial.config["emission"] | {"load": load}}
-    own |= {"plume": trial.config["plume"] | {"source_height_m": 20.0}}
-    drawn, expected, base = (
-        plume_shape(config, **air) for config in (trial.flight_config(row), own, trial.config)
-    )
-    assert drawn.height == pytest.approx(expected.height)
-    assert drawn.height[-1] - drawn.height[0] != pytest.approx(
-        base.height[-1] - base.height[0], abs=0.1
-    )
-
-
 def test_a_trial_of_both_shapes_says_so_and_page_1_says_which_the_closest_flight_has(apart, trial):
     assert trial.shape == "sphere or cylinder"
     assert (
@@ -142,14 +126,6 @@ def test_the_closest_approach_after_a_fault_is_measured_as_the_flights_own_is(tr
         table = fault_table(alone)
         after = float(table.rows[0][table.head.index("Closest after the fault [m]")])
         assert after == pytest.approx(row["min_distance_m"], abs=0.1)
-
-
-def test_a_comparisons_flight_has_what_the_comparison_sets(apart):
-    configs = flight_configs(apart, apart.comparison)
-    assert [config["keepout"]["shape"] for config in configs] == ["cylinder"] * 4
-    assert [config["plume"]["source_height_m"] for config in configs] == [
-        height for _, height in OWN
-    ]
 
 
 VARIATION = {"sweep", "cases", "draws", "comparison", "report"}

@@ -11,11 +11,7 @@ from report_parts import blocks_of, flown_text
 
 from reports.document.blocks import FlightPicker, Table
 from reports.errors import ReportError
-from reports.flights.names import (
-    flight_name,
-    flown_elsewhere,
-    swept_column,
-)
+from reports.flights.names import flown_elsewhere
 from reports.flights.trials.charts import trial_charts
 from reports.registry import content
 from reports.run.columns import column
@@ -45,20 +41,6 @@ nu = [0.2, 0.4]
 @pytest.fixture(scope="module")
 def trial(tmp_path_factory):
     return read_trials(read_run(flown_text(tmp_path_factory, "short", SHORT)))[0]
-
-
-def test_a_flight_that_was_lost_with_its_process_is_called_as_in_the_files(trial):
-    # It has no row in draws.csv.
-    row = trial.rows.iloc[0]
-    lost = replace(trial, run=replace(trial.run, draws=trial.run.draws.iloc[1:]))
-    assert flight_name(lost, row) == str(row["flight_id"])
-    assert swept_column(lost)[1](row) == str(row["flight_id"])
-    run = replace(lost.run, manifest=lost.run.manifest | {"trial_flights": {lost.key: 1}})
-    head, called = swept_column(
-        replace(lost, run=run, config=lost.config | {"sweep": {"nu": [0.2]}})
-    )
-    assert (head, called(row)) == ("ν", str(row["flight_id"]))
-    assert flight_name(lost, trial.rows.iloc[1]) == flight_name(trial, trial.rows.iloc[1])
 
 
 def test_page_1_says_how_far_flights_with_different_radii_stayed_beyond_their_own(trial):

@@ -2,7 +2,6 @@
 
 import math
 import shutil
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,7 +9,7 @@ from report_parts import blocks_of
 from trial_runs import with_values
 
 from reports.document.blocks import FlightPicker
-from reports.flights.selection import PICKED_MAX, picked_flights
+from reports.flights.selection import picked_flights
 from reports.flights.single_flight import flight_charts
 from reports.flights.tracks import flight_view
 from reports.flights.trials.charts import trial_charts
@@ -92,24 +91,3 @@ def test_manoeuvres_are_named_as_the_vessel_was_seen_to_turn(run):
     # One marker per flight, in rows a unit apart of which the first manoeuvre's is the upper one.
     marks = next(line for line in chart.panels[1].lines if line.style == "points")
     assert list(marks.y) == [1.0, 0.0]
-
-
-def test_manoeuvres_are_those_that_were_sampled_in_whatever_order(run):
-    # As where the manoeuvre is the second choice, weighted, or of a search: a flight's number does
-    # not tell it.
-    manoeuvres = run.draws["vessel.manoeuvres"]
-    swapped = replace(
-        run, draws=run.draws.assign(**{"vessel.manoeuvres": manoeuvres.to_numpy()[[0, 1, 3, 2]]})
-    )
-    (chart,) = trial_charts(read_trials(swapped)[1])
-    assert [name for _, name in chart.panels[0].y_names] == [
-        "10° to port at 0.5°/s",
-        "20° to starboard at 0.5°/s",
-    ]
-
-
-def test_no_more_flights_are_shown_than_stated_and_every_trial_has_its_share(run):
-    trials = [replace(trial, key=f"{trial.key}{i}") for i in range(5) for trial in read_trials(run)]
-    picked = picked_flights(trials)
-    assert len(picked) == PICKED_MAX
-    assert {trial.key for trial, _, _ in picked} == {trial.key for trial in trials}

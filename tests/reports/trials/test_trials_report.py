@@ -8,19 +8,17 @@ import shutil
 from dataclasses import replace
 
 import pytest
-from judged_runs import changed, judged
+from judged_runs import judged
 from snapshots import assert_reads_as_before
 from trial_runs import rows_of, with_criterion, with_values
 
 from reports.build import build_reports
 from reports.errors import ReportError
-from reports.flights.trials.charts import PanelsOver, by_violation
 from reports.output import write_report
 from reports.registry import content
 from reports.run.run_data import read_run
 from reports.run.trials import Kind, Trial, read_trials
 from scenarios.scenario.files import load_study
-from tests.reports.run_columns import RUN_COLUMNS
 
 pytestmark = pytest.mark.slow
 
@@ -54,18 +52,6 @@ def test_a_criterion_without_a_figure_counts_as_failed(run):
         row for row in rows_of(content(steady.run), "Steady")[1:] if row[0].startswith("Mean")
     )
     assert row[4:] == ["2 of 2", "1"]
-
-
-@BRIEF
-@pytest.mark.parametrize("settles", [True, False])
-def test_what_is_measured_after_settling_is_judged_where_flights_have_to_settle(run, settles):
-    judged = with_criterion(
-        with_criterion(run, "turns", "settles", settles), "turns", "tracking_error_rms_m", 1e-9
-    )
-    assert (
-        any(row[0].startswith("Tracking error, rms") for row in rows_of(content(judged), "Turns"))
-        is settles
-    )
 
 
 @BRIEF
@@ -179,27 +165,6 @@ def test_a_criterion_that_is_just_failed_is_not_written_as_its_limit(run):
     )
     rows = rows_of(content(failed), "Steady")
     assert ["≤ 1.5 m", "1.504 m", "1"] in [[*row[1:3], row[-1]] for row in rows]
-
-
-def test_a_criterion_that_does_not_apply_is_no_limit(run):
-    trial = read_trials(with_criterion(run, "steady", "tracking_error_rms_m", False))[0]
-    panel = PanelsOver(trial, "nu", by_violation(trial)).figure("tracking_error_rms_m")
-    assert "criterion" not in {line.label for line in panel.lines}
-    trial = read_trials(with_criterion(run, "steady", "tracking_error_rms_m", 2.0))[0]
-    panel = PanelsOver(trial, "nu", by_violation(trial)).figure("tracking_error_rms_m")
-    (level,) = (line for line in panel.lines if line.label == "criterion")
-    assert set(level.y) == {2.0}
-
-
-@BRIEF
-def test_altitudes_that_have_to_be_kept_are_a_criterion_on_the_time_outside(run):
-    kept = with_criterion(run, "turns", "within_altitudes", True)
-    rows = kept.summary.assign(
-        altitude_outside_s=[0.0 if trial != "turns" else 1.5 for trial in kept.summary["trial"]]
-    )
-    shown = rows_of(content(changed(kept, summary=rows, columns=RUN_COLUMNS)), "Turns")
-    (row,) = (row for row in shown if row[0] == "Time outside the altitudes of the scenario")
-    assert [*row[1:3], row[-1]] == ["≤ 0 s", "1.5 s", "2"]
 
 
 def test_trials_read_as_before(report):
