@@ -1,19 +1,16 @@
 """Every kind of block, on the screen and in print."""
 
 import re
-from dataclasses import replace
 
 from reports.document.blocks import (
     Card,
     Content,
     FlightContent,
     FlightPicker,
-    Heading,
     Section,
     Text,
     Verdict,
 )
-from reports.registry import _figures
 from reports.render.pdf import write_pdf
 from reports.run.letterhead import Letterhead
 
@@ -56,14 +53,3 @@ def test_flights_that_are_not_printed_have_a_page_only_where_all_are_asked_for(t
     write_pdf(report, tmp_path / "all.pdf", all_flights=True)
     assert headings(tmp_path / "some.pdf") & {"Page a", "Page b", "Page c"} == {"Page b"}
     assert headings(tmp_path / "all.pdf") >= {"Page a", "Page b", "Page c"}
-
-
-def test_what_page_1_has_no_room_for_stands_below_further_figures_and_nothing_twice():
-    verdict = Verdict(
-        headline="", detail="", failures=[f"flight {i}" for i in range(7)], figures=[]
-    )
-    heading, *more = _figures(verdict)
-    assert heading == Heading("More failures and remarks")
-    assert [*verdict.first_failures[:4], *(text.text for text in more)] == verdict.failures
-    assert verdict.first_failures[4] == "and 3 more, under “Further figures”"
-    assert len(_figures(replace(verdict, failures=verdict.failures[:4]))) == 0

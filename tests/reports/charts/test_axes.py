@@ -1,13 +1,10 @@
 """Marks of logarithmic axes, shared abscissas, and lengths in kilometres."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from reports.document.axes import in_kilometres, log_axis, with_one_abscissa
-from reports.document.chart import Chart, Line, Panel
-from reports.render import matplotlib_charts, plotly_charts
+from reports.document.axes import in_kilometres, log_axis
+from reports.document.chart import Line, Panel
 
 
 @pytest.mark.parametrize(
@@ -32,28 +29,6 @@ def test_limits_that_are_not_given_hold_the_positive_data_with_room_to_spare():
     assert 50.0 < high < 65.0
     low, high = log_axis(None, [np.zeros(2)])[0]
     assert 0.0 < low < high
-
-
-def test_panels_that_share_their_abscissa_have_the_same_limits_of_it_in_every_column():
-    def panel(end, label="Time [s]"):
-        return Panel(
-            x_label=label,
-            y_label="",
-            lines=[Line(x=np.array([0.0, end]), y=np.zeros(2), label="", colour="blue")],
-        )
-
-    # In the first column marks, whose room an axis adds to by itself, and a shorter curve.
-    panels = [panel(3600.0), panel(3599.0), panel(9.0, "Distance [m]"), panel(3000.0)]
-    chart = Chart(name="", caption="", panels=panels, columns=2, share_x=True)
-    limits = [of.x_range for of in with_one_abscissa(chart).panels]
-    assert limits == [(0.0, 3600.0), (0.0, 3600.0), (0.0, 9.0), (0.0, 3600.0)]
-    assert [of.x_range for of in with_one_abscissa(replace(chart, share_x=False)).panels] == [
-        None
-    ] * 4
-    chart = replace(chart, panels=[panels[0], panels[1], panels[3]])
-    drawn = plotly_charts.draw(chart)["panels"]
-    assert {tuple(panel["layout"]["xaxis"]["range"]) for panel in drawn} == {(0.0, 3600.0)}
-    assert {axes.get_xlim() for axes in matplotlib_charts.draw(chart).axes[:3]} == {(0.0, 3600.0)}
 
 
 @pytest.mark.parametrize(

@@ -30,13 +30,3 @@ def test_numbers_come_back_to_single_precision():
     assert trace["y"] == []
     bars = base64.b64decode(trace["error_y"]["array"]["bdata"])
     assert np.frombuffer(bars, dtype="<f4").tolist() == [1.0, 2.0, 3.0]
-
-
-def test_axes_are_logarithmic_equally_long_or_named_where_a_panel_asks_for_it():
-    layout = drawn(log_y=True, y_range=(0.01, 100.0))["panels"][0]["layout"]
-    assert (layout["yaxis"]["type"], layout["yaxis"]["range"]) == ("log", [-2.0, 2.0])
-    layout = drawn(equal=True)["panels"][0]["layout"]
-    assert (layout["yaxis"]["scaleanchor"], layout["yaxis"]["scaleratio"]) == ("x", 1)
-    layout = drawn(y_names=[(0.0, "approach"), (1.0, "tracking")])["panels"][0]["layout"]
-    assert layout["yaxis"]["tickvals"] == [0.0, 1.0]
-    assert layout["yaxis"]["ticktext"] == ["approach", "tracking"]

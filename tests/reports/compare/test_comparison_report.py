@@ -13,7 +13,6 @@ from reports.compare.content import compare, comparison_content, headline
 from reports.compare.pairs import read_runs
 from reports.compare.table_of_pairs import write_differences
 from reports.document.blocks import Table, Text
-from reports.document.chart import Chart
 from reports.run.columns import judged as judged_figure
 
 pytestmark = pytest.mark.slow
@@ -53,17 +52,6 @@ def test_the_table_of_pairs_has_each_figure_of_both_runs_and_their_difference(
     # The report shows this one in per cent, the table has it as the summary would.
     off = (after["crossing_interval_mean_s"] / after["crossing_interval_predicted_s"] - 1.0).abs()
     assert table["crossing_interval_error"].to_numpy() == pytest.approx(off.to_numpy(), rel=1e-9)
-
-
-def test_runs_of_the_same_flights_are_said_to_be_the_same(first, same):
-    runs = read_runs([first, same])
-    compared = compare(runs)
-    report = comparison_content(runs, compared)
-    assert report.verdict.headline == "No figure differs in 3 pairs of flights"
-    assert report.verdict.failures == ["B: no figure differs from A"]
-    assert (report.verdict.holds, report.verdict.complete) == (True, True)
-    assert not blocks_of(report, Chart)
-    assert "No key differs" in texts_of(report)
 
 
 def test_a_flight_that_one_run_has_not_flown_yet_has_no_partner(first, same):

@@ -59,22 +59,6 @@ def test_a_key_that_one_version_does_not_have_is_said_to_be_none(two):
     assert cells(two) == {"guidance.preview": ("not a key", "yes")}
 
 
-def test_a_key_of_a_part_that_one_run_leaves_out_has_its_default(two):
-    # A configuration has what is set alone of such keys.
-    for run, value in zip(two, ("electrochemical", "fast"), strict=True):
-        known = {
-            "key": "payload.sensor",
-            "value": value,
-            "default": "electrochemical",
-            "unit": "",
-            "meaning": "Sniffer.",
-        }
-        parameters_of(run).append(known)
-    config_of(two[1])["payload"]["sensor"] = "fast"
-    (row,) = configuration_table(two).rows
-    assert row == ["payload.sensor", "electrochemical", "fast", "", "Sniffer."]
-
-
 def software(runs):
     table = software_table(runs)
     bold = {table.rows[i][0] for i, _ in table.bold}

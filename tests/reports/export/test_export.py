@@ -1,6 +1,5 @@
 """Exporters: the project's own, and one that a user adds in a file."""
 
-import runpy
 import sys
 
 import numpy as np
@@ -10,10 +9,9 @@ import pytest
 from common.errors import PluginError
 from reports.build import export_run
 from reports.errors import ReportError
-from reports.export import EXPORTERS
 from reports.output import write_flight
 from reports.run.run_data import read_run
-from tests.in_process import assert_refused, run_command
+from tests.in_process import run_command
 from tests.run_tables import write_manifest
 
 OWN = """
@@ -142,21 +140,6 @@ def test_a_run_without_time_histories_has_no_tracks(run_path):
     with pytest.raises(ReportError, match="has no time histories of flights"):
         export_run(run_path, "tracks_csv")
     assert list((run_path / "export").iterdir()) == []
-
-
-def test_the_command_exports_and_names_what_it_knows(run_path, monkeypatch, capsys):
-    # As ``python -m reports.build``, in this process: it took nearly a second to begin another.
-    monkeypatch.delitem(sys.modules, "reports.build")
-    monkeypatch.setattr(sys, "argv", ["reports.build", str(run_path), "--export", "tracks_csv"])
-    with pytest.raises(SystemExit) as ended:
-        runpy.run_module("reports.build", run_name="__main__")
-    assert (ended.value.code, capsys.readouterr().out) == (
-        0,
-        f"export: {run_path / 'export' / 'small.tracks.csv'}\n",
-    )
-    refused = run_command("reports.build", run_path, "--export", "track_csv")
-    assert_refused(refused, "error: unknown exporter 'track_csv'; did you mean 'tracks_csv'?")
-    assert "tracks_csv" in EXPORTERS.names()
 
 
 def test_an_export_that_cannot_be_written_is_one_line(run_path, tmp_path, monkeypatch):

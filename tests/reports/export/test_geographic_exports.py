@@ -12,7 +12,7 @@ import pytest
 from common.geodesy import LocalFrame
 from reports.export.geographic import recorded_flights
 from reports.run.run_data import read_run
-from tests.reports.export.placed_flight import TOLERANCE, exported, off, track
+from tests.reports.export.placed_flight import READ, TOLERANCE, assert_read, exported, off, track
 
 
 def test_a_kmz_is_valid_by_the_schema_of_the_ogc_and_has_the_places(run_path, truth):
@@ -43,6 +43,23 @@ def test_a_kmz_is_valid_by_the_schema_of_the_ogc_and_has_the_places(run_path, tr
             601,
         )
     assert whole.validate(root), whole.error_log
+    fields = {
+        field.get("name"): field.find("k:displayName", names).text
+        for field in root.iter(f"{{{names['gx']}}}SimpleArrayField")
+    }
+    assert fields == {
+        "so2_reading_ppb": "SO2 reading [ppb]", "co2_reading_ppm": "CO2 reading [ppm]", "no_reading_ppb": "NO reading [ppb]",
+    }  # fmt: skip
+    uav, vessel = tracks
+    (data,) = uav.findall(".//k:SchemaData", names)
+    (described,) = root.findall(".//k:Schema", names)
+    assert data.get("schemaUrl") == f"#{described.get('id')}"
+    arrays = {array.get("name"): [value.text or "nan" for value in array] for array in data}
+    assert set(arrays) == set(READ)
+    for name, values in arrays.items():
+        assert len(values) == len(uav.findall("k:when", names))
+        assert_read(values, name)
+    assert vessel.find("k:ExtendedData", names) is None
     for place in tracks:
         place.getparent().remove(place)
     assert schema.validate(root), schema.error_log
@@ -53,6 +70,13 @@ def test_geojson_has_the_places_in_pieces_that_keep_to_one_side_of_the_date_line
     collection = json.loads(exported(run_path, "geojson").read_text(encoding="utf-8"))
     by_what = {feature["properties"]["what"]: feature for feature in collection["features"]}
     assert set(by_what) == {"uav", "vessel", "keepout_at_end", "crossing"}
+    uav, vessel = (by_what[what]["properties"] for what in ("uav", "vessel"))
+    for name in READ:
+        assert len(uav[name]) == len(uav["times_s"])
+        # Null where there is no reading: JSON has no number for it.
+        assert uav[name][0] is None
+        assert_read([math.nan if value is None else value for value in uav[name]], name)
+    assert not {key for key in (*uav, *vessel) if "reading" in key} - set(READ)
     for what, true in (("uav", truth[0]), ("vessel", truth[1])):
         geometry = by_what[what]["geometry"]
         parts = (

@@ -39,11 +39,11 @@ FIGURES = {
 
 
 @pytest.fixture
-def measured(sniffed):
+def measured(run_path):
     """The flight with a wind as estimated on board, an estimate of the plume's height, and the
     figures of a sniffer and of a user's instrument.
     """
-    path = sniffed / "flights" / "a, <b>.parquet"
+    path = run_path / "flights" / "a, <b>.parquet"
     history = pd.read_parquet(path)
     history = history.assign(
         wind_north_mps=3.0,
@@ -53,9 +53,9 @@ def measured(sniffed):
         glow_mps=1.25,
     )
     history.to_parquet(path)
-    rows = pd.read_csv(sniffed / "summary.csv")
+    rows = pd.read_csv(run_path / "summary.csv")
     rows.assign(**{name: value for name, (_, value) in FIGURES.items()}).to_csv(
-        sniffed / "summary.csv", index=False
+        run_path / "summary.csv", index=False
     )
     readings = {f"{gas}_reading_{UNITS[gas]}": "reading, held until the next one" for gas in GASES}
     columns = {
@@ -65,8 +65,8 @@ def measured(sniffed):
         },
         "summary.csv": described({name: of for name, (of, _) in FIGURES.items()}, part="sniffer"),
     }
-    (sniffed / COLUMNS).write_text(json.dumps(to_json(columns)), encoding="utf-8")
-    return sniffed
+    (run_path / COLUMNS).write_text(json.dumps(to_json(columns)), encoding="utf-8")
+    return run_path
 
 
 def opened(path):

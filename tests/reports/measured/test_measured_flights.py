@@ -182,26 +182,6 @@ def test_a_sniffer_without_a_result_is_said_on_page_1():
     assert flights.sulphur_below(SimpleNamespace(summary=pd.DataFrame([{"duration_s": 600.0}])))
 
 
-def test_a_content_below_0_has_the_interval_that_its_verdict_rests_on():
-    row = {
-        **ROW,
-        "fsc_percent": -0.025,
-        "fsc_low_percent": 0.0,
-        "fsc_high_percent": 0.039,
-        "sulphur_verdict": "below",
-    }
-    run = SimpleNamespace(summary=pd.DataFrame([row]))
-    assert "fuel sulphur \N{MINUS SIGN}0.025 % (0.000 to 0.039), limit" in flights.sulphur_headline(
-        run
-    )
-    assert flights.sulphur_cards(run)[0].note == "95 % interval 0.000 to 0.039 %"
-    table = method.flight_table(
-        pd.DataFrame([{**row, "flight_id": "flight_1", "sensor": "fast"}]),
-        lambda of: str(of["flight_id"]),
-    )
-    assert table.rows[0][table.head.index("95 % interval [% m/m]")] == "0.000 to 0.039"
-
-
 @pytest.mark.parametrize(
     ("own", "minutes"),
     [(None, [4.0, 9.0]), (60.0, [1.0, 1.0]), ("swept", [1.0, 2.25]), (600.0, [6.0, 10.0])],

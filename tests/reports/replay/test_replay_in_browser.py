@@ -222,35 +222,6 @@ def test_the_keyboard_moves_time_camera_and_play(browser, page):
     assert browser.errors == []
 
 
-def test_the_page_is_not_wider_than_a_small_screen(browser, page):
-    show(browser, page, 520)
-    parts = "[...document.querySelectorAll('.replay, .replay *, .picker *')]"
-    widest = f"Math.max(...{parts}.map((part) => part.getBoundingClientRect().right))"
-    assert browser.run(widest) <= 520
-    assert browser.run("document.querySelector('[data-part=stage]').clientWidth") > 400
-
-
-def test_figures_are_as_wide_in_print_in_any_window_and_as_before_after_it(browser, page):
-    drawn = (
-        "[...document.querySelectorAll('.js-plotly-plot')].map((plot) => plot._fullLayout.width)"
-    )
-    wide = "[...document.querySelectorAll('.panels')].map((of) => of.getBoundingClientRect().width)"
-    # Plotly follows the window a tenth of a second later.
-    later = "new Promise((done) => setTimeout(() => done(true), 500))"
-    show(browser, page, 520)
-    browser.run(later)
-    before = browser.run(drawn)
-    browser.run("dispatchEvent(new Event('beforeprint'))")
-    # The width of the page's text in print.
-    browser.settle()
-    assert set(filter(None, browser.run(wide))) == {1040}
-    assert max(browser.run(drawn)) <= 1040
-    browser.run("dispatchEvent(new Event('afterprint'))")
-    browser.run(later)
-    assert browser.run(drawn) == before
-    assert browser.errors == []
-
-
 def test_a_flight_opens_with_its_aircraft_in_the_picture(browser, page):
     show(browser, page)
     place = (

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from reports.flights.single_flight import flight_charts
-from reports.flights.tracks import GUARD, GUARD_LOST, TIMES, FlightView, flight_view, track_chart
+from reports.flights.tracks import GUARD, GUARD_LOST, FlightView, flight_view
 from reports.run.surroundings import surroundings
 from reports.run.time_history import about_the_plume, guard_stretches, vessel_heading
 from reports.run.trials import read_trials
@@ -98,34 +98,3 @@ def test_the_ground_lies_along_the_way_of_a_ship_that_goes_far(run):
         assert way.y == pytest.approx(np.zeros(len(way.y)), abs=1e-6)
         assert np.all(np.diff(way.x) >= 0.0)
     assert high
-
-
-@pytest.mark.parametrize(
-    ("turn_deg", "labels"),
-    [(5.0, ("Along the ship's way [m]", "To port [m]")), (60.0, ("East [m]", "North [m]"))],
-)
-def test_north_is_up_over_the_ground_where_the_ship_turns(flight, turn_deg, labels):
-    trial, row = flight
-    history = trial.run.history(str(row["flight_id"]))
-    # The same flight beside a ship that goes 2 km, half of it on another course.
-    way = np.linspace(0.0, 2000.0, len(history))
-    before, after = np.minimum(way, 1000.0), np.maximum(way - 1000.0, 0.0)
-    moved = {
-        "north": before + math.cos(math.radians(turn_deg)) * after,
-        "east": math.sin(math.radians(turn_deg)) * after,
-    }
-    changed = {f"vessel_{axis}_m": of for axis, of in moved.items()}
-    changed |= {
-        f"{axis}_m": history[f"{axis}_m"] - history[f"vessel_{axis}_m"] + of
-        for axis, of in moved.items()
-    }
-    panel = track_chart(FlightView(trial, row, history.assign(**changed))).panels[-1]
-    assert (panel.x_label, panel.y_label) == labels
-    (way,) = (line for line in panel.lines if line.label == "ship's track")
-    if turn_deg > 10.0:
-        assert (way.x[-1], way.y[-1]) == pytest.approx((moved["east"][-1], moved["north"][-1]))
-    else:
-        (marks,) = (line for line in panel.lines if line.label == TIMES)
-        times = [note for note in panel.notes if note.text.endswith((" s", " min"))]
-        assert {note.x for note in times} <= set(marks.x.tolist())
-        assert times

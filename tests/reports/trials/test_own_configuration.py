@@ -17,7 +17,6 @@ from reports.document.blocks import FlightPicker
 from reports.export.geographic import recorded_flights
 from reports.flights.single_flight import flight_charts
 from reports.flights.tracks import flight_view
-from reports.flights.trials.tables import fault_table
 from reports.registry import content
 from reports.replay.flight_scene import flight_scene
 from reports.run.flight_config import flight_config, with_value
@@ -111,21 +110,6 @@ def test_a_trial_of_both_shapes_says_so_and_page_1_says_which_the_closest_flight
     assert "The keep-out cylinder or sphere is about the stack" in report.picture.caption
     (picker,) = blocks_of(report, FlightPicker)
     assert [flight.scene.keepout_shape for flight in picker.flights] == [shape for shape, _ in OWN]
-
-
-def test_the_closest_approach_after_a_fault_is_measured_as_the_flights_own_is(trial):
-    faulty = trial.rows.assign(fault="rudder", fault_time_s=0.0, end_distance_m=300.0)
-    for i, (_, row) in enumerate(faulty.iterrows()):
-        alone = type(trial)(
-            run=trial.run,
-            key=trial.key,
-            name=trial.name,
-            config=trial.config,
-            rows=faulty.iloc[[i]],
-        )
-        table = fault_table(alone)
-        after = float(table.rows[0][table.head.index("Closest after the fault [m]")])
-        assert after == pytest.approx(row["min_distance_m"], abs=0.1)
 
 
 VARIATION = {"sweep", "cases", "draws", "comparison", "report"}

@@ -17,8 +17,7 @@ from reports.errors import ReportError
 from reports.output import write_report
 from reports.registry import content
 from reports.run.run_data import read_run
-from reports.run.trials import Kind, Trial, read_trials
-from scenarios.scenario.files import load_study
+from reports.run.trials import read_trials
 
 pytestmark = pytest.mark.slow
 
@@ -140,23 +139,6 @@ def test_a_run_without_any_history_and_with_a_trial_not_begun_is_reported_on(sma
         for section in report.sections
         if section.anchor in ("trial1", "trial2", "flights")
     ] == ["trial1"]
-
-
-@pytest.mark.parametrize(
-    ("name", "kind"),
-    [
-        ("sea_wind", Kind.GENERAL),
-        ("sea_turbulence_light", Kind.GENERAL),
-        ("sea_manoeuvres", Kind.MANOEUVRES),
-        ("sea_approach", Kind.GENERAL),
-        ("sea_together", Kind.GENERAL),
-        ("sea_faults", Kind.FAULTS),
-        ("sweep_nu", Kind.SWEEP),
-    ],
-)
-def test_a_trial_is_known_by_what_it_holds_not_by_its_name(run, name, kind):
-    config = load_study(name, []).model_dump(mode="json")
-    assert Trial(run=run, key="any", name="trial1", config=config, rows=run.summary).kind is kind
 
 
 def test_a_criterion_that_is_just_failed_is_not_written_as_its_limit(run):
