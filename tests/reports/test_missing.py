@@ -61,13 +61,19 @@ def had(run, *names):
         ("innerloop.json", "the autopilot: trims, margins, responses"),
     ],
 )
-def test_a_file_that_is_gone_is_named_with_what_is_not_shown_for_it(copy, whole, name, shows):
+def test_a_file_that_is_gone_or_cut_is_named_with_what_is_not_shown_for_it(
+    copy, whole, name, shows
+):
     assert named(whole) == []
     if (copy / name).is_file():
         (copy / name).unlink()
     else:
         had(copy, name)
     assert named(copy) == [(name, "is gone", shows)]
+    for content in ("", "PAR1, or the beginning of {"):
+        (copy / name).write_text(content, encoding="utf-8")
+        if not name.endswith(".csv"):
+            assert named(copy) == [(name, "cannot be read", shows)]
 
 
 @pytest.mark.parametrize("text", ["{", '{"summary.csv": {"min_distance_m": ["title"]}}'])
@@ -78,25 +84,6 @@ def test_columns_that_cannot_be_read_are_named_and_figures_bear_the_names_of_the
     shown = "titles and units of figures, and those that users' parts add"
     assert named(copy) == [("columns.json", "cannot be read", shown)]
     assert read_run(copy).column("min_distance_m").label == "Min distance [m]"
-
-
-@pytest.mark.parametrize(
-    ("name", "cut"),
-    [
-        ("flights/short_00001.parquet", 0),
-        ("flights/short_00001.parquet", 200),
-        ("statistics.json", 20),
-    ],
-)
-def test_a_file_that_is_empty_or_cut_is_named(copy, name, cut):
-    whole = (
-        (copy / name).read_bytes()
-        if (copy / name).is_file()
-        else b'{"confidence": 0.95, "violation"'
-    )
-    (copy / name).write_bytes(whole[:cut])
-    ((found, state, _),) = named(copy)
-    assert (found, state) == (name, "cannot be read")
 
 
 @pytest.mark.usefixtures("sketched")

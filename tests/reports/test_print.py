@@ -1,12 +1,10 @@
 """Pages, figures and rounded figures of a printed report."""
 
 import math
-import os
 import re
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 
 from reports.document.blocks import (
     Card,
@@ -90,18 +88,6 @@ def test_they_do_not_depend_on_the_number_of_processes(tmp_path, monkeypatch):
     alone = drawn_by(tmp_path / "alone", 1, monkeypatch)
     assert len(alone) == COUNT
     assert drawn_by(tmp_path / "together", 2, monkeypatch) == alone
-
-
-def test_several_processes_draw_where_there_is_enough_to_draw(tmp_path, monkeypatch):
-    def drawn(chart):
-        (tmp_path / str(os.getpid())).touch()
-        return Figure(figsize=(1.0, 1.0))
-
-    monkeypatch.setattr(figure_files, "draw", drawn)
-    drawn_by(tmp_path / "together", 2, monkeypatch)
-    drawers = {path.name for path in tmp_path.iterdir() if path.is_file()}
-    assert drawers
-    assert str(os.getpid()) not in drawers
 
 
 @pytest.mark.parametrize(

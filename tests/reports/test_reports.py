@@ -7,7 +7,7 @@ import shutil
 import numpy as np
 import pandas as pd
 import pytest
-from judged_runs import changed, judged
+from judged_runs import changed
 from report_parts import blocks_of, built, draw_all_but, flown
 from snapshots import assert_reads_as_before
 
@@ -17,7 +17,6 @@ from reports.document.chart import Chart
 from reports.errors import ReportError
 from reports.output import flight_figure
 from reports.registry import content
-from reports.render.html import write_html
 from reports.run.run_data import read_run
 from tests.run_tables import change_manifest, manifest_of, write_manifest
 
@@ -72,21 +71,6 @@ def test_an_infeasible_flight_is_in_the_report_with_its_reason(report):
     assert "must be below 1" in report.verdict.failures[0]
     assert flights_of(report)[2].title.endswith("not flown, infeasible: speed ratio ν is 1")
     assert flights_of(report)[2].charts == []
-
-
-def html_of(report, directory):
-    """Return the report for the screen: to set one in print takes half a second."""
-    write_html(report, directory / "report.html")
-    return (directory / "report.html").read_text(encoding="utf-8")
-
-
-def test_an_interrupted_run_can_be_reported_on(copy):
-    interrupted = judged(read_run(copy), interrupted=True).verdict
-    (copy / "verdict.json").write_text(json.dumps(interrupted.to_json()), encoding="utf-8")
-    (copy / "innerloop.json").unlink()
-    (copy / "comparison.csv").unlink()
-    shutil.rmtree(copy / "flights")
-    assert "continue it with --resume" in html_of(content(read_run(copy)), copy)
 
 
 def test_of_a_sweep_the_closest_flight_is_printed(report, copy):

@@ -45,19 +45,6 @@ def test_flights_that_two_trials_could_mean_are_not_paired_across_trials():
         paired(made_run("A", twice), made_run("B", rows_of([0])))
 
 
-def test_runs_of_scenarios_with_other_names_say_that_seeds_follow_from_the_name():
-    # Their --seed may well be the same: the seeds of flights differ all the same.
-    agency, sulphur = (
-        rows_of([0], trial=of, prefix=f"{of}_", seed=seed)
-        for of, seed in (("agency", 100), ("sulphur", 500))
-    )
-    with pytest.raises(
-        ReportError,
-        match=r"from the scenario's name, here 'agency' and 'sulphur'; .*--set .* flight_seed",
-    ):
-        paired(made_run("A", agency), made_run("B", sulphur))
-
-
 def test_a_flight_whose_process_was_lost_has_no_seed_and_is_paired_by_trial_and_name():
     lost = rows_of([0, 1], outcome=["failed", "completed"], seed=100)
     lost[0]["seed"] = math.nan

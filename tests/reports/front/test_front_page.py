@@ -88,14 +88,6 @@ def test_figures_and_tables_are_numbered_in_reading_order_without_gaps(report):
     assert all(table.caption for table in tables)
 
 
-@pytest.mark.parametrize(("figures", "shown"), [(0, 0), (3, 3), (4, 4), (5, 5), (6, 6), (9, 6)])
-def test_page_1_has_six_figures_at_most(figures, shown):
-    cards = [Card(str(i), "1") for i in range(figures)]
-    verdict = Verdict(headline="", detail="", failures=[], figures=cards)
-    assert verdict.cards == cards[:shown]
-    assert verdict.further == cards[shown:]
-
-
 @pytest.mark.parametrize(
     ("card", "exit_status", "tone"),
     [

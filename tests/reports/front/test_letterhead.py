@@ -7,11 +7,8 @@ from PIL import Image
 from report_parts import flown_text
 
 from reports.errors import ReportError
-from reports.registry import content
 from reports.run.letterhead import parse_settings
-from reports.run.run_data import read_run
 from tests.in_process import run_command
-from tests.run_tables import change_manifest
 
 SHORT = """
 title = "Short"
@@ -72,11 +69,3 @@ def test_a_setting_that_reports_do_not_have_is_refused(override, said):
     with pytest.raises(ReportError) as error:
         parse_settings([override])
     assert said in str(error.value)
-
-
-def test_a_logo_that_the_run_has_lost_is_named_among_its_missing_files(run_path):
-    change_manifest(run_path, report={"logo": "logo.png"})
-    report = content(read_run(run_path))
-    assert report.letterhead.logo is None
-    (section,) = (section for section in report.sections if section.anchor == "missing")
-    assert ["logo.png", "cannot be read", "the logo"] in section.blocks[-1].rows

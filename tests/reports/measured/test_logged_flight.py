@@ -5,7 +5,6 @@ instrument, of holes in the log and of other gases.
 import copy
 import hashlib
 import json
-import math
 import re
 import shutil
 from pathlib import Path
@@ -29,7 +28,6 @@ from reports.document.provenance import provenance_section
 from reports.errors import ReportError
 from reports.measurement.charts import regression_chart
 from reports.measurement.content import gas_sections, samples_chart, stage_chart
-from reports.measurement.data import errors
 from reports.measurement.instrument_tables import instrument_table
 from reports.measurement.verdict import measurement_verdict
 from reports.registry import content
@@ -171,13 +169,6 @@ def test_every_number_on_page_1_is_that_of_the_estimate(run_directory, record, t
         *("0.1", "99.9", "95", "0.020", "0.027"),
     }
     assert numbers_on_page_1(run_directory, tmp_path) <= known
-
-
-def test_parts_of_the_uncertainty_add_to_the_whole(record):
-    # The parts are independent: they add in squares.
-    assert math.hypot(*(part for _, part in errors(record))) == pytest.approx(
-        record["estimate"]["total_percent"], rel=1e-9
-    )
 
 
 @pytest.mark.parametrize(

@@ -294,9 +294,3 @@ def test_results_below_a_logarithmic_scale_stand_at_its_edge_and_are_counted():
         assert all(panel.y_range[0] < y < 1.2 * panel.y_range[0] for y in below.y)
         # What reaches from the edge up is the interval that the flight states.
         np.testing.assert_allclose((below.y + below.error[1]), [0.04, 0.021])
-
-
-@pytest.mark.parametrize("found", [[-0.02, -0.01, -0.3], [np.nan, np.nan, np.nan]])
-def test_where_no_result_is_above_0_the_scale_is_that_of_the_fuels(found):
-    (panel, _) = method.error_chart(_results([0.05, 0.1, 1.0], found)).panels
-    assert panel.y_range == pytest.approx((0.01, 1.5))

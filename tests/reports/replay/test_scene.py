@@ -18,7 +18,6 @@ from reports.document.scene import COLUMNS
 from reports.registry import content
 from reports.render import html, replay
 from reports.replay.flight_scene import INTERVAL, flight_scene
-from reports.run.flight_config import HULLS
 from reports.run.run_data import read_run
 from reports.run.trials import read_trials
 
@@ -165,22 +164,6 @@ def test_each_of_several_faults_is_an_event_at_its_time(trial, row):
     events = dict(flight_scene(trial, happened, history_of(trial, row)).events)
     found = {name: time for name, time in events.items() if name.startswith("fault")}
     assert found == {"fault 1, vessel data": 7.5, "fault 2, engine": 9.0}
-
-
-def test_a_ship_whose_size_is_not_known_differs_from_one_of_a_known_class(scene):
-    sent = [
-        replay.draw_scene(replace(scene, hull=hull))["hull"]
-        for hull in (scene.hull, HULLS["coaster"])
-    ]
-    assert [(hull["known"], hull["name"]) for hull in sent] == [
-        (False, "ship, size not known"),
-        (True, "ship"),
-    ]
-    assert (
-        sent[0]["words"]
-        == "Of the ship: the scenario gives no hull: a merchant ship of 150 m by 23 m is drawn."
-    )
-    assert "a coaster, 90 m by 14 m" in sent[1]["words"]
 
 
 def test_an_axis_without_smoke_drifts_with_the_air_past_the_ship(trial, row):

@@ -65,37 +65,20 @@ def test_resuming_is_judged_of_flights_whose_vessel_ends_a_manoeuvre(run):
     assert row[4:] == ["1 of 2", "0"]
 
 
+DEMAND = {"heading_rate_demand_max_rad_s": [0.5, 0.6]}
+
+
 @BRIEF
 @pytest.mark.parametrize(
     ("key", "value", "values", "shown"),
     [
-        (
-            "crossing_interval_s",
-            [8.0, 9.0],
-            {"crossing_interval_mean_s": [8.5, 9.25]},
-            ["8 to 9 s", "9.25 s", "1"],
-        ),
-        (
-            "crossing_distance_m",
-            [200.0, 230.0],
-            {"crossing_distance_mean_m": [214.0, math.nan]},
-            ["200 to 230 m", "214 m", "1"],
-        ),
-        (
-            "law_within_heading_rate_max",
-            True,
-            {"heading_rate_demand_max_rad_s": [0.5, 0.6]},
-            ["≤ ω_max", "1.2 ω_max", "1"],
-        ),
-        (
-            "law_beyond_heading_rate_max",
-            True,
-            {"heading_rate_demand_max_rad_s": [0.5, 0.6]},
-            ["> ω_max", "1 ω_max", "1"],
-        ),
+        ("crossing_interval_s", [8.0, 9.0], {"crossing_interval_mean_s": [8.5, 9.25]}, ["8 to 9 s", "9.25 s", "1"]),
+        ("crossing_distance_m", [200.0, 230.0], {"crossing_distance_mean_m": [214.0, math.nan]}, ["200 to 230 m", "214 m", "1"]),
+        ("law_within_heading_rate_max", True, DEMAND, ["≤ ω_max", "1.2 ω_max", "1"]),
+        ("law_beyond_heading_rate_max", True, DEMAND, ["> ω_max", "1 ω_max", "1"]),
     ],
-)
-def test_flights_that_failed_a_criterion_are_counted_whatever_its_limits(
+)  # fmt: skip
+def test_flights_that_failed_a_criterion_are_counted_for_limits_of_each_kind(
     run, key, value, values, shown
 ):
     # Of two flights of the trial, the second or, where the law must exceed omega_max = 0.5 rad/s,
