@@ -42,7 +42,7 @@ class Meter:
 SWEEP = (
     "fidelity=kinematic",
     "sweep.nu=[0.4,0.5]",
-    "flight.crossings=3",
+    "flight.crossings=2",
     "guidance.rate_hz=10",
     "comparison.nu=[]",
     "criteria.crossing_interval_error=0.1",

@@ -18,7 +18,7 @@ QUICK = (
     "fidelity=kinematic", "guidance.rate_hz=10",
     "reports.interval_s=[0,0]", "sensors={}",
     "wind.speed_mps=3", "wind.from_deg=40", "vessel.speed_mps=8", "emission.sulphur_percent=1.5", "emission.load=0.6",
-    "payload.sensor=fast", "flight.altitude_m=60", "flight.after_settling_s=60",
+    "payload.sensor=fast", "flight.altitude_m=60", "flight.after_settling_s=30",
     "following={source_height_m=[20.0, 60.0], load=[0.2, 0.9], climb_gradient=0.08, plume='estimated'}",
 )  # fmt: skip
 

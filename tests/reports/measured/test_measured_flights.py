@@ -11,7 +11,7 @@ import pytest
 from report_parts import assert_axes_read_quantity_and_unit, flown, named_charts, numbers_on_page_1
 from scipy.stats import beta
 
-from reports.document.blocks import Table, Text
+from reports.document.blocks import Table
 from reports.measurement import flights, method
 from reports.measurement.data import flown_facts
 from reports.registry import content
@@ -25,15 +25,6 @@ QUICK = (
     "reports.interval_s=[0,0]", "sensors={}", "following={}", "start.place_m=[-250,-120]",
     "start.course_deg=-90", "wind.speed_mps=2", "wind.from_deg=0", "vessel.speed_mps=10", "flight.after_settling_s=40",
 )  # fmt: skip
-
-
-CONTENT = r"0\.\d{3} % m/m, 95 % interval 0\.\d{3} to 0\.\d{3} %"
-
-
-@pytest.fixture(scope="module")
-def one(tmp_path_factory):
-    path = flown(tmp_path_factory, "sulphur", (*QUICK, "flight.after_settling_s=130"))
-    return content(read_run(path))
 
 
 @pytest.fixture(scope="module")
@@ -54,22 +45,6 @@ def several(several_path):
         patch.setattr("reports.measurement.method._FEW", 6)
         patch.setattr("reports.measurement.method._OF_EACH_MIN", 1)
         return content(read_run(several_path))
-
-
-def test_one_flight_has_result_probability_and_limit(one):
-    (section,) = [section for section in one.sections if section.anchor == "measurement"]
-    assert {"sulphur-track", "fsc-over-time", "budget", "channels", "regression"} <= set(
-        named_charts(one)
-    )
-    assert_axes_read_quantity_and_unit(named_charts(one).values())
-    words = next(block.text for block in section.blocks if isinstance(block, Text))
-    assert re.match(rf"The fuel's sulphur content is {CONTENT}: .* limit of 0\.10 %; prob", words)
-    assert "The simulated fuel holds 0.100 %; a perfect instrument would read 0.097 %," in words
-    card = one.verdict.figures[0]
-    assert card.name == "Fuel sulphur content"
-    assert re.fullmatch(r"0\.\d{3} % m/m", card.value)
-    assert re.fullmatch(r"95 % interval 0\.\d{3} to 0\.\d{3} %", card.note)
-    assert "sulphur" not in {section.anchor for section in one.sections}
 
 
 def test_several_flights_are_judged_as_a_method(several):
