@@ -64,8 +64,8 @@ def compare_runs(paths: list[Path], out: Path | None) -> list[Path]:
 
 
 def _beside(paths: list[Path]) -> Path:
-    """Return the directory beside the first run that is named by all of them, of which no other
-    runs have the same.
+    """Return the directory beside the first run that is named after all of them; other runs have
+    another one.
     """
     names = [path.name[:_NAME_MAX] for path in paths]
     if any(path != paths[0].parent / name for path, name in zip(paths, names, strict=True)):

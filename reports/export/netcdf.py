@@ -202,8 +202,8 @@ def _figure_variables(run: RunData, flights: Sequence[GeographicFlight]) -> dict
         attributes = _attributes(column)
         if column.kind == "text":
             del attributes["units"]
-            told = np.array([str(value).encode() for value in values.fillna("")])
-            found[name] = (_FLIGHT, told, attributes)
+            texts = np.array([str(value).encode() for value in values.fillna("")])
+            found[name] = (_FLIGHT, texts, attributes)
             continue
         if column.kind == "truth":
             values = values.map({True: 1.0, False: 0.0, "True": 1.0, "False": 0.0})

@@ -13,7 +13,7 @@ from reports.finding.searches import finding_sections, searching_variants
 from reports.flights.added import added_sections
 from reports.flights.comparison import comparison_section
 from reports.flights.first_page import flights_in_words, telling_and_typical
-from reports.flights.names import flight_name, flown_elsewhere, swept_column, told_name
+from reports.flights.names import flight_name, flown_elsewhere, name_in_run, swept_column
 from reports.flights.parameter_tables import trial_parameters
 from reports.flights.selection import flight_section
 from reports.flights.trials.charts import trial_charts
@@ -51,7 +51,7 @@ def flights_content(run: RunData, answer: Answer = kept_out_and_finished) -> Fin
     by_key = {trial.key: trial for trial in trials}
 
     def name(row: "pd.Series[Any]") -> str:
-        return told_name(by_key[row["trial"]], row)
+        return name_in_run(by_key[row["trial"]], row)
 
     of_search, of_fuel = finding_sections(run, trials, name), sulphur_sections(run, name)
     of_flights = [

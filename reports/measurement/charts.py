@@ -72,8 +72,8 @@ def over_time_chart(record: Record, since: str = SINCE) -> Chart | None:
         float(high[-1]),
         *(limit for limit in limits if limit < 2.0 * float(high[-1])),
     )
-    told = [limit for limit in limits if limit < top]
-    lines += [level(time, limit, "limit", Meaning.LIMIT) for limit in told]
+    shown = [limit for limit in limits if limit < top]
+    lines += [level(time, limit, "limit", Meaning.LIMIT) for limit in shown]
     # The legend would have the same dashes for each.
     notes = [
         Note(
@@ -82,7 +82,7 @@ def over_time_chart(record: Record, since: str = SINCE) -> Chart | None:
             text=f"limit {limit_words(limit)} ",
             align="right",
         )
-        for limit in told
+        for limit in shown
     ]
     if record.get("true_percent") is not None:
         lines.append(level(time, value(record, "true_percent"), "a perfect instrument", "black"))

@@ -422,7 +422,7 @@ def sulphur_track_chart(history: pd.DataFrame, about: Surroundings) -> Chart:
 
 
 _FEW = 8
-"""Flights of which figures are not spread: of so few there are no statistics."""
+"""Flights below which there are no statistics."""
 
 _VERDICTS = (
     "Verdicts on the sulphur limit from {flights:,} flights: {right:,} right, {wrong:,} wrong,"

@@ -20,7 +20,7 @@ _POINTS_MAX = 4000
 """Flights that are shown, at most: the worst, and an even sample of the others."""
 
 _MARKS: tuple[Style, ...] = ("points", "diamonds", "square", "ring", "cross")
-"""Of the methods: they are told apart in grey, too."""
+"""Of the methods: they differ in grey, too."""
 
 _CONFIRMATION = "confirmation"
 """What stands for the method of flights that repeat one of the worst."""

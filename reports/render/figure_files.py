@@ -26,9 +26,7 @@ _SVG: dict[Any, Any] = {"svg.fonttype": "path", "svg.hashsalt": "report"}
 """Letters are drawn as curves, and names within a file do not differ from time to time."""
 
 _to_draw: list[tuple[Chart, Path]] = []
-"""In a process of its own: what is drawn by all of them. A forked process inherits it, which is
-faster than to send it.
-"""
+"""What all processes draw. A forked process inherits it, which is faster than to send it."""
 
 
 def write_figures(charts: Mapping[str, Chart], directory: Path) -> None:

@@ -36,7 +36,7 @@ abscissa, and for a line of a label.
 """
 
 _SCALE, _BAR = 0.75, 0.13
-"""Room for a colour scale with its marks and label, and its own width [inches]."""
+"""Room for a colour scale with its marks and label, and its width alone [inches]."""
 
 _LETTER = 0.058
 """Width of a letter of a label [inches]."""

@@ -143,8 +143,7 @@ class RunData:
     manifest : its configuration and provenance
     judgement : the verdict that its study has written; None of a design, a measured flight, and a
         run that did not end
-    summary : a row per flight of the study, or per trajectory and law; empty for a design, of which
-        nothing is counted
+    summary : a row per flight of the study, or per trajectory and law; empty for a design
     comparison : a row per flight of the comparisons, possibly none
     crossings : a row per crossing
     innerloop : the autopilot's design record, or none if the run ended before
