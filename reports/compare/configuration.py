@@ -222,7 +222,7 @@ def _files(runs: Sequence[Run]) -> list[list[str]]:
     from.
     """
     used = [run.manifest.get("plugins", {}) | run.manifest.get("vessel_files", {}) for run in runs]
-    # Without their directories, which are those of a machine.
+    # Their directories are left out: they are those of a machine.
     named = [
         {name.replace("\\", "/").rpartition("/")[2]: known for name, known in of.items()}
         for of in used

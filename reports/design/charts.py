@@ -226,7 +226,7 @@ def _curve(rows: Sequence[Record], key: str, *, over_bank: bool, between: bool) 
             y=np.array(list(least.values()), dtype=np.float64),
             label="" if between else loop_name(rows[0]),
             colour=colour,
-            # Of two loops of one colour one is dashed or dotted, and has the open marker.
+            # Where two loops have one colour, one is dashed or dotted, and has the open marker.
             style=style if not between else "diamonds" if style in ("solid", "thin") else "ring",
         )
     ]

@@ -67,7 +67,7 @@ FILL_OPACITY = 0.16
 """Of what a curve encloses: the grid still shows through."""
 
 BAND_OPACITY = 0.35
-"""Of a tinted stretch of time, below curves: narrow ones still show."""
+"""Opacity of a tinted stretch of time, below curves: narrow ones still show."""
 
 
 def series_colour(number: int) -> str:

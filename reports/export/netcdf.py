@@ -158,7 +158,7 @@ def _sample_variables(flights: Sequence[GeographicFlight]) -> dict[str, Variable
         values = np.concatenate([_motion(flight, what) for flight in flights])
         if np.isfinite(values).any():
             found[name] = (_SAMPLE, values, dict(attributes))
-    # Of each flight, in their order; most runs have one sentence.
+    # The sentences of all flights in their order; most runs have one.
     references = dict.fromkeys(flight.height_reference for flight in flights)
     found["alt"][2]["comment"] = " ".join(references)
     return found

@@ -133,7 +133,7 @@ def _trial(trial: Trial, *, only: bool) -> Section:
     table: list[Block] = []
     if trial.kind is Kind.FAULTS and len(trial.flown):
         table.append(fault_table(trial))
-    # Page 1 says of a flight alone what a table of one row would.
+    # A table of one row would repeat page 1.
     if len(trial.rows) > 1 and (trial.swept or (only and len(trial.rows) <= _LISTED_MAX)):
         head, name = swept_column(trial) if trial.swept else ("Flight", partial(flight_name, trial))
         caption = " ".join(["The flights, a row each, with their outcome.", *tracking_lines(trial)])

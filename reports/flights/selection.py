@@ -203,7 +203,7 @@ def _candidates(trial: Trial) -> Iterator[tuple["pd.Series[Any]", str]]:
     rows, near = trial.rows, beside_vessel(trial.rows)
     severe = [rows[severity(rows) == place] for place in range(len(SEVERE))]
     failed = rows[~met(rows) & (severity(rows) == len(SEVERE))]
-    # Of the others, those that have a time history: they are chosen for their figures.
+    # The others are chosen for their figures, and need a time history.
     recorded, distances = trial.run.with_history(near), clearance(near)
     least, middle = (_LEAST_BEYOND, _MEDIAN_BEYOND) if radii_differ(near) else (_CLOSEST, _MEDIAN)
     chosen = [

@@ -254,7 +254,8 @@ class _Histories:
         """Return what users' instruments read, a panel each, of columns with any number."""
         run, samples = self._view.trial.run, self._view.samples
         declared = run.columns.get(FLIGHTS, samples)
-        # Of an instrument whose objects alone have columns, the run says nothing before it flies.
+        # An instrument may declare columns by its objects alone, which the run does not know before
+        # it flies.
         undeclared = {
             name: run.column(name, FLIGHTS) for name in map(str, samples) if name not in declared
         }

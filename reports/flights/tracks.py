@@ -165,7 +165,7 @@ class FlightView:
             x: list[Array] = []
             y: list[Array] = []
             for start, end in stretches:
-                # From sample to sample, so that a single one has a length; a gap follows.
+                # A part goes from sample to sample: a single one has a length. A gap follows.
                 part = place(
                     self.whole.iloc[
                         [*range(max(0, start - 1), end, step), min(end, len(self.whole) - 1)]

@@ -198,7 +198,7 @@ def regression_chart(samples: pd.DataFrame, record: Record) -> Chart | None:
     if not finite(co2, so2) or not np.isfinite(slope):
         return None
     ends = np.array([float(np.nanmin(co2)), float(np.nanmax(co2))])
-    # Beside the background the mean of both is 0, wherever they are shown from.
+    # The line goes through the mean of both.
     middle_co2, middle_so2 = (
         float(np.nanmean(column(samples, name))) for name in ("co2_excess_ppm", "so2_excess_ppb")
     )

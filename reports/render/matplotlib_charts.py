@@ -45,8 +45,8 @@ _MARKS = 0.45
 """Room of the marks of an axis and of its label, beside a panel and below it [inches]."""
 
 _DEPTH = 2.0
-"""At which matplotlib draws lines: tints are drawn there, too, so that a panel's lines lie in their
-order.
+"""Depth at which matplotlib draws lines: tints are drawn there, too, so that the lines of a panel
+lie in their order.
 """
 
 _STYLE: dict[Any, Any] = {

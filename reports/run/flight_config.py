@@ -145,7 +145,7 @@ HULLS = {
 """By the names of ``measurement/ships.toml``: usual sizes of such ships, assumptions."""
 
 ANY = Hull(title="a merchant ship", length=150.0, beam=23.0, known=False)
-"""Of a ship whose class is not known, as one of a user's own."""
+"""Hull of a ship whose class is not known, such as one that a user defines."""
 
 
 def hull_of(config: Mapping[str, Any]) -> Hull:

@@ -281,8 +281,7 @@ class RunData:
         """Return a Parquet file of the run, or None if there is none that can be read."""
         if not is_file(self.path / name):
             return None
-        # Of a file that is read whole, by itself and in one thread: pandas takes twice as long to
-        # ask for the same.
+        # The file is read whole and in one thread: pandas takes twice as long for the same.
         from pyarrow.parquet import ParquetFile
 
         try:
