@@ -51,7 +51,7 @@ def headings(path):
     return {title.decode() for title in re.findall(rb"/Title\((.*?)\)/Dest", path.read_bytes())}
 
 
-def test_flights_that_are_not_printed_have_a_page_only_where_all_are_asked_for(tmp_path):
+def test_flights_that_are_not_printed_have_a_page_only_where_all_are_printed(tmp_path):
     flights = [
         FlightContent(flight_id=i, label=i, title=f"Page {i}", charts=[], printed=i == "b")
         for i in "abc"

@@ -48,7 +48,7 @@ def flights_of(report):
 
 
 def test_both_reports_are_built_from_disk_alone(copy, monkeypatch):
-    # Those of single flights are drawn in the report of trials, and page 1's in its own tests.
+    # Others test the figures of single flights and of page 1.
     draw_all_but(monkeypatch, "first", "tracks", "histories")
     text = built(copy)
     assert "Sweep of the speed ratio" in text

@@ -160,7 +160,7 @@ def test_every_number_on_page_1_is_that_of_the_summaries(runs, compared, report,
         first, other = (of.figure.scale * judged_figure(rows, name, of.figure) for rows in tables)
         digits = of.figure.digits
         known |= {f"{np.median(values):.{digits}f}" for values in (first, other)}
-        # One that is smaller than its digits show has two of its own.
+        # A change that is smaller than its digits show has two significant ones.
         change = abs(np.median(other - first))
         known |= {f"{change:.{digits}f}", f"{change:.2g}"}
     shown = {number.lstrip("-+") for number in numbers_of_page_1(report, tmp_path)}

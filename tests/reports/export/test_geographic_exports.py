@@ -27,7 +27,7 @@ def test_a_kmz_is_valid_by_the_schema_of_the_ogc_and_has_the_places(run_path, tr
         assert archive.namelist() == ["doc.kml"]
         root = etree.fromstring(archive.read("doc.kml"))
     names = {"k": "http://www.opengis.net/kml/2.2", "gx": "http://www.google.com/kml/ext/2.2"}
-    # The extension has a schema of its own; what is left has to be valid without it.
+    # The extension has another schema; what is left has to be valid without it.
     tracks = root.findall(".//gx:Track", names)
     whole = etree.XMLSchema(etree.parse(schemas / "kml22gx.xsd"))
     for place, true in zip(tracks, truth, strict=True):

@@ -83,10 +83,10 @@ def test_a_plume_that_was_not_found_counts_against_the_share(trial):
 
 
 def test_flights_are_compared_with_those_of_the_same_case(trial):
-    study, told = variants_of(trial)
+    study, known = variants_of(trial)
     # Case 0: 0.02/0.02, case 1: 0.03/0.01; the third has no pair.
-    assert sorted(study.beside(told, "fsc_uncertainty_percent")) == pytest.approx([1.0, 3.0])
-    rows = search_table([study, told]).rows
+    assert sorted(study.beside(known, "fsc_uncertainty_percent")) == pytest.approx([1.0, 3.0])
+    rows = search_table([study, known]).rows
     # Errors +0.02, -0.02 and 0: rms 0.02 sqrt(2/3). Medians of 1 and 3, and of the noise 2 and 2.
     assert [row[6:] for row in rows] == [
         ["0.0163", "0.0300", "2.00", "2.00"],

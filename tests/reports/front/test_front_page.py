@@ -146,10 +146,10 @@ def test_the_typical_flight_is_at_the_median_of_all_flights_or_nearest_to_it(
     picture = telling_and_typical(read_trials(run))
     typical = min(nearest, key=lambda rank: abs(distances[rank] - distances[2]))
     closest = min(set(range(5)) - set(gone))
-    told = "the flight with the closest approach" + (
+    words = "the flight with the closest approach" + (
         " of those with a time history." if gone else "."
     )
-    assert told in picture.caption
+    assert words in picture.caption
     if closest == typical:
         # One flight is both: all its tracks are shown, and below them its name.
         assert re.search(

@@ -163,7 +163,7 @@ def test_every_number_on_page_1_is_that_of_the_estimate(run_directory, record, t
         f"{figures['duration_s']:.0f}",
         f"{figures['passes']}",
         f"{figures['co2_snr']:.0f}",
-        # What is less than 0.1 % or more than 99.9 % is not told; the confidence; class A asks for a
+        # Nothing less than 0.1 % or more than 99.9 % is shown; the confidence; class A needs a
         # standard uncertainty of 0.2 times the lowest limit of 0.10 %.
         *("0.1", "99.9", "95", "0.020", "0.027"),
     }

@@ -98,10 +98,10 @@ def test_every_number_on_page_1_of_several_flights_is_that_of_the_summary(severa
         # Confidence, the limit, and that no flight is without a result.
         *("95", "0.10", "0"),
     }
-    told = set(
+    failures = set(
         re.findall(r"\d+(?:\.\d+)?", " ".join(content(read_run(several_path)).verdict.failures))
     )
-    assert numbers_on_page_1(several_path, tmp_path) <= known | told
+    assert numbers_on_page_1(several_path, tmp_path) <= known | failures
 
 
 def test_a_verdict_is_right_or_wrong_by_the_fuel_that_was_simulated():
@@ -210,18 +210,18 @@ def test_page_1_has_place_and_time_where_the_scenario_has_them():
         "sensor": ["fast", "fast", None], "duration_s": [600.0, 700.0, 9000.0], "start_utc": ["2026-06-01T10:00:00Z"] * 3,
         "place_latitude_deg": [56.9, 56.9, 1.0], "place_longitude_deg": [11.5, 11.5, 1.0],
     })  # fmt: skip
-    told = dict(flown_facts(SimpleNamespace(summary=rows)))
-    assert told["Place"] == "56.90000° N, 11.50000° E (the ship at time 0, by the scenario)"
+    found = dict(flown_facts(SimpleNamespace(summary=rows)))
+    assert found["Place"] == "56.90000° N, 11.50000° E (the ship at time 0, by the scenario)"
     # The longer one of the flights that measured takes 11 min 40 s.
-    assert told["Time (UTC)"] == "2026-06-01 10:00:00 to 10:11:40 UTC (by the scenario)"
-    told = dict(
+    assert found["Time (UTC)"] == "2026-06-01 10:00:00 to 10:11:40 UTC (by the scenario)"
+    found = dict(
         flown_facts(SimpleNamespace(summary=rows.assign(place_latitude_deg=[56.9, 57.0, 1.0])))
     )
     assert (
-        told["Place"]
+        found["Place"]
         == "56.90000° N, 11.50000° E, and 1 more (the ship at time 0, by the scenario)"
     )
-    # Beside a ship from AIS flights have place and time whatever they carry; beside others they
+    # Beside a ship from AIS flights have place and time even without a sniffer; beside others they
     # have no facts.
     without = rows.drop(columns=["sensor"])
     assert {"Place", "Time (UTC)"} == dict(flown_facts(SimpleNamespace(summary=without))).keys()

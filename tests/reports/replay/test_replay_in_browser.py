@@ -128,7 +128,7 @@ def test_the_time_slider_takes_the_aircraft_to_where_it_was(kind, browser, runs,
         for axis in ("north", "east"):
             assert place[axis] == pytest.approx(sample[f"{axis}_m"], abs=0.05)
         assert place["altitude"] == pytest.approx(sample["altitude_m"], abs=0.05)
-        # A kinematic vehicle has no heading of its own. Angles are good to 1 mrad; where a bank
+        # A kinematic vehicle has a course alone. Angles are good to 1 mrad; where a bank
         # begins to change, to 0.06 rad.
         heading = (
             sample["heading_rad"] if np.isfinite(sample["heading_rad"]) else sample["course_rad"]

@@ -37,8 +37,7 @@ def test_a_missing_history_is_said_and_other_flights_are_looked_at_instead(small
     bare = read_run(path)
     shown = [str(row["flight_id"]) for _, row, _ in picked_flights(read_trials(bare))]
     assert sorted(shown) == ["steady_00001", "turns_00000", "turns_00001"]
-    # A flight with a violation is shown whatever is left of it; the page says that it has no time
-    # history.
+    # A flight with a violation is shown even so; the page says that it has no time history.
     deep = content(
         with_values(bare, 0, keepout_violations=1, keepout_depth_m=0.5, criteria_met=False)
     )
@@ -101,7 +100,7 @@ def test_manoeuvres_are_named_as_the_vessel_was_seen_to_turn(run):
             for i in (0, -1)
         ]
         assert courses[1] - courses[0] == pytest.approx(turned, abs=1e-6)
-    # One marker per flight, in rows a unit apart of which the first manoeuvre's is the upper one.
+    # One marker per flight, in rows a unit apart; that of the first manoeuvre is above.
     marks = next(line for line in chart.panels[1].lines if line.style == "points")
     assert list(marks.y) == [1.0, 0.0]
 

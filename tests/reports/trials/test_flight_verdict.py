@@ -114,7 +114,7 @@ NOT_FLOWN = {
 }  # fmt: skip
 
 
-def test_a_flight_that_could_not_be_flown_is_told_and_makes_no_other_flights_figure_red(run):
+def test_a_flight_that_could_not_be_flown_is_counted_and_makes_no_other_flights_figure_red(run):
     judged = with_criterion(
         with_values(run, 1, **NOT_FLOWN), "steady", "tracking_error_rms_m", 50.0
     )
@@ -212,7 +212,7 @@ def test_a_violation_that_no_premise_explains_comes_before_anything_else(run):
     ]
 
 
-# The paper's circle on its own vehicle, long enough to settle from any start.
+# The paper's circle on the paper's vehicle, long enough to settle from any start.
 CIRCLE = (
     "cases=[]",
     "study=flights",

@@ -1,6 +1,4 @@
-"""Flights that differ in their keep-out area and in their funnel: each is drawn and measured with
-its own.
-"""
+"""Flights with different keep-out areas and funnels: each is drawn and measured with those it has."""
 
 import json
 import tomllib

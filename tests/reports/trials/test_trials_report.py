@@ -27,8 +27,8 @@ BRIEF = pytest.mark.usefixtures("without_single_flights")
 @BRIEF
 def test_the_limits_shown_are_those_of_the_manifest(run, report):
     # 0.0321 stands in the scenario above.
-    asked = {row[0]: row for row in rows_of(report, "Steady")[1:]}
-    assert asked["Mean crossing interval off π/ω₀"][1] == "≤ 3.21 %"
+    criteria = {row[0]: row for row in rows_of(report, "Steady")[1:]}
+    assert criteria["Mean crossing interval off π/ω₀"][1] == "≤ 3.21 %"
     # Far below what any flight can show, so that both fail.
     other = content(with_criterion(run, "steady", "crossing_interval_error", 1e-6))
     row = next(row for row in rows_of(other, "Steady")[1:] if row[0].startswith("Mean"))
