@@ -11,7 +11,6 @@ from reports.build import build_reports
 from reports.document.blocks import Fold
 from reports.document.chart import Chart
 from reports.registry import content
-from reports.render import matplotlib_charts
 from reports.render.pdf import write_pdf
 from reports.run.run_data import read_run
 from scenarios.engine.processes import InProcessExecutor
@@ -52,17 +51,6 @@ def built(path):
     for anchor in re.findall(r'href="#(\w+)"', text):
         assert f'id="{anchor}"' in text
     return text
-
-
-def draw_all_but(monkeypatch, *names):
-    """Have the charts of these names printed as empty pictures: another one of the report has all
-    that is drawn in them.
-    """
-
-    def drawn(chart):
-        return Figure(figsize=(1.0, 1.0)) if chart.name in names else matplotlib_charts.draw(chart)
-
-    monkeypatch.setattr("reports.render.figure_files.draw", drawn)
 
 
 def blocks_of(report, kind, anchor=None):

@@ -1,4 +1,4 @@
-"""What a user's instrument declares in its one file stands in every report, without another line."""
+"""What an instrument and a study of a user declare in a file stands in every report."""
 
 import json
 
@@ -39,6 +39,26 @@ class Meter:
         return Evaluation(columns=glow[:, None], figures=figures)
 """
 
+STUDY = """
+from common.columns import Column
+from scenarios.flight_runner import FlightRunner
+from scenarios.studies.base import FlightStudy
+from dataclasses import fields
+
+class Spare(FlightStudy):
+    FIGURES = {"spare_m": Column("what is left of the radius", title="Spare distance", worse="lower")}
+
+    def work(self, run):
+        of = super().work(run)
+        return SpareWork(**{field.name: getattr(of, field.name) for field in fields(of)})
+
+class SpareWork(FlightRunner):
+    def more_tables(self, request, plan, record, row):
+        row["spare_m"] = row["min_distance_m"] - row["keepout_radius_m"]
+        return {}
+"""
+
+
 SWEEP = (
     "fidelity=kinematic",
     "sweep.nu=[0.4,0.5]",
@@ -54,9 +74,15 @@ def paths(tmp_path_factory):
     """Fly the same short sweep with two keep-out radii, which scale what the instrument reads."""
     folder = tmp_path_factory.mktemp("added")
     (folder / "meter.py").write_text(METER, encoding="utf-8")
+    (folder / "mystudy.py").write_text(STUDY, encoding="utf-8")
     paths = []
     for radius in (200.0, 210.0):
-        given = [*SWEEP, f'payload=["{folder / "meter.py"}:Meter"]', f"keepout.radius_m={radius}"]
+        given = [
+            *SWEEP,
+            f"study={folder / 'mystudy.py'}:Spare",
+            f'payload=["{folder / "meter.py"}:Meter"]',
+            f"keepout.radius_m={radius}",
+        ]
         paths.append(flown(tmp_path_factory, "sweep_nu", given))
     return paths
 
@@ -103,6 +129,10 @@ def test_figures_and_readings_stand_in_tables_and_charts(run):
     charts = [chart for flight in picker.flights for chart in flight.charts]
     labels = [panel.y_label for chart in charts for panel in chart.panels]
     assert labels.count("Glow of the exhaust [ppb]") == 2
+    spare = run.summary["min_distance_m"] - run.summary["keepout_radius_m"]
+    rows = [row for table in blocks_of(page, Table) for row in table.rows]
+    (row,) = (row for row in rows if row[0] == "Spare distance [m]")
+    assert row[3] == f"{spare.median():.2f}"
     assert each.head == ["Flight", "Peak of the glow [ppb]", "Kind of glow"]
     assert [of[1:] for of in each.rows] == [[f"{peak:.3f}", "dim"] for peak in peaks]
 
@@ -121,37 +151,3 @@ def test_a_figure_is_compared_between_runs(paths, tmp_path):
     write_differences(compared, tmp_path / "differences.csv")
     written = pd.read_csv(tmp_path / "differences.csv")
     assert written["glow_peak_ppb_difference"].to_numpy() == pytest.approx(found.change)
-
-
-STUDY = """
-from common.columns import Column
-from scenarios.flight_runner import FlightRunner
-from scenarios.studies.base import FlightStudy
-from dataclasses import fields
-
-class Spare(FlightStudy):
-    FIGURES = {"spare_m": Column("what is left of the radius", title="Spare distance", worse="lower")}
-
-    def work(self, run):
-        of = super().work(run)
-        return SpareWork(**{field.name: getattr(of, field.name) for field in fields(of)})
-
-class SpareWork(FlightRunner):
-    def more_tables(self, request, plan, record, row):
-        row["spare_m"] = row["min_distance_m"] - row["keepout_radius_m"]
-        return {}
-"""
-
-
-def test_a_study_declares_its_figures_in_the_same_way(tmp_path, tmp_path_factory):
-    (tmp_path / "mystudy.py").write_text(STUDY, encoding="utf-8")
-    given = [*SWEEP, "sweep.nu=[0.5]", f"study={tmp_path / 'mystudy.py'}:Spare"]
-    run = read_run(flown(tmp_path_factory, "sweep_nu", given))
-    (spare,) = run.summary["min_distance_m"] - run.summary["keepout_radius_m"]
-    (over,) = (
-        table
-        for table in blocks_of(content(run), Table)
-        if table.caption.startswith("The figures over all")
-    )
-    assert over.rows[0][0] == "Spare distance [m]"
-    assert over.rows[0][3] == f"{spare:.2f}"

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from judged_runs import changed
-from report_parts import blocks_of, built, draw_all_but, flown
+from report_parts import blocks_of, built, flown
 from snapshots import assert_reads_as_before
 
 from reports.build import build_reports
@@ -47,9 +47,8 @@ def flights_of(report):
     return picker.flights
 
 
-def test_both_reports_are_built_from_disk_alone(copy, monkeypatch):
-    # Others test the figures of single flights and of page 1.
-    draw_all_but(monkeypatch, "first", "tracks", "histories")
+@pytest.mark.usefixtures("sketched")
+def test_both_reports_are_built_from_disk_alone(copy):
     text = built(copy)
     assert "Sweep of the speed ratio" in text
     figures = json.loads(re.search(r'id="flight-figures">(.*?)</script>', text, re.DOTALL)[1])

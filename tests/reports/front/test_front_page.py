@@ -18,41 +18,13 @@ from reports.registry import content
 from reports.render.pdf import write_pdf
 from reports.run.run_data import read_run
 from reports.run.trials import read_trials
-from tests.in_process import run_command
 
 pytestmark = pytest.mark.slow
 
-SHORT = """
-title = "Short"
-description = "Flights for a test."
-fidelity = "kinematic"
-guidance.rate_hz = 10.0
-flights = 5
-seed = 3
-vessel.speed_mps = 8.0
-flight.crossings = 2
-start.distance_m = [300.0, 400.0]
-criteria.tracking_error_rms_m = 1e-4
-"""
-
 
 @pytest.fixture(scope="module")
-def run_path(tmp_path_factory):
-    """Five flights, enough for a bound, that fail the criterion on tracking, as nothing tracks to
-    0.1 mm, and meet the others.
-    """
-    folder = tmp_path_factory.mktemp("front")
-    (folder / "short.toml").write_text(SHORT, encoding="utf-8")
-    ended = run_command(
-        "scenarios.run", folder / "short.toml", "--out", folder / "run", "--no-report"
-    )
-    assert ended.status == 1, ended.errors
-    return folder / "run"
-
-
-@pytest.fixture(scope="module")
-def report(run_path):
-    return content(read_run(run_path))
+def report(five_path):
+    return content(read_run(five_path))
 
 
 def pages_of(path):
@@ -114,8 +86,8 @@ def test_the_box_has_the_colour_of_its_worst_tile_and_is_never_better_than_the_e
 
 
 @pytest.mark.usefixtures("without_single_flights")
-def test_every_kind_of_study_has_its_exit_status_from_one_place(run_path):
-    run = read_run(run_path)
+def test_every_kind_of_study_has_its_exit_status_from_one_place(five_path):
+    run = read_run(five_path)
     for study in ("flights", "trials", "monte_carlo", "falsify", "premises"):
         of_study = replace(run, manifest=run.manifest | {"study": study})
         for interrupted in (False, True):
@@ -125,11 +97,11 @@ def test_every_kind_of_study_has_its_exit_status_from_one_place(run_path):
             assert verdict.headline.startswith("INTERRUPTED") is interrupted
 
 
-def without_histories(run_path, tmp_path, gone):
+def without_histories(five_path, tmp_path, gone):
     """Return the run without the time histories of flights, by their rank in closest approach, and
     all ranked.
     """
-    copy = shutil.copytree(run_path, tmp_path / "run")
+    copy = shutil.copytree(five_path, tmp_path / "run")
     ranked = read_run(copy).summary.sort_values("min_distance_m")
     for rank in gone:
         (copy / "flights" / f"{ranked['flight_id'].iloc[rank]}.parquet").unlink()
@@ -140,9 +112,9 @@ def without_histories(run_path, tmp_path, gone):
     ("gone", "nearest"), [((), {2}), ((3, 4), {2}), ((2,), {1, 3}), ((0, 1, 2), {3})]
 )
 def test_the_typical_flight_is_at_the_median_of_all_flights_or_nearest_to_it(
-    run_path, tmp_path, gone, nearest
+    five_path, tmp_path, gone, nearest
 ):
-    run, distances = without_histories(run_path, tmp_path, gone)
+    run, distances = without_histories(five_path, tmp_path, gone)
     picture = telling_and_typical(read_trials(run))
     typical = min(nearest, key=lambda rank: abs(distances[rank] - distances[2]))
     closest = min(set(range(5)) - set(gone))

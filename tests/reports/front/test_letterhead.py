@@ -4,32 +4,15 @@ import shutil
 
 import pytest
 from PIL import Image
-from report_parts import flown_text
 
 from reports.errors import ReportError
 from reports.run.letterhead import parse_settings
 from tests.in_process import run_command
 
-SHORT = """
-title = "Short"
-fidelity = "kinematic"
-guidance.rate_hz = 10.0
-seed = 3
-vessel.speed_mps = 8.0
-flight.crossings = 2
-start.distance_m = [300.0, 400.0]
-report.author = "A. Author"
-"""
-
-
-@pytest.fixture(scope="module")
-def flown(tmp_path_factory):
-    return flown_text(tmp_path_factory, "short", SHORT)
-
 
 @pytest.fixture
-def run_path(flown, tmp_path):
-    return shutil.copytree(flown, tmp_path / "run")
+def run_path(one_path, tmp_path):
+    return shutil.copytree(one_path, tmp_path / "run")
 
 
 @pytest.mark.usefixtures("sketched")

@@ -43,8 +43,6 @@ emission.ship = "container"
 [[draws]]
 key = "emission.load"
 uniform = [0.2, 0.9]
-[comparison]
-variants = [{ name = "upright", set = { "keepout.shape" = "cylinder" } }]
 """
 
 OWN = [("sphere", 20.0), ("sphere", 60.0), ("cylinder", 20.0), ("cylinder", 60.0)]

@@ -124,6 +124,7 @@ def test_a_run_without_any_history_and_with_a_trial_not_begun_is_reported_on(sma
     ] == ["trial1"]
 
 
+@BRIEF
 def test_a_criterion_that_is_just_failed_is_not_written_as_its_limit(run):
     failed = with_values(
         with_criterion(run, "steady", "tracking_error_rms_m", 1.5), 0, tracking_error_rms_m=1.504
