@@ -1,7 +1,6 @@
 """A run that several packages of tests share, and reports without their slow parts."""
 
 import pytest
-from trial_runs import small_trials
 
 from reports.document.blocks import Section
 from reports.document.chart import Chart, Panel
@@ -10,6 +9,9 @@ from reports.document.chart import Chart, Panel
 @pytest.fixture(scope="session")
 def small_run(tmp_path_factory):
     """The directory of a small kinematic run of two trials, to be read and not changed."""
+    # Tests of exports run where less is imported.
+    from trial_runs import small_trials
+
     return small_trials(tmp_path_factory.mktemp("small"))
 
 

@@ -10,9 +10,7 @@ import pypdfium2
 import pytest
 
 from common.verdict import INTERRUPTED, MET, NOT_MET, UNEXPLAINED
-from reports.document.blocks import Card, LossCard, Table, UndecidedCard, Verdict
-from reports.document.chart import Chart
-from reports.document.numbering import figures_in
+from reports.document.blocks import Card, LossCard, UndecidedCard, Verdict
 from reports.flights.first_page import telling_and_typical
 from reports.registry import content
 from reports.render.pdf import write_pdf
@@ -45,19 +43,6 @@ def test_page_1_is_one_page_however_much_failed(report, tmp_path):
     assert "Figure 1." in first
     assert "and 5 more" in first
     assert "Figure 1." not in second
-
-
-def test_figures_and_tables_are_numbered_in_reading_order_without_gaps(report):
-    blocks = [block for section in report.sections for block in section.blocks]
-    figures = [
-        report.picture.number,
-        *(block.number for block in blocks if isinstance(block, Chart)),
-    ]
-    assert figures == [f"Figure {i}" for i in range(1, len(figures) + 1)]
-    assert figures_in(report.picture, report.sections) == len(figures)
-    tables = [block for block in blocks if isinstance(block, Table)]
-    assert [table.number for table in tables] == [f"Table {i}" for i in range(1, len(tables) + 1)]
-    assert all(table.caption for table in tables)
 
 
 @pytest.mark.parametrize(

@@ -184,27 +184,6 @@ def test_noise_of_a_minute_follows_from_the_time_that_was_evaluated(own, minutes
     assert areas == pytest.approx(0.03 * np.sqrt(minutes))
 
 
-def test_an_operating_curve_of_two_limits_has_a_line_for_each():
-    curve = [
-        {
-            "sensor": "fast", "flights": 4, "limit_percent": limit, "above": float(fuel > limit), "above_2min": 0.0,
-            "above_interval": [0.0, 1.0], "fsc_fuel_percent": fuel,
-        }
-        for limit in (0.1, 0.5)
-        for fuel in (0.05, 0.3, 2.0)
-    ]  # fmt: skip
-    lines = method.operating_curve({"operating_curve": curve}).panels[0].lines
-    ends = {line.label: line.y.tolist() for line in lines if line.label.endswith("at the end")}
-    assert ends == {
-        "fast, 0.1 %, at the end": [0.0, 1.0, 1.0],
-        "fast, 0.5 %, at the end": [0.0, 0.0, 1.0],
-    }
-    assert [line.x[0] for line in lines if line.label == "limit"] == [0.1, 0.5]
-    # A fuel without sulphur has no place on a logarithmic axis.
-    curve[0]["fsc_fuel_percent"] = 0.0
-    assert not method.operating_curve({"operating_curve": curve}).panels[0].log_x
-
-
 def test_page_1_has_place_and_time_where_the_scenario_has_them():
     rows = pd.DataFrame({
         "sensor": ["fast", "fast", None], "duration_s": [600.0, 700.0, 9000.0], "start_utc": ["2026-06-01T10:00:00Z"] * 3,

@@ -11,7 +11,6 @@ from report_parts import blocks_of, flown_text
 
 from reports.document.blocks import FlightPicker, Table
 from reports.errors import ReportError
-from reports.flights.names import flown_elsewhere
 from reports.flights.trials.charts import trial_charts
 from reports.registry import content
 from reports.run.columns import column
@@ -109,18 +108,6 @@ def test_each_swept_value_has_its_name_and_unit_and_a_flight_one_name_everywhere
     assert not any(
         "nu_0" in text for text in (windy.verdict.detail, *windy.verdict.failures, *titles)
     )
-
-
-def test_where_the_flown_speed_ratio_is_not_the_swept_one_a_column_says_it(windy, trial):
-    (flights,) = (of for of in blocks_of(windy, Table, "trial1") if "ν flown [-]" in of.head)
-    # (0.3 * 19.42 + 10)/19.42 = 0.815: head wind on a vessel on course north, at the X8's airspeed.
-    # What was not flown has none.
-    ratios = [row[flights.head.index("ν flown [-]")] for row in flights.rows]
-    assert ratios == ["0.30", "0.81", "0.60", "–"]
-    (picker,) = blocks_of(windy, FlightPicker)
-    assert "flown at ν = 0.81" in picker.flights[1].title.replace("\N{NO-BREAK SPACE}", " ")
-    assert ": not flown, infeasible: " in picker.flights[3].title
-    assert not flown_elsewhere(trial)
 
 
 def test_a_sweep_whose_values_are_gone_names_the_table_that_had_them(trial):

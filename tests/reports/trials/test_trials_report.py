@@ -12,9 +12,6 @@ from judged_runs import judged
 from snapshots import assert_reads_as_before
 from trial_runs import rows_of, with_criterion, with_values
 
-from reports.build import build_reports
-from reports.errors import ReportError
-from reports.output import write_report
 from reports.registry import content
 from reports.run.run_data import read_run
 from reports.run.trials import read_trials
@@ -88,22 +85,6 @@ def test_flights_that_failed_a_criterion_are_counted_for_limits_of_each_kind(
         run = with_values(run, 2 + i, **{name: of[i] for name, of in changed.items()})
     rows = rows_of(content(with_criterion(run, "turns", key, value)), "Turns")
     assert shown in [[*row[1:3], row[-1]] for row in rows]
-
-
-def test_a_report_that_cannot_be_drawn_is_one_line(small_run, run, tmp_path, monkeypatch):
-    def fails(*_, **__):
-        raise ValueError("no such glyph\nat line 3")
-
-    monkeypatch.setattr("reports.registry.content", lambda *_: None)
-    for writer in ("html.write_html", "pdf.write_pdf"):
-        monkeypatch.setattr(f"reports.render.{writer}", fails)
-    words = r"^the report of '.*' could not be drawn: ValueError: no such glyph$"
-    with pytest.raises(ReportError, match=words):
-        build_reports(shutil.copytree(small_run, tmp_path / "copy"))
-    for name in ("report.html", "report.pdf"):
-        with pytest.raises(ReportError, match=words):
-            write_report(run, tmp_path / name)
-    assert not list(tmp_path.glob("report.*"))
 
 
 def test_a_run_without_any_history_and_with_a_trial_not_begun_is_reported_on(small_run, tmp_path):
