@@ -4,6 +4,8 @@ import base64
 import itertools
 import math
 import re
+import tomllib
+from importlib.resources import files
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -19,7 +21,7 @@ from reports.document.chart import Chart, Line, Panel
 from reports.document.palette import COLOURS, SERIES, Meaning
 from reports.document.ship_map import area_outline, hull_line, hull_words, plume_lines
 from reports.render.plotly_charts import draw
-from reports.run.flight_config import Hull, hull_of, outline_of, source_height
+from reports.run.flight_config import ANY, HULLS, Hull, hull_of, outline_of, source_height
 from reports.run.surroundings import LINE_HALF_WIDTH, plume_shape
 
 
@@ -110,6 +112,13 @@ def test_a_ship_of_a_given_size_is_drawn_so_about_its_stack():
     assert (line.y.min(), line.y.max()) == pytest.approx((-35.0, 85.0))
     assert (line.x.min(), line.x.max()) == pytest.approx((-2.0, 16.0))
     assert hull_words(hull) == "its hull is 120 m by 18 m"
+
+
+def test_every_ship_that_is_known_has_a_hull():
+    text = files("measurement").joinpath("ships.toml").read_text(encoding="utf-8")
+    assert set(HULLS) == set(tomllib.loads(text))
+    assert hull_of({"emission": {"ship": "coaster"}}) == HULLS["coaster"]
+    assert hull_of({"emission": {"ship": None}}) == hull_of({}) == ANY
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.7, math.pi])

@@ -56,6 +56,13 @@ def test_both_reports_are_built_from_disk_alone(copy):
     assert figures["nu_1.00"] == []
 
 
+def test_names_that_become_anchors_and_files_are_unique(report):
+    anchors = ["summary", *(section.anchor for section in report.sections)]
+    names = [chart.name for chart in blocks_of(report, Chart)]
+    assert len(set(anchors)) == len(anchors)
+    assert len(set(names)) == len(names)
+
+
 def test_a_flight_of_a_comparison_is_drawn(run_path):
     # It is not in the summary, which has what was swept; that was a KeyError, and the run was
     # called damaged.

@@ -18,8 +18,10 @@ from reports.document.blocks import Table
 from reports.document.chart import Chart
 from reports.document.tables import minus
 from reports.monte_carlo.content import monte_carlo_sections, percent, violation_table
+from reports.monte_carlo.names import input_unit
 from reports.registry import content
 from reports.run.run_data import RunData
+from scenarios.scenario.documentation import documented_keys
 from scenarios.scenario.files import load_study
 from scenarios.statistics.estimates import study_statistics
 from scenarios.studies.manifest import initial_manifest, parameters
@@ -111,6 +113,24 @@ def test_page_1_answers_with_the_probability_of_a_violation_a_loss_and_of_not_fi
         words,
     )
     assert tone == "bad"
+
+
+def test_flights_that_share_what_is_random_count_as_one_in_an_interval(run):
+    manifest = run.manifest | {"study": "monte_carlo", "flights_per_sample": {"study": 2}}
+    words, _ = headline_of(judged(replace(run, manifest=manifest)))
+    # Of 125 samples none violated, and one may have, with the flight that is unknown.
+    high = 100.0 * beta.ppf(0.975, 2, 124)
+    assert words.startswith(f"Probability of violation 0.4 % (0 to {high:.3g} %), ")
+
+
+def test_keys_that_name_their_unit_have_the_one_that_is_documented():
+    # Those of a search or an arena are no inputs of flights; two keys of a plume name none.
+    keys = [
+        of for of in documented_keys() if of.unit and not of.key.startswith(("draws.", "arena."))
+    ]
+    other = {of.key for of in keys if input_unit(of.key) != of.unit}
+    assert len(keys) > 150
+    assert other == {"plume.age_max", "plume.parcel_interval"}
 
 
 def test_page_1_of_a_search_names_the_nearest_flight_and_counts_what_must_not_happen(run):
