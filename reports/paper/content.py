@@ -248,8 +248,8 @@ def sim_3_charts(run: RunData) -> list[Chart]:
             panel_height=0.2,
             caption=(
                 "The paper's figure 8: over the ground. The UAV starts at a random place behind"
-                " the ship. Diamonds: plume crossings after settling, of which the first hundred"
-                " seconds are shown; ship, plume and keep-out area at the end of them."
+                " the ship. Diamonds: plume crossings after settling. The tracks end a hundred"
+                " seconds after settling, with ship, plume and keep-out area as they are then."
             ),
         ),
         _side_by_side(
