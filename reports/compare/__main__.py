@@ -53,7 +53,7 @@ def compare_runs(paths: list[Path], out: Path | None) -> list[Path]:
     with damage_named(*paths):
         compared = compare(runs)
         report = comparison_content(runs, compared)
-    # Of runs that cannot be compared nothing is left behind.
+    # Runs that cannot be compared leave nothing behind.
     _make(directory)
     _print(runs, compared)
     return [

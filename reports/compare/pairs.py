@@ -334,8 +334,8 @@ def _differs(before: "pd.Series[Any]", after: "pd.Series[Any]") -> Mask:
 
 
 PAIRS_MIN = 6
-"""Pairs from which on a median has an interval: of fewer, all lie on one side of it more often than
-in 5 %.
+"""Pairs from which on a median has an interval: fewer lie all on one side of it more often than in
+5 %.
 """
 
 

@@ -144,7 +144,7 @@ _LOOP_STYLES: dict[str, tuple[str, Style]] = {
 dashed or dotted. Blue and green, which are alike in grey, have other styles."""
 
 _OTHER_LOOP: tuple[str, Style] = ("grey", "solid")
-"""Of a loop that the table does not know."""
+"""Colour and style of a loop that the table does not know."""
 
 
 class _Margin(NamedTuple):

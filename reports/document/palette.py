@@ -61,10 +61,10 @@ small letters.
 """
 
 INK = "#4d4d4d"
-"""Of words among curves."""
+"""Colour of words among curves."""
 
 FILL_OPACITY = 0.16
-"""Of what a curve encloses: the grid still shows through."""
+"""Opacity of what a curve encloses: the grid still shows through."""
 
 BAND_OPACITY = 0.35
 """Opacity of a tinted stretch of time, below curves: narrow ones still show."""

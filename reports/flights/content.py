@@ -156,7 +156,7 @@ def _trial(trial: Trial, *, only: bool) -> Section:
         if list(trial.swept) == ["nu"]
         else "Flights"
     )
-    # Of few flights a table or page 1 says more than a figure.
+    # A table or page 1 says more of few flights than a figure.
     few = not trial.swept and len(trial.flown) < COUNTED_MIN
     charts = [] if few else trial_charts(trial)
     blocks = [*text, *charts, *table] if trial.swept else [*text, *table, *charts]

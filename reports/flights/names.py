@@ -41,7 +41,7 @@ def flight_name(trial: Trial, row: "pd.Series[Any]") -> str:
     counted = re.search(r"_(\d+)$", flight_id)
     first, *others = (_swept(trial, key, value) for key, value in values.items())
     words = [first, *(words[0].lower() + words[1:] for words in others)]
-    # Of several flights at the same values each has its number.
+    # Several flights at the same values have a number each.
     return ", ".join(
         [*words, *([f"flight {int(counted[1])}"] if counted and _repeated(trial) else [])]
     )

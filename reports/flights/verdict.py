@@ -214,7 +214,7 @@ _POINTS = {
     " differs between them follows from what is swept, but an error that they have in common may"
     " come from the one sample.",
 }
-"""What is said of the points of a sweep, by whose random numbers they have."""
+"""What page 1 says of the points of a sweep, by the kind of their random numbers."""
 
 
 def flight_verdict(

@@ -44,7 +44,7 @@ _ASPECT = 1.8
 """Width of a track's plan over its height."""
 
 _LONG = 4.0
-"""Length of a track over its width from which on its plan is not drawn to one scale."""
+"""Ratio of length to width of a track from which on its plan is not drawn to one scale."""
 
 
 def over_time_chart(record: Record, since: str = SINCE) -> Chart | None:

@@ -48,7 +48,7 @@ from reports.run.time_history import keepout_distance
 from reports.run.trials import Name
 
 _LARGEST = "Measurement of the flight with the largest relative error"
-"""Of those whose signals were kept."""
+"""Title of the section on it: only flights whose signals were kept count."""
 
 _TRUTH = (
     "The simulated fuel holds {fuel:.3f} %; a perfect instrument would read {expected:.3f} %,"

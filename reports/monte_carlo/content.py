@@ -343,7 +343,7 @@ def monte_carlo_sections(run: RunData) -> list[Section]:
             nav_title="Distributions",
             blocks=_spread(run, statistics),
         ),
-        # Of figures that have indices: few flights have none.
+        # A study of few flights has no indices.
         *(
             [
                 Section(

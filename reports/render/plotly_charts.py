@@ -34,7 +34,7 @@ most.
 """
 
 _HALO = "rgba(255,255,255,0.7)"
-"""Behind words among curves."""
+"""Colour behind words among curves."""
 
 _FEW = 8.0
 """Range of whole numbers from which Plotly marks whole numbers by itself."""

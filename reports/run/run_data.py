@@ -51,7 +51,7 @@ _TRUTH = ("True", "False", "", "nan", "None")
 """What a column of truth values may hold; of a flight without one it is empty."""
 
 _OTHER_SEPARATORS = (";", "\t")
-"""Of a table that a spreadsheet has saved."""
+"""Separators of a table that a spreadsheet has saved."""
 
 _LINE_MOST = 1_000_000
 """Bytes of a row at most."""

@@ -353,7 +353,7 @@ def _over(trial: Trial, keys: Sequence[str], name: str) -> list[Chart]:
     columns = max(2, len(keys))
     crossings = [*intervals, *(over.distances() for over in every)]
     charts = [_chart(trial, f"{name}-crossings", caption, crossings, 0.27, columns)]
-    # Of a flight alone the table says all that is not beside theory.
+    # The table says all of a single flight that is not beside theory.
     if len(trial.flown) > 1:
         errors = [over.figure(figure) for figure in figures for over in every]
         charts.append(_chart(trial, f"{name}-errors", _ERRORS, errors, 0.25, columns))
