@@ -133,17 +133,6 @@ def test_keys_that_name_their_unit_have_the_one_that_is_documented():
     assert other == {"plume.age_max", "plume.parcel_interval"}
 
 
-def test_page_1_of_a_search_names_the_nearest_flight_and_counts_what_must_not_happen(run):
-    manifest = run.manifest | {"study": "falsify"}
-    words, tone = headline_of(replace(run, manifest=manifest, statistics=None))
-    nearest = run.summary["flight_id"][3]
-    assert words == (
-        f"Nearest of 249 flights: \N{MINUS SIGN}0.5 m beyond r_min, {nearest} (fault none, wind 5.0 m/s);"
-        " 1 violated, 0 lost, 0 diverged, 1 unknown"
-    )
-    assert tone == "bad"
-
-
 def test_the_table_of_violations_has_the_intervals_of_clopper_and_pearson(run):
     measured, pessimistic = violation_table(run.statistics).rows
     # One of 249, and two of 250 with the one that is unknown.

@@ -8,14 +8,12 @@ import pandas as pd
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from report_parts import blocks_of, flown_text
+from report_parts import flown_text
 
 from common.text import as_json_cell, cell, from_json_cell
-from reports.document.blocks import FlightPicker
 from reports.export.geographic import recorded_flights
 from reports.flights.single_flight import flight_charts
 from reports.flights.tracks import flight_view
-from reports.registry import content
 from reports.replay.flight_scene import flight_scene
 from reports.run.flight_config import flight_config, with_value
 from reports.run.run_data import RunData, read_overrides, read_run
@@ -91,21 +89,6 @@ def test_replay_map_and_export_have_the_flights_own_keep_out_area_and_funnel(apa
     )
     heights = {flight.flight_id: flight.source_height for flight in recorded_flights(apart)}
     assert [heights[row["flight_id"]] for row in rows] == [height for _, height in OWN]
-
-
-def test_a_trial_of_both_shapes_says_so_and_page_1_says_which_the_closest_flight_has(apart, trial):
-    assert trial.shape == "sphere or cylinder"
-    assert (
-        trial.measured_from
-        == "from the keep-out sphere's centre, or horizontal, from the keep-out cylinder's axis"
-    )
-    report = content(apart)
-    # Without height a distance is shorter.
-    (closest,) = [card for card in report.verdict.figures if card.name == "Closest approach"]
-    assert closest.note.endswith(", horizontal, from the keep-out cylinder's axis")
-    assert "The keep-out cylinder or sphere is about the stack" in report.picture.caption
-    (picker,) = blocks_of(report, FlightPicker)
-    assert [flight.scene.keepout_shape for flight in picker.flights] == [shape for shape, _ in OWN]
 
 
 VARIATION = {"sweep", "cases", "draws", "comparison", "report"}
