@@ -47,7 +47,7 @@ STUDIES: dict[str, Callable[[RunData], Findings]] = {
 """A study, as its manifest names it, and what makes the findings of its report; one of flights
 gives ``flights_content`` the answer to its question. An installed package announces more of them in
 the group ``plume_flight_study.report``, by the name of their study; the class of a study in a file
-has its own as an attribute ``report``.
+has one as its attribute ``report``.
 """
 
 SECTIONS = "report_section"
@@ -79,7 +79,7 @@ def content(run: RunData, settings: Mapping[str, str] | None = None) -> Content:
     exit_status = run.judgement.exit_status if run.judgement else MET
     verdict = replace(found.verdict, exit_status=exit_status)
     figures = Section(anchor="figures", title="Further figures", blocks=_figures(verdict))
-    # What is missing is known once everything has been asked for; it stands first.
+    # What is missing is known once everything has been read; it stands first.
     shown = [_without(found.picture, section) for section in (*found.sections, *added)]
     sections = [*missing_sections(run), figures, *shown, provenance_section(run, head)]
     picture, sections = numbered(found.picture, [section for section in sections if section.blocks])

@@ -61,7 +61,7 @@ def pytest_configure() -> None:
     """Leave what tests are collected from to stay: looking for garbage among it took a third of the
     time of collecting them.
 
-    Bytecode is written whatever the shell says: without it each run, and each process that tests
+    Bytecode is written even if the shell says otherwise: without it each run, and each process that tests
     begin, compiles all modules anew.
     """
     gc.disable()

@@ -48,7 +48,7 @@ from reports.document.tables import (
 from reports.flights.added import added_sections
 from reports.flights.content import flights_content
 from reports.flights.first_page import flights_in_words
-from reports.flights.names import told_name
+from reports.flights.names import name_in_run
 from reports.flights.trials.tables import nearest_cells
 from reports.run.columns import Array, column, flights_flown, lost, total
 from reports.run.flight_config import flight_config
@@ -112,7 +112,7 @@ def arena_content(run: RunData) -> Findings:
     trials = {trial.key: trial for trial in read_trials(run)}
 
     def name(row: "pd.Series[Any]") -> str:
-        return told_name(trials[row["trial"]], row)
+        return name_in_run(trials[row["trial"]], row)
 
     sections = [
         _section("conditions", "Conditions", "Conditions", [condition_table(arena)]),
@@ -809,7 +809,13 @@ def _track_panel(arena: Arena, entrant: Entrant, *, tracking: bool) -> Panel | N
     reference, own = about_the_plume(shown, "reference_"), about_the_plume(shown)
     lines = [
         Line(x=own[0], y=own[1], label="flown", colour=Meaning.FLOWN),
-        Line(x=reference[0], y=reference[1], label="reference", colour=Meaning.ASKED, style="thin"),
+        Line(
+            x=reference[0],
+            y=reference[1],
+            label="reference",
+            colour=Meaning.COMMANDED,
+            style="thin",
+        ),
     ]
     # The same part of the plume for every law, however far from it one is.
     middle, half = (

@@ -53,7 +53,7 @@ def compare_runs(paths: list[Path], out: Path | None) -> list[Path]:
     with damage_named(*paths):
         compared = compare(runs)
         report = comparison_content(runs, compared)
-    # Of runs that cannot be compared nothing is left behind.
+    # Runs that cannot be compared leave nothing behind.
     _make(directory)
     _print(runs, compared)
     return [
@@ -64,8 +64,8 @@ def compare_runs(paths: list[Path], out: Path | None) -> list[Path]:
 
 
 def _beside(paths: list[Path]) -> Path:
-    """Return the directory beside the first run that is named by all of them, of which no other
-    runs have the same.
+    """Return the directory beside the first run that is named after all of them; other runs have
+    another one.
     """
     names = [path.name[:_NAME_MAX] for path in paths]
     if any(path != paths[0].parent / name for path, name in zip(paths, names, strict=True)):

@@ -69,7 +69,7 @@ def _single(runs: Sequence[Run]) -> bool:
 
 def _differing(runs: Sequence[Run]) -> dict[tuple[str, Values], list[str]]:
     """Return the trials, by key and its values, in which they differ; runs of one trial each are
-    compared whatever it is called.
+    compared even if their trials have other names.
     """
     found: dict[tuple[str, Values], list[str]] = {}
     single = _single(runs)
@@ -198,7 +198,7 @@ def software_table(runs: Sequence[Run]) -> Table:
 
 
 def _packages(runs: Sequence[Run]) -> list[list[str]]:
-    """Return a row for each package of which versions differ, and one for all others."""
+    """Return a row for each package whose versions differ, and one for all others."""
     versions = [dict(run.manifest["packages"]) for run in runs]
     names = dict.fromkeys(name for of in versions for name in of)
     differing = [name for name in names if len({of.get(name) for of in versions}) > 1]
@@ -222,7 +222,7 @@ def _files(runs: Sequence[Run]) -> list[list[str]]:
     from.
     """
     used = [run.manifest.get("plugins", {}) | run.manifest.get("vessel_files", {}) for run in runs]
-    # Without their directories, which are those of a machine.
+    # Their directories are left out: they are those of a machine.
     named = [
         {name.replace("\\", "/").rpartition("/")[2]: known for name, known in of.items()}
         for of in used

@@ -52,7 +52,7 @@ _COUNTS: dict[str, Callable[[Run], int]] = {
     "Flights that met every criterion": lambda run: run.data.verdict.counts.met,
     "Flights that are known to have kept out": lambda run: run.data.verdict.counts.kept_out,
     "Flights that violated the keep-out area": lambda run: run.data.verdict.counts.violated,
-    "Flights of which that is unknown": lambda run: run.data.verdict.counts.unknown,
+    "Flights of unknown end": lambda run: run.data.verdict.counts.unknown,
     "Missions completed": lambda run: run.data.verdict.counts.completed,
     "Aircraft lost": lambda run: run.data.verdict.counts.lost,
     "Flights in which the guard intervened": lambda run: count(
@@ -394,7 +394,7 @@ def _pair_section(compared: Compared, tracks: Chart | None) -> Section:
             blocks += [Text(words), differences]
         if table is not None:
             number = count(changed(pairs))
-            first = f", of which the first {LISTED_MAX} are listed" if number > LISTED_MAX else ""
+            first = f"; the first {LISTED_MAX} are listed" if number > LISTED_MAX else ""
             blocks += [
                 Heading(
                     f"Flights that met, kept out or completed in one run alone: {number:,}{first}"

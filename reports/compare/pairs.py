@@ -136,8 +136,8 @@ class Pairs:
     ----------
     first, other : the runs
     before, after : rows of their summaries; the flights of row i are the same
-    same_name : flights without a partner of which the other run has one of the same name, with
-        another seed
+    same_name : flights without a partner for which the other run has a flight of the same name
+        with another seed
     """
 
     first: Run
@@ -251,8 +251,8 @@ def paired(first: Run, other: Run) -> Pairs:
     rows = (first.data.summary, other.data.summary)
     left = [_identities(table) for table in rows]
     found: list[pd.DataFrame] = []
-    # Trials of other names, as of a run of one trial and of a list; and flights whose process was
-    # lost before the seed was known.
+    # Trials may have other names, such as in a run of one trial and in one of a list; and flights
+    # may have no seed, as their process was lost before it was known.
     for keys in (["trial", "name", "seed"], ["name", "seed"], ["trial", "name"]):
         matched = _matched(left[0], left[1], keys)
         found.append(matched[["place_x", "place_y"]])
@@ -294,8 +294,8 @@ def _why_none(one: pd.DataFrame, two: pd.DataFrame, same: int) -> str:
 
 
 def _identities(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return what flights are told by, and their places: the name is that within the trial, which
-    several put before it.
+    """Return trial, name and seed of flights, and their places: the name is that within the trial,
+    without the name of the trial before it.
     """
     if not len(rows):
         return pd.DataFrame({"trial": [], "name": [], "seed": [], "place": []})
@@ -334,8 +334,8 @@ def _differs(before: "pd.Series[Any]", after: "pd.Series[Any]") -> Mask:
 
 
 PAIRS_MIN = 6
-"""Pairs from which on a median has an interval: of fewer, all lie on one side of it more often than
-in 5 %.
+"""Pairs from which on a median has an interval: fewer lie all on one side of it more often than in
+5 %.
 """
 
 
@@ -412,7 +412,7 @@ class Difference:
 
     @property
     def known(self) -> Array:
-        """Return the differences of the pairs of which both flights have the figure."""
+        """Return the differences of the pairs whose flights both have the figure."""
         change = self.change
         return change[np.isfinite(change)]
 

@@ -28,7 +28,7 @@ _ASPECT = 1.1
 """Width of a map over its height [-]."""
 
 _COLOURS = ("blue", "orange")
-"""Of the first run and of the other."""
+"""Colours of the first run and of the other."""
 
 
 def most_changed(pairs: Pairs, found: dict[str, Difference]) -> Chart | None:

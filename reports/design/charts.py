@@ -144,7 +144,7 @@ _LOOP_STYLES: dict[str, tuple[str, Style]] = {
 dashed or dotted. Blue and green, which are alike in grey, have other styles."""
 
 _OTHER_LOOP: tuple[str, Style] = ("grey", "solid")
-"""Of a loop that the table does not know."""
+"""Colour and style of a loop that the table does not know."""
 
 
 class _Margin(NamedTuple):
@@ -226,7 +226,7 @@ def _curve(rows: Sequence[Record], key: str, *, over_bank: bool, between: bool) 
             y=np.array(list(least.values()), dtype=np.float64),
             label="" if between else loop_name(rows[0]),
             colour=colour,
-            # Of two loops of one colour one is dashed or dotted, and has the open marker.
+            # Where two loops have one colour, one is dashed or dotted, and has the open marker.
             style=style if not between else "diamonds" if style in ("solid", "thin") else "ring",
         )
     ]

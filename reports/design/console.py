@@ -13,12 +13,12 @@ from reports.design.tables import pole_table, robustness_table, step_table, wors
 from reports.design.verdict import design_verdict
 from reports.document.console import console_table, wide_console
 
-_ASKED = "{perturbed_gain_db:g} dB and {perturbed_phase_deg:g}°"
+_REQUIRED = "{perturbed_gain_db:g} dB and {perturbed_phase_deg:g}°"
 _HEADINGS = (
     "Poles of the grid",
     "Margins, the worst of grid and points between, with servos, engine and computing delay; of all"
     " controls at once nothing is required",
-    "Margins when perturbed, the worst of loops, grid and points between; required are {asked}",
+    "Margins when perturbed, the worst of loops, grid and points between; required are {required}",
     "Step responses",
 )
 _WORDS = (
@@ -38,13 +38,13 @@ def print_summary(record: Record) -> None:
         step_table(design),
     ]
     console = wide_console()
-    # A title may have brackets of its own, which are no markup.
+    # Brackets in a title are no markup.
     title, source = (escape(str(record[name])) for name in ("title", "source"))
     console.print(f"[bold]{title}[/bold], designed at {record['altitude_m']:g} m. {source}")
-    asked = _ASKED.format(**design["required"])
+    required = _REQUIRED.format(**design["required"])
     for heading, table in zip(_HEADINGS, tables, strict=True):
         console.print()
-        console.print(console_table(heading.format(asked=asked), table))
+        console.print(console_table(heading.format(required=required), table))
     said = {
         "rate": design["autopilot_rate_hz"],
         "lag": record["heading_rate_lag_s"],

@@ -22,8 +22,8 @@ _HUNDRED = 100
 def complete(record: Record) -> Record:
     """Return a design record as reports judge it.
 
-    A row that says of itself that its loop is not stable has no margins, whatever distance to the
-    critical point was measured.
+    A row whose loop is not stable has no margins, even where a distance to the critical point was
+    measured.
     """
     return {
         **record,

@@ -189,7 +189,7 @@ _WEIGHT_UNITS = {
     "altitude_error_max": "m",
     "airspeed_error_max": "m/s", "anti_windup_rate": "1/s",
 }  # fmt: skip
-"""Of the weights of a design record, by their names."""
+"""Units of the weights of a design record, by their names."""
 
 
 def weight_table(design: Record) -> Table:

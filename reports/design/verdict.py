@@ -1,4 +1,4 @@
-"""Whether a design is as asked, at a glance."""
+"""Whether a design is as required, at a glance."""
 
 from collections.abc import Sequence
 
@@ -31,17 +31,19 @@ def design_verdict(design: Record) -> Verdict:
     unstable = _unstable(design)
     nominal, perturbed = _nominal_failures(design), _perturbed_failures(design)
     required = design["required"]
-    asked = f"{required['gain_db']:g} dB and {required['phase_deg']:g}°"
+    margins = f"{required['gain_db']:g} dB and {required['phase_deg']:g}°"
     if unstable:
         headline = f"Unstable at {len(unstable)} of {len(_points(design['margins']))} points"
     elif nominal:
-        headline = f"Stable everywhere, but short of {asked} in {_loops(nominal)}"
+        headline = f"Stable everywhere, but short of {margins} in {_loops(nominal)}"
     elif perturbed:
         less = f"{required['perturbed_gain_db']:g} dB and {required['perturbed_phase_deg']:g}°"
-        headline = f"Every loop has {asked} everywhere, but is short of {less} under a perturbation"
+        headline = (
+            f"Every loop has {margins} everywhere, but is short of {less} under a perturbation"
+        )
     else:
         headline = (
-            f"Every loop has at least {asked} of margin at every point of the grid and between"
+            f"Every loop has at least {margins} of margin at every point of the grid and between"
         )
     return Verdict(
         holds=not unstable,

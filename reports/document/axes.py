@@ -130,7 +130,7 @@ def wrapped(label: str, room: float) -> list[str]:
     """Return the lines of an axis' label: two of about the same length where it has more letters
     than there is room for.
     """
-    # Not within the brackets of a unit.
+    # A line does not end within the brackets of a unit.
     words = re.split(r" (?![^\[]*\])", label)
     if len(label) <= room or len(words) < _LINES:
         return [label]

@@ -64,7 +64,7 @@ class FlightContent:
     label : in the picker
     title : above its page in print
     charts : its figures, or none if it has no record
-    printed : whether it has a page in print, unless all are asked for
+    printed : whether it has a page in print, unless all are to be printed
     scene : for its replay on the screen, or none
     """
 
@@ -132,8 +132,8 @@ def folded(section: Section) -> Section:
 
 
 class Card(NamedTuple):
-    """A figure that is judged or told: its name, its value, what is required of it, whether that is
-    met, and its small print, such as whose figure it is or how sure it is.
+    """A figure that is judged or shown: its name, its value, what is required of it, whether that
+    is met, and its small print, such as whose figure it is or how sure it is.
 
     No limit, and None for ``met``, where nothing is required.
     """
@@ -176,7 +176,7 @@ class Card(NamedTuple):
 
 
 class UndecidedCard(Card):
-    """A measured figure of which it stays open on which side of its limit it lies."""
+    """A measured figure that is not shown to lie on either side of its limit."""
 
     @property
     def required(self) -> str:

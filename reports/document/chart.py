@@ -17,8 +17,8 @@ begins, a square where it ends.
 """
 
 VARIANT_STYLES: tuple[Style, ...] = ("dash", "dot", "solid")
-"""Styles of comparisons, in their order: with their colours, curves are told apart in grey. The
-study's own is solid.
+"""Styles of comparisons, in their order: with their colours, curves differ in grey. That of the
+study is solid.
 """
 
 
@@ -75,7 +75,7 @@ class Band:
     Attributes
     ----------
     start, end : in the unit of the abscissa
-    label : for the legend, as of a line
+    label : for the legend, like that of a line
     colour : a key of ``palette.COLOURS``
     """
 
@@ -91,8 +91,8 @@ class Panel:
 
     Attributes
     ----------
-    x_label, y_label : "Quantity [unit]"; of what has no unit, as of names and counts, the quantity
-        alone
+    x_label, y_label : "Quantity [unit]"; the quantity alone where there is no unit, such as of
+        names and counts
     lines : what is drawn, from back to front
     title : above the panel
     equal : one metre is as long both ways

@@ -9,7 +9,7 @@ from rich.text import Text
 from reports.document.blocks import Table
 
 _WIDTH = 140
-"""Characters of a line where the output is not a terminal, which would give its own width."""
+"""Characters of a line where the output is not a terminal, which would give its width."""
 
 
 def wide_console() -> Console:

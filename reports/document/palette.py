@@ -23,14 +23,14 @@ apart. White is the page's.
 class Meaning(StrEnum):
     """What a colour stands for in figures of flights, each for one thing alone.
 
-    What has no meaning of its own (theory, a perfect instrument, an event) is black or grey, by its
-    style; categories, as of laws, sensors and loops, have the colours of ``SERIES``.
+    What has no meaning here (theory, a perfect instrument, an event) is black or grey, by its
+    style; categories, such as laws, sensors and loops, have the colours of ``SERIES``.
     """
 
     FLOWN = "blue"
     """What the aircraft did: its track, its histories, a flight."""
-    ASKED = "orange"
-    """What was asked of it: the reference, a command, a planned margin."""
+    COMMANDED = "orange"
+    """What it was commanded to do: the reference, a command, a planned margin."""
     LIMIT = "vermillion"
     """The keep-out area, r_min, any criterion or limit, what is beyond it, and how near to it was
     come.
@@ -42,7 +42,7 @@ class Meaning(StrEnum):
     GUARD = "purple"
     """The keep-out guard changed commands."""
     GUARD_LOST = "plum"
-    """The keep-out guard could not hold its own radius."""
+    """The keep-out guard could not hold its radius."""
     SHIP = "black"
     """The ship, and where it went."""
     PLUME = "grey"
@@ -61,13 +61,13 @@ small letters.
 """
 
 INK = "#4d4d4d"
-"""Of words among curves."""
+"""Colour of words among curves."""
 
 FILL_OPACITY = 0.16
-"""Of what a curve encloses: the grid still shows through."""
+"""Opacity of what a curve encloses: the grid still shows through."""
 
 BAND_OPACITY = 0.35
-"""Of a tinted stretch of time, below curves: narrow ones still show."""
+"""Opacity of a tinted stretch of time, below curves: narrow ones still show."""
 
 
 def series_colour(number: int) -> str:

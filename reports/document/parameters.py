@@ -56,9 +56,9 @@ def parameter_rows(every: Sequence[Parameters], words: Mapping[str, str]) -> lis
     Parameters
     ----------
     every : all of them
-    words : instead of a value, as of a key that is sampled
+    words : instead of a value, such as that of a key that is sampled
     """
-    # A table of the user's own has its keys in the rows below.
+    # A table that the user gives has its keys in the rows below.
     tables = {p["key"] for p in every if any(of["key"].startswith(f"{p['key']}.") for of in every)}
     return [
         [

@@ -1,5 +1,5 @@
-"""Where a run comes from: how it was made, of which source and input, with which software, on which
-kind of host.
+"""Where a run comes from: how it was made, its source and input, its software, and the kind of
+host.
 """
 
 from common.provenance import without_folders

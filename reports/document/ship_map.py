@@ -277,7 +277,7 @@ def ship_panel(
     lines, notes : seen from the ship, to the right of the plume's axis and along it [m]; the lines
         from back to front
     title : above the panel
-    shown, aspect : as of ``map_marks.on_map``
+    shown, aspect : those of ``on_map``
     """
     every = [*ship_lines(about, about.axis), *lines]
     panel = Panel(

@@ -55,7 +55,7 @@ def _written(row: Any, cell: Cell) -> str:
 def pairs_table(
     rows: list[list[str]], *, widths: tuple[float, float] = (1.0, 4.0), **others: Any
 ) -> Table:
-    """Return a table without a head, of what things are called and what they are; parameters as of
+    """Return a table without a head, of names and values; other parameters are those of
     ``Table``.
     """
     return Table(

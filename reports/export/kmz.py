@@ -17,7 +17,7 @@ _READINGS = "readings"
 """Name of the schema of what sniffers read."""
 
 _SHOWN = 200
-"""How many times plume and keep-out area are drawn in a flight at most, each for its own while."""
+"""How many times plume and keep-out area are drawn in a flight at most, each for a while."""
 
 _SHOWN_EVERY = 5.0
 """Least time between them [s]."""

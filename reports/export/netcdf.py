@@ -158,7 +158,7 @@ def _sample_variables(flights: Sequence[GeographicFlight]) -> dict[str, Variable
         values = np.concatenate([_motion(flight, what) for flight in flights])
         if np.isfinite(values).any():
             found[name] = (_SAMPLE, values, dict(attributes))
-    # Of each flight, in their order; most runs have one sentence.
+    # The sentences of all flights in their order; most runs have one.
     references = dict.fromkeys(flight.height_reference for flight in flights)
     found["alt"][2]["comment"] = " ".join(references)
     return found
@@ -202,8 +202,8 @@ def _figure_variables(run: RunData, flights: Sequence[GeographicFlight]) -> dict
         attributes = _attributes(column)
         if column.kind == "text":
             del attributes["units"]
-            told = np.array([str(value).encode() for value in values.fillna("")])
-            found[name] = (_FLIGHT, told, attributes)
+            texts = np.array([str(value).encode() for value in values.fillna("")])
+            found[name] = (_FLIGHT, texts, attributes)
             continue
         if column.kind == "truth":
             values = values.map({True: 1.0, False: 0.0, "True": 1.0, "False": 0.0})

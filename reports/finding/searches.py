@@ -24,7 +24,7 @@ from reports.run.run_data import RunData
 from reports.run.trials import AS_IN_THE_STUDY, Name, Trial, read_trials
 
 _SEVERAL = 2
-"""Flights of which there is a share that found the plume."""
+"""Flights from which on there is a share that found the plume."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -117,18 +117,18 @@ def _on_orbit(rows: pd.DataFrame) -> pd.DataFrame:
     return rows[rows["orbit_at_s"].notna()] if "orbit_at_s" in rows else rows.iloc[:0]
 
 
-_TOLD = "told"
-"""Variant that knows the axis, if the run has it."""
+_KNOWN_AXIS = "told"
+"""Name of the variant that knows the axis, if the run has it."""
 
 
 def search_table(variants: list[Variant]) -> Table:
     """Return how soon each variant found its plumes, how often it hit them, and what it measured of
     the fuel.
     """
-    told = next((variant for variant in variants if variant.name == _TOLD), None)
+    known = next((variant for variant in variants if variant.name == _KNOWN_AXIS), None)
 
     def over(name: str) -> Callable[[Variant], str]:
-        return lambda of: _over(of, told, name)
+        return lambda of: _over(of, known, name)
 
     cells = [
         Cell("Variant", lambda of: of.name, width=1.5),
@@ -233,10 +233,10 @@ def _median(values: Array) -> float | None:
     return float(np.median(known)) if len(known) else None
 
 
-def _over(variant: Variant, told: Variant | None, name: str) -> str:
-    if told is None or name not in variant.rows or name not in told.rows:
+def _over(variant: Variant, known: Variant | None, name: str) -> str:
+    if known is None or name not in variant.rows or name not in known.rows:
         return "–"
-    return number(_median(variant.beside(told, name)), "{:.2f}")
+    return number(_median(variant.beside(known, name)), "{:.2f}")
 
 
 _HISTORIES_MAX = 40
@@ -436,7 +436,11 @@ def _single(run: RunData, trial: Trial, name: Name) -> list[Block]:
         view = search_view(run, row)
         if view is not None:
             file = str(row["flight_id"]).replace("_", "-")
-            blocks += [Heading(f"{name(row)}: {why}"), Text(_told(row)), *_charts(view, file)]
+            blocks += [
+                Heading(f"{name(row)}: {why}"),
+                Text(_search_words(row)),
+                *_charts(view, file),
+            ]
     return blocks
 
 
@@ -467,7 +471,7 @@ def _picked(run: RunData, rows: pd.DataFrame) -> list[tuple["pd.Series[Any]", st
     )
 
 
-def _told(row: "pd.Series[Any]") -> str:
+def _search_words(row: "pd.Series[Any]") -> str:
     """Return when the plume was found and what was believed of it, in words."""
     time, error = float(row.get("time_to_find_s", np.nan)), float(row.get(_LATE, np.nan))
     words = [

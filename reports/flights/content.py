@@ -13,7 +13,7 @@ from reports.finding.searches import finding_sections, searching_variants
 from reports.flights.added import added_sections
 from reports.flights.comparison import comparison_section
 from reports.flights.first_page import flights_in_words, telling_and_typical
-from reports.flights.names import flight_name, flown_elsewhere, swept_column, told_name
+from reports.flights.names import flight_name, flown_elsewhere, name_in_run, swept_column
 from reports.flights.parameter_tables import trial_parameters
 from reports.flights.selection import flight_section
 from reports.flights.trials.charts import trial_charts
@@ -51,7 +51,7 @@ def flights_content(run: RunData, answer: Answer = kept_out_and_finished) -> Fin
     by_key = {trial.key: trial for trial in trials}
 
     def name(row: "pd.Series[Any]") -> str:
-        return told_name(by_key[row["trial"]], row)
+        return name_in_run(by_key[row["trial"]], row)
 
     of_search, of_fuel = finding_sections(run, trials, name), sulphur_sections(run, name)
     of_flights = [
@@ -133,7 +133,7 @@ def _trial(trial: Trial, *, only: bool) -> Section:
     table: list[Block] = []
     if trial.kind is Kind.FAULTS and len(trial.flown):
         table.append(fault_table(trial))
-    # Page 1 says of a flight alone what a table of one row would.
+    # A table of one row would repeat page 1.
     if len(trial.rows) > 1 and (trial.swept or (only and len(trial.rows) <= _LISTED_MAX)):
         head, name = swept_column(trial) if trial.swept else ("Flight", partial(flight_name, trial))
         caption = " ".join(["The flights, a row each, with their outcome.", *tracking_lines(trial)])
@@ -156,7 +156,7 @@ def _trial(trial: Trial, *, only: bool) -> Section:
         if list(trial.swept) == ["nu"]
         else "Flights"
     )
-    # Of few flights a table or page 1 says more than a figure.
+    # A table or page 1 says more of few flights than a figure.
     few = not trial.swept and len(trial.flown) < COUNTED_MIN
     charts = [] if few else trial_charts(trial)
     blocks = [*text, *charts, *table] if trial.swept else [*text, *table, *charts]

@@ -11,7 +11,7 @@ import pandas as pd
 from common.physics import SECONDS_PER_HOUR
 from reports.document.chart import Chart
 from reports.document.tables import approach, vehicle_flown
-from reports.flights.names import told_name
+from reports.flights.names import name_in_run
 from reports.flights.tracks import track_picture
 from reports.run.columns import (
     SEVERE,
@@ -38,7 +38,7 @@ _STEADY = 0.005
 """Change of the speed ratio up to which a vessel keeps its speed and course [-]."""
 
 _MINUTES_MIN = 2.0
-"""Time of flight from which on it is told in minutes [min]."""
+"""Time of flight from which on it is given in minutes [min]."""
 
 CALM = 0.05
 """Speed of the wind below which air counts as still [m/s]."""
@@ -74,8 +74,8 @@ def flights_in_words(run: RunData, flown: pd.DataFrame) -> str:
 
 
 def simulated(flown: pd.DataFrame) -> str:
-    """Return how long all flights took together; less than an hour is told in minutes, less than
-    two minutes in seconds.
+    """Return how long all flights took together; less than an hour is in minutes, less than two
+    minutes in seconds.
     """
     time = float(np.nansum(column(flown, "duration_s"))) / SECONDS_PER_HOUR
     if 60.0 * time < _MINUTES_MIN:
@@ -114,13 +114,13 @@ def telling_and_typical(trials: Sequence[Trial]) -> Chart | None:
     typical = int(beside[found])
     chosen = {telling: first} | ({"Typical": typical} if typical != first else {})
     beyond = radii_differ(rows)
-    names = {what: told_name(*flown[place]) for what, place in chosen.items()}
+    names = {what: name_in_run(*flown[place]) for what, place in chosen.items()}
     shown = [
         (*flown[place], _panel_title(flown[place][1], what, names[what], beyond=beyond))
         for what, place in chosen.items()
     ]
-    told = _told(recorded, names, median=median, beyond=beyond)
-    return track_picture(shown, told=told * (len(flown) > 1))
+    remark = _shown_words(recorded, names, median=median, beyond=beyond)
+    return track_picture(shown, remark=remark * (len(flown) > 1))
 
 
 def _panel_title(row: "pd.Series[Any]", what: str, name: str, *, beyond: bool) -> str:
@@ -146,11 +146,11 @@ def _first_recorded(trials: Sequence[Trial]) -> Chart | None:
     several = sum(len(of.flown) for of in trials) > 1
     return track_picture(
         [(trial, row, "")],
-        told=f" {told_name(trial, row)}, the first with a time history." * several,
+        remark=f" {name_in_run(trial, row)}, the first with a time history." * several,
     )
 
 
-def _told(recorded: Mask, names: Mapping[str, str], *, median: bool, beyond: bool) -> str:
+def _shown_words(recorded: Mask, names: Mapping[str, str], *, median: bool, beyond: bool) -> str:
     """Return which flights are shown, whether the typical one is the median, and of what."""
     of = "" if recorded.all() else " of those with a time history"
     what = "least distance beyond its own r_min" if beyond else "closest approach"

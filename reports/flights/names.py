@@ -41,15 +41,15 @@ def flight_name(trial: Trial, row: "pd.Series[Any]") -> str:
     counted = re.search(r"_(\d+)$", flight_id)
     first, *others = (_swept(trial, key, value) for key, value in values.items())
     words = [first, *(words[0].lower() + words[1:] for words in others)]
-    # Of several flights at the same values each has its number.
+    # Several flights at the same values have a number each.
     return ", ".join(
         [*words, *([f"flight {int(counted[1])}"] if counted and _repeated(trial) else [])]
     )
 
 
-def told_name(trial: Trial, row: "pd.Series[Any]") -> str:
-    """Return what a flight is called among those of all trials: names of files tell these apart,
-    swept values do not.
+def name_in_run(trial: Trial, row: "pd.Series[Any]") -> str:
+    """Return what a flight is called among those of all trials: swept values alone may be those of
+    two trials.
     """
     several = trial.swept and len(trial.run.manifest["trials"]) > 1
     return f"{trial.title}, {flight_name(trial, row)}" if several else flight_name(trial, row)
@@ -84,8 +84,8 @@ def words_together(trial: Trial) -> list[str]:
     """Return what each flown flight is called by all words that were swept, with the names of their
     keys where these say which.
 
-    Of words that change nothing in the flights, as of sensors that only listen, markers would cover
-    each other: they are left out.
+    Words that change nothing in the flights, such as sensors that only listen, are left out:
+    their markers would cover each other.
     """
     words = {key: of for key, of in _words(trial).items() if changes_flights(trial, key)}
     called = [
@@ -154,7 +154,7 @@ def _words(trial: Trial) -> "dict[str, pd.Series[Any]]":
 
 
 def _swept(trial: Trial, key: str, value: Any) -> str:
-    """Return what the value of a key is called, told apart from others of the sweep."""
+    """Return what the value of a key is called, so that others of the sweep differ."""
     words = _value(key, value, _numbers(trial, key))
     if key == "nu":
         return f"ν = {words}"
@@ -199,8 +199,8 @@ def manoeuvres_flown(trial: Trial) -> list[str] | None:
     """Return what the vessel did in each flight that was flown, in a few words; None where no table
     says all of it.
 
-    Where a part of a manoeuvre alone is swept or sampled, every flight has one of its own: a name
-    for each groups nothing.
+    Where only a part of a manoeuvre is swept or sampled, every flight has another one: a name for
+    each groups nothing.
     """
     key = "vessel.manoeuvres"
     if not trial.varies(key):

@@ -90,9 +90,7 @@ def _sampled(trial: Trial) -> dict[str, str]:
 
 
 def _meaning(key: str) -> str:
-    """Return the meaning of an input that is no key of its own: the speed ratio, or of an entry of
-    a list.
-    """
+    """Return the meaning of an input that is no key: the speed ratio, or an entry of a list."""
     if entry := re.fullmatch(r"vessel\.manoeuvres\.(\d+)\.(\w+)", key):
         number = int(entry[1]) + 1
         return f"Of the vessel's manoeuvre number {number}: {input_name(entry[2]).lower()}"

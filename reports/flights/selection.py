@@ -11,7 +11,7 @@ import pandas as pd
 from reports.document.blocks import Block, FlightContent, FlightPicker, Section, Text
 from reports.document.tables import approach, ending, number, outcome
 from reports.flights.first_page import CALM
-from reports.flights.names import flown_elsewhere, told_name
+from reports.flights.names import flown_elsewhere, name_in_run
 from reports.flights.single_flight import flight_charts
 from reports.flights.tracks import flight_view
 from reports.replay.flight_scene import flight_scene
@@ -107,12 +107,12 @@ def _printed(picked: Sequence[Picked]) -> list[int]:
     """Return the numbers of the flights that are printed: of those with a time history the most
     telling ones.
     """
-    told = [
+    ranked = [
         (_ORDER.index(why), number)
         for number, (trial, row, why) in enumerate(picked)
         if why in _ORDER and trial.run.has_history(str(row["flight_id"]))
     ]
-    return [number for _, number in sorted(told)[:PRINTED_MAX]]
+    return [number for _, number in sorted(ranked)[:PRINTED_MAX]]
 
 
 def _only(trials: list[Trial]) -> str:
@@ -131,7 +131,7 @@ def _of_sweep(trial: Trial, row: "pd.Series[Any]", why: str) -> FlightContent:
 
 
 def _content(trial: Trial, row: "pd.Series[Any]", state: str) -> FlightContent:
-    name = told_name(trial, row)
+    name = name_in_run(trial, row)
     speed = "{:.1f} m/s" + " at the start" * wind_changes(trial.flight_config(row))
     nearest = approach(
         float(row.get("min_distance_m", math.nan)), float(row.get("keepout_radius_m", math.nan))
@@ -203,7 +203,7 @@ def _candidates(trial: Trial) -> Iterator[tuple["pd.Series[Any]", str]]:
     rows, near = trial.rows, beside_vessel(trial.rows)
     severe = [rows[severity(rows) == place] for place in range(len(SEVERE))]
     failed = rows[~met(rows) & (severity(rows) == len(SEVERE))]
-    # Of the others, those that have a time history: they are chosen for their figures.
+    # The others are chosen for their figures, and need a time history.
     recorded, distances = trial.run.with_history(near), clearance(near)
     least, middle = (_LEAST_BEYOND, _MEDIAN_BEYOND) if radii_differ(near) else (_CLOSEST, _MEDIAN)
     chosen = [

@@ -31,8 +31,8 @@ long.
 """
 
 _LONG_S, _WITHIN_S, _TINT = 900.0, 30.0, 0.35
-"""Duration from which turns would fill a panel [s], time of which their range is shown then, some
-turns long [s], and its tint.
+"""Duration from which turns would fill a panel [s], time whose range is shown then, some turns long
+[s], and its tint.
 """
 
 _TIME = "Time [s]"
@@ -102,7 +102,7 @@ class _Histories:
         return Line(x=self._view.time, y=y, label=label, colour=colour, style=style)
 
     def _command(self, y: Array) -> Line:
-        return self._line(y, "command", Meaning.ASKED)
+        return self._line(y, "command", Meaning.COMMANDED)
 
     def _column(self, name: str) -> Array:
         return column(self._view.samples, name)
@@ -111,13 +111,13 @@ class _Histories:
         if not self._view.vessel:
             return None
         low, high = self._distance_range()
-        told = {
+        events = {
             **fault_marks(self._view.row),
             "manoeuvre ends": self._view.row.get("manoeuvre_end_s"),
         }
         marks = [
             upright(time, (low, high), label, "black", "dot")
-            for label, time in told.items()
+            for label, time in events.items()
             if time is not None and 0.0 < time <= self._view.ends[1]
         ]
         lines = [
@@ -187,7 +187,7 @@ class _Histories:
         limit = float(self._view.row["heading_rate_limit_rad_s"])
         lines = [across(self._view.ends, side * limit, "limit") for side in (1.0, -1.0)]
         # What is flown lies over its command: of many turns the one that is above hides the other.
-        lines += self._fast("heading_rate_command_rad_s", "command", Meaning.ASKED, 1.0)
+        lines += self._fast("heading_rate_command_rad_s", "command", Meaning.COMMANDED, 1.0)
         lines += self._fast("heading_rate_rad_s", "flown", Meaning.FLOWN, 1.0)
         return Panel(x_label=_TIME, y_label="Rate [rad/s]", lines=lines)
 
@@ -254,7 +254,8 @@ class _Histories:
         """Return what users' instruments read, a panel each, of columns with any number."""
         run, samples = self._view.trial.run, self._view.samples
         declared = run.columns.get(FLIGHTS, samples)
-        # Of an instrument whose objects alone have columns, the run says nothing before it flies.
+        # An instrument may declare columns by its objects alone, which the run does not know before
+        # it flies.
         undeclared = {
             name: run.column(name, FLIGHTS) for name in map(str, samples) if name not in declared
         }

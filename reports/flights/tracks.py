@@ -165,7 +165,7 @@ class FlightView:
             x: list[Array] = []
             y: list[Array] = []
             for start, end in stretches:
-                # From sample to sample, so that a single one has a length; a gap follows.
+                # A part goes from sample to sample: a single one has a length. A gap follows.
                 part = place(
                     self.whole.iloc[
                         [*range(max(0, start - 1), end, step), min(end, len(self.whole) - 1)]
@@ -222,7 +222,7 @@ def flight_view(trial: Trial, row: "pd.Series[Any]") -> FlightView | None:
 
 
 def _joined(times: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Return ``_BANDS_MAX`` stretches of time at most, of which the shortest gaps are closed."""
+    """Return ``_BANDS_MAX`` stretches of time at most: the shortest gaps are closed."""
     gaps = sorted(
         (after[0] - before[1] for before, after in itertools.pairwise(times)), reverse=True
     )
@@ -243,7 +243,7 @@ _AROUND = 60.0
 """Time before and after the closest approach for which the track of the ship is drawn [s]."""
 
 _NAMED = 6
-"""Ships whose closest approach is told, at most."""
+"""Ships whose closest approach is named, at most."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -348,13 +348,13 @@ def other_ship_words(ships: Sequence[OtherShip]) -> str:
     """Return how near a flight came to each other ship, for a caption; nothing without any."""
     if not ships:
         return ""
-    told = "; ".join(
+    named = "; ".join(
         f"{ship.name} {ship.distance:.0f} m (r = {ship.radius:g} m) at {ship.at:.0f} s"
         for ship in ships[:_NAMED]
     )
     more = f"; {len(ships) - _NAMED} more stayed farther off" if len(ships) > _NAMED else ""
     return (
-        f" Closest approach to each other ship: {told}{more}. Dashed: their areas at that moment,"
+        f" Closest approach to each other ship: {named}{more}. Dashed: their areas at that moment,"
         " and their ways a minute before and after."
     )
 
@@ -372,12 +372,11 @@ _NEAR_S = 60.0
 """The same of a flight without an oscillation [s]."""
 
 _NEARER = 0.5
-"""Size of what is shown from near, over that of the whole, up to which it has a panel of its own.
-"""
+"""Size of what is shown from near, over that of the whole, up to which it has another panel."""
 
 _UPRIGHT, _LARGE, _BESIDE, _WIDE, _FLAT = 0.66, 1.05, 1.2, 1.9, 4.8
 """Width over height: of one of two flights on page 1, of one of two of a flight there, of such on
-its own page, alone, and over the ground."""
+the page of a flight, alone, and over the ground."""
 
 _ABOVE = 0.08
 """Height of words above what is drawn over the ground, over the height of the panel."""
@@ -419,7 +418,7 @@ def track_chart(view: FlightView) -> Chart:
 
 
 def track_picture(
-    shown: Sequence[tuple[Trial, "pd.Series[Any]", str]], told: str = ""
+    shown: Sequence[tuple[Trial, "pd.Series[Any]", str]], remark: str = ""
 ) -> Chart | None:
     """Return a large picture of flights side by side, each about its ship; all tracks of a flight
     that is alone.
@@ -427,7 +426,7 @@ def track_picture(
     Parameters
     ----------
     shown : trial, row and title of each flight
-    told : what the caption says besides
+    remark : what the caption says besides
 
     Returns
     -------
@@ -442,11 +441,11 @@ def track_picture(
         return None
     if len(found) == 1:
         chart = found[0][0].chart(_LARGE)
-        return replace(chart, name=_PICTURE, caption=chart.caption + told)
+        return replace(chart, name=_PICTURE, caption=chart.caption + remark)
     panels = [tracks.picture(title) for tracks, title in found]
     words = _words([tracks.about for tracks, _ in found])
     return Chart(
-        name=_PICTURE, caption=words + told, panels=panels, columns=len(panels), panel_height=0.42
+        name=_PICTURE, caption=words + remark, panels=panels, columns=len(panels), panel_height=0.42
     )
 
 
@@ -630,7 +629,7 @@ class _Tracks:
     def _reference(place: Place, samples: pd.DataFrame) -> Line:
         """Return the reference, thin, to be drawn over the track."""
         x, y = place(_reference_of(samples))
-        return Line(x=x, y=y, label="reference", colour=Meaning.ASKED, style="thin")
+        return Line(x=x, y=y, label="reference", colour=Meaning.COMMANDED, style="thin")
 
     def _times(self, place: Place, drawn: Sequence[Line]) -> tuple[list[Line], list[Note]]:
         """Return marks at round times along a track that goes across the page, and their words in a

@@ -28,7 +28,7 @@ from reports.flights.criteria import (
     worst_in_words,
     worst_words,
 )
-from reports.flights.names import told_name
+from reports.flights.names import name_in_run
 from reports.flights.trials.tables import failure_lines, noteworthy, tracking_lines
 from reports.measurement.flights import (
     sulphur_below,
@@ -129,8 +129,8 @@ def _ended(run: RunData, counts: Counts) -> str:
         "unknown": counts.unknown - counts.not_flown - counts.diverged,
         "missed a limit": count(missed),
     }
-    told = [f"{number:,} {words}" for words, number in troubles.items() if number]
-    return ", ".join([f"{counts.completed:,} finished", *told])
+    troubled = [f"{number:,} {words}" for words, number in troubles.items() if number]
+    return ", ".join([f"{counts.completed:,} finished", *troubled])
 
 
 def _worst(run: RunData) -> Iterator[str]:
@@ -191,12 +191,12 @@ _COMMAND, _DEMAND = (
 """Names of figures."""
 
 _QUANTILE, _QUANTILE_OF = 0.99, 100
-"""Fraction of flights whose tracking error stays below the one that is told, and flights of which
-there are such fractions.
+"""Fraction of flights whose tracking error stays below the one that is shown, and number of flights
+from which on it is shown.
 """
 
 _BESIDE = 1.0
-"""How much nearer the funnel is horizontally than in space, from which on both are told [m]."""
+"""How much nearer the funnel is horizontally than in space, from which on both are shown [m]."""
 
 _NOTHING_FLOWN = "Nothing was flown: of {planned:,}, {outcomes}"
 _GUARD_IS_WRONG = "The keep-out guard is wrong in {flights:,} of {done:,} flights: {unexplained}"
@@ -214,7 +214,7 @@ _POINTS = {
     " differs between them follows from what is swept, but an error that they have in common may"
     " come from the one sample.",
 }
-"""What is said of the points of a sweep, by whose random numbers they have."""
+"""What page 1 says of the points of a sweep, by the kind of their random numbers."""
 
 
 def flight_verdict(
@@ -393,9 +393,9 @@ def _closest_card(trials: Sequence[Trial], beside: pd.DataFrame) -> Card | None:
         note += f", {approach(distance, radius)} m where r_min is {radius:g} m"
         return Card(name, f"{approach(distance - radius, 0.0)} m", "≥ 0 m", kept, note)
     shapes = {trial.shape for trial in trials}
-    told = len(shapes) == 1 and shapes <= set(SHAPES)
-    name = f"Closest approach, {trials[0].measured_from}" if told else "Closest approach"
-    if not told and closest.shape:
+    is_known = len(shapes) == 1 and shapes <= set(SHAPES)
+    name = f"Closest approach, {trials[0].measured_from}" if is_known else "Closest approach"
+    if not is_known and closest.shape:
         note += f", {measured_from(closest.shape)}"
     return Card(name, f"{approach(distance, radius)} m", f"≥ {radius:g} m", kept, note)
 
@@ -407,7 +407,7 @@ def _named(trials: Sequence[Trial], flight: str) -> str:
     for trial in trials:
         rows = trial.rows[trial.rows["flight_id"] == flight]
         if len(rows):
-            return told_name(trial, rows.iloc[0])
+            return name_in_run(trial, rows.iloc[0])
     return flight
 
 

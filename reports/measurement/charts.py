@@ -44,7 +44,7 @@ _ASPECT = 1.8
 """Width of a track's plan over its height."""
 
 _LONG = 4.0
-"""Length of a track over its width from which on its plan is not drawn to one scale."""
+"""Ratio of length to width of a track from which on its plan is not drawn to one scale."""
 
 
 def over_time_chart(record: Record, since: str = SINCE) -> Chart | None:
@@ -72,8 +72,8 @@ def over_time_chart(record: Record, since: str = SINCE) -> Chart | None:
         float(high[-1]),
         *(limit for limit in limits if limit < 2.0 * float(high[-1])),
     )
-    told = [limit for limit in limits if limit < top]
-    lines += [level(time, limit, "limit", Meaning.LIMIT) for limit in told]
+    shown = [limit for limit in limits if limit < top]
+    lines += [level(time, limit, "limit", Meaning.LIMIT) for limit in shown]
     # The legend would have the same dashes for each.
     notes = [
         Note(
@@ -82,7 +82,7 @@ def over_time_chart(record: Record, since: str = SINCE) -> Chart | None:
             text=f"limit {limit_words(limit)} ",
             align="right",
         )
-        for limit in told
+        for limit in shown
     ]
     if record.get("true_percent") is not None:
         lines.append(level(time, value(record, "true_percent"), "a perfect instrument", "black"))
@@ -198,7 +198,7 @@ def regression_chart(samples: pd.DataFrame, record: Record) -> Chart | None:
     if not finite(co2, so2) or not np.isfinite(slope):
         return None
     ends = np.array([float(np.nanmin(co2)), float(np.nanmax(co2))])
-    # Beside the background the mean of both is 0, wherever they are shown from.
+    # The line goes through the mean of both.
     middle_co2, middle_so2 = (
         float(np.nanmean(column(samples, name))) for name in ("co2_excess_ppm", "so2_excess_ppb")
     )

@@ -167,9 +167,7 @@ def position_words(latitude: float, longitude: float) -> str:
 
 
 def logged_facts(run: RunData, record: Record) -> list[Fact]:
-    """Return what an inspector has to know of a logged flight; of what nobody has told, that it is
-    missing.
-    """
+    """Return what an inspector has to know of a logged flight, and what is missing of that."""
     flight, manifest = record["flight"], run.manifest
     details = flight["details"]
     operator = [Fact("Operator", details["operator"] + _CONFIGURED)] if details["operator"] else []
@@ -209,8 +207,8 @@ def _time_words(flight: dict[str, Any]) -> str:
 
 
 def _place_words(flight: dict[str, Any]) -> str:
-    told = flight["details"]["place"]
-    place = f"{told}{_CONFIGURED}; " if told else ""
+    named = flight["details"]["place"]
+    place = f"{named}{_CONFIGURED}; " if named else ""
     remark = f"; {flight['place_remark']}" if flight["place_remark"] else ""
     if flight["first_position"] is None:
         return f"{place}latitude and longitude are not in the log{remark}"

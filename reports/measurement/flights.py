@@ -48,7 +48,7 @@ from reports.run.time_history import keepout_distance
 from reports.run.trials import Name
 
 _LARGEST = "Measurement of the flight with the largest relative error"
-"""Of those whose signals were kept."""
+"""Title of the section on it: only flights whose signals were kept count."""
 
 _TRUTH = (
     "The simulated fuel holds {fuel:.3f} %; a perfect instrument would read {expected:.3f} %,"
@@ -123,8 +123,8 @@ def sulphur_remarks(run: RunData) -> list[str]:
         return []
     row = measured.iloc[0]
     reason = row["sulphur_reason"]
-    told = isinstance(reason, str) and bool(reason)
-    return [f"Fuel sulphur, quality {row['sulphur_quality']}: {reason}"] if told else []
+    is_known = isinstance(reason, str) and bool(reason)
+    return [f"Fuel sulphur, quality {row['sulphur_quality']}: {reason}"] if is_known else []
 
 
 def sulphur_headline(run: RunData) -> str:
@@ -136,8 +136,8 @@ def sulphur_headline(run: RunData) -> str:
         return ""
     if not len(measured):
         why = set(sniffed["sulphur_reason"].dropna()) if "sulphur_reason" in sniffed else set()
-        told = f": {why.pop()}" if len(why) == 1 else ""
-        return f"No fuel sulphur content from {_flights(len(sniffed))} with a sniffer{told}"
+        reason = f": {why.pop()}" if len(why) == 1 else ""
+        return f"No fuel sulphur content from {_flights(len(sniffed))} with a sniffer{reason}"
     if len(measured) == 1:
         row = measured.iloc[0]
         rejected = row["sulphur_quality"] == REJECTED
@@ -175,7 +175,11 @@ def _flight(run: RunData, measured: pd.DataFrame, name: Name) -> Section | None:
         if record is not None and history is not None:
             samples, since = _samples(record, history), _since(run, row)
             blocks: list[Block | None] = [
-                Text(_told(row) if len(measured) == 1 else f"{name(row)}. {_told(row)}"),
+                Text(
+                    _result_words(row)
+                    if len(measured) == 1
+                    else f"{name(row)}. {_result_words(row)}"
+                ),
                 result_table(record),
                 _track(run, row, history),
                 over_time_chart(record, since),
@@ -213,7 +217,7 @@ def _verdict_words(row: "pd.Series[Any]") -> str:
     return f"{words}{repeated_words(looks, guard)}"
 
 
-def _told(row: "pd.Series[Any]") -> str:
+def _result_words(row: "pd.Series[Any]") -> str:
     """Return result and verdict in words, with probability and limit."""
     verdict = f"The fuel's sulphur content is {_content(row)}: {_verdict_words(row)}."
     reason = row["sulphur_reason"]

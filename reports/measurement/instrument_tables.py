@@ -100,8 +100,8 @@ def instrument_table(record: Record) -> Table:
     found = estimated if any(_FOUND in cell for row in rows for cell in row) else ""
     return Table(
         caption=(
-            f"The channels as the analysis used them.{found} What has no unit of its own is in"
-            f" that of its column. Instrument: {instrument['title']}."
+            f"The channels as the analysis used them.{found} What has no unit is in that of"
+            f" its column. Instrument: {instrument['title']}."
         ),
         head=["Property", *(f"{gas.upper()} [{UNITS[gas]}]" for gas in gases)],
         rows=rows,
@@ -288,23 +288,23 @@ def _columns(columns: dict[str, str]) -> str:
 
 
 def _unmeasured(record: Record) -> str:
-    """Return what is taken of the gases that correct SO2 and are not measured."""
+    """Return what is assumed of the gases that correct SO2 and are not measured."""
     stated, columns = record["instrument"]["stated"], record["flight"]["columns"]
-    so2, told = stated["so2"], []
+    so2, said = stated["so2"], []
     for gas, (ratio, deviation) in EXPECTED_PPB_PER_PPM.items():
         measured, responds = gas in columns and gas in stated, so2["cross"].get(gas)
         if not responds and not so2["cross_sd"].get(gas):
-            told.append(f"SO2 does not respond to {gas.upper()}")
+            said.append(f"SO2 does not respond to {gas.upper()}")
         elif measured and responds:
-            told.append(f"{gas.upper()} is measured, and SO2 corrected for it")
+            said.append(f"{gas.upper()} is measured, and SO2 corrected for it")
         elif measured:
-            told.append(
+            said.append(
                 f"{gas.upper()} is measured, but SO2 not corrected for it, as its response is not"
                 " stated"
             )
         else:
-            told.append(
+            said.append(
                 f"{gas.upper()} is not measured: taken as {ratio:g} ± {deviation:g} ppb per ppm"
                 " of CO2 (1σ)"
             )
-    return "; ".join(told)
+    return "; ".join(said)

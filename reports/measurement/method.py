@@ -161,8 +161,8 @@ _BARS_MAX = 60
 """Flights of a sensor up to which their 95 % intervals are drawn as error bars."""
 
 _WIDE = 10.0
-"""Largest sulphur content over the smallest from which on axes are logarithmic; of a fuel without
-any they are not.
+"""Ratio of the largest sulphur content to the smallest from which on axes are logarithmic; they are
+not where a fuel has no sulphur.
 """
 
 _EDGE, _ASIDE = 1.12, 0.05
@@ -422,7 +422,7 @@ def sulphur_track_chart(history: pd.DataFrame, about: Surroundings) -> Chart:
 
 
 _FEW = 8
-"""Flights of which figures are not spread: of so few there are no statistics."""
+"""Flights below which there are no statistics."""
 
 _VERDICTS = (
     "Verdicts on the sulphur limit from {flights:,} flights: {right:,} right, {wrong:,} wrong,"

@@ -112,11 +112,11 @@ def fuel_card(limit_percent: float, side: str, probability_above: float, quality
     name = f"Probability above the limit of {limit}"
     if quality == "C":
         return Card(name, "no verdict: quality C")
-    told = _short(probability_above)
+    chance = _short(probability_above)
     return (
-        UndecidedCard(name, told, limit)
+        UndecidedCard(name, chance, limit)
         if side == OPEN
-        else FuelCard(name, told, limit, side == BELOW)
+        else FuelCard(name, chance, limit, side == BELOW)
     )
 
 

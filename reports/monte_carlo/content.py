@@ -98,8 +98,7 @@ def left_out_rows(run: RunData, sensitivity: Record) -> list[str]:
     without: dict[str, list[str]] = {}
     for key, found in sensitivity.items():
         if found["message"]:
-            # One reason for figures of which other numbers of flights are known: only its end is
-            # the same.
+            # Figures with other numbers of known flights have one reason: only its end is the same.
             reason = str(found["message"]).rpartition("; ")[2]
             flights = f"{found['flights']:,} flight{'s' * (found['flights'] != 1)}"
             without.setdefault(reason, []).append(f"{run.column(key).title} ({flights})")
@@ -299,7 +298,7 @@ def probabilities(run: RunData) -> str:
         return ""
     if statistics.get("method") == "subset":
         return subset_headline(statistics)
-    # That of a study that was looked at repeatedly is its own.
+    # A study that was looked at repeatedly has another confidence.
     level = float(statistics.get("interval_confidence", CONFIDENCE))
     return _PROBABILITIES.format(
         violation=_probability(run, level, counts.violated, counts.unknown),
@@ -344,7 +343,7 @@ def monte_carlo_sections(run: RunData) -> list[Section]:
             nav_title="Distributions",
             blocks=_spread(run, statistics),
         ),
-        # Of figures that have indices: few flights have none.
+        # A study of few flights has no indices.
         *(
             [
                 Section(

@@ -20,7 +20,7 @@ _POINTS_MAX = 4000
 """Flights that are shown, at most: the worst, and an even sample of the others."""
 
 _MARKS: tuple[Style, ...] = ("points", "diamonds", "square", "ring", "cross")
-"""Of the methods: they are told apart in grey, too."""
+"""Marks of the methods: they differ in grey, too."""
 
 _CONFIRMATION = "confirmation"
 """What stands for the method of flights that repeat one of the worst."""
@@ -118,7 +118,7 @@ def _in_words(config: dict[str, Any], search: dict[str, Any], flights: pd.DataFr
         if seconds is None
         else _TIMED.format(population=population, seconds=seconds)
     )
-    # Of points within what is declared some may have no flight: they cannot be planned, or their
+    # Some points within what is declared may have no flight: they cannot be planned, or their
     # process was lost.
     within = sum(of["flights"] for name, of in search["methods"].items() if name != _CONFIRMATION)
     return _SEARCH.format(

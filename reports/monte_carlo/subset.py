@@ -125,7 +125,7 @@ def method_words(statistics: Record) -> str:
         (_OUTSIDE, outside),
         (_UNKNOWN, unknown),
     ]
-    told = " ".join(words for words, holds in sentences if holds).format(
+    said = " ".join(words for words, holds in sentences if holds).format(
         reached=found["reached"],
         repeats=found["repeats"],
         nearest=nearest,
@@ -133,7 +133,7 @@ def method_words(statistics: Record) -> str:
         unknown=unknown,
         upper=upper,
     )
-    return f"{told} {_METHOD}"
+    return f"{said} {_METHOD}"
 
 
 def _probability_table(statistics: Record) -> Table:

@@ -219,7 +219,7 @@ def sim_3_charts(run: RunData) -> list[Chart]:
             *ship_lines(about, 0.0, *place),
             _path(flown, "vessel_", "ship's track", Meaning.SHIP, "thin"),
             _path(flown, "", "flown"),
-            _path(flown, "reference_", "reference", Meaning.ASKED, "thin"),
+            _path(flown, "reference_", "reference", Meaning.COMMANDED, "thin"),
             _crossings(east, north),
         ]
 
@@ -248,8 +248,8 @@ def sim_3_charts(run: RunData) -> list[Chart]:
             panel_height=0.2,
             caption=(
                 "The paper's figure 8: over the ground. The UAV starts at a random place behind"
-                " the ship. Diamonds: plume crossings after settling, of which the first hundred"
-                " seconds are shown; ship, plume and keep-out area at the end of them."
+                " the ship. Diamonds: plume crossings after settling. The tracks end a hundred"
+                " seconds after settling, with ship, plume and keep-out area as they are then."
             ),
         ),
         _side_by_side(
@@ -348,7 +348,7 @@ def _figure_4(flights: dict[str, Flown]) -> list[Line]:
     flown = flights["sim1"]
     return [
         Line(x=flown.time, y=flown.column("phi_rad"), label="φ", colour=Meaning.FLOWN),
-        Line(x=flown.time, y=flown.column("phi_r_rad"), label="φ_r", colour=Meaning.ASKED),
+        Line(x=flown.time, y=flown.column("phi_r_rad"), label="φ_r", colour=Meaning.COMMANDED),
         *_coincidence_marks(flown, flown.column("phi_r_rad")),
     ]
 
@@ -433,7 +433,7 @@ def _path(
 
 def _reference(flown: Flown) -> Line:
     """Return the circle of the reference, to be drawn over the tracks that come to lie on it."""
-    return _path(flown, "reference_", "reference", Meaning.ASKED, "dash")
+    return _path(flown, "reference_", "reference", Meaning.COMMANDED, "dash")
 
 
 def _starts(flights: list[Flown]) -> Line:
@@ -632,7 +632,7 @@ def _flights(run: RunData) -> FlightPicker:
                 label=f"{name} · {vehicle_name(run, fidelity)}",
                 title=f"{name}: {vehicle_name(run, fidelity)}",
                 charts=flight_charts(view),
-                # Simulation 3 has figures of its own.
+                # Simulation 3 has other figures.
                 printed=False,
                 scene=flight_scene(trial, row, view.whole) if view else None,
             )

@@ -17,18 +17,16 @@ from reports.document.chart import Chart
 from reports.render.matplotlib_charts import draw
 
 _FIGURES_PER_PROCESS = 2
-"""Below which a process takes longer to start than it saves [-]."""
+"""Figures below which a process takes longer to start than it saves [-]."""
 
 _RESOLUTION = 200
-"""Of what is drawn as pixels [1/inch]."""
+"""Resolution of what is drawn as pixels [1/inch]."""
 
 _SVG: dict[Any, Any] = {"svg.fonttype": "path", "svg.hashsalt": "report"}
 """Letters are drawn as curves, and names within a file do not differ from time to time."""
 
 _to_draw: list[tuple[Chart, Path]] = []
-"""In a process of its own: what is drawn by all of them. A forked process inherits it, which is
-faster than to send it.
-"""
+"""What all processes draw. A forked process inherits it, which is faster than to send it."""
 
 
 def write_figures(charts: Mapping[str, Chart], directory: Path) -> None:

@@ -54,8 +54,8 @@ def write_html(report: Content, path: Path) -> None:
 
 
 def _breakable(words: str) -> Markup:
-    """Return words of which long keys may go on over the next line after a point or a stroke, and
-    hashes after any 16 digits.
+    """Return words whose long keys may be broken after a point or a stroke, and whose hashes after
+    any 16 digits.
     """
     keys = re.compile(rf"\S{{{_LONG},}}")
     text = keys.sub(

@@ -36,7 +36,7 @@ abscissa, and for a line of a label.
 """
 
 _SCALE, _BAR = 0.75, 0.13
-"""Room for a colour scale with its marks and label, and its own width [inches]."""
+"""Room for a colour scale with its marks and label, and its width alone [inches]."""
 
 _LETTER = 0.058
 """Width of a letter of a label [inches]."""
@@ -45,8 +45,8 @@ _MARKS = 0.45
 """Room of the marks of an axis and of its label, beside a panel and below it [inches]."""
 
 _DEPTH = 2.0
-"""At which matplotlib draws lines: tints are drawn there, too, so that a panel's lines lie in their
-order.
+"""Depth at which matplotlib draws lines: tints are drawn there, too, so that the lines of a panel
+lie in their order.
 """
 
 _STYLE: dict[Any, Any] = {

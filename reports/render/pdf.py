@@ -64,7 +64,7 @@ def _data(report: Content, directory: Path, figures: Figures, *, all_flights: bo
     flights = [
         flight for picker in pickers for flight in picker.flights if all_flights or flight.printed
     ]
-    # Without a flight in print nothing is left to be said of single flights.
+    # A report without a flight in print has no section on single flights.
     without = [] if flights else [of for of in report.sections if _is_of_flights(of)]
     sections = [_section(of, figures) for of in _in_print(report.sections) if of not in without]
     head, verdict = report.letterhead, report.verdict

@@ -24,8 +24,8 @@ _TITLE_SIZE, _SMALL_TITLE_SIZE = 16, 12
 """Letters of the titles above panels, and above many side by side [px]."""
 
 _ONE_BY_ONE = 3
-"""Panels side by side of which each has a row of its own on a narrow screen; of more two stay side
-by side.
+"""Panels side by side up to which each has a row on a narrow screen; of more, two stay side by
+side.
 """
 
 _HIGHEST, _MAP, _UPRIGHT = 0.6, 0.85, 1.1
@@ -34,7 +34,7 @@ most.
 """
 
 _HALO = "rgba(255,255,255,0.7)"
-"""Behind words among curves."""
+"""Colour behind words among curves."""
 
 _FEW = 8.0
 """Range of whole numbers from which Plotly marks whole numbers by itself."""
@@ -202,7 +202,7 @@ def _marks(
         words = [mark_text(mark) for mark in marks]
         ends = [math.log10(limit) for limit in limits]
         return {"type": "log", "tickvals": marks, "ticktext": words, "range": ends}
-    # Plotly would write 20k and 50µ, before a unit that has a prefix of its own.
+    # Plotly would write 20k and 50µ, before a unit that has a prefix already.
     axis: Data = {"exponentformat": "none"}
     limits = limits or about_values(curves)
     if whole:

@@ -42,7 +42,7 @@ _STEPS = {
 _ANGLES = ("heading", "pitch", "roll", "vessel_heading", "plume_axis")
 
 _STEPS_MAX = 2.0**40
-"""Farthest that is sent, in steps: ten million kilometres, as of a vehicle out of control."""
+"""Farthest that is sent, in steps: ten million kilometres, for a vehicle out of control."""
 
 _STRAIGHT = 1e-6
 """Deviation from a straight line over time that a column is sent as one despite [m, rad]."""
@@ -51,7 +51,7 @@ _MEANINGS = {
     "flown": Meaning.FLOWN,
     # The track of hours is a heap that an aircraft of its colour is not seen on.
     "aircraft": "black",
-    "reference": Meaning.ASKED,
+    "reference": Meaning.COMMANDED,
     "limit": Meaning.LIMIT,
     "guard": Meaning.GUARD,
     "guardLost": Meaning.GUARD_LOST,
@@ -148,8 +148,8 @@ def _hull(hull: Hull, others: Sequence[OtherTrack] = ()) -> Data:
         "known": hull.known,
     }
     named = "; ".join(f"{other.name}, r = {other.radius:g} m" for other in others)
-    told = f" Other ships, pale, each in the area about it: {named}." if others else ""
-    return size | {"name": name, "words": f"Of the ship: {hull_words(hull)}.{told}"}
+    ships = f" Other ships, pale, each in the area about it: {named}." if others else ""
+    return size | {"name": name, "words": f"Of the ship: {hull_words(hull)}.{ships}"}
 
 
 def _other(ship: OtherTrack) -> Data:

@@ -55,7 +55,7 @@ def flight_scene(trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame | No
     ):
         return None
     interval = max(INTERVAL, float(np.median(np.diff(recorded))))
-    # Never more than the history has, whatever its times are.
+    # Never more than the history has, even if its times are wrong.
     samples = min(len(history), int((recorded[-1] - recorded[0]) / interval + 1e-6) + 1)
     if samples < 2:
         return None

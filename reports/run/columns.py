@@ -40,8 +40,8 @@ def least(values: Array) -> float | None:
 
 
 def study_flight(rows: pd.DataFrame) -> "pd.Series[str]":
-    """Return the name of the study's flight of each row: of a comparison's flight the one that it
-    is beside, else its own.
+    """Return the name of the study's flight of each row: the flight itself, or the one beside which
+    a comparison's flight stands.
     """
     own = rows["flight_id"].astype(str)
     return (
@@ -79,8 +79,8 @@ def clearance(rows: pd.DataFrame) -> Array:
 
 
 def radii_differ(rows: pd.DataFrame) -> bool:
-    """Return whether flights have different r_min: what counts is then how far each stayed beyond
-    its own.
+    """Return whether flights have different r_min: what counts is then how far beyond it each
+    stayed.
     """
     return rows["keepout_radius_m"].nunique() > 1
 

@@ -103,7 +103,7 @@ def written(path: Path, write: Callable[[Path], object]) -> Path:
             )
         write_whole(path, whole)
     except OSError as error:
-        # An error of a library may have no number, and so no text of its own.
+        # An error of a library may have no number, and so no text for it.
         reason = error.strerror or next(iter(str(error).splitlines()), "")
         raise ReportError(
             f"'{path}' cannot be written: {reason}; check permissions and space"

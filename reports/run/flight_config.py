@@ -123,7 +123,7 @@ class Hull:
     length, beam : [m]
     funnel : from the stern, over the length [-]
     known : whether it is of its class; of a ship without one it stands for a size that is not known
-    given : whether it is its own, as the scenario or its reports say
+    given : whether the scenario or its reports give it
     aside : how far to starboard of the funnel the middle of the hull is [m]
     """
 
@@ -145,11 +145,11 @@ HULLS = {
 """By the names of ``measurement/ships.toml``: usual sizes of such ships, assumptions."""
 
 ANY = Hull(title="a merchant ship", length=150.0, beam=23.0, known=False)
-"""Of a ship whose class is not known, as one of a user's own."""
+"""Hull of a ship whose class is not known, such as one that a user defines."""
 
 
 def hull_of(config: Mapping[str, Any]) -> Hull:
-    """Return the hull of a flight's ship, by its configuration: its own, else that of its class."""
+    """Return the hull of a flight's ship: as its configuration gives it, else that of its class."""
     own = outline_of(config)
     if own is None:
         return HULLS.get(str(config.get("emission", {}).get("ship")), ANY)

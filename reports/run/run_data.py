@@ -51,7 +51,7 @@ _TRUTH = ("True", "False", "", "nan", "None")
 """What a column of truth values may hold; of a flight without one it is empty."""
 
 _OTHER_SEPARATORS = (";", "\t")
-"""Of a table that a spreadsheet has saved."""
+"""Separators of a table that a spreadsheet has saved."""
 
 _LINE_MOST = 1_000_000
 """Bytes of a row at most."""
@@ -143,8 +143,7 @@ class RunData:
     manifest : its configuration and provenance
     judgement : the verdict that its study has written; None of a design, a measured flight, and a
         run that did not end
-    summary : a row per flight of the study, or per trajectory and law; empty for a design, of which
-        nothing is counted
+    summary : a row per flight of the study, or per trajectory and law; empty for a design
     comparison : a row per flight of the comparisons, possibly none
     crossings : a row per crossing
     innerloop : the autopilot's design record, or none if the run ended before
@@ -282,8 +281,7 @@ class RunData:
         """Return a Parquet file of the run, or None if there is none that can be read."""
         if not is_file(self.path / name):
             return None
-        # Of a file that is read whole, by itself and in one thread: pandas takes twice as long to
-        # ask for the same.
+        # The file is read whole and in one thread: pandas takes twice as long for the same.
         from pyarrow.parquet import ParquetFile
 
         try:

@@ -51,7 +51,7 @@ class PlumeShape:
     distance : from the funnel along the sea, increasing from 0 [m]
     height : of the axis above the sea [m]
     half_width, half_height : of the tube across and up [m]
-    spread_across, spread_up : of one realisation about its own centre, without its meander [m]
+    spread_across, spread_up : of one realisation about its centre, without its meander [m]
     smoke : whether the model has a width; of an axis alone it is ``LINE_HALF_WIDTH``
     """
 

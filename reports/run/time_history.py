@@ -25,7 +25,7 @@ ERROR_MIN = 0.1
 """Floor of logarithmic axes of the tracking error [m]."""
 
 _LOST = 2.0
-"""Value of the column ``guard`` where the guard cannot hold its own radius; it is 1 where it
+"""Value of the column ``guard`` where the guard cannot hold its radius; it is 1 where it
 changes commands, and else 0.
 """
 

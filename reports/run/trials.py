@@ -216,7 +216,7 @@ class Trial:
 
 
 def shape_words(rows: pd.DataFrame) -> str:
-    """Return the shapes of the keep-out areas of flights, as "sphere or cylinder"; no word where
+    """Return the shapes of the keep-out areas of flights, like "sphere or cylinder"; no word where
     they are not known.
     """
     known = set(rows["keepout_shape"].dropna()) if "keepout_shape" in rows else set()

@@ -1,9 +1,18 @@
-"""Reports on flights of which a part is asked for."""
+"""A run that several packages of tests share, and reports without their slow parts."""
 
 import pytest
 
 from reports.document.blocks import Section
 from reports.document.chart import Chart, Panel
+
+
+@pytest.fixture(scope="session")
+def small_run(tmp_path_factory):
+    """The directory of a small kinematic run of two trials, to be read and not changed."""
+    # Tests of exports run where less is imported.
+    from trial_runs import small_trials
+
+    return small_trials(tmp_path_factory.mktemp("small"))
 
 
 @pytest.fixture

@@ -11,7 +11,6 @@ from reports.build import build_reports
 from reports.document.blocks import Fold
 from reports.document.chart import Chart
 from reports.registry import content
-from reports.render import matplotlib_charts
 from reports.render.pdf import write_pdf
 from reports.run.run_data import read_run
 from scenarios.engine.processes import InProcessExecutor
@@ -32,6 +31,15 @@ def flown(tmp_path_factory, scenario, overrides):
     return path
 
 
+def flown_text(tmp_path_factory, name, text):
+    """Fly the text of a scenario under a name and return the directory of the run."""
+    folder = tmp_path_factory.mktemp(name)
+    (folder / f"{name}.toml").write_text(text, encoding="utf-8")
+    study = load_study(str(folder / f"{name}.toml"))
+    run_study(study, name, folder / "run", executor_factory=InProcessExecutor)
+    return folder / "run"
+
+
 def built(path):
     """Build both reports of a run and return the HTML, once it is known to load nothing and to link
     to what it holds.
@@ -43,17 +51,6 @@ def built(path):
     for anchor in re.findall(r'href="#(\w+)"', text):
         assert f'id="{anchor}"' in text
     return text
-
-
-def draw_all_but(monkeypatch, *names):
-    """Have the charts of these names printed as empty pictures: those of which another one of the
-    report has all that is drawn.
-    """
-
-    def drawn(chart):
-        return Figure(figsize=(1.0, 1.0)) if chart.name in names else matplotlib_charts.draw(chart)
-
-    monkeypatch.setattr("reports.render.figure_files.draw", drawn)
 
 
 def blocks_of(report, kind, anchor=None):

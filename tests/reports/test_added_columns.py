@@ -1,12 +1,12 @@
-"""What a user's instrument declares in its one file stands in every report, without another line."""
+"""What an instrument and a study of a user declare in a file stands in every report."""
 
 import json
 
 import numpy as np
 import pandas as pd
 import pytest
+from report_parts import blocks_of, flown
 
-from common.columns import Column
 from common.run_layout import COLUMNS
 from reports.compare.content import compare, comparison_content
 from reports.compare.pairs import read_runs
@@ -15,10 +15,6 @@ from reports.document.blocks import FlightPicker, Table
 from reports.document.chart import Chart
 from reports.registry import content
 from reports.run.run_data import read_run
-from scenarios.api.results import Run
-from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.files import load_study
-from scenarios.studies.base import run_study
 
 pytestmark = pytest.mark.slow
 
@@ -43,121 +39,6 @@ class Meter:
         return Evaluation(columns=glow[:, None], figures=figures)
 """
 
-SWEEP = (
-    "fidelity=kinematic",
-    "sweep.nu=[0.4,0.5]",
-    "flight.crossings=3",
-    "guidance.rate_hz=10",
-    "comparison.nu=[]",
-    "criteria.crossing_interval_error=0.1",
-)
-
-
-@pytest.fixture(scope="module")
-def paths(tmp_path_factory):
-    """Fly the same short sweep with two keep-out radii, which scale what the instrument reads."""
-    folder = tmp_path_factory.mktemp("added")
-    (folder / "meter.py").write_text(METER, encoding="utf-8")
-    for name, radius in (("first", 200.0), ("other", 210.0)):
-        given = [
-            *SWEEP,
-            f'payload=["{folder / "meter.py"}:Meter"]',
-            f"keepout.radius_m={radius}",
-        ]
-        run_study(
-            load_study("sweep_nu", given),
-            "sweep_nu",
-            folder / name,
-            executor_factory=InProcessExecutor,
-            overrides=given,
-        )
-    return folder / "first", folder / "other"
-
-
-@pytest.fixture(scope="module")
-def run(paths):
-    return read_run(paths[0])
-
-
-def blocks_of(page, kind):
-    return [
-        block for section in page.sections for block in section.blocks if isinstance(block, kind)
-    ]
-
-
-def test_the_run_says_what_its_columns_are(paths):
-    told = json.loads((paths[0] / COLUMNS).read_text(encoding="utf-8"))
-    header = (paths[0] / "summary.csv").read_text(encoding="utf-8").splitlines()[0].split(",")
-    assert list(told["summary.csv"]) == header
-    assert told["summary.csv"]["glow_peak_ppb"] == {
-        "title": "Peak of the glow",
-        "symbol": "",
-        "unit": "ppb",
-        "digits": 3,
-        "meaning": "largest brightness",
-        "worse": "higher",
-        "part": "meter.py:Meter",
-    }
-    assert told["flights"]["glow_ppb"]["title"] == "Glow of the exhaust"
-
-
-def test_a_figure_stands_in_a_table_over_the_flights_and_in_one_of_each_flight(run):
-    page = content(run)
-    peaks = run.summary["glow_peak_ppb"]
-    over, each = (
-        next(table for table in blocks_of(page, Table) if table.caption.startswith(words))
-        for words in ("The figures over all", "The same figures")
-    )
-    row = next(row for row in over.rows if row[0] == "Peak of the glow [ppb]")
-    assert row[1:5] == [
-        "2 of 2",
-        *(f"{of:.3f}" for of in (peaks.min(), peaks.median(), peaks.max())),
-    ]
-    assert row[6] == run.summary["flight_id"][int(peaks.argmax())]
-    assert each.head == ["Flight", "Peak of the glow [ppb]", "Kind of glow"]
-    assert [of[1:] for of in each.rows] == [[f"{peak:.3f}", "dim"] for peak in peaks]
-
-
-def test_a_figure_has_a_panel_over_what_was_swept_with_its_name_and_unit(run):
-    panels = [panel for chart in blocks_of(content(run), Chart) for panel in chart.panels]
-    (panel,) = (of for of in panels if of.y_label == "Peak of the glow [ppb]")
-    drawn = np.concatenate([line.y for line in panel.lines])
-    assert sorted(drawn) == pytest.approx(sorted(run.summary["glow_peak_ppb"]))
-    assert "ν" in panel.x_label
-
-
-def test_what_is_read_has_a_panel_among_the_time_histories_of_a_flight(run):
-    (picker,) = blocks_of(content(run), FlightPicker)
-    charts = [chart for flight in picker.flights for chart in flight.charts]
-    labels = [panel.y_label for chart in charts for panel in chart.panels]
-    assert labels.count("Glow of the exhaust [ppb]") == 2
-
-
-def test_a_figure_is_compared_between_runs(paths, tmp_path):
-    runs = read_runs(paths)
-    compared = compare(runs)
-    found = compared[0].found["glow_peak_ppb"]
-    # What is read scales with the radius; the flights themselves differ, too.
-    assert found.change == pytest.approx(found.after - found.before)
-    assert (found.change != 0.0).all()
-    page = comparison_content(runs, compared)
-    titles = [row[0] for table in blocks_of(page, Table) for row in table.rows]
-    assert "Peak of the glow, worst [ppb]" in titles
-    assert "Peak of the glow [ppb]" in titles
-    write_differences(compared, tmp_path / "differences.csv")
-    written = pd.read_csv(tmp_path / "differences.csv")
-    assert written["glow_peak_ppb_difference"].to_numpy() == pytest.approx(found.change)
-
-
-def test_python_has_its_unit_and_meaning(paths):
-    run = Run(paths[0], lines=())
-    assert run.summary.attrs["units"]["glow_peak_ppb"] == "ppb"
-    assert run.summary.attrs["meanings"]["glow_peak_ppb"] == "largest brightness"
-    flight = next(iter(run.flights.values()))
-    assert flight.history.attrs["units"]["glow_ppb"] == "ppb"
-    assert isinstance(run.columns["summary.csv"]["glow_word"], Column)
-
-
 STUDY = """
 from common.columns import Column
 from scenarios.flight_runner import FlightRunner
@@ -178,22 +59,95 @@ class SpareWork(FlightRunner):
 """
 
 
-def test_a_study_declares_its_figures_in_the_same_way(tmp_path):
-    (tmp_path / "mystudy.py").write_text(STUDY, encoding="utf-8")
-    given = [*SWEEP, "sweep.nu=[0.5]", f"study={tmp_path / 'mystudy.py'}:Spare"]
-    run_study(
-        load_study("sweep_nu", given),
-        "sweep_nu",
-        tmp_path / "run",
-        executor_factory=InProcessExecutor,
-        overrides=given,
+SWEEP = (
+    "fidelity=kinematic",
+    "sweep.nu=[0.4,0.5]",
+    "flight.crossings=2",
+    "guidance.rate_hz=10",
+    "comparison.nu=[]",
+    "criteria.crossing_interval_error=0.1",
+)
+
+
+@pytest.fixture(scope="module")
+def paths(tmp_path_factory):
+    """Fly the same short sweep with two keep-out radii, which scale what the instrument reads."""
+    folder = tmp_path_factory.mktemp("added")
+    (folder / "meter.py").write_text(METER, encoding="utf-8")
+    (folder / "mystudy.py").write_text(STUDY, encoding="utf-8")
+    paths = []
+    for radius in (200.0, 210.0):
+        given = [
+            *SWEEP,
+            f"study={folder / 'mystudy.py'}:Spare",
+            f'payload=["{folder / "meter.py"}:Meter"]',
+            f"keepout.radius_m={radius}",
+        ]
+        paths.append(flown(tmp_path_factory, "sweep_nu", given))
+    return paths
+
+
+@pytest.fixture(scope="module")
+def run(paths):
+    return read_run(paths[0])
+
+
+def test_the_run_says_what_its_columns_are(paths):
+    found = json.loads((paths[0] / COLUMNS).read_text(encoding="utf-8"))
+    header = (paths[0] / "summary.csv").read_text(encoding="utf-8").splitlines()[0].split(",")
+    assert list(found["summary.csv"]) == header
+    assert found["summary.csv"]["glow_peak_ppb"] == {
+        "title": "Peak of the glow",
+        "symbol": "",
+        "unit": "ppb",
+        "digits": 3,
+        "meaning": "largest brightness",
+        "worse": "higher",
+        "part": "meter.py:Meter",
+    }
+    assert found["flights"]["glow_ppb"]["title"] == "Glow of the exhaust"
+
+
+def test_figures_and_readings_stand_in_tables_and_charts(run):
+    page = content(run)
+    peaks = run.summary["glow_peak_ppb"]
+    over, each = (
+        next(table for table in blocks_of(page, Table) if table.caption.startswith(words))
+        for words in ("The figures over all", "The same figures")
     )
-    run = read_run(tmp_path / "run")
-    (spare,) = run.summary["min_distance_m"] - run.summary["keepout_radius_m"]
-    (over,) = (
-        table
-        for table in blocks_of(content(run), Table)
-        if table.caption.startswith("The figures over all")
-    )
-    assert over.rows[0][0] == "Spare distance [m]"
-    assert over.rows[0][3] == f"{spare:.2f}"
+    row = next(row for row in over.rows if row[0] == "Peak of the glow [ppb]")
+    assert row[1:5] == [
+        "2 of 2",
+        *(f"{of:.3f}" for of in (peaks.min(), peaks.median(), peaks.max())),
+    ]
+    assert row[6] == run.summary["flight_id"][int(peaks.argmax())]
+    panels = [panel for chart in blocks_of(page, Chart) for panel in chart.panels]
+    (panel,) = (of for of in panels if of.y_label == "Peak of the glow [ppb]")
+    assert sorted(np.concatenate([line.y for line in panel.lines])) == pytest.approx(sorted(peaks))
+    assert "ν" in panel.x_label
+    (picker,) = blocks_of(page, FlightPicker)
+    charts = [chart for flight in picker.flights for chart in flight.charts]
+    labels = [panel.y_label for chart in charts for panel in chart.panels]
+    assert labels.count("Glow of the exhaust [ppb]") == 2
+    spare = run.summary["min_distance_m"] - run.summary["keepout_radius_m"]
+    rows = [row for table in blocks_of(page, Table) for row in table.rows]
+    (row,) = (row for row in rows if row[0] == "Spare distance [m]")
+    assert row[3] == f"{spare.median():.2f}"
+    assert each.head == ["Flight", "Peak of the glow [ppb]", "Kind of glow"]
+    assert [of[1:] for of in each.rows] == [[f"{peak:.3f}", "dim"] for peak in peaks]
+
+
+def test_a_figure_is_compared_between_runs(paths, tmp_path):
+    runs = read_runs(paths)
+    compared = compare(runs)
+    found = compared[0].found["glow_peak_ppb"]
+    # What is read scales with the radius; the flights themselves differ, too.
+    assert found.change == pytest.approx(found.after - found.before)
+    assert (found.change != 0.0).all()
+    page = comparison_content(runs, compared)
+    titles = [row[0] for table in blocks_of(page, Table) for row in table.rows]
+    assert "Peak of the glow, worst [ppb]" in titles
+    assert "Peak of the glow [ppb]" in titles
+    write_differences(compared, tmp_path / "differences.csv")
+    written = pd.read_csv(tmp_path / "differences.csv")
+    assert written["glow_peak_ppb_difference"].to_numpy() == pytest.approx(found.change)

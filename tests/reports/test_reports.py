@@ -7,12 +7,8 @@ import shutil
 import numpy as np
 import pandas as pd
 import pytest
-from judged_runs import changed, judged
-from report_parts import (
-    blocks_of,
-    built,
-    draw_all_but,
-)
+from judged_runs import changed
+from report_parts import blocks_of, built, flown
 from snapshots import assert_reads_as_before
 
 from reports.build import build_reports
@@ -21,11 +17,7 @@ from reports.document.chart import Chart
 from reports.errors import ReportError
 from reports.output import flight_figure
 from reports.registry import content
-from reports.render.html import write_html
 from reports.run.run_data import read_run
-from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.files import load_study
-from scenarios.studies.base import run_study
 from tests.run_tables import change_manifest, manifest_of, write_manifest
 
 pytestmark = pytest.mark.slow
@@ -37,10 +29,7 @@ OVERRIDES = ["sweep.nu=[0.5, 0.9, 1.0]", "flight.crossings=3", "comparison.nu=[0
 
 @pytest.fixture(scope="module")
 def run_path(tmp_path_factory):
-    path = tmp_path_factory.mktemp("reports") / "run"
-    scenario = load_study("sweep_nu", OVERRIDES)
-    run_study(scenario, "sweep_nu", path, executor_factory=InProcessExecutor)
-    return path
+    return flown(tmp_path_factory, "sweep_nu", OVERRIDES)
 
 
 @pytest.fixture(scope="module")
@@ -58,16 +47,8 @@ def flights_of(report):
     return picker.flights
 
 
-def charts_of(report):
-    return [
-        *blocks_of(report, Chart),
-        *(chart for flight in flights_of(report) for chart in flight.charts),
-    ]
-
-
-def test_both_reports_are_built_from_disk_alone(copy, monkeypatch):
-    # Those of single flights are drawn in the report of trials, and page 1's in its own tests.
-    draw_all_but(monkeypatch, "first", "tracks", "histories")
+@pytest.mark.usefixtures("sketched")
+def test_both_reports_are_built_from_disk_alone(copy):
     text = built(copy)
     assert "Sweep of the speed ratio" in text
     figures = json.loads(re.search(r'id="flight-figures">(.*?)</script>', text, re.DOTALL)[1])
@@ -82,28 +63,6 @@ def test_names_that_become_anchors_and_files_are_unique(report):
     assert len(set(names)) == len(names)
 
 
-def test_no_curve_is_empty_or_not_a_number_where_there_is_data(report):
-    for chart in charts_of(report):
-        for panel in chart.panels:
-            assert any(np.isfinite(line.y).any() for line in panel.lines), (
-                chart.name,
-                panel.y_label,
-            )
-
-
-@pytest.mark.usefixtures("without_single_flights")
-def test_a_violation_is_in_the_headline(report, copy):
-    run = read_run(copy)
-    inside = run.summary["flight_id"] == run.summary["flight_id"][0]
-    violations = run.summary["keepout_violations"].mask(inside, 1.0)
-    depth = run.summary["keepout_depth_m"].mask(inside, 0.5)
-    summary = run.summary.assign(keepout_violations=violations, keepout_depth_m=depth)
-    verdict = content(changed(run, summary=summary)).verdict
-    assert verdict.tone == "bad"
-    assert verdict.headline.startswith("1 of 3 speed ratios kept out, ")
-    assert verdict.cards[0].note.startswith("1 violated the area; 1 unknown")
-
-
 def test_a_flight_of_a_comparison_is_drawn(run_path):
     # It is not in the summary, which has what was swept; that was a KeyError, and the run was
     # called damaged.
@@ -115,27 +74,9 @@ def test_an_infeasible_flight_is_in_the_report_with_its_reason(report):
     (table,) = blocks_of(report, Table, "trial1")
     assert "must be below 1" in table.rows[2][1]
     assert report.verdict.tone == "bad"
-    assert report.verdict.headline.startswith(
-        "2 of 3 speed ratios kept out, 2 finished, 1 could not be flown. "
-    )
     assert "must be below 1" in report.verdict.failures[0]
     assert flights_of(report)[2].title.endswith("not flown, infeasible: speed ratio ν is 1")
     assert flights_of(report)[2].charts == []
-
-
-def html_of(report, directory):
-    """Return the report for the screen: to set one in print takes half a second."""
-    write_html(report, directory / "report.html")
-    return (directory / "report.html").read_text(encoding="utf-8")
-
-
-def test_an_interrupted_run_can_be_reported_on(copy):
-    interrupted = judged(read_run(copy), interrupted=True).verdict
-    (copy / "verdict.json").write_text(json.dumps(interrupted.to_json()), encoding="utf-8")
-    (copy / "innerloop.json").unlink()
-    (copy / "comparison.csv").unlink()
-    shutil.rmtree(copy / "flights")
-    assert "continue it with --resume" in html_of(content(read_run(copy)), copy)
 
 
 def test_of_a_sweep_the_closest_flight_is_printed(report, copy):
@@ -162,53 +103,25 @@ def without(path, entry):
     write_manifest(path, manifest)
 
 
+def written(name, text):
+    return lambda path: (path / name).write_text(text, encoding="utf-8")
+
+
 @pytest.mark.parametrize(
     ("damage", "words"),
     [
         (lambda path: (path / "manifest.json").unlink(), "no manifest.json"),
-        (lambda path: (path / "manifest.json").write_text("{", encoding="utf-8"), "cannot be read"),
-        (
-            lambda path: (path / "manifest.json").write_text("{}", encoding="utf-8"),
-            "not that of a run",
-        ),
-        (
-            lambda path: (path / "manifest.json").write_text("[1]", encoding="utf-8"),
-            "not that of a run",
-        ),
-        (
-            lambda path: change_manifest(path, study="opera"),
-            "study is 'opera', which has no report; those that have one: flights",
-        ),
-        (
-            lambda path: change_manifest(path, study=["flights"]),
-            "study is \\['flights'\\], which has no report",
-        ),
-        (
-            lambda path: change_manifest(path, study="sea_trial"),
-            "study is 'sea_trial', which has no report",
-        ),
+        (written("manifest.json", "{"), "cannot be read"),
+        (written("manifest.json", "[1]"), "not that of a run"),
+        (lambda path: change_manifest(path, study="opera"), "study is 'opera', which has no report; those"),
         (lambda path: without(path, "format"), "is a run of format None, and this version reads 1"),
-        (lambda path: without(path, "study"), "study is None, which has no report"),
-        (
-            lambda path: without(path, "trials"),
-            "another version: its manifest.json has no 'trials'",
-        ),
-        (
-            lambda path: change_manifest(path, trials={}),
-            "manifest.json names no trials, whose flights these are",
-        ),
-        (lambda path: change_manifest(path, trials=None), "manifest.json names no trials"),
+        (lambda path: without(path, "trials"), "another version: its manifest.json has no 'trials'"),
+        (lambda path: change_manifest(path, trials={}), "manifest.json names no trials, whose flights"),
         (lambda path: (path / "summary.csv").unlink(), "no summary.csv"),
-        (
-            lambda path: (path / "summary.csv").write_text("x,y\n" + 9 * "1,2\n", encoding="utf-8"),
-            "is damaged",
-        ),
-        (
-            lambda path: (path / "crossings.csv").write_text("x,y\n1,2\n", encoding="utf-8"),
-            "is damaged",
-        ),
+        (written("summary.csv", "x,y\n" + 9 * "1,2\n"), "is damaged"),
+        (written("crossings.csv", "x,y\n1,2\n"), "is damaged"),
     ],
-)
+)  # fmt: skip
 def test_a_damaged_run_is_refused_in_one_line(copy, damage, words):
     damage(copy)
     with pytest.raises(ReportError, match=words) as refusal:

@@ -6,8 +6,7 @@ from dataclasses import replace
 from judged_runs import judged
 from report_parts import blocks_of
 
-from reports.document.blocks import FlightPicker, Table
-from reports.document.chart import Chart
+from reports.document.blocks import Table
 from scenarios.engine.processes import InProcessExecutor
 from scenarios.scenario.sections.experiment import TrialList
 from scenarios.studies.base import run_study
@@ -70,17 +69,6 @@ def with_values(run, number, **values):
     for key, value in values.items():
         summary.loc[number, key] = value
     return judged(replace(run, summary=summary))
-
-
-def charts_of(report):
-    blocks = [block for section in report.sections for block in section.blocks]
-    flights = [
-        flight for block in blocks if isinstance(block, FlightPicker) for flight in block.flights
-    ]
-    return [
-        *(block for block in blocks if isinstance(block, Chart)),
-        *(chart for flight in flights for chart in flight.charts),
-    ]
 
 
 def rows_of(report, title):

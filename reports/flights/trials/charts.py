@@ -56,7 +56,7 @@ def by_words(trial: Trial) -> list[Group]:
     """Return the flights in groups of the words that were swept, as laws, each of a colour; by
     violation where no word was swept.
 
-    Of more words than there are colours none has one of its own.
+    Where there are more words than colours, no word has one.
     """
     words, inside = words_together(trial), violated(trial.flown)
     names = list(dict.fromkeys(words))
@@ -183,11 +183,11 @@ class PanelsOver:
                 beyond, [*points(self._x, kept, self._groups), level(self._span, 0.0, "r_min")]
             )
         if float(np.ptp(planned)) <= _MARGINS_APART * float(np.max(planned)):
-            margin = level(self._span, float(np.mean(planned)), "planned margin", Meaning.ASKED)
+            margin = level(self._span, float(np.mean(planned)), "planned margin", Meaning.COMMANDED)
             levels = [level(self._span, 0.0, "r_min"), margin]
             return self._panel(beyond, [*points(self._x, kept, self._groups), *levels])
         ends = np.array([float(planned.min()), float(planned.max())])
-        same = Line(x=ends, y=ends, label="planned margin", colour=Meaning.ASKED, style="dash")
+        same = Line(x=ends, y=ends, label="planned margin", colour=Meaning.COMMANDED, style="dash")
         levels = [level(planned, 0.0, "r_min"), same]
         return Panel(
             x_label=self._trial.run.column("keepout_margin_m").label,
@@ -353,7 +353,7 @@ def _over(trial: Trial, keys: Sequence[str], name: str) -> list[Chart]:
     columns = max(2, len(keys))
     crossings = [*intervals, *(over.distances() for over in every)]
     charts = [_chart(trial, f"{name}-crossings", caption, crossings, 0.27, columns)]
-    # Of a flight alone the table says all that is not beside theory.
+    # The table says all of a single flight that is not beside theory.
     if len(trial.flown) > 1:
         errors = [over.figure(figure) for figure in figures for over in every]
         charts.append(_chart(trial, f"{name}-errors", _ERRORS, errors, 0.25, columns))
@@ -416,7 +416,7 @@ def _faults(trial: Trial) -> list[Chart]:
 def _strips(
     trial: Trial, name: str, caption: str, kinds: list[str], y_label: str, figures: list[_Figure]
 ) -> Chart:
-    """Return panels beside each other with a row of markers per kind, of which the first names the
+    """Return panels beside each other with a row of markers per kind; the first panel names the
     rows.
     """
     known = [figure for figure in figures if np.isfinite(figure[0]).any()]

@@ -33,7 +33,7 @@ from reports.flights.criteria import (
     trial_bound,
     worst_words,
 )
-from reports.flights.names import told_name
+from reports.flights.names import name_in_run
 from reports.run.columns import (
     Mask,
     by_severity,
@@ -305,7 +305,7 @@ def _least_words(distances: Sequence[float | None], *, signed: bool) -> str:
 
 
 def _closest_after(trial: Trial, row: "pd.Series[Any]", *, beyond: bool) -> float | None:
-    """Return how close a flight came from its fault on [m], ``beyond`` its own r_min or not; None
+    """Return how close a flight came from its fault on [m], from its r_min on if ``beyond``; None
     without fault or time history.
     """
     history = None if pd.isna(row["fault_time_s"]) else trial.run.history(str(row["flight_id"]))
@@ -329,12 +329,12 @@ def failed_blocks(trials: Sequence[Trial]) -> list[Block]:
     if not len(failed):
         return []
     shown = [row for _, row in by_severity(failed).iloc[:FAILED_MAX].iterrows()]
-    names = [told_name(by_key[row["trial"]], row) for row in shown]
+    names = [name_in_run(by_key[row["trial"]], row) for row in shown]
     distances = ["min_distance_m", *(["clearance_m"] if radii_differ(summary) else [])]
     cells = [
         Cell(
             "Flight",
-            lambda row: told_name(by_key[row["trial"]], row),
+            lambda row: name_in_run(by_key[row["trial"]], row),
             width=min(2.4, 0.12 * max(map(len, names))),
         ),
         Cell("ν flown [-]", _ratio_flown, "{:.2f}", 0.5),
@@ -369,7 +369,7 @@ _NAMED_MAX = 3
 """Flights of a trial that the verdict names one by one."""
 
 _SEVERAL = {False: ", ", True: "; "}
-"""Between the names of flights, whether or not these have commas of their own."""
+"""Between the names of flights: without and with commas in the names."""
 
 
 _LOST_TRACK = (
@@ -424,7 +424,7 @@ def _named(trial: Trial, flights: pd.DataFrame) -> Iterator[str]:
     """Yield the flights by name, those of one reason together."""
     reasons: dict[str, list[str]] = {}
     for _, row in flights.iterrows():
-        reasons.setdefault(_reason(row), []).append(told_name(trial, row))
+        reasons.setdefault(_reason(row), []).append(name_in_run(trial, row))
     for reason, names in reasons.items():
         yield f"{_SEVERAL[bool(trial.swept)].join(names)}: {reason}"
 
@@ -457,7 +457,7 @@ def _not_flown(trial: Trial, flights: pd.DataFrame) -> str:
     first = flights.iloc[0]
     return (
         f"{trial.title}: {len(flights)} of {trial.planned} could not be flown; the first,"
-        f" {told_name(trial, first)}: {ending(first)}"
+        f" {name_in_run(trial, first)}: {ending(first)}"
     )
 
 

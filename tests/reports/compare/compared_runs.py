@@ -1,6 +1,4 @@
-"""Runs to compare: short kinematic sweeps that are flown, and made-up ones of which the rows are
-given.
-"""
+"""Runs to compare: short kinematic sweeps that are flown, and made-up ones with given rows."""
 
 from pathlib import Path
 
@@ -18,7 +16,7 @@ SWEEP = (
     "guidance.rate_hz=10",
     "sweep.nu=[0.3, 0.5, 0.7]",
     "flight.crossings=3",
-    "comparison.nu=[0.5]",
+    "comparison={}",
     # Three crossings are too few for the study's own criteria.
     "criteria.crossing_interval_error=0.1",
     "criteria.tracking_error_rms_m=5.0",
@@ -28,13 +26,8 @@ SWEEP = (
 def flown(path, *overrides):
     """Fly a short sweep into a directory and return its path."""
     given = [*SWEEP, *overrides]
-    run_study(
-        load_study("sweep_nu", given),
-        "sweep_nu",
-        path,
-        executor_factory=InProcessExecutor,
-        overrides=given,
-    )
+    study = load_study("sweep_nu", given)
+    run_study(study, "sweep_nu", path, executor_factory=InProcessExecutor, overrides=given)
     return path
 
 

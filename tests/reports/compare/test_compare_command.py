@@ -45,14 +45,6 @@ def test_it_prints_the_figures_and_writes_reports_and_table_beside_the_first_run
     assert sorted(path.name for path in copies[0].rglob("*")) == before
 
 
-@pytest.mark.usefixtures("sketched")
-def test_out_names_the_directory_and_is_made(first, same, tmp_path):
-    ended = compared(first, same, "--out", tmp_path / "a" / "b")
-    assert ended.status == 0, ended
-    assert "No figure differs in 3 pairs of flights" in ended.out
-    assert (tmp_path / "a" / "b" / "compare.html").is_file()
-
-
 def test_runs_of_other_seeds_have_no_flight_in_common(copies):
     summary = copies[1] / "summary.csv"
     rows = pd.read_csv(summary)
@@ -64,70 +56,47 @@ def test_runs_of_other_seeds_have_no_flight_in_common(copies):
     assert set(copies[0].parent.iterdir()) == before
 
 
-def test_fewer_than_two_runs_and_the_same_twice_are_refused(first):
-    assert_refused(compared(first), "1 run given; 2 to 6")
-    assert_refused(compared(first, first.parent / "." / first.name), "given twice")
-
-
-def test_a_directory_that_holds_no_run_is_refused(first, tmp_path):
-    assert_refused(compared(first, tmp_path), "holds no run")
-    assert_refused(compared(first, tmp_path / "nowhere"), "holds no run")
-
-
-def test_a_run_that_was_killed_before_its_tables_were_written_is_refused(copies):
-    (copies[1] / "summary.csv").unlink()
-    assert_refused(compared(*copies), "holds nothing finished", "--resume")
-
-
-@pytest.mark.parametrize("entry", ["trials", "fingerprint", "config_hash"])
-def test_a_manifest_of_another_version_is_refused(copies, entry):
-    manifest = manifest_of(copies[1])
+def without(path, entry):
+    manifest = manifest_of(path)
     del manifest[entry]
-    write_manifest(copies[1], manifest)
-    assert_refused(compared(*copies), "another version", f"'{entry}'")
+    write_manifest(path, manifest)
 
 
-def test_a_summary_of_another_version_is_refused(copies):
-    summary = copies[1] / "summary.csv"
-    summary.write_text(
-        summary.read_text(encoding="utf-8").replace(",seed,", ",noise_seed,"), encoding="utf-8"
-    )
-    assert_refused(compared(*copies), "another version", "'seed'")
-
-
-@pytest.mark.parametrize("study", ["design", "measurement"])
-def test_studies_whose_rows_are_no_flights_are_refused(copies, study):
-    change_manifest(copies[1], study=study)
-    assert_refused(compared(*copies), f"of the study '{study}'")
-
-
-def test_a_study_may_say_why_its_runs_are_not_compared(copies):
-    change_manifest(copies[1], not_compared="which has no flights to compare")
-    assert_refused(compared(*copies), "which has no flights to compare")
+def of_another_version(path):
+    summary = path / "summary.csv"
+    text = summary.read_text(encoding="utf-8").replace(",seed,", ",noise_seed,")
+    summary.write_text(text, encoding="utf-8")
 
 
 @pytest.mark.parametrize(
-    ("trials", "words"),
+    ("damage", "words"),
     [
-        ([], "names no trials"),
-        ({"sweep_nu": 3}, "is damaged"),
-        ({"sweep_nu": {"draws": 7}}, "is damaged"),
+        (lambda path: (path / "manifest.json").unlink(), ("holds no run",)),
+        (lambda path: (path / "summary.csv").unlink(), ("holds nothing finished", "--resume")),
+        (lambda path: without(path, "config_hash"), ("another version", "'config_hash'")),
+        (of_another_version, ("another version", "'seed'")),
+        (lambda path: change_manifest(path, study="design"), ("of the study 'design'",)),
+        (lambda path: change_manifest(path, not_compared="which has none"), ("which has none",)),
+        (lambda path: change_manifest(path, trials=[]), ("names no trials",)),
+        (lambda path: change_manifest(path, trials={"sweep_nu": 3}), ("is damaged",)),
     ],
 )
-def test_a_damaged_manifest_is_one_line(copies, trials, words):
-    change_manifest(copies[1], trials=trials)
-    assert_refused(compared(*copies), words)
+def test_a_directory_that_is_no_run_of_flights_of_this_version_is_refused(copies, damage, words):
+    damage(copies[1])
+    assert_refused(compared(*copies), *words)
 
 
-def test_the_directory_of_a_run_is_no_place_for_a_comparison(copies):
+def test_a_place_that_is_a_run_or_cannot_be_made_is_refused(copies, tmp_path):
     assert_refused(compared(*copies, "--out", copies[0]), "directory of a run")
-
-
-def test_a_place_that_cannot_be_made_is_refused(copies, tmp_path):
     (tmp_path / "file").touch()
     assert_refused(
         compared(*copies, "--out", tmp_path / "file" / "below"), "cannot be made", "--out"
     )
+
+
+def test_fewer_than_two_runs_and_the_same_twice_are_refused(first):
+    assert_refused(compared(first), "1 run given; 2 to 6")
+    assert_refused(compared(first, first.parent / "." / first.name), "given twice")
 
 
 def _hold(path, opened, released):

@@ -51,39 +51,12 @@ def test_a_key_that_differs_has_its_unit_and_meaning(two):
     assert row[4]
 
 
-def test_a_key_without_effect_that_an_aircraft_scales_has_its_unit_and_meaning(two):
-    key = {"key": "guidance.bound_speed_margin_mps", "unit": "m/s", "meaning": "A margin."}
-    (trial,) = two[1].manifest["trials"]
-    two[1].manifest["unused_parameters"] = {trial: [key]}
-    parameters_of(two[0])[:] = [of for of in parameters_of(two[0]) if of["key"] != key["key"]]
-    parameters_of(two[1])[:] = [of for of in parameters_of(two[1]) if of["key"] != key["key"]]
-    config_of(two[1])["guidance"]["bound_speed_margin_mps"] = 2.0
-    (row,) = configuration_table(two).rows
-    assert row == ["guidance.bound_speed_margin_mps", "0.5", "2", "m/s", "A margin."]
-
-
 def test_a_key_that_one_version_does_not_have_is_said_to_be_none(two):
     del config_of(two[0])["guidance"]["preview"]
     parameters_of(two[0])[:] = [
         of for of in parameters_of(two[0]) if of["key"] != "guidance.preview"
     ]
     assert cells(two) == {"guidance.preview": ("not a key", "yes")}
-
-
-def test_a_key_of_a_part_that_one_run_leaves_out_has_its_default(two):
-    # A configuration has what is set alone of such keys.
-    for run, value in zip(two, ("electrochemical", "fast"), strict=True):
-        known = {
-            "key": "payload.sensor",
-            "value": value,
-            "default": "electrochemical",
-            "unit": "",
-            "meaning": "Sniffer.",
-        }
-        parameters_of(run).append(known)
-    config_of(two[1])["payload"]["sensor"] = "fast"
-    (row,) = configuration_table(two).rows
-    assert row == ["payload.sensor", "electrochemical", "fast", "", "Sniffer."]
 
 
 def software(runs):
@@ -95,7 +68,7 @@ def software(runs):
 def test_versions_files_and_hashes_that_differ_stand_out(two):
     two[1].manifest["packages"]["jsbsim"] = "0.9"
     two[1].manifest["fingerprint"]["source"] = "abc"
-    # A path of the machine that flew is told by neither.
+    # A path of the machine that flew stands in neither.
     two[1].manifest["plugins"] = {"/home/jo/laws/mylaw.py:MyLaw": "0123"}
     interrupted = two[1].data.verdict.once_interrupted(interrupted=True)
     two[1] = replace(two[1], data=replace(two[1].data, judgement=interrupted))

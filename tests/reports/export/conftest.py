@@ -33,7 +33,9 @@ def run_path(request, tmp_path):
     pd.DataFrame([row]).to_csv(path / "summary.csv", index=False)
     crossing = {"flight_id": "a, <b>", "time_s": 30.05, "distance_m": 250.0}
     pd.DataFrame([crossing]).to_csv(path / "crossings.csv", index=False)
-    track().to_parquet(path / "flights" / "a, <b>.parquet")
+    # NO2 is not on board, and so2_ppb is no reading.
+    more = {"no2_reading_ppb": math.nan, "so2_ppb": 1.0}
+    track().assign(**read(), **more).to_parquet(path / "flights" / "a, <b>.parquet")
     return path
 
 
@@ -52,10 +54,3 @@ def truth(run_path):
         )
         for of in ("", "vessel_")
     ]
-
-
-@pytest.fixture
-def sniffed(run_path):
-    more = {"no2_reading_ppb": math.nan, "so2_ppb": 1.0}
-    track().assign(**read(), **more).to_parquet(run_path / "flights" / "a, <b>.parquet")
-    return run_path

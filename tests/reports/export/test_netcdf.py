@@ -39,11 +39,11 @@ FIGURES = {
 
 
 @pytest.fixture
-def measured(sniffed):
+def measured(run_path):
     """The flight with a wind as estimated on board, an estimate of the plume's height, and the
     figures of a sniffer and of a user's instrument.
     """
-    path = sniffed / "flights" / "a, <b>.parquet"
+    path = run_path / "flights" / "a, <b>.parquet"
     history = pd.read_parquet(path)
     history = history.assign(
         wind_north_mps=3.0,
@@ -53,9 +53,9 @@ def measured(sniffed):
         glow_mps=1.25,
     )
     history.to_parquet(path)
-    rows = pd.read_csv(sniffed / "summary.csv")
+    rows = pd.read_csv(run_path / "summary.csv")
     rows.assign(**{name: value for name, (_, value) in FIGURES.items()}).to_csv(
-        sniffed / "summary.csv", index=False
+        run_path / "summary.csv", index=False
     )
     readings = {f"{gas}_reading_{UNITS[gas]}": "reading, held until the next one" for gas in GASES}
     columns = {
@@ -65,8 +65,8 @@ def measured(sniffed):
         },
         "summary.csv": described({name: of for name, (of, _) in FIGURES.items()}, part="sniffer"),
     }
-    (sniffed / COLUMNS).write_text(json.dumps(to_json(columns)), encoding="utf-8")
-    return sniffed
+    (run_path / COLUMNS).write_text(json.dumps(to_json(columns)), encoding="utf-8")
+    return run_path
 
 
 def opened(path):
@@ -91,8 +91,8 @@ def test_readings_have_the_names_and_units_of_the_conventions(measured):
         "no_reading_ppb": ("mole_fraction_of_nitrogen_monoxide_in_air", "1e-9"),
     }
     with opened(exported(measured, "netcdf")) as data:
-        for name, told in names.items():
-            assert (data[name].attrs["standard_name"], data[name].attrs["units"]) == told
+        for name, known in names.items():
+            assert (data[name].attrs["standard_name"], data[name].attrs["units"]) == known
             assert_read(data[name].to_numpy(), name)
         assert set(names) == set(READ)
         # Its instrument has none.
@@ -149,7 +149,7 @@ def test_it_keeps_to_the_conventions(measured, tmp_path):
     pytest.importorskip("xarray", reason="xarray is an extra")
     pytest.importorskip("compliance_checker", reason="compliance-checker is for developers")
     path = exported(measured, "netcdf")
-    # In a process of its own: the checker's own packages warn as they are imported.
+    # In another process: packages of the checker warn as they are imported.
     checker = Path(sys.executable).with_name("compliance-checker")
     checked = subprocess.run(
         [checker, "-t", "cf:1.8", path],

@@ -8,78 +8,21 @@ from dataclasses import replace
 
 import pypdfium2
 import pytest
-from matplotlib.figure import Figure
 
 from common.verdict import INTERRUPTED, MET, NOT_MET, UNEXPLAINED
-from reports.build import build_reports
-from reports.document.blocks import (
-    Card,
-    LossCard,
-    Table,
-    UndecidedCard,
-    Verdict,
-)
-from reports.document.chart import Chart
-from reports.document.numbering import figures_in
+from reports.document.blocks import Card, LossCard, UndecidedCard, Verdict
 from reports.flights.first_page import telling_and_typical
-from reports.flights.selection import picked_flights
 from reports.registry import content
-from reports.render import matplotlib_charts
 from reports.render.pdf import write_pdf
 from reports.run.run_data import read_run
 from reports.run.trials import read_trials
-from tests.in_process import run_command
 
 pytestmark = pytest.mark.slow
 
-SHORT = """
-title = "Short"
-description = "Flights for a test."
-fidelity = "kinematic"
-guidance.rate_hz = 10.0
-flights = 5
-seed = 3
-vessel.speed_mps = 8.0
-flight.crossings = 2
-start.distance_m = [300.0, 400.0]
-criteria.tracking_error_rms_m = 1e-4
-"""
-
 
 @pytest.fixture(scope="module")
-def run_path(tmp_path_factory):
-    """Five flights, enough for a bound, that fail the criterion on tracking, as nothing tracks to
-    0.1 mm, and meet the others.
-    """
-    folder = tmp_path_factory.mktemp("front")
-    (folder / "short.toml").write_text(SHORT, encoding="utf-8")
-    ended = run_command(
-        "scenarios.run", folder / "short.toml", "--out", folder / "run", "--no-report"
-    )
-    assert ended.status == 1, ended.errors
-    return folder / "run"
-
-
-@pytest.fixture(scope="module")
-def report(run_path):
-    return content(read_run(run_path))
-
-
-@pytest.fixture(scope="module")
-def built(run_path):
-    """Return the text of the page for the screen, and that of each printed page, of whose figures
-    page 1's alone is drawn.
-    """
-
-    def drawn(chart):
-        return (
-            matplotlib_charts.draw(chart) if chart.name == "first" else Figure(figsize=(1.0, 1.0))
-        )
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("reports.render.figure_files.draw", drawn)
-        html, pdf = build_reports(run_path)
-    return html.read_text(encoding="utf-8"), pages_of(pdf)
+def report(five_path):
+    return content(read_run(five_path))
 
 
 def pages_of(path):
@@ -88,43 +31,6 @@ def pages_of(path):
     texts = [page.get_textpage().get_text_range() for page in document]
     document.close()
     return texts
-
-
-def card(report, name):
-    (found,) = (card for card in report.verdict.figures if card.name.startswith(name))
-    return found
-
-
-def test_page_1_says_when_and_what_was_flown_and_shows_the_closest_flight_and_a_typical_one(report):
-    assert re.fullmatch(r"\d{4}-\d\d-\d\d \d\d:\d\d UTC", report.letterhead.when)
-    assert re.fullmatch(
-        r"5 flights \(\d\.\d min simulated\) of the kinematic vehicle, eq\. \(1\), beside a vessel at 8 m/s, in still air\.",
-        report.flown,
-    )
-    titles = [panel.title for panel in report.picture.panels]
-    assert [title.split(":")[0] for title in titles] == ["Closest", "Typical"]
-
-
-def test_the_closest_and_the_median_flight_are_those_of_the_summary(run_path, report):
-    rows = read_run(run_path).summary.sort_values("min_distance_m")
-    shown = [float(re.search(r"([\d.]+) m$", panel.title)[1]) for panel in report.picture.panels]
-    # Titles have a digit after the point.
-    assert shown == [round(float(rows["min_distance_m"].iloc[i]), 1) for i in (0, 2)]
-
-
-def test_page_1_holds_everything_that_is_for_the_client(built, report):
-    first, second, *others = built[1]
-    flat = " ".join(first.split())
-    for words in (
-        report.title,
-        report.letterhead.when,
-        report.verdict.headline,
-        "Figure 1.",
-        *(c.value for c in report.verdict.cards),
-    ):
-        assert " ".join(words.split()) in flat
-    assert f"page 1 of {2 + len(others)}" in flat
-    assert "short" in second.splitlines()[0]
 
 
 def test_page_1_is_one_page_however_much_failed(report, tmp_path):
@@ -137,27 +43,6 @@ def test_page_1_is_one_page_however_much_failed(report, tmp_path):
     assert "Figure 1." in first
     assert "and 5 more" in first
     assert "Figure 1." not in second
-
-
-def test_figures_and_tables_are_numbered_in_reading_order_without_gaps(report):
-    blocks = [block for section in report.sections for block in section.blocks]
-    figures = [
-        report.picture.number,
-        *(block.number for block in blocks if isinstance(block, Chart)),
-    ]
-    assert figures == [f"Figure {i}" for i in range(1, len(figures) + 1)]
-    assert figures_in(report.picture, report.sections) == len(figures)
-    tables = [block for block in blocks if isinstance(block, Table)]
-    assert [table.number for table in tables] == [f"Table {i}" for i in range(1, len(tables) + 1)]
-    assert all(table.caption for table in tables)
-
-
-@pytest.mark.parametrize(("figures", "shown"), [(0, 0), (3, 3), (4, 4), (5, 5), (6, 6), (9, 6)])
-def test_page_1_has_six_figures_at_most(figures, shown):
-    cards = [Card(str(i), "1") for i in range(figures)]
-    verdict = Verdict(headline="", detail="", failures=[], figures=cards)
-    assert verdict.cards == cards[:shown]
-    assert verdict.further == cards[shown:]
 
 
 @pytest.mark.parametrize(
@@ -185,8 +70,9 @@ def test_the_box_has_the_colour_of_its_worst_tile_and_is_never_better_than_the_e
     assert (card in verdict.cards) is (card.tone in ("missed", "open"))
 
 
-def test_every_kind_of_study_has_its_exit_status_from_one_place(report, run_path):
-    run = read_run(run_path)
+@pytest.mark.usefixtures("without_single_flights")
+def test_every_kind_of_study_has_its_exit_status_from_one_place(five_path):
+    run = read_run(five_path)
     for study in ("flights", "trials", "monte_carlo", "falsify", "premises"):
         of_study = replace(run, manifest=run.manifest | {"study": study})
         for interrupted in (False, True):
@@ -196,19 +82,11 @@ def test_every_kind_of_study_has_its_exit_status_from_one_place(report, run_path
             assert verdict.headline.startswith("INTERRUPTED") is interrupted
 
 
-def test_a_run_without_time_histories_shows_its_first_figure(run_path, tmp_path):
-    copy = shutil.copytree(run_path, tmp_path / "run")
-    shutil.rmtree(copy / "flights")
-    report = content(read_run(copy))
-    assert report.picture is not None
-    assert "Closest" not in [panel.title.split(":")[0] for panel in report.picture.panels]
-
-
-def without_histories(run_path, tmp_path, gone):
+def without_histories(five_path, tmp_path, gone):
     """Return the run without the time histories of flights, by their rank in closest approach, and
     all ranked.
     """
-    copy = shutil.copytree(run_path, tmp_path / "run")
+    copy = shutil.copytree(five_path, tmp_path / "run")
     ranked = read_run(copy).summary.sort_values("min_distance_m")
     for rank in gone:
         (copy / "flights" / f"{ranked['flight_id'].iloc[rank]}.parquet").unlink()
@@ -219,16 +97,16 @@ def without_histories(run_path, tmp_path, gone):
     ("gone", "nearest"), [((), {2}), ((3, 4), {2}), ((2,), {1, 3}), ((0, 1, 2), {3})]
 )
 def test_the_typical_flight_is_at_the_median_of_all_flights_or_nearest_to_it(
-    run_path, tmp_path, gone, nearest
+    five_path, tmp_path, gone, nearest
 ):
-    run, distances = without_histories(run_path, tmp_path, gone)
+    run, distances = without_histories(five_path, tmp_path, gone)
     picture = telling_and_typical(read_trials(run))
     typical = min(nearest, key=lambda rank: abs(distances[rank] - distances[2]))
     closest = min(set(range(5)) - set(gone))
-    told = "the flight with the closest approach" + (
+    words = "the flight with the closest approach" + (
         " of those with a time history." if gone else "."
     )
-    assert told in picture.caption
+    assert words in picture.caption
     if closest == typical:
         # One flight is both: all its tracks are shown, and below them its name.
         assert re.search(
@@ -240,18 +118,3 @@ def test_the_typical_flight_is_at_the_median_of_all_flights_or_nearest_to_it(
         assert shown == [round(distances[rank], 1) for rank in (closest, typical)]
         words = "of these the one nearest" if 2 in gone else "the one whose closest approach is"
         assert re.search(rf"Typical: short_0000\d, {words}", picture.caption)
-
-
-def test_flights_shown_one_by_one_have_one_at_the_median_of_all_or_nearest_to_it(
-    run_path, tmp_path
-):
-    for gone, why in (
-        ((3, 4), "median of closest approaches"),
-        ((2,), "nearest to the median of closest approaches"),
-    ):
-        run, distances = without_histories(run_path, tmp_path / str(len(gone)), gone)
-        # As of flights that met their criteria: one that did not is shown as such.
-        trial = read_trials(replace(run, summary=run.summary.assign(criteria_met=True)))[0]
-        found = {reason: float(row["min_distance_m"]) for _, row, reason in picked_flights([trial])}
-        left = [distance for rank, distance in enumerate(distances) if rank not in gone]
-        assert found[why] == min(left, key=lambda distance: abs(distance - distances[2]))

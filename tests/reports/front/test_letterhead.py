@@ -6,50 +6,13 @@ import pytest
 from PIL import Image
 
 from reports.errors import ReportError
-from reports.registry import content
 from reports.run.letterhead import parse_settings
-from reports.run.run_data import read_run
-from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.files import load_study
-from scenarios.studies.base import run_study
 from tests.in_process import run_command
-from tests.run_tables import change_manifest, manifest_of, write_manifest
-
-SHORT = """
-title = "Short"
-fidelity = "kinematic"
-guidance.rate_hz = 10.0
-seed = 3
-vessel.speed_mps = 8.0
-flight.crossings = 2
-start.distance_m = [300.0, 400.0]
-report.author = "A. Author"
-"""
-
-
-@pytest.fixture(scope="module")
-def flown(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("letterhead")
-    (folder / "short.toml").write_text(SHORT, encoding="utf-8")
-    run_study(
-        load_study(str(folder / "short.toml")),
-        "short",
-        folder / "run",
-        executor_factory=InProcessExecutor,
-    )
-    return folder / "run"
 
 
 @pytest.fixture
-def run_path(flown, tmp_path):
-    return shutil.copytree(flown, tmp_path / "run")
-
-
-def refused(*arguments):
-    ended = run_command("reports.build", *arguments)
-    assert ended.status == 2
-    assert ended.errors.count("\n") == 1
-    return ended.errors
+def run_path(one_path, tmp_path):
+    return shutil.copytree(one_path, tmp_path / "run")
 
 
 @pytest.mark.usefixtures("sketched")
@@ -75,20 +38,6 @@ def test_reports_of_a_run_that_exists_take_another_title_and_logo_and_leave_the_
     assert (run_path / "manifest.json").read_bytes() == before
 
 
-def test_a_run_without_a_date_or_settings_has_the_scenarios_title(run_path):
-    manifest = manifest_of(run_path)
-    del manifest["begun_utc"], manifest["report"]
-    write_manifest(run_path, manifest)
-    report = content(read_run(run_path))
-    assert report.title == "Short"
-    assert (report.letterhead.when, report.letterhead.signature, report.letterhead.logo) == (
-        "date not recorded",
-        "",
-        None,
-    )
-    assert parse_settings([]) == {}
-
-
 @pytest.mark.parametrize(
     ("override", "said"),
     [
@@ -103,29 +52,3 @@ def test_a_setting_that_reports_do_not_have_is_refused(override, said):
     with pytest.raises(ReportError) as error:
         parse_settings([override])
     assert said in str(error.value)
-
-
-def test_a_logo_that_is_no_picture_ends_the_command_with_status_2(run_path):
-    (run_path / "text.png").write_text("no picture", encoding="utf-8")
-    said = refused(run_path, "--set", f"report.logo={run_path / 'text.png'}")
-    assert (
-        said
-        == "error: report.logo: 'text.png' is not a picture; give a whole PNG, JPEG or SVG file\n"
-    )
-
-
-def test_a_logo_that_the_run_has_lost_is_named_among_its_missing_files(run_path):
-    change_manifest(run_path, report={"logo": "logo.png"})
-    report = content(read_run(run_path))
-    assert report.letterhead.logo is None
-    (section,) = (section for section in report.sections if section.anchor == "missing")
-    assert ["logo.png", "cannot be read", "the logo"] in section.blocks[-1].rows
-
-
-@pytest.mark.parametrize("version", [0, 2, "3"])
-def test_a_run_directory_of_another_version_is_refused_in_one_line(version, run_path):
-    change_manifest(run_path, format=version)
-    said = (
-        f"is a run of format {version!r}, and this version reads 1; use the version that made it\n"
-    )
-    assert refused(run_path).endswith(said)

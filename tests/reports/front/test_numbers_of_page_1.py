@@ -12,33 +12,20 @@ import pypdfium2
 import pytest
 from judged_runs import judged
 from matplotlib.figure import Figure
+from report_parts import flown_text
 from scipy.stats import beta
 
 from common.verdict import read_verdict
 from reports.output import write_report
 from reports.run.run_data import read_run
-from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.files import load_study
-from scenarios.studies.base import run_study
 
 pytestmark = pytest.mark.slow
-
-SHORT = """
-title = "Short"
-fidelity = "kinematic"
-guidance.rate_hz = 10.0
-seed = 3
-vessel.speed_mps = 8.0
-flight.crossings = 2
-start.distance_m = [300.0, 400.0]
-criteria.tracking_error_rms_m = 5.0
-"""
 
 SULPHUR = """
 extends = "sulphur"
 fidelity = "kinematic"
 guidance.rate_hz = 10.0
-flight.after_settling_s = 130.0
+flight.after_settling_s = 60.0
 """
 
 SETTLING_BAND_M = 5.0
@@ -57,33 +44,14 @@ FIXED = (
 """What has digits and is no figure: dates, names, and what the scenario gives."""
 
 
-def flown(tmp_path_factory, name, text):
-    folder = tmp_path_factory.mktemp(name)
-    (folder / f"{name}.toml").write_text(text, encoding="utf-8")
-    study = load_study(str(folder / f"{name}.toml"))
-    run_study(study, name, folder / "run", executor_factory=InProcessExecutor)
-    return read_run(folder / "run")
-
-
-@pytest.fixture(scope="module")
-def five(tmp_path_factory):
-    return flown(tmp_path_factory, "short", f"{SHORT}flights = 5\n")
-
-
-@pytest.fixture(scope="module")
-def one(tmp_path_factory):
-    return flown(tmp_path_factory, "short", f"{SHORT}flights = 1\n")
-
-
-@pytest.fixture(scope="module")
-def sweep(tmp_path_factory):
-    text = SHORT.replace("vessel.speed_mps = 8.0\n", "")
-    return flown(tmp_path_factory, "short", f"{text}[sweep]\nnu = [0.2, 0.4]\n")
+@pytest.fixture
+def five(five_path):
+    return read_run(five_path)
 
 
 @pytest.fixture(scope="module")
 def sulphur(tmp_path_factory):
-    return flown(tmp_path_factory, "short", SULPHUR)
+    return read_run(flown_text(tmp_path_factory, "short", SULPHUR))
 
 
 @pytest.fixture
@@ -260,7 +228,8 @@ def test_an_interrupted_run_says_so_first_and_how_many_flights_were_flown(five, 
     assert_says_no_more(text, claims)
 
 
-def test_a_flight_alone_says_what_its_row_says(one, page_1):
+def test_a_flight_alone_says_what_its_row_says(one_path, page_1):
+    one = read_run(one_path)
     rows, text = one.summary, page_1(one)
     criteria = [of for of in read_verdict(one.path / "verdict.json").whole.criteria if of.judged]
     met = sum(of.failed == 0 for of in criteria)
@@ -273,7 +242,8 @@ def test_a_flight_alone_says_what_its_row_says(one, page_1):
     assert_says_no_more(text, claims)
 
 
-def test_a_sweep_says_whether_it_crossed_as_often_as_predicted(sweep, page_1):
+def test_a_sweep_says_whether_it_crossed_as_often_as_predicted(sweep_path, page_1):
+    sweep = read_run(sweep_path)
     rows, text = sweep.summary, page_1(sweep)
     off = worst(rows)["interval"]
     claims = [

@@ -11,21 +11,21 @@ import numpy as np
 import pandas as pd
 import pytest
 from judged_runs import judged
+from scipy.stats import beta
 from snapshots import assert_reads_as_before
 
 from reports.document.blocks import Table
 from reports.document.chart import Chart
 from reports.document.tables import minus
-from reports.monte_carlo.content import monte_carlo_sections, percent
-from reports.monte_carlo.names import documented_units, input_label, input_unit
+from reports.monte_carlo.content import monte_carlo_sections, percent, violation_table
+from reports.monte_carlo.names import input_unit
 from reports.registry import content
-from reports.run.run_data import RunData, read_run
+from reports.run.run_data import RunData
 from scenarios.scenario.documentation import documented_keys
 from scenarios.scenario.files import load_study
 from scenarios.statistics.estimates import study_statistics
 from scenarios.studies.manifest import initial_manifest, parameters
 from tests.reports.run_columns import RUN_COLUMNS
-from tests.run_tables import write_manifest
 from tests.scenarios.study_rows import RADIUS, study_rows
 
 FLIGHTS = 250
@@ -70,7 +70,7 @@ def run_of(rows, inputs, **changes):
 @pytest.fixture(scope="module")
 def run():
     rows, inputs = study_rows(FLIGHTS)
-    # One that entered, one that never settled, and one of which nothing is known.
+    # One that entered, one that never settled, and one without any figure.
     rows.loc[3, ["min_distance_m", "keepout_violations"]] = [RADIUS - 0.5, 1]
     rows.loc[5, "settling_time_s"] = np.nan
     rows.loc[7, ["outcome", "min_distance_m", "keepout_violations", "mode_at_end"]] = [
@@ -95,12 +95,6 @@ def lines_of(panel):
     return {line.label: line for line in panel.lines}
 
 
-def test_a_study_comes_first_in_the_report_and_a_run_without_statistics_has_no_such_sections(run):
-    anchors = [section.anchor for section in content(run).sections]
-    assert [of for of in anchors if of != "figures"][:4] == ["study", "spread", "drivers", "trials"]
-    assert monte_carlo_sections(replace(run, statistics=None)) == []
-
-
 def headline_of(run):
     verdict = content(run).verdict
     words = verdict.headline
@@ -121,15 +115,33 @@ def test_page_1_answers_with_the_probability_of_a_violation_a_loss_and_of_not_fi
     assert tone == "bad"
 
 
-def test_page_1_of_a_search_names_the_nearest_flight_and_counts_what_must_not_happen(run):
-    manifest = run.manifest | {"study": "falsify"}
-    words, tone = headline_of(replace(run, manifest=manifest, statistics=None))
-    nearest = run.summary["flight_id"][3]
-    assert words == (
-        f"Nearest of 249 flights: \N{MINUS SIGN}0.5 m beyond r_min, {nearest} (fault none, wind 5.0 m/s);"
-        " 1 violated, 0 lost, 0 diverged, 1 unknown"
-    )
-    assert tone == "bad"
+def test_flights_that_share_what_is_random_count_as_one_in_an_interval(run):
+    manifest = run.manifest | {"study": "monte_carlo", "flights_per_sample": {"study": 2}}
+    words, _ = headline_of(judged(replace(run, manifest=manifest)))
+    # Of 125 samples none violated, and one may have, with the flight that is unknown.
+    high = 100.0 * beta.ppf(0.975, 2, 124)
+    assert words.startswith(f"Probability of violation 0.4 % (0 to {high:.3g} %), ")
+
+
+def test_keys_that_name_their_unit_have_the_one_that_is_documented():
+    # Those of a search or an arena are no inputs of flights; two keys of a plume name none.
+    keys = [
+        of for of in documented_keys() if of.unit and not of.key.startswith(("draws.", "arena."))
+    ]
+    other = {of.key for of in keys if input_unit(of.key) != of.unit}
+    assert len(keys) > 150
+    assert other == {"plume.age_max", "plume.parcel_interval"}
+
+
+def test_the_table_of_violations_has_the_intervals_of_clopper_and_pearson(run):
+    measured, pessimistic = violation_table(run.statistics).rows
+    # One of 249, and two of 250 with the one that is unknown.
+    for row, events, flights in ((measured, 1, 249), (pessimistic, 2, 250)):
+        low = beta.ppf(0.025, events, flights - events + 1)
+        high, upper = (beta.ppf(p, events + 1, flights - events) for p in (0.975, 0.95))
+        assert row[1:3] == [f"{flights}", f"{events}"]
+        assert row[3] == percent(events / flights)
+        assert row[4:] == [f"{percent(low)} to {percent(high)}", percent(upper)]
 
 
 def test_every_figure_has_its_quantiles_with_intervals_and_counts_who_has_none(run, sections):
@@ -178,50 +190,6 @@ def test_bars_are_as_long_as_the_indices_and_coloured_by_the_noise_floor(run, se
         first["delta"] - first["delta_error"],
         first["delta"] + first["delta_error"],
     ]
-
-
-def test_of_too_few_flights_for_indices_there_is_no_section_on_them():
-    rows, inputs = study_rows(50)
-    anchors = [section.anchor for section in monte_carlo_sections(run_of(rows, inputs))]
-    assert anchors == ["study", "spread"]
-
-
-def test_keys_that_name_their_unit_have_the_one_that_is_documented():
-    # Those of a search or an arena are no inputs of flights; two keys of a plume name none.
-    keys = [
-        of for of in documented_keys() if of.unit and not of.key.startswith(("draws.", "arena."))
-    ]
-    other = {of.key for of in keys if input_unit(of.key) != of.unit}
-    assert len(keys) > 150
-    assert other == {"plume.age_max", "plume.parcel_interval"}
-    assert input_label("wind.temperature_c") == "Wind temperature [degC]"
-
-
-def test_units_are_those_of_the_parameters_of_a_run_parts_of_its_scenario_among_them():
-    smoke = ["plume.model=fluctuating", "emission.ship=container", "plume.source_height_m=35"]
-    study = load_study(
-        "sea_wind", [*smoke, 'draws=[{key="plume.age_max", uniform=[100.0, 300.0]}]']
-    )
-    units = documented_units(
-        {"trial_parameters": {"study": json.loads(json.dumps(parameters(study)))}}
-    )
-    assert input_label("plume.age_max", units) == "Plume age max [s]"
-    assert input_label("vessel.manoeuvres.0.turn_deg", units) == "Vessel manoeuvre 1 turn [deg]"
-
-
-def test_statistics_and_inputs_are_read_from_the_run_directory(run, tmp_path):
-    write_manifest(tmp_path, {"format": 1, "config": {}})
-    run.summary.to_csv(tmp_path / "summary.csv", index=False)
-    assert read_run(tmp_path).statistics is None
-    assert len(read_run(tmp_path).draws) == 0
-    (tmp_path / "statistics.json").write_text(json.dumps(run.statistics), encoding="utf-8")
-    run.draws.to_csv(tmp_path / "draws.csv", index=False)
-    read = read_run(tmp_path)
-    assert read.statistics == run.statistics
-    assert list(read.draws["turbulence.level"]) == list(run.draws["turbulence.level"])
-    (tmp_path / "statistics.json").write_text("{", encoding="utf-8")
-    assert read_run(tmp_path).statistics is None
-    assert read_run(tmp_path).missing() == ["statistics.json"]
 
 
 def test_a_monte_carlo_study_reads_as_before(run):

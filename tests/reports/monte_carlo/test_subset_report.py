@@ -9,10 +9,7 @@ import pytest
 from reports.document.blocks import Table
 from reports.document.chart import Chart
 from reports.monte_carlo.content import percent
-from reports.monte_carlo.subset import (
-    subset_headline,
-    subset_sections,
-)
+from reports.monte_carlo.subset import subset_headline, subset_sections
 from scenarios.measures.columns import DERIVED_COLUMNS
 from scenarios.statistics.subset_simulation import input_shifts, near_event, subset_statistics
 from tests.scenarios.statistics.rare_events import DIMENSION, linear, simulated
@@ -78,24 +75,6 @@ def test_the_headline_is_about_what_the_simulation_bounds(reached, unreached):
     assert table.rows[1][1:3] == ["300", "0"]
     assert table.rows[1][-1] == percent(plain["upper"])
     assert percent(plain["upper"]).startswith("0.994")
-
-
-def test_tiny_probabilities_are_powers_of_ten():
-    assert percent(3.14e-7) == "3.1·10⁻⁷"
-    assert percent(2e-5) == "0.002\N{NO-BREAK SPACE}%"
-    assert percent(0.0) == "0\N{NO-BREAK SPACE}%"
-
-
-def test_every_level_has_a_row_with_the_flights_of_all_simulations(reached):
-    (levels,) = (table for table in blocks_of(reached, Table) if table.head[0] == "Level")
-    simulations = reached["simulations"]
-    assert len(levels.rows) == max(len(simulation["levels"]) for simulation in simulations)
-    flights = levels.head.index("Flights")
-    total = sum(int(row[flights].replace(",", "")) for row in levels.rows)
-    assert total == sum(
-        level["flights"] for simulation in simulations for level in simulation["levels"]
-    )
-    assert levels.rows[0][levels.head.index("Within r_min plus [m]")] == "any"
 
 
 def test_the_curve_rises_with_the_distance_and_lies_within_its_band(reached):

@@ -22,7 +22,7 @@ _OPTIONS = (
     "--enable-unsafe-swiftshader", "--webgl-antialiasing-mode=none", "--disable-gpu",
 )  # fmt: skip
 """No name resolves, so that nothing is loaded from a network. The processor draws three dimensions
-as a graphics processor would, with edges that are not smoothed, and the rest of the page in its own
+as a graphics processor would, with edges that are not smoothed, and the rest of the page in another
 way: both are faster."""
 
 
@@ -109,7 +109,7 @@ class Browser:
                 )
             )
         elif event.get("method") == "Log.entryAdded" and of["entry"]["level"] == "error":
-            # Its warnings are the driver's on its own speed.
+            # Warnings are those of the driver about its speed.
             self.errors.append(of["entry"]["text"])
 
     def open(self, path, width=800, height=600):
@@ -137,7 +137,7 @@ class Browser:
         self.settle()
 
     def settle(self):
-        """Wait until the page has drawn what it was asked to draw."""
+        """Wait until the page has drawn what it is to draw."""
         self.run(
             "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))"
         )

@@ -1,5 +1,5 @@
-"""Reports of every kind that has a replay, opened from disk in a browser that has no network; pages
-in a narrow window.
+"""A report with a replay, opened from disk in a browser that has no network; pages in a narrow
+window.
 """
 
 import json
@@ -9,11 +9,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from browser import PROGRAM, Browser
+from report_parts import blocks_of
 
-from reports.document.blocks import Content, FlightPicker, Section, Text, Verdict
+from reports.document.blocks import FlightPicker
 from reports.registry import content
 from reports.render.html import write_html
-from reports.run.letterhead import Letterhead
 from reports.run.run_data import read_run
 
 pytestmark = [
@@ -21,13 +21,9 @@ pytestmark = [
     pytest.mark.skipif(PROGRAM is None, reason="no chromium is installed; .ci/run installs it"),
 ]
 
-WHOLE = "sweep_nu"
-"""The kind whose page has all its charts. Of the others the flights stay, on one page: charts take
-most of the time.
-"""
 
-OTHERS = ("trials", "monte_carlo", "sulphur", "paper")
-"""The other kinds with a replay. Their page stays open for the tests after that of the slider."""
+KINDS = ("sweep_nu", "trials", "sulphur")
+"""Studies whose flights are on the page."""
 
 WIDTH, HEIGHT = 520, 390
 """Of the window [px]: a processor draws what a graphics processor would, and takes longer for more
@@ -44,41 +40,30 @@ def browser(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def runs(run_of):
-    return {kind: read_run(run_of(kind)) for kind in (WHOLE, *OTHERS)}
-
-
-@pytest.fixture(scope="module")
-def whole_page(runs, tmp_path_factory):
-    path = tmp_path_factory.mktemp("whole") / "report.html"
-    write_html(content(runs[WHOLE]), path)
-    return path
+    return {kind: read_run(run_of(kind)) for kind in KINDS}
 
 
 @pytest.fixture(scope="module")
 def page(runs, tmp_path_factory):
-    """A page of nothing but the flights of all other kinds, each with one chart, and called by its
-    kind before its own name.
+    """The page of the first study with the flights of the others, each with one chart, and called
+    by its study before its name.
     """
-    reports = {kind: content(runs[kind]) for kind in OTHERS}
+    reports = {kind: content(run) for kind, run in runs.items()}
     flights = [
         replace(flight, flight_id=f"{kind}/{flight.flight_id}", charts=flight.charts[:1])
         for kind, report in reports.items()
-        for section in report.sections
-        for block in section.blocks
-        if isinstance(block, FlightPicker)
+        for block in blocks_of(report, FlightPicker)
         for flight in block.flights
     ]
-    report = reports[OTHERS[0]]
-    section = next(section for section in report.sections if section.anchor == "flights")
-    path = tmp_path_factory.mktemp("others") / "report.html"
-    write_html(
-        replace(
-            report,
-            picture=None,
-            sections=[replace(section, blocks=[FlightPicker(flights=flights)])],
-        ),
-        path,
-    )
+    report = reports[KINDS[0]]
+    sections = [
+        replace(section, blocks=[FlightPicker(flights=flights)])
+        if section.anchor == "flights"
+        else section
+        for section in report.sections
+    ]
+    path = tmp_path_factory.mktemp("page") / "report.html"
+    write_html(replace(report, sections=sections), path)
     return path
 
 
@@ -105,50 +90,6 @@ def turned(angle, other):
     return abs(math.remainder(angle - other, math.tau))
 
 
-@pytest.mark.parametrize("kind", [WHOLE, *OTHERS])
-def test_the_time_slider_takes_the_aircraft_to_where_it_was(kind, browser, runs, whole_page, page):
-    show(browser, whole_page if kind == WHOLE else page)
-    flight = (
-        picked(browser) if kind == WHOLE else picked(browser, f"{kind}/").removeprefix(f"{kind}/")
-    )
-    history = runs[kind].history(flight)
-    for share in (0.0, 0.37, 0.8):
-        sample = history.iloc[round(share * (len(history) - 1))]
-        moved = f"slider.value = {sample['time_s']}; slider.dispatchEvent(new Event('input')); return window.replay.place();"
-        place = browser.run(
-            f"(() => {{ const slider = document.querySelector('[data-part=time]'); {moved} }})()"
-        )
-        # The slider's steps are those of the history, 0.1 s.
-        assert place["time"] == pytest.approx(sample["time_s"], abs=1e-9)
-        # Samples are good to 0.5 cm, the cubic between them to 3.4 cm in any of 60 flights of all
-        # studies, turbulence among them.
-        for axis in ("north", "east"):
-            assert place[axis] == pytest.approx(sample[f"{axis}_m"], abs=0.05)
-        assert place["altitude"] == pytest.approx(sample["altitude_m"], abs=0.05)
-        # A kinematic vehicle has no heading of its own. Angles are good to 1 mrad; where a bank
-        # begins to change, to 0.06 rad.
-        heading = (
-            sample["heading_rad"] if np.isfinite(sample["heading_rad"]) else sample["course_rad"]
-        )
-        assert turned(place["heading"], heading) < 0.02
-        assert turned(place["roll"], np.nan_to_num(sample["roll_rad"])) < 0.06
-        assert browser.run("window.replay.world.smoke.mesh.geometry.instanceCount") > 50
-    assert browser.errors == []
-
-
-def test_nothing_is_asked_of_a_network_and_what_is_drawn_is_not_blank(browser, page):
-    show(browser, page)
-    assert browser.run("performance.getEntriesByType('resource').map((entry) => entry.name)") == []
-    shades = browser.run(
-        "(() => { const {world, camera, renderer} = window.replay, {width, height} = renderer.domElement;"
-        " window.replay.place(); renderer.render(world.scene, camera.camera); const gl = renderer.getContext(),"
-        " pixels = new Uint8Array(4 * width * height); gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);"
-        " return new Set(new Uint32Array(pixels.buffer)).size; })()"
-    )
-    # Sky and sea alone would be a few shades.
-    assert shades > 200
-
-
 def test_a_flight_opens_before_its_closest_approach_and_plays_once_it_is_seen(browser, runs, page):
     # Played from the top of the page, where the replay is not seen yet.
     browser.open(page, WIDTH, HEIGHT)
@@ -167,6 +108,48 @@ def test_a_flight_opens_before_its_closest_approach_and_plays_once_it_is_seen(br
     browser.run("window.replay.play(false)")
     jumps = "[...document.querySelectorAll('[data-part=jumps] button')].map((b) => b.textContent)"
     assert {"start", "closest approach", "end"} <= set(browser.run(jumps))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_time_slider_takes_the_aircraft_to_where_it_was(kind, browser, runs, page):
+    show(browser, page)
+    flight = picked(browser, f"{kind}/").removeprefix(f"{kind}/")
+    history = runs[kind].history(flight)
+    for share in (0.0, 0.37, 0.8):
+        sample = history.iloc[round(share * (len(history) - 1))]
+        moved = f"slider.value = {sample['time_s']}; slider.dispatchEvent(new Event('input')); return window.replay.place();"
+        place = browser.run(
+            f"(() => {{ const slider = document.querySelector('[data-part=time]'); {moved} }})()"
+        )
+        # The slider's steps are those of the history, 0.1 s.
+        assert place["time"] == pytest.approx(sample["time_s"], abs=1e-9)
+        # Samples are good to 0.5 cm, the cubic between them to 3.4 cm in any of 60 flights of all
+        # studies, turbulence among them.
+        for axis in ("north", "east"):
+            assert place[axis] == pytest.approx(sample[f"{axis}_m"], abs=0.05)
+        assert place["altitude"] == pytest.approx(sample["altitude_m"], abs=0.05)
+        # A kinematic vehicle has a course alone. Angles are good to 1 mrad; where a bank
+        # begins to change, to 0.06 rad.
+        heading = (
+            sample["heading_rad"] if np.isfinite(sample["heading_rad"]) else sample["course_rad"]
+        )
+        assert turned(place["heading"], heading) < 0.02
+        assert turned(place["roll"], np.nan_to_num(sample["roll_rad"])) < 0.06
+        assert browser.run("window.replay.world.smoke.mesh.geometry.instanceCount") > 50
+    assert browser.errors == []
+
+
+def test_the_page_loads_nothing_and_its_picture_is_not_blank(browser, page):
+    show(browser, page)
+    assert browser.run("performance.getEntriesByType('resource').map((entry) => entry.name)") == []
+    shades = browser.run(
+        "(() => { const {world, camera, renderer} = window.replay, {width, height} = renderer.domElement;"
+        " window.replay.place(); renderer.render(world.scene, camera.camera); const gl = renderer.getContext(),"
+        " pixels = new Uint8Array(4 * width * height); gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);"
+        " return new Set(new Uint32Array(pixels.buffer)).size; })()"
+    )
+    # Sky and sea alone would be a few shades.
+    assert shades > 200
 
 
 def test_smoke_is_where_the_parcels_are_and_the_gas_is_that_of_the_file(browser, runs, page):
@@ -239,65 +222,13 @@ def test_the_keyboard_moves_time_camera_and_play(browser, page):
     assert browser.errors == []
 
 
-def test_the_navigation_leads_to_the_replay(browser, page):
-    show(browser, page)
-    assert browser.run(
-        "document.querySelector('nav a[href=\"#replay\"]').hash === '#' + document.querySelector('.replay').id"
-    )
-
-
-def test_the_page_is_not_wider_than_a_small_screen(browser, page):
-    show(browser, page, 520)
-    parts = "[...document.querySelectorAll('.replay, .replay *, .picker *')]"
-    widest = f"Math.max(...{parts}.map((part) => part.getBoundingClientRect().right))"
-    assert browser.run(widest) <= 520
-    assert browser.run("document.querySelector('[data-part=stage]').clientWidth") > 400
-
-
-def test_figures_are_as_wide_in_print_whatever_the_window_and_as_before_after_it(browser, page):
-    drawn = (
-        "[...document.querySelectorAll('.js-plotly-plot')].map((plot) => plot._fullLayout.width)"
-    )
-    wide = "[...document.querySelectorAll('.panels')].map((of) => of.getBoundingClientRect().width)"
-    # Plotly follows the window a tenth of a second later.
-    later = "new Promise((done) => setTimeout(() => done(true), 500))"
-    for width in (520, 1200):
-        show(browser, page, width)
-        browser.run(later)
-        before = browser.run(drawn)
-        browser.run("dispatchEvent(new Event('beforeprint'))")
-        # The width of the page's text in print.
-        browser.settle()
-        assert set(filter(None, browser.run(wide))) == {1040}
-        assert max(browser.run(drawn)) <= 1040
-        browser.run("dispatchEvent(new Event('afterprint'))")
-        browser.run(later)
-        assert browser.run(drawn) == before
-    assert browser.errors == []
-
-
-def test_another_flight_is_picked_and_those_without_a_history_have_no_replay(browser, runs, page):
-    show(browser, page)
-    before = picked(browser, "trials/")
-    browser.run("document.getElementById('next').click()")
-    flight = picked(browser)
-    assert flight != before
-    history = runs["trials"].history(flight.removeprefix("trials/"))
-    browser.run("window.replay.play(false), window.replay.seek(0)")
-    assert browser.run("window.replay.place()")["north"] == pytest.approx(
-        history["north_m"].iloc[0], abs=0.05
-    )
-    browser.run("window.replay.show('no such flight')")
-    assert browser.run("document.getElementById('replay').hidden") is True
-
-
 def test_a_flight_opens_with_its_aircraft_in_the_picture(browser, page):
     show(browser, page)
     place = (
         "(() => { const {world, camera} = window.replay; window.replay.place();"
         " const at = world.aircraft.position.clone().project(camera.camera); return [at.x, at.y, at.z]; })()"
     )
-    for kind in OTHERS:
+    for kind in KINDS:
         picked(browser, f"{kind}/")
         browser.run("window.replay.look('vessel')")
         # Of the picture from -1 to 1; 1 is how far the camera sees.
@@ -317,41 +248,7 @@ def test_a_flight_opens_with_its_aircraft_in_the_picture(browser, page):
         assert browser.run(f"(window.replay.place(), {far})") == pytest.approx(turned_by_hand), kind
 
 
-def test_a_ship_of_unknown_size_is_pale_and_the_key_and_the_caption_say_so(browser, page):
-    show(browser, page)
-    opaque = (
-        "(() => { let least = 1; window.replay.world.ship.traverse((part) =>"
-        " { least = Math.min(least, part.material?.opacity ?? 1); }); return least; })()"
-    )
-    told = "['ship', 'hull'].map((name) => document.querySelector(`.replay [data-part=${name}]`).textContent)"
-    for kind, known in (("sulphur", True), ("trials", False)):
-        picked(browser, f"{kind}/")
-        name, words = browser.run(told)
-        assert (name, browser.run(opaque) == 1) == (
-            "ship" if known else "ship, size not known",
-            known,
-        )
-        assert ("is drawn" in words and "that of" not in words) == (not known)
-
-
-def test_distances_are_shown_as_far_as_in_the_figures_and_words_say_where_they_are_not(
-    browser, runs, page
-):
-    show(browser, page)
-    for kind in OTHERS:
-        flight = picked(browser, f"{kind}/").removeprefix(f"{kind}/")
-        panel = browser.run("window.replay.plot.panels[0]")
-        values, times = np.array(panel["values"]), np.array(browser.run("window.replay.plot.times"))
-        settled = runs[kind].summary.set_index("flight_id").loc[flight, "settling_time_s"]
-        after = values[times >= settled]
-        assert np.all((after > panel["low"]) & (after < panel["high"]))
-        assert panel["beyond"] == (
-            f"above {panel['high']:.0f} m: not shown" if values.max() > panel["high"] else ""
-        )
-
-
 def test_without_webgl_a_sentence_stands_in_its_place_and_the_curves_stay(browser, page):
-    # As of a browser that does not have it, which says so at once.
     without = """{
         const known = HTMLCanvasElement.prototype.getContext;
         HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
@@ -373,35 +270,3 @@ def test_without_webgl_a_sentence_stands_in_its_place_and_the_curves_stay(browse
         assert browser.errors == []
     finally:
         browser.send("Page.removeScriptToEvaluateOnNewDocument", identifier=script)
-
-
-TITLES = (
-    "Trials", "Criteria", "Speed ratio", "Comparison", "Failed flights", "Single flights", "Autopilot", "Parameters", "Provenance",
-)  # fmt: skip
-
-WIDTHS = (320, 500, 1000)
-"""Of windows [px]."""
-
-
-def test_every_link_of_the_navigation_is_within_the_window(browser, tmp_path):
-    """The head of a page in a narrow window: nothing runs off its edge."""
-    sections = [
-        Section(anchor=f"s{i}", title=title, blocks=[Text("Words.")])
-        for i, title in enumerate(TITLES)
-    ]
-    verdict = Verdict(
-        holds=True, complete=True, headline="All well", detail="", failures=[], figures=[]
-    )
-    head = Letterhead(run="run", when="2026-11-23 08:00 UTC")
-    words = {"title": "Title", "description": "", "changes": "", "flown": ""}
-    report = Content(**words, letterhead=head, verdict=verdict, picture=None, sections=sections)
-    write_html(report, tmp_path / "report.html")
-    browser.open(tmp_path / "report.html", width=WIDTHS[0])
-    for width in WIDTHS:
-        browser.resize(width)
-        rights = browser.run(
-            "[...document.querySelectorAll('nav a')].map((link) => link.getBoundingClientRect().right)"
-        )
-        # The link to the summary beside those to the sections.
-        assert len(rights) == 1 + len(TITLES)
-        assert max(rights) <= width

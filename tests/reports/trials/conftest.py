@@ -1,20 +1,14 @@
-"""A small kinematic run of two trials, flown once, and its report."""
+"""The small run of two trials as read, and its report."""
 
 import pytest
-from trial_runs import small_trials
 
 from reports.registry import content
 from reports.run.run_data import read_run
 
 
 @pytest.fixture(scope="session")
-def run_path(tmp_path_factory):
-    return small_trials(tmp_path_factory.mktemp("trials"))
-
-
-@pytest.fixture(scope="session")
-def run(run_path):
-    return read_run(run_path)
+def run(small_run):
+    return read_run(small_run)
 
 
 @pytest.fixture(scope="session")

@@ -5,9 +5,11 @@ import re
 import pandas as pd
 import pytest
 from judged_runs import changed
+from report_parts import flown
 from trial_runs import rows_of, with_criterion, with_values
 
 from reports.registry import content
+from reports.run.run_data import read_run
 
 pytestmark = pytest.mark.usefixtures("without_single_flights")
 
@@ -72,14 +74,21 @@ LOST = {
 }
 
 
-def test_a_flight_that_lost_its_aircraft_fails_a_run_of_which_it_is_required_to_complete(run):
-    report = content(with_values(run, 1, **LOST))
-    assert report.verdict.headline.startswith("3 of 4 flights kept out, 3 finished, 1 lost. ")
+@pytest.mark.parametrize(
+    ("outcome", "words"),
+    [
+        ("aircraft_lost", "3 of 4 flights kept out, 3 finished, 1 lost. "),
+        ("diverged", "3 of 4 flights kept out, 3 finished, 1 diverged. "),
+        ("incomplete", "4 of 4 flights kept out, 3 finished. "),
+    ],
+)
+def test_the_headline_counts_flights_that_did_not_finish_once(run, outcome, words):
+    kept_out = outcome == "incomplete"
+    report = content(with_values(run, 1, **{**LOST, "outcome": outcome, "kept_out": kept_out}))
+    assert report.verdict.headline.startswith(words)
     assert report.verdict.tone == "bad"
-    assert ("Aircraft lost", "1", "0", False, "steady_00001") in report.verdict.figures
-    assert report.verdict.failures == ["steady_00001: aircraft lost; it came down on the sea"]
-    # Planned, flown, completed, met, lost, kept out.
-    assert rows_of(report, "Steady")[0][:6] == ["2", "2", "1", "1", "1", "1"]
+    # Flights that are planned, flown, completed, met.
+    assert rows_of(report, "Steady")[0][:4] == ["2", "2", "1", "1"]
 
 
 def test_where_a_fault_is_flown_on_purpose_a_lost_aircraft_is_shown_and_keeping_out_judged(run):
@@ -98,15 +107,6 @@ def test_where_a_fault_is_flown_on_purpose_a_lost_aircraft_is_shown_and_keeping_
     assert rows_of(report, "Steady")[0][:6] == ["2", "2", "1", "1", "1", "1"]
 
 
-def test_a_mission_that_was_not_completed_is_not_met_and_said(run):
-    values = {"outcome": "incomplete", "message": "flew 1 of 3 crossings", "criteria_met": False}
-    report = content(with_values(run, 0, **values))
-    assert report.verdict.tone == "bad"
-    assert report.verdict.headline.startswith("4 of 4 flights kept out, 3 finished. ")
-    assert ("Finished", "3 of 4", "all", False, "") in report.verdict.cards
-    assert report.verdict.failures == ["steady_00000: incomplete; flew 1 of 3 crossings"]
-
-
 NOT_FLOWN = {
     "outcome": "infeasible", "message": "too fast a vessel", "criteria_met": False, "kept_out": False,
     "duration_s": float("nan"), "min_distance_m": float("nan"), "tracking_error_rms_m": float("nan"),
@@ -114,7 +114,7 @@ NOT_FLOWN = {
 }  # fmt: skip
 
 
-def test_a_flight_that_could_not_be_flown_is_told_and_makes_no_other_flights_figure_red(run):
+def test_a_flight_that_could_not_be_flown_is_counted_and_makes_no_other_flights_figure_red(run):
     judged = with_criterion(
         with_values(run, 1, **NOT_FLOWN), "steady", "tracking_error_rms_m", 50.0
     )
@@ -133,17 +133,6 @@ def test_a_flight_that_could_not_be_flown_is_told_and_makes_no_other_flights_fig
     (row,) = (row for row in rows_of(report, "Steady") if row[1] == "≤ 50 m")
     # As on page 1: it fails the mission, and is not judged by what could not be measured.
     assert row[-2:] == ["1 of 2", "0"]
-
-
-def test_of_a_run_in_which_nothing_was_flown_no_figure_is_met_and_no_picture_shown(run):
-    nothing = changed(run, summary=run.summary.assign(**NOT_FLOWN))
-    report = content(nothing)
-    assert report.verdict.headline == "Nothing was flown: of 4, 4 infeasible"
-    assert [tuple(card) for card in report.verdict.figures] == [
-        ("Flights flown", "0 of 4", "all", False, "")
-    ]
-    assert report.picture is None
-    assert report.verdict.tone == "bad"
 
 
 def test_the_verdict_claims_what_was_flown_and_the_bound_that_follows(run):
@@ -195,31 +184,6 @@ def test_a_flight_that_could_not_be_flown_counts_as_a_violation_in_the_bound(run
     )
 
 
-def test_a_handful_of_flights_states_no_bound_as_it_would_say_nothing(run):
-    # None of four, 1 - 0.05^(1/4): 52.7 %; none of the two of a trial: 77.6 %.
-    report = content(run)
-    assert report.verdict.figures[0].note == "too few for a bound on the rate"
-    assert rows_of(report, "Steady")[0][6] == "–"
-
-
-def test_a_flight_that_was_flown_before_an_instrument_failed_counts_with_its_violation(run):
-    # An instrument is evaluated after the flight: where that fails, so is the flight's outcome, and
-    # its distances are known.
-    failed = {
-        "outcome": "failed",
-        "message": "no such gas",
-        "criteria_met": False,
-        "kept_out": False,
-    }
-    judged = content(
-        with_values(
-            run, 1, **failed, keepout_violations=1, keepout_depth_m=1.5, min_distance_m=198.5
-        )
-    ).verdict
-    assert judged.headline.startswith("3 of 4 flights kept out, 3 finished, 1 violated. ")
-    assert judged.failures[0] == "steady_00001: failed; no such gas"
-
-
 def test_a_premise_that_did_not_hold_is_named_with_its_largest_ratio(run):
     report = content(
         with_values(run, 0, premises_exceeded="drift, wind", premise_drift_ratio_max=2.5)
@@ -246,3 +210,33 @@ def test_a_violation_that_no_premise_explains_comes_before_anything_else(run):
     assert ("Violations with every premise of the guard held", "1", "0", False) in [
         (figure.name, figure.value, figure.limit, figure.met) for figure in report.verdict.figures
     ]
+
+
+# The paper's circle on the paper's vehicle, long enough to settle from any start.
+CIRCLE = (
+    "cases=[]",
+    "study=flights",
+    "reference.path=circle",
+    "fidelity=kinematic",
+    "flight.duration_max_s=300",
+    "flights=2",
+)
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    return content(read_run(flown(tmp_path_factory, "paper", CIRCLE)))
+
+
+def test_they_count_as_flown_and_have_no_area_to_keep_out_of(report):
+    verdict = report.verdict
+    assert verdict.headline.startswith(
+        "2 flights about a circle, without a vessel, 2 finished. Worst: tracking "
+    )
+    assert verdict.tone == "good"
+    # Two flights of 300 s.
+    assert report.flown.startswith("2 flights (10 min simulated)")
+    figures = {card.name: card for card in verdict.figures}
+    assert figures["Finished"].value == "2 of 2"
+    assert not [name for name in figures if "ept" in name or "approach" in name]
+    assert not any("rate" in card.note for card in verdict.figures)

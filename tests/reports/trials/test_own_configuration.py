@@ -1,6 +1,4 @@
-"""Flights that differ in their keep-out area and in their funnel: each is drawn and measured with
-its own.
-"""
+"""Flights with different keep-out areas and funnels: each is drawn and measured with those it has."""
 
 import json
 import tomllib
@@ -10,24 +8,18 @@ import pandas as pd
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from report_parts import blocks_of
+from report_parts import flown_text
 
 from common.text import as_json_cell, cell, from_json_cell
-from reports.document.blocks import FlightPicker
 from reports.export.geographic import recorded_flights
 from reports.flights.single_flight import flight_charts
 from reports.flights.tracks import flight_view
-from reports.flights.trials.tables import fault_table
-from reports.registry import content
 from reports.replay.flight_scene import flight_scene
-from reports.run.flight_config import flight_config, flight_configs, with_value
+from reports.run.flight_config import flight_config, with_value
 from reports.run.run_data import RunData, read_overrides, read_run
-from reports.run.surroundings import plume_shape
 from reports.run.trials import read_trials
-from scenarios.engine.processes import InProcessExecutor
 from scenarios.experiment.requests import Experiment, differing_keys
 from scenarios.scenario.files import load_study
-from scenarios.studies.base import run_study
 
 pytestmark = pytest.mark.slow
 
@@ -49,8 +41,6 @@ emission.ship = "container"
 [[draws]]
 key = "emission.load"
 uniform = [0.2, 0.9]
-[comparison]
-variants = [{ name = "upright", set = { "keepout.shape" = "cylinder" } }]
 """
 
 OWN = [("sphere", 20.0), ("sphere", 60.0), ("cylinder", 20.0), ("cylinder", 60.0)]
@@ -59,15 +49,7 @@ OWN = [("sphere", 20.0), ("sphere", 60.0), ("cylinder", 20.0), ("cylinder", 60.0
 
 @pytest.fixture(scope="module")
 def apart(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("apart")
-    (folder / "apart.toml").write_text(APART, encoding="utf-8")
-    run_study(
-        load_study(str(folder / "apart.toml")),
-        "apart",
-        folder / "run",
-        executor_factory=InProcessExecutor,
-    )
-    return read_run(folder / "run")
+    return read_run(flown_text(tmp_path_factory, "apart", APART))
 
 
 @pytest.fixture(scope="module")
@@ -107,59 +89,6 @@ def test_replay_map_and_export_have_the_flights_own_keep_out_area_and_funnel(apa
     )
     heights = {flight.flight_id: flight.source_height for flight in recorded_flights(apart)}
     assert [heights[row["flight_id"]] for row in rows] == [height for _, height in OWN]
-
-
-def test_the_plume_that_is_drawn_is_that_of_the_sampled_load(apart, trial):
-    row = trial.rows.iloc[0]
-    load = float(apart.draws["emission.load"].iloc[0])
-    air = {"speed": 8.0, "wind": 8.0, "apparent_wind": 8.0, "length": 800.0}
-    own = trial.config | {"emission": trial.config["emission"] | {"load": load}}
-    own |= {"plume": trial.config["plume"] | {"source_height_m": 20.0}}
-    drawn, expected, base = (
-        plume_shape(config, **air) for config in (trial.flight_config(row), own, trial.config)
-    )
-    assert drawn.height == pytest.approx(expected.height)
-    assert drawn.height[-1] - drawn.height[0] != pytest.approx(
-        base.height[-1] - base.height[0], abs=0.1
-    )
-
-
-def test_a_trial_of_both_shapes_says_so_and_page_1_says_which_the_closest_flight_has(apart, trial):
-    assert trial.shape == "sphere or cylinder"
-    assert (
-        trial.measured_from
-        == "from the keep-out sphere's centre, or horizontal, from the keep-out cylinder's axis"
-    )
-    report = content(apart)
-    # Without height a distance is shorter.
-    (closest,) = [card for card in report.verdict.figures if card.name == "Closest approach"]
-    assert closest.note.endswith(", horizontal, from the keep-out cylinder's axis")
-    assert "The keep-out cylinder or sphere is about the stack" in report.picture.caption
-    (picker,) = blocks_of(report, FlightPicker)
-    assert [flight.scene.keepout_shape for flight in picker.flights] == [shape for shape, _ in OWN]
-
-
-def test_the_closest_approach_after_a_fault_is_measured_as_the_flights_own_is(trial):
-    faulty = trial.rows.assign(fault="rudder", fault_time_s=0.0, end_distance_m=300.0)
-    for i, (_, row) in enumerate(faulty.iterrows()):
-        alone = type(trial)(
-            run=trial.run,
-            key=trial.key,
-            name=trial.name,
-            config=trial.config,
-            rows=faulty.iloc[[i]],
-        )
-        table = fault_table(alone)
-        after = float(table.rows[0][table.head.index("Closest after the fault [m]")])
-        assert after == pytest.approx(row["min_distance_m"], abs=0.1)
-
-
-def test_a_comparisons_flight_has_what_the_comparison_sets(apart):
-    configs = flight_configs(apart, apart.comparison)
-    assert [config["keepout"]["shape"] for config in configs] == ["cylinder"] * 4
-    assert [config["plume"]["source_height_m"] for config in configs] == [
-        height for _, height in OWN
-    ]
 
 
 VARIATION = {"sweep", "cases", "draws", "comparison", "report"}

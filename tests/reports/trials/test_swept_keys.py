@@ -7,23 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
-from report_parts import blocks_of
+from report_parts import blocks_of, flown_text
 
 from reports.document.blocks import FlightPicker, Table
 from reports.errors import ReportError
-from reports.flights.names import (
-    flight_name,
-    flown_elsewhere,
-    swept_column,
-)
 from reports.flights.trials.charts import trial_charts
 from reports.registry import content
 from reports.run.columns import column
 from reports.run.run_data import read_run
 from reports.run.trials import read_trials
-from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.files import load_study
-from scenarios.studies.base import run_study
 
 pytestmark = pytest.mark.slow
 
@@ -42,45 +34,15 @@ title = "Short"
 [sweep]
 nu = [0.2, 0.4]
 "keepout.radius_m" = [150.0, 200.0]
-"guidance.law" = ["cascade", "line_of_sight"]
 """
 
 
 @pytest.fixture(scope="module")
 def trial(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("swept")
-    (folder / "short.toml").write_text(SHORT, encoding="utf-8")
-    run_study(
-        load_study(str(folder / "short.toml")),
-        "short",
-        folder / "run",
-        executor_factory=InProcessExecutor,
-    )
-    return read_trials(read_run(folder / "run"))[0]
+    return read_trials(read_run(flown_text(tmp_path_factory, "short", SHORT)))[0]
 
 
-def test_a_flight_is_called_by_all_that_was_swept(trial):
-    assert (
-        flight_name(trial, trial.rows.iloc[0])
-        == "ν = 0.20, keep-out radius 150 m, guidance law cascade"
-    )
-
-
-def test_a_flight_that_was_lost_with_its_process_is_called_as_in_the_files(trial):
-    # It has no row in draws.csv.
-    row = trial.rows.iloc[0]
-    lost = replace(trial, run=replace(trial.run, draws=trial.run.draws.iloc[1:]))
-    assert flight_name(lost, row) == str(row["flight_id"])
-    assert swept_column(lost)[1](row) == str(row["flight_id"])
-    run = replace(lost.run, manifest=lost.run.manifest | {"trial_flights": {lost.key: 1}})
-    head, called = swept_column(
-        replace(lost, run=run, config=lost.config | {"sweep": {"nu": [0.2]}})
-    )
-    assert (head, called(row)) == ("ν", str(row["flight_id"]))
-    assert flight_name(lost, trial.rows.iloc[1]) == flight_name(trial, trial.rows.iloc[1])
-
-
-def test_page_1_tells_of_flights_with_different_radii_how_far_each_stayed_beyond_its_own(trial):
+def test_page_1_says_how_far_flights_with_different_radii_stayed_beyond_their_own(trial):
     found = content(trial.run)
     kept = column(trial.rows, "min_distance_m") - column(trial.rows, "keepout_radius_m")
     least = f"{kept.min():.1f} m"
@@ -104,15 +66,6 @@ def test_page_1_tells_of_flights_with_different_radii_how_far_each_stayed_beyond
     ]
 
 
-def test_the_speed_ratio_that_was_swept_is_in_a_table_of_the_run_beside_the_one_that_was_flown(
-    windy_run,
-):
-    drawn = windy_run.draws
-    assert list(drawn["vessel.speed_ratio"]) == [0.3, 0.3, 0.6, 0.6]
-    # As in the column of flown ratios below; of what was not flown it is that over the ground.
-    assert list(drawn["nu"].round(2)[:3]) == [0.3, 0.81, 0.6]
-
-
 WINDY = f"""
 title = "Windy"
 {KINEMATIC}
@@ -130,21 +83,8 @@ nu = [0.3, 0.6]
 
 
 @pytest.fixture(scope="module")
-def windy_run(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("windy")
-    (folder / "windy.toml").write_text(WINDY, encoding="utf-8")
-    run_study(
-        load_study(str(folder / "windy.toml")),
-        "windy",
-        folder / "run",
-        executor_factory=InProcessExecutor,
-    )
-    return read_run(folder / "run")
-
-
-@pytest.fixture(scope="module")
-def windy(windy_run):
-    return content(windy_run)
+def windy(tmp_path_factory):
+    return content(read_run(flown_text(tmp_path_factory, "windy", WINDY)))
 
 
 NAMES = [f"ν = {nu}, wind speed {wind} m/s" for nu in ("0.30", "0.60") for wind in (0, 10)]
@@ -168,18 +108,6 @@ def test_each_swept_value_has_its_name_and_unit_and_a_flight_one_name_everywhere
     assert not any(
         "nu_0" in text for text in (windy.verdict.detail, *windy.verdict.failures, *titles)
     )
-
-
-def test_where_the_flown_speed_ratio_is_not_the_swept_one_a_column_says_it(windy, trial):
-    (flights,) = (of for of in blocks_of(windy, Table, "trial1") if "ν flown [-]" in of.head)
-    # (0.3 * 19.42 + 10)/19.42 = 0.815: head wind on a vessel on course north, at the X8's airspeed.
-    # What was not flown has none.
-    ratios = [row[flights.head.index("ν flown [-]")] for row in flights.rows]
-    assert ratios == ["0.30", "0.81", "0.60", "–"]
-    (picker,) = blocks_of(windy, FlightPicker)
-    assert "flown at ν = 0.81" in picker.flights[1].title.replace("\N{NO-BREAK SPACE}", " ")
-    assert ": not flown, infeasible: " in picker.flights[3].title
-    assert not flown_elsewhere(trial)
 
 
 def test_a_sweep_whose_values_are_gone_names_the_table_that_had_them(trial):

@@ -4,71 +4,28 @@ become of one.
 
 import json
 import math
-import re
 import shutil
 from dataclasses import replace
 
 import pytest
-from judged_runs import changed, judged
-from report_parts import blocks_of, draw_all_but, numbers_on_page_1
+from judged_runs import judged
 from snapshots import assert_reads_as_before
 from trial_runs import rows_of, with_criterion, with_values
 
-from reports.build import build_reports
-from reports.document.blocks import Table
-from reports.errors import ReportError
-from reports.flights.criteria import MEASURED
-from reports.flights.trials.charts import PanelsOver, by_violation
-from reports.output import write_report
 from reports.registry import content
 from reports.run.run_data import read_run
-from reports.run.trials import Kind, Trial, read_trials
-from scenarios.scenario.files import load_study
-from tests.reports.run_columns import RUN_COLUMNS
+from reports.run.trials import read_trials
 
 pytestmark = pytest.mark.slow
 
 BRIEF = pytest.mark.usefixtures("without_single_flights")
 
 
-def test_trials_are_reported_on_screen_and_in_print(run_path, report, tmp_path, monkeypatch):
-    # Drawing takes nearly all of this test's time: one flight tells whether they are. Page 1's
-    # figure is drawn in its own tests.
-    draw_all_but(monkeypatch, "first")
-    monkeypatch.setattr("reports.flights.selection.PICKED_MAX", 1)
-    html, pdf = build_reports(shutil.copytree(run_path, tmp_path / "copy"))
-    text = html.read_text(encoding="utf-8")
-    assert pdf.read_bytes().startswith(b"%PDF")
-    for anchor in re.findall(r'href="#(\w+)"', text):
-        assert f'id="{anchor}"' in text
-    figures = json.loads(re.search(r'id="flight-figures">(.*?)</script>', text, re.DOTALL)[1])
-    assert [flight_id.rsplit("_", 1)[0] for flight_id in figures] == ["steady"]
-    assert all(len(charts) == 2 for charts in figures.values())
-    # The kinematic vehicle is no aircraft, and of a list of trials each has a seed of its own.
-    assert "of the kinematic vehicle, eq. (1)" in report.flown
-    assert dict(blocks_of(report, Table, "provenance")[0].rows)["Seed"] == "each trial's own"
-
-
-@BRIEF
-def test_of_nothing_flown_nothing_is_claimed(run):
-    unflown = run.summary.assign(
-        duration_s=math.nan,
-        min_distance_m=math.nan,
-        keepout_violations=math.nan,
-        criteria_met=False,
-        outcome="infeasible",
-    )
-    empty = changed(run, summary=unflown)
-    verdict = content(empty).verdict
-    assert verdict.tone == "bad"
-    assert verdict.headline.startswith("Nothing was flown: of 4, 4 infeasible")
-
-
 @BRIEF
 def test_the_limits_shown_are_those_of_the_manifest(run, report):
     # 0.0321 stands in the scenario above.
-    asked = {row[0]: row for row in rows_of(report, "Steady")[1:]}
-    assert asked["Mean crossing interval off π/ω₀"][1] == "≤ 3.21 %"
+    criteria = {row[0]: row for row in rows_of(report, "Steady")[1:]}
+    assert criteria["Mean crossing interval off π/ω₀"][1] == "≤ 3.21 %"
     # Far below what any flight can show, so that both fail.
     other = content(with_criterion(run, "steady", "crossing_interval_error", 1e-6))
     row = next(row for row in rows_of(other, "Steady")[1:] if row[0].startswith("Mean"))
@@ -94,30 +51,6 @@ def test_a_criterion_without_a_figure_counts_as_failed(run):
 
 
 @BRIEF
-@pytest.mark.parametrize(
-    ("measured", "shown"), [(0.63712, "0.637 m"), (0.0063712, "0.006 m"), (12.345, "12.3 m")]
-)
-def test_a_figure_has_three_digits_and_none_below_a_thousandth_of_its_limit(run, measured, shown):
-    both = with_values(
-        with_values(run, 0, tracking_error_rms_m=measured), 1, tracking_error_rms_m=measured
-    )
-    rows = rows_of(content(with_criterion(both, "steady", "tracking_error_rms_m", 1.5)), "Steady")
-    assert next(row for row in rows if row[0].startswith("Tracking error"))[2] == shown
-
-
-@BRIEF
-@pytest.mark.parametrize("settles", [True, False])
-def test_what_is_measured_after_settling_is_judged_where_flights_have_to_settle(run, settles):
-    judged = with_criterion(
-        with_criterion(run, "turns", "settles", settles), "turns", "tracking_error_rms_m", 1e-9
-    )
-    assert (
-        any(row[0].startswith("Tracking error, rms") for row in rows_of(content(judged), "Turns"))
-        is settles
-    )
-
-
-@BRIEF
 def test_resuming_is_judged_of_flights_whose_vessel_ends_a_manoeuvre(run):
     ended = with_values(run, 2, manoeuvre_end_s=190.0, resume_periods=0.7)
     with_end = with_values(ended, 3, manoeuvre_end_s=math.nan, resume_periods=math.nan)
@@ -129,37 +62,20 @@ def test_resuming_is_judged_of_flights_whose_vessel_ends_a_manoeuvre(run):
     assert row[4:] == ["1 of 2", "0"]
 
 
+DEMAND = {"heading_rate_demand_max_rad_s": [0.5, 0.6]}
+
+
 @BRIEF
 @pytest.mark.parametrize(
     ("key", "value", "values", "shown"),
     [
-        (
-            "crossing_interval_s",
-            [8.0, 9.0],
-            {"crossing_interval_mean_s": [8.5, 9.25]},
-            ["8 to 9 s", "9.25 s", "1"],
-        ),
-        (
-            "crossing_distance_m",
-            [200.0, 230.0],
-            {"crossing_distance_mean_m": [214.0, math.nan]},
-            ["200 to 230 m", "214 m", "1"],
-        ),
-        (
-            "law_within_heading_rate_max",
-            True,
-            {"heading_rate_demand_max_rad_s": [0.5, 0.6]},
-            ["≤ ω_max", "1.2 ω_max", "1"],
-        ),
-        (
-            "law_beyond_heading_rate_max",
-            True,
-            {"heading_rate_demand_max_rad_s": [0.5, 0.6]},
-            ["> ω_max", "1 ω_max", "1"],
-        ),
+        ("crossing_interval_s", [8.0, 9.0], {"crossing_interval_mean_s": [8.5, 9.25]}, ["8 to 9 s", "9.25 s", "1"]),
+        ("crossing_distance_m", [200.0, 230.0], {"crossing_distance_mean_m": [214.0, math.nan]}, ["200 to 230 m", "214 m", "1"]),
+        ("law_within_heading_rate_max", True, DEMAND, ["≤ ω_max", "1.2 ω_max", "1"]),
+        ("law_beyond_heading_rate_max", True, DEMAND, ["> ω_max", "1 ω_max", "1"]),
     ],
-)
-def test_flights_that_failed_a_criterion_are_counted_whatever_its_limits(
+)  # fmt: skip
+def test_flights_that_failed_a_criterion_are_counted_for_limits_of_each_kind(
     run, key, value, values, shown
 ):
     # Of two flights of the trial, the second or, where the law must exceed omega_max = 0.5 rad/s,
@@ -171,31 +87,8 @@ def test_flights_that_failed_a_criterion_are_counted_whatever_its_limits(
     assert shown in [[*row[1:3], row[-1]] for row in rows]
 
 
-def test_a_report_that_cannot_be_drawn_is_one_line(run_path, run, tmp_path, monkeypatch):
-    def fails(*_, **__):
-        raise ValueError("no such glyph\nat line 3")
-
-    monkeypatch.setattr("reports.registry.content", lambda *_: None)
-    for writer in ("html.write_html", "pdf.write_pdf"):
-        monkeypatch.setattr(f"reports.render.{writer}", fails)
-    words = r"^the report of '.*' could not be drawn: ValueError: no such glyph$"
-    with pytest.raises(ReportError, match=words):
-        build_reports(shutil.copytree(run_path, tmp_path / "copy"))
-    for name in ("report.html", "report.pdf"):
-        with pytest.raises(ReportError, match=words):
-            write_report(run, tmp_path / name)
-    assert not list(tmp_path.glob("report.*"))
-
-
-def test_a_report_in_memory_of_a_damaged_run_is_refused_in_one_line(run, tmp_path):
-    with pytest.raises(ReportError, match="is damaged"):
-        write_report(
-            replace(run, summary=run.summary.drop(columns="outcome")), tmp_path / "report.html"
-        )
-
-
-def test_a_run_without_any_history_and_with_a_trial_not_begun_is_reported_on(run_path, tmp_path):
-    path = shutil.copytree(run_path, tmp_path / "copy")
+def test_a_run_without_any_history_and_with_a_trial_not_begun_is_reported_on(small_run, tmp_path):
+    path = shutil.copytree(small_run, tmp_path / "copy")
     shutil.rmtree(path / "flights")
     whole = read_run(path)
     steady = whole.summary[whole.summary["trial"] == "steady"]
@@ -212,23 +105,7 @@ def test_a_run_without_any_history_and_with_a_trial_not_begun_is_reported_on(run
     ] == ["trial1"]
 
 
-@pytest.mark.parametrize(
-    ("name", "kind"),
-    [
-        ("sea_wind", Kind.GENERAL),
-        ("sea_turbulence_light", Kind.GENERAL),
-        ("sea_manoeuvres", Kind.MANOEUVRES),
-        ("sea_approach", Kind.GENERAL),
-        ("sea_together", Kind.GENERAL),
-        ("sea_faults", Kind.FAULTS),
-        ("sweep_nu", Kind.SWEEP),
-    ],
-)
-def test_a_trial_is_known_by_what_it_holds_not_by_its_name(run, name, kind):
-    config = load_study(name, []).model_dump(mode="json")
-    assert Trial(run=run, key="any", name="trial1", config=config, rows=run.summary).kind is kind
-
-
+@BRIEF
 def test_a_criterion_that_is_just_failed_is_not_written_as_its_limit(run):
     failed = with_values(
         with_criterion(run, "steady", "tracking_error_rms_m", 1.5), 0, tracking_error_rms_m=1.504
@@ -237,42 +114,5 @@ def test_a_criterion_that_is_just_failed_is_not_written_as_its_limit(run):
     assert ["≤ 1.5 m", "1.504 m", "1"] in [[*row[1:3], row[-1]] for row in rows]
 
 
-def test_a_criterion_that_does_not_apply_is_no_limit(run):
-    trial = read_trials(with_criterion(run, "steady", "tracking_error_rms_m", False))[0]
-    panel = PanelsOver(trial, "nu", by_violation(trial)).figure("tracking_error_rms_m")
-    assert "criterion" not in {line.label for line in panel.lines}
-    trial = read_trials(with_criterion(run, "steady", "tracking_error_rms_m", 2.0))[0]
-    panel = PanelsOver(trial, "nu", by_violation(trial)).figure("tracking_error_rms_m")
-    (level,) = (line for line in panel.lines if line.label == "criterion")
-    assert set(level.y) == {2.0}
-
-
-@BRIEF
-def test_altitudes_that_have_to_be_kept_are_a_criterion_on_the_time_outside(run):
-    kept = with_criterion(run, "turns", "within_altitudes", True)
-    rows = kept.summary.assign(
-        altitude_outside_s=[0.0 if trial != "turns" else 1.5 for trial in kept.summary["trial"]]
-    )
-    shown = rows_of(content(changed(kept, summary=rows, columns=RUN_COLUMNS)), "Turns")
-    (row,) = (row for row in shown if row[0] == "Time outside the altitudes of the scenario")
-    assert [*row[1:3], row[-1]] == ["≤ 0 s", "1.5 s", "2"]
-
-
 def test_trials_read_as_before(report):
     assert_reads_as_before("trials", report)
-
-
-def test_every_number_on_page_1_is_that_of_the_verdict(run_path, run, tmp_path):
-    whole, counts = run.verdict.whole, run.verdict.counts
-    distance, radius = whole.closest.distance_m, whole.closest.radius_m
-    assert distance == run.summary["min_distance_m"].min()
-    judged = [of for of in whole.criteria if of.key in MEASURED and of.worst_of_all]
-    scales = {of.key: run.column(of.column).scale for of in judged}
-    known = {
-        f"{number}" for number in (counts.planned, counts.flown, counts.kept_out, counts.completed)
-    }
-    known |= {f"{distance:.1f}", f"{distance - radius:.1f}", f"{radius:g}"}
-    for of in judged:
-        known |= {f"{float(f'{scales[of.key] * of.worst_of_all.value:.3g}'):g}"}
-        known |= {f"{float(f'{scales[of.key] * limit:.3g}'):g}" for limit in of.limits}
-    assert numbers_on_page_1(run_path, tmp_path) <= known
