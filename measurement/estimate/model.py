@@ -90,6 +90,7 @@ from measurement.estimate.passes import SNR_LEAST
 from measurement.estimate.record import Record
 from measurement.estimate.signals import (
     Signals,
+    equalised,
     equalised_from_rest,
     make_signals,
     shifted,
@@ -303,6 +304,11 @@ class Property:
     unit: float
     prior: float
 
+    @property
+    def stated(self) -> bool:
+        """Whether it is stated: its unit then is its deviation."""
+        return self.prior == 1.0
+
     def moved(self, instrument: SnifferSpec, units: float) -> SnifferSpec:
         """Return an instrument with this property moved by ``units``."""
         channel = instrument.known(self.gas)
@@ -394,6 +400,28 @@ class BlockedRecord:
         time = self.blocks.time[self.known]
         lags = np.abs(time[:, np.newaxis] - time)
         return _filtered_kernel(lags, length, self.signals.common[0])
+
+    def if_so2_had(self, t90_s: float) -> "BlockedRecord":
+        """Return so2 without what corrects it for other gases, and co2 and passes in the shape that
+        a cell of another t90 would have given them in so2.
+        """
+        so2 = self.signals.instrument.known("so2")
+        own, other = so2.constants, replace(so2, t90_s=t90_s).constants
+        step = self.blocks.step
+
+        def shaped(values: Array) -> Array:
+            return self.blocks.by_segment(lambda part: equalised(part, step, own, other), values)[
+                self.known
+            ]
+
+        passes = np.zeros((len(self.blocks.time), self.passes.shape[1]))
+        passes[self.known] = self.passes
+        return replace(
+            self,
+            so2=self.so2 + self.cross * self.co2,
+            co2=shaped(self.blocks.mean(self.signals.co2)),
+            passes=shaped(passes),
+        )
 
     def equalised(self, values: Array) -> Array:
         """Return E of (5) applied to CO2 of all blocks, at the known ones, shape (n, ...)."""
