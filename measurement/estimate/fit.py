@@ -95,7 +95,7 @@ _SETTLED = 0.2
 _PLACE_MOST = 3.0
 """Largest distance of a property from its stated value [units]."""
 
-_STEP_MOST = {"t90_s": 0.3, "delay_s": 0.3}
+_STEP_MOST = {"t90_s": 0.3, "delay_s": 1.0}
 """Largest step of log(t90), and of a delay [s]: columns are not proportional to a larger one."""
 
 

@@ -70,8 +70,11 @@ The part of M whose mean is H' P H has no negative eigenvalue; an eigenvalue tha
 negative is set to 0. The background of CO2 in C is the smaller one of those that residuals and
 troughs show.
 
-Where a t90 or delay is not stated, G is 0, and M alone leads away from the true t90 of a cell in
-which passes overlap. Then D stays in P, as in (2), (8) has only b, and d is estimated from r.
+Where a t90 or delay of SO2 is not stated, G is 0, and M alone leads away from the true t90 of a
+cell in which passes overlap. Then (8) has only b. The delay stays in P, as in (2), and is estimated
+from r. The t90 is that with the least (4), where so2 stays equalised as it is and co2 gets the
+shape that a cell of another t90 would have given it; P takes it as exact, and its deviation adds to
+(9).
 """
 
 import itertools
