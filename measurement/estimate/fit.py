@@ -261,8 +261,7 @@ class _State:
         SO2 stays equalised by the t90 of the linearisation, and CO2 gets the shape that the cell
         would have given it: then L is of the same readings for every t90.
         """
-        cross = self.data.cross
-        state = replace(self, data=self.data.if_so2_had(t90_s), slope=self.slope + cross)
+        state = replace(self, data=self.data.if_so2_had(t90_s))
         state = replace(state, slope=max(SLOPE_LEAST, state.unweighted_slope())).refitted()
         likelihood = Likelihood(state.data, state.slope, state.properties, coarse=True)
         residual, fixed = (likelihood.averaged(each) for each in (state.residual, state.freed))
@@ -513,7 +512,10 @@ def _with_likeliest_t90(
 
     for _ in range(_SEARCHES):
         known = with_t90(log_t90, 0.0)
-        found = _linearised(record, known, _begun(record, known) or state)
+        begun = _begun(record, known)
+        if begun is None:
+            return instrument, state
+        found = _linearised(record, known, begun)
         before, log_t90 = log_t90, _least(found.cost_of_t90, log_t90)
         if abs(log_t90 - before) < _T90_SETTLED:
             break

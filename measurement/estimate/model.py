@@ -422,6 +422,7 @@ class BlockedRecord:
         return replace(
             self,
             so2=self.so2 + self.cross * self.co2,
+            cross=0.0,
             co2=shaped(self.blocks.mean(self.signals.co2)),
             passes=shaped(passes),
         )
