@@ -36,7 +36,7 @@ from measurement.estimate.quality import (
 )
 from measurement.estimate.record import Record, checked_record, readings_noise
 from measurement.estimate.result import Figures, FscEstimate, Method, PassContent
-from measurement.estimate.signals import make_signals, signals_table
+from measurement.estimate.signals import make_signals, signals_table, without
 from measurement.estimate.timing import (
     DELAY_MOST,
     check_timing_is_stated,
@@ -275,6 +275,8 @@ def _by_regression(record: Record, instrument: SnifferSpec, fit: Fit) -> Ratio:
         parts["calibration"] = math.hypot(
             parts.get("calibration", 0.0), *(gain * fit.slope for gain in gains)
         )
+        for gas, deviation in _by_responses_not_stated(record, fit.instrument).items():
+            parts[gas] = max(parts.get(gas, 0.0), deviation)
         problems = (
             *_shown_delay_problem(record, instrument, fit),
             *residual_problem(fit.residuals, energy),
@@ -287,6 +289,25 @@ def _by_regression(record: Record, instrument: SnifferSpec, fit: Fit) -> Ratio:
         instrument=fit.instrument,
         problems=problems,
     )
+
+
+def _by_responses_not_stated(record: Record, instrument: SnifferSpec) -> dict[str, float]:
+    """Return standard uncertainties of the ratio by responses of SO2 that are not stated [ppb/ppm].
+
+    They follow from the ratio of the other gas to CO2. Where such a response takes most of SO2
+    away, the fit finds t90 and delay in what is left, where NO2 has another effect.
+    """
+    so2 = instrument.known("so2")
+    gases = [gas for gas in so2.cross_sd if gas in record.gases and not so2.cross.get(gas)]
+    if not gases:
+        return {}
+    signals = make_signals(record, instrument)
+    co2 = without(signals.basis, signals.known * signals.co2)
+    found = {}
+    for gas in gases:
+        other = without(signals.basis, signals.known * signals.readings(gas))
+        found[gas] = so2.cross_sd[gas] * abs(float(other @ co2)) / float(co2 @ co2)
+    return found
 
 
 def _shown_delay_problem(record: Record, instrument: SnifferSpec, fit: Fit) -> tuple[str, ...]:

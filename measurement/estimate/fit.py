@@ -8,7 +8,7 @@
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -80,13 +80,23 @@ _ROUNDS, _ROUNDS_FREE = 5, 10
 delay.
 """
 
+_SEARCHES = 6
+"""Largest number of searches for a t90 that is not stated, each about the one found before."""
+
+_T90_GRID = np.linspace(-1.0, 1.0, 9)
+"""Where a search looks, relative to the logarithm of the t90 that was found before."""
+
+_T90_TOLERANCE, _T90_SETTLED = 0.01, 0.05
+"""Precision of its logarithm in a search, and the change at which the last search was enough."""
+
 _SETTLED = 0.2
 """Largest change of a property at which the linearisation has settled [units]."""
 
-_STEP_MOST = 3.0
-"""Largest distance of a property from its stated value, or largest step of one that is not stated
-[units].
-"""
+_PLACE_MOST = 3.0
+"""Largest distance of a property from its stated value [units]."""
+
+_STEP_MOST = {"t90_s": 0.3, "delay_s": 1.0}
+"""Largest step of log(t90), and of a delay [s]: columns are not proportional to a larger one."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -177,12 +187,6 @@ class _State:
         likelihood = Likelihood(self.data, self.slope, self.properties)
         return likelihood.inverse(self.variances, fixed, varying)[0]
 
-    def with_known_properties(self) -> "_State":
-        """Return the state for an instrument that is known exactly, with the properties at
-        ``place``.
-        """
-        return replace(self, data=replace(self.data, columns=0.0 * self.data.columns))
-
     def unweighted_slope(self) -> float:
         """Return the slope by the instrument z without weights; 0 without an instrument.
 
@@ -214,20 +218,55 @@ class _State:
         varying : the columns Z of passes whose slopes may differ
         draw_windows : whether windows are found in c + w, or taken as given
         """
-        if not self.stated:
+        if not self.all_stated:
             bare = self.without_properties()
             copies = bare.copies(draw_windows=draw_windows)
-            inverse = self.inverse(self.fixed, varying)
+            inverse = self.only(~self.searched).inverse(self.fixed, varying)
             return solve_slope(inverse, copies, self.signals[0], np.zeros(0), bare.place)
-        inverse = self.with_known_properties().inverse(self.fixed, varying)
+        inverse = self.only(self.none).inverse(self.fixed, varying)
         precision = np.array([item.prior**-2.0 for item in self.properties])
         copies = self.copies(draw_windows=draw_windows)
         return solve_slope(inverse, copies, self.data.so2, precision, self.place)
 
     @property
-    def stated(self) -> bool:
+    def stated(self) -> npt.NDArray[np.bool_]:
+        """Which properties are stated, shape (p,)."""
+        return np.array([item.stated for item in self.properties], dtype=bool)
+
+    @property
+    def all_stated(self) -> bool:
         """Whether all properties are stated: only then (8) finds them together with the slope."""
-        return all(item.prior == 1.0 for item in self.properties)
+        return bool(self.stated.all())
+
+    @property
+    def none(self) -> npt.NDArray[np.bool_]:
+        """None of the properties, shape (p,)."""
+        return np.zeros(len(self.properties), dtype=bool)
+
+    @property
+    def searched(self) -> npt.NDArray[np.bool_]:
+        """Which property was found by ``_with_likeliest_t90``, shape (p,)."""
+        found = [not item.stated and item.name == "t90_s" for item in self.properties]
+        return np.array(found, dtype=bool)
+
+    def only(self, kept: npt.NDArray[np.bool_]) -> "_State":
+        """Return the state for an instrument of which the other properties are exactly those at
+        ``place``.
+        """
+        return replace(self, data=replace(self.data, columns=self.data.columns * kept))
+
+    def cost_of_t90(self, t90_s: float) -> float:
+        """Return -2 log L of (4), but for a constant, if that is the t90 of SO2.
+
+        SO2 stays equalised by the t90 of the linearisation, and CO2 gets the shape that the cell
+        would have given it: then L is of the same readings for every t90.
+        """
+        state = replace(self, data=self.data.if_so2_had(t90_s))
+        state = replace(state, slope=max(SLOPE_LEAST, state.unweighted_slope())).refitted()
+        likelihood = Likelihood(state.data, state.slope, state.properties, coarse=True)
+        residual, fixed = (likelihood.averaged(each) for each in (state.residual, state.freed))
+        inverse, determinants, _ = likelihood.inverse(state.variances, orthonormal(fixed))
+        return float(residual @ inverse @ residual) + determinants
 
     def without_properties(self) -> "_State":
         """Return the state of the stated instrument, without properties."""
@@ -237,7 +276,7 @@ class _State:
 
     def properties_found(self) -> tuple[Array, Array]:
         """Return mean and covariance of the properties by the residuals [units]."""
-        inverse = self.with_known_properties().inverse(self.freed)
+        inverse = self.only(self.none).inverse(self.freed)
         columns = self.distortions
         weighted = inverse @ columns
         priors = np.array([item.prior for item in self.properties])
@@ -268,7 +307,7 @@ class _State:
 
     def plume_share(self, varying: Array) -> float:
         """Return the share of the energy of the passes that is neither noise nor background [-]."""
-        inverse = self.with_known_properties().inverse(self.fixed, varying)
+        inverse = self.only(self.none).inverse(self.fixed, varying)
         operator = line_operator(len(self.data.read), [self.data.windows[i] for i in self.own])
         whole = float(self.instrument_column @ inverse @ self.data.co2)
         errors = error_energy(self.data, inverse, operator, self.read_errors)
@@ -386,7 +425,10 @@ def fit_record(record: Record, instrument: SnifferSpec) -> Fit:
     state = _begun(record, instrument)
     if state is None:
         return Fit(instrument=instrument)
-    state = _linearised(record, instrument, state)
+    if math.isinf(instrument.known("so2").t90_sd):
+        instrument, state = _with_likeliest_t90(record, instrument, state)
+    else:
+        state = _linearised(record, instrument, state)
     state, _, _ = _without_foreign(state)
     state, problems = _of_passes_that_stand_out(record, instrument, state)
     state, alike, agreement = _without_foreign(state)
@@ -425,21 +467,16 @@ def _begun(record: Record, instrument: SnifferSpec) -> _State | None:
 
 def _linearised(record: Record, instrument: SnifferSpec, state: _State) -> _State:
     """Return the state linearised about the properties that the record shows."""
-    priors = np.array([item.prior for item in state.properties])
-    stated = priors == 1.0
-    rounds = _ROUNDS if stated.all() else _ROUNDS_FREE
+    rounds = _ROUNDS if state.all_stated else _ROUNDS_FREE
     for number in range(rounds):
-        slope = max(SLOPE_LEAST, state.unweighted_slope())
-        state = replace(state, slope=slope).refitted()
-        found = state.solved()
-        state = state.with_slope(found)
-        if state.stated:
+        state, found = _with_slope_anew(state)
+        if state.all_stated:
             place = state.place + found.properties
         else:
             place, _ = state.properties_found()
-        near = np.clip(place - state.place, -_STEP_MOST, _STEP_MOST) + state.place
-        place = np.where(stated, np.clip(place, -_STEP_MOST, _STEP_MOST), near)
-        place = _within_search(instrument, state.properties, place)
+        place = np.where(state.stated, np.clip(place, -_PLACE_MOST, _PLACE_MOST), place)
+        most = np.array([_STEP_MOST[item.name] / item.unit for item in state.properties])
+        place = state.place + np.clip(place - state.place, -most, most)
         settled = bool(np.all(np.abs(place - state.place) < _SETTLED))
         if settled or number == rounds - 1:
             return state
@@ -451,15 +488,60 @@ def _linearised(record: Record, instrument: SnifferSpec, state: _State) -> _Stat
     return state
 
 
-def _within_search(instrument: SnifferSpec, properties: Sequence[Property], place: Array) -> Array:
-    """Return the properties, with a t90 that is not stated kept within the searched range."""
-    found = place.copy()
-    for i, item in enumerate(properties):
-        if item.prior != 1.0 and item.name == "t90_s":
-            start = instrument.known(item.gas).t90_s
-            least, most = (math.log(end / start) / item.unit for end in (T90_LEAST, T90_MOST))
-            found[i] = min(max(float(place[i]), least), most)
-    return found
+def _with_slope_anew(state: _State) -> tuple[_State, Slope]:
+    """Return the state with variances and slope found anew, and that slope."""
+    slope = max(SLOPE_LEAST, state.unweighted_slope())
+    state = replace(state, slope=slope).refitted()
+    found = state.solved()
+    return state.with_slope(found), found
+
+
+def _with_likeliest_t90(
+    record: Record, instrument: SnifferSpec, state: _State
+) -> tuple[SnifferSpec, _State]:
+    """Return the instrument with the t90 of SO2 of the largest likelihood, and the state.
+
+    Steps of the linearisation lead away from the true t90 of a cell in which passes overlap: there
+    another t90 changes SO2 almost as another slope does.
+    """
+    so2 = instrument.known("so2")
+    log_t90 = math.log(so2.t90_s)
+
+    def with_t90(log_t90: float, deviation: float) -> SnifferSpec:
+        return instrument.with_channel(replace(so2, t90_s=math.exp(log_t90), t90_sd=deviation))
+
+    for _ in range(_SEARCHES):
+        known = with_t90(log_t90, 0.0)
+        begun = _begun(record, known)
+        if begun is None:
+            return instrument, state
+        found = _linearised(record, known, begun)
+        before, log_t90 = log_t90, _least(found.cost_of_t90, log_t90)
+        if abs(log_t90 - before) < _T90_SETTLED:
+            break
+    # With t90 of SO2 again, the first of the properties.
+    instrument = with_t90(log_t90, math.inf)
+    state = replace(found, properties=state.properties, place=np.insert(found.place, 0, 0.0))
+    data = block_record(record, state.moved(instrument), state.properties)
+    return instrument, _with_slope_anew(replace(state, data=data or found.data))[0]
+
+
+def _least(cost_of_t90: Callable[[float], float], log_t90: float) -> float:
+    """Return the logarithm of the t90 of the least cost near another, on a grid and then beside its
+    least: there are several minima.
+    """
+    from scipy.optimize import minimize_scalar
+
+    def cost(value: float) -> float:
+        return cost_of_t90(math.exp(value))
+
+    least, most = math.log(T90_LEAST), math.log(T90_MOST)
+    grid = np.clip(log_t90 + _T90_GRID, least, most)
+    best = float(grid[np.argmin([cost(value) for value in grid])])
+    step = float(np.diff(_T90_GRID)[0])
+    beside = max(least, best - step), min(most, best + step)
+    options = {"xatol": _T90_TOLERANCE}
+    return float(minimize_scalar(cost, bounds=beside, method="bounded", options=options).x)
 
 
 def _of_passes_that_stand_out(
@@ -630,26 +712,25 @@ def _result(
     problems: Sequence[str],
 ) -> Fit:
     """Return the fit with its figures."""
-    data, priors = state.data, np.array([item.prior for item in state.properties])
-    stated = priors == 1.0
+    data, stated = state.data, state.stated
     t90_sd_s, delay_sd_s = _timing_deviations(instrument, state)
-    if stated.all():
-        response = float(np.sum(found.by_property**2))
+    by_searched = 0.0
+    if state.all_stated:
+        by_others = float(np.sum(found.by_property**2))
     else:
-        # The part of the noise that D adds.
-        response = float(np.sum((state.distortions[:, stated].T @ found.weights) ** 2))
-        known = replace(
-            state,
-            data=replace(data, columns=data.columns[:, stated]),
-            properties=[item for item in state.properties if item.prior == 1.0],
-            place=state.place[stated],
-        )
+        # The parts of the noise that D adds.
+        effects = state.distortions.T @ found.weights
         own, z = data.passes[:, state.own], state.instrument_column
         least, whole = (
-            1.0 / float(z @ each.inverse(state.fixed, own) @ z) for each in (known, state)
+            1.0 / float(z @ state.only(kept).inverse(state.fixed, own) @ z)
+            for kept in (stated, ~state.searched)
         )
-        response += found.deviation**2 * max(0.0, 1.0 - least / whole)
-    noise = math.sqrt(max(0.0, found.deviation**2 - response) + corrected**2)
+        by_others = float(np.sum(effects[stated] ** 2))
+        by_others += found.deviation**2 * max(0.0, 1.0 - least / whole)
+        _, covariance = state.properties_found()
+        by_searched = float(effects**2 @ (np.diagonal(covariance) * state.searched))
+    response = by_others + by_searched
+    noise = math.sqrt(max(0.0, found.deviation**2 - by_others) + corrected**2)
     size = background_of_co2(data, state.variances, state.slope)
     return Fit(
         slope=state.slope,
@@ -680,9 +761,8 @@ def _residuals(state: _State, size: float) -> Residuals:
     def beside(values: Array) -> Array:
         return np.asarray(values - basis @ (basis.T @ values))
 
-    stated = np.array([item.prior == 1.0 for item in state.properties], dtype=bool)
-    columns = state.distortions[:, stated]
-    shown = columns @ state.place[stated]
+    columns = state.distortions[:, state.stated]
+    shown = columns @ state.place[state.stated]
     residual = beside(data.so2 - state.slope * data.co2 - shown)
     noise = beside(beside(data.noise(state.slope)).T)
     kernel = beside(beside(data.background(state.variances.length)).T)
@@ -752,7 +832,7 @@ def _own_slopes(state: _State, columns: Array) -> tuple[list[float], list[float]
 def _with_found_timing(instrument: SnifferSpec, state: _State) -> SnifferSpec:
     """Return the instrument, with the record's values of the properties that are not stated."""
     for item, units in zip(state.properties, state.place, strict=True):
-        if item.prior != 1.0:
+        if not item.stated:
             instrument = item.moved(instrument, float(units))
     return instrument
 

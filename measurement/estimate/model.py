@@ -70,8 +70,11 @@ The part of M whose mean is H' P H has no negative eigenvalue; an eigenvalue tha
 negative is set to 0. The background of CO2 in C is the smaller one of those that residuals and
 troughs show.
 
-Where a t90 or delay is not stated, G is 0, and M alone leads away from the true t90 of a cell in
-which passes overlap. Then D stays in P, as in (2), (8) has only b, and d is estimated from r.
+Where a t90 or delay of SO2 is not stated, G is 0, and M alone leads away from the true t90 of a
+cell in which passes overlap. Then (8) has only b. The delay stays in P, as in (2), and is estimated
+from r. The t90 is that with the least (4), where so2 stays equalised as it is and co2 gets the
+shape that a cell of another t90 would have given it; P takes it as exact, and its deviation adds to
+(9).
 """
 
 import itertools
@@ -90,6 +93,7 @@ from measurement.estimate.passes import SNR_LEAST
 from measurement.estimate.record import Record
 from measurement.estimate.signals import (
     Signals,
+    equalised,
     equalised_from_rest,
     make_signals,
     shifted,
@@ -303,6 +307,11 @@ class Property:
     unit: float
     prior: float
 
+    @property
+    def stated(self) -> bool:
+        """Whether it is stated: its unit then is its deviation."""
+        return self.prior == 1.0
+
     def moved(self, instrument: SnifferSpec, units: float) -> SnifferSpec:
         """Return an instrument with this property moved by ``units``."""
         channel = instrument.known(self.gas)
@@ -394,6 +403,29 @@ class BlockedRecord:
         time = self.blocks.time[self.known]
         lags = np.abs(time[:, np.newaxis] - time)
         return _filtered_kernel(lags, length, self.signals.common[0])
+
+    def if_so2_had(self, t90_s: float) -> "BlockedRecord":
+        """Return so2 without what corrects it for other gases, and co2 and passes in the shape that
+        a cell of another t90 would have given them in so2.
+        """
+        so2 = self.signals.instrument.known("so2")
+        own, other = so2.constants, replace(so2, t90_s=t90_s).constants
+        step = self.blocks.step
+
+        def shaped(values: Array) -> Array:
+            return self.blocks.by_segment(lambda part: equalised(part, step, own, other), values)[
+                self.known
+            ]
+
+        passes = np.zeros((len(self.blocks.time), self.passes.shape[1]))
+        passes[self.known] = self.passes
+        return replace(
+            self,
+            so2=self.so2 + self.cross * self.co2,
+            cross=0.0,
+            co2=shaped(self.blocks.mean(self.signals.co2)),
+            passes=shaped(passes),
+        )
 
     def equalised(self, values: Array) -> Array:
         """Return E of (5) applied to CO2 of all blocks, at the known ones, shape (n, ...)."""

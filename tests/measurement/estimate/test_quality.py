@@ -153,6 +153,15 @@ def test_a_cell_of_which_nothing_is_said_gives_no_wrong_verdict():
         assert found.low_percent <= 0.8 <= found.high_percent, seed
 
 
+def test_the_t90_of_a_slow_cell_is_found_where_its_passes_overlap():
+    # 20 s, and passes every 9.5 s: steps of the linearisation end at 6 s, or beyond 100 s.
+    for seed in range(3):
+        readings, _ = flight("electrochemical", 0.25, seed)
+        found = estimate(readings, sensor_preset("unspecified"))
+        assert found.so2_t90_s == pytest.approx(20.0, abs=2.5 * found.so2_t90_sd_s), seed
+        assert found.so2_t90_sd_s < 5.0, seed
+
+
 def test_responses_to_other_gases_that_a_table_leaves_out_are_not_known():
     silent, told, none = (
         sensor_of({"channels": {"so2": {"t90_s": 20.0, **cross}, "co2": {}}}, "own").known("so2")

@@ -212,13 +212,18 @@ class Instrument:
     stated: dict[str, dict[str, Any]]
     cells: dict[str, Cell]
 
-    def config(self) -> dict[str, Any]:
-        """Return the configuration of the log."""
+    def config(self, not_stated: Iterable[tuple[str, str]] = ()) -> dict[str, Any]:
+        """Return the configuration of the log without those keys of those gases."""
+        left_out = set(not_stated)
+        channels = {
+            gas: {key: value for key, value in table.items() if (gas, key) not in left_out}
+            for gas, table in self.stated.items()
+        }
         return {
             "instrument": {
                 "title": "simulated",
                 "rate_hz": self.rate_hz,
-                "channels": self.stated,
+                "channels": channels,
             }
         }
 
@@ -423,7 +428,7 @@ def simulate(regime: Regime, seed: int, number: int) -> Log:
         name=f"{regime.name}_{seed}_{number}",
         time=np.round(time[kept], 3),
         values={gas: column[kept] for gas, column in values.items()},
-        config=instrument.config(),
+        config=instrument.config(regime.not_stated),
         truth=Truth(contents, regime.answerable),
     )
 

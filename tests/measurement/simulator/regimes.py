@@ -225,6 +225,7 @@ class Regime:
     so2_later_s : delay of SO2 more than stated; less in half of the logs, if it is longer [s]
     so2_second_pole : second time constant of SO2 over the first, uniform; 0 is stated [-]
     noise_factor : noise of all channels over the stated one [-]
+    not_stated : keys that the configuration leaves out, by gas
     """
 
     name: str
@@ -238,6 +239,7 @@ class Regime:
     so2_later_s: float = 0.0
     so2_second_pole: tuple[float, float] = (0.0, 0.0)
     noise_factor: float = 1.0
+    not_stated: tuple[tuple[str, str], ...] = ()
 
     @property
     def answerable(self) -> bool:
@@ -250,6 +252,13 @@ _IN_GAPS = (0.4, 0.6)
 
 _ON_PASSES = (-0.15, 0.15)
 """Place that overlaps a pass [intervals]."""
+
+
+_T90 = (("so2", "t90_s"), ("so2", "t90_sd"))
+_DELAY = (("so2", "delay_s"), ("so2", "delay_sd_s"))
+_NOISE = tuple((gas, "noise") for gas in GASES)
+_BUT_CROSS = ("t90_s", "t90_sd", "delay_s", "delay_sd_s", "gain_sd", "noise", "random_walk")
+"""Keys that a regime leaves out of the configuration."""
 
 
 def _regimes() -> tuple[Regime, ...]:
@@ -375,6 +384,36 @@ def _regimes() -> tuple[Regime, ...]:
             required="no verdict",
             peak_ppm=(30.0, 30.0),
             disturbances=(Haze(30.0, (3.0, 10.0)),),
+        ),
+        Regime(
+            name="t90_not_stated",
+            meaning="t90 of SO2 not stated",
+            required="rarely wrong",
+            not_stated=_T90,
+        ),
+        Regime(
+            name="delay_not_stated",
+            meaning="delay of SO2 not stated",
+            required="rarely wrong",
+            not_stated=_DELAY,
+        ),
+        Regime(
+            name="timing_not_stated",
+            meaning="t90 and delay of SO2 not stated",
+            required="rarely wrong",
+            not_stated=(*_T90, *_DELAY),
+        ),
+        Regime(
+            name="noise_not_stated",
+            meaning="noise of no channel stated",
+            required="rarely wrong",
+            not_stated=_NOISE,
+        ),
+        Regime(
+            name="only_cross_stated",
+            meaning="of the instrument only the response of SO2 to NO and NO2 stated",
+            required="rarely wrong",
+            not_stated=tuple((gas, key) for gas in GASES for key in _BUT_CROSS),
         ),
     )
 
