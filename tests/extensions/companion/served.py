@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 from extensions.companion import command
 from extensions.companion.plane import PlaneMode
@@ -116,7 +117,8 @@ def served(scenario, *settings, lockstep=True, mode="GUIDED", scheme="tcp", flig
 
 
 def companion(vehicle, scenario, out, *options, settings=()):
-    """Run ``plume-flight companion`` against a vehicle."""
+    """Run ``plume-flight companion`` against a vehicle, with a tenth of its wait for rivals."""
     keys = [word for key in settings for word in ("--set", key)]
-    return run_command("scenarios.cli.main", "companion", scenario, "--connect", vehicle.url,
-                       "--out", out, "--wait", "20", *options, *keys)  # fmt: skip
+    with mock.patch("extensions.companion.flight.RIVALS_SEEN_IN", 0.1):
+        return run_command("scenarios.cli.main", "companion", scenario, "--connect", vehicle.url,
+                           "--out", out, "--wait", "20", *options, *keys)  # fmt: skip
