@@ -22,7 +22,7 @@ from extensions.arena.results import estimates
 from reports.registry import content
 from reports.run.run_data import read_run
 from scenarios.scenario.files import load_study
-from tests.reports.report_parts import flown, numbers_on_page_1
+from tests.reports.report_parts import flown
 
 pytestmark = pytest.mark.slow
 
@@ -149,35 +149,6 @@ def test_an_arena_of_which_nothing_was_flown_is_red(run, tmp_path):
     assert "npfg: 4 of 4 flights could not be flown: infeasible: too near" in verdict.failures
     assert not any("best" in card.name.lower() for card in verdict.figures)
     assert {card.name: card.met for card in verdict.figures}["Keep-out violations"] is False
-
-
-def test_where_each_law_lacks_another_flight_none_is_called_best(run, tmp_path):
-    headline = of_a_few_flights(
-        run, tmp_path, "calm_npfg_kinematic_00000|wind_pure_pursuit_kinematic_00001"
-    ).verdict.headline
-    assert "Tracking: no law is compared, as each lacks flights; Circling: only npfg" in headline
-
-
-def test_every_number_on_page_1_is_that_of_the_evaluation(path, tmp_path):
-    record = json.loads((path / "arena.json").read_text(encoding="utf-8"))
-    counts = json.loads((path / "verdict.json").read_text(encoding="utf-8"))["whole"]["counts"]
-    ends = [
-        value
-        for entry in record["estimates"]
-        if entry["condition"] == "all"
-        for value in (entry["mean"], entry["low"], entry["high"])
-        if value is not None
-    ]
-    expected = {
-        *(f"{value:.2f}" for value in ends),
-        # The sulphur error of a minute is the inverse root of its mean information.
-        *(f"{1.0 / math.sqrt(value):.4f}" for value in ends if value > 0.0),
-        *(f"{counts[name]}" for name in ("keepout_violations", "lost", "violated", "flown")),
-        *map(str, range(1, len(record["entrants"]))),
-        # Confidence of the intervals, and what is required of violations and losses.
-        *("95", "0"),
-    }
-    assert numbers_on_page_1(path, tmp_path) <= expected
 
 
 def test_an_arena_reads_as_before(run):
