@@ -84,18 +84,6 @@ def test_aerodynamic_forces_and_moments_are_those_of_the_published_coefficients(
         np.testing.assert_allclose(moment, expected_moment, **limits)
 
 
-def test_mass_and_inertia_are_the_published_ones(fdm):
-    with fdm.frozen():
-        hold(fdm, 25.0, 0.05, 0.0, STILL, STILL)
-    assert fdm.read("inertia/mass-slugs") * 14.593902937 == pytest.approx(bm.MASS, rel=1e-7)
-    # JSBSim's kg m^2 is 9e-5 off (test_x8_forces). The sign of Jxz shows in how it answers moments
-    # (the doublets of verification).
-    for name, published in (("ixx", bm.JX), ("iyy", bm.JY), ("izz", bm.JZ)):
-        assert fdm.read(f"inertia/{name}-slugs_ft2") * NM_PER_LBF_FT == pytest.approx(
-            published, rel=2e-4
-        )
-
-
 def settled(fdm, airspeed, throttle):
     """Return density [kg/m3], speed [rad/s] and thrust [N] of the propeller that has settled."""
     with fdm.frozen():

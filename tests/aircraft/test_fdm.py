@@ -63,13 +63,6 @@ def test_a_root_without_the_engine_files_gets_one_line_with_the_file_that_is_mis
     assert "\n" not in str(caught.value)
 
 
-def test_loading_and_flying_prints_nothing(capfd):
-    fdm = Fdm(X8)
-    fdm.place(SOMEWHERE)
-    fdm.step(3)
-    assert capfd.readouterr() == ("", "")
-
-
 def test_a_placed_aircraft_is_where_and_as_it_was_asked(x8_fdm):
     x8_fdm.place(SOMEWHERE)
     # Feet and quaternions in between: twelve digits survive.
@@ -104,20 +97,6 @@ def test_hold_releases_at_the_asked_place_with_the_asked_yaw_and_motion(x8_fdm, 
     assert x8_fdm.read("attitude/theta-rad") == pytest.approx(0.1, abs=1e-6)
     assert velocity_body(x8_fdm) == pytest.approx(state.velocity_body, abs=1e-6)
     assert rates_body(x8_fdm) == pytest.approx(state.rates_body, abs=1e-6)
-
-
-def test_hold_lets_servos_and_propeller_come_to_rest(x8_fdm):
-    x8_fdm.command({"elevator": 0.1, "aileron": 0.05, "throttle": 0.6})
-    x8_fdm.hold(SOMEWHERE, 240)
-    # Elevons mix to command times 0.5236 rad (model file). Two seconds are 80 servo time constants:
-    # nothing is left.
-    assert x8_fdm.read("fcs/elevator-pos-rad") == pytest.approx(0.05236, abs=1e-12)
-    assert x8_fdm.read("fcs/aileron-pos-rad") == pytest.approx(0.02618, abs=1e-12)
-    speed = x8_fdm.read("propulsion/engine/propeller-rpm")
-    with x8_fdm.frozen():
-        assert x8_fdm.settle()
-    # Forty of the propeller's time constants of about 0.05 s.
-    assert x8_fdm.read("propulsion/engine/propeller-rpm") == pytest.approx(speed, rel=1e-6)
 
 
 @pytest.mark.parametrize("throttle", [0.5, 0.9])

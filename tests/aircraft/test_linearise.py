@@ -88,59 +88,6 @@ def test_every_derivative_of_the_rigid_body_is_that_of_the_published_equations(t
         np.testing.assert_allclose(found, expected, rtol=relative, atol=absolute, err_msg=rate)
 
 
-def analytic(found):
-    """The classic derivatives at level trim, each a formula in the published coefficients."""
-    v, density = found.airspeed, x8.standard_density(found.altitude)
-    force = 0.5 * density * v**2 * x8.WING_AREA
-    span_rate, chord_rate = x8.SPAN / (2.0 * v), x8.CHORD / (2.0 * v)
-    determinant = x8.JX * x8.JZ - x8.JXZ**2
-
-    def roll_acceleration(roll, yaw):
-        return (x8.JZ * roll + x8.JXZ * yaw) / determinant
-
-    def yaw_acceleration(roll, yaw):
-        return (x8.JXZ * roll + x8.JX * yaw) / determinant
-
-    arm, momentum = force * x8.SPAN, x8.PROPELLER_INERTIA * found.driven["propeller_speed"]
-    pull = x8.thrust(v * math.cos(found.alpha), found.driven["propeller_speed"], density)
-    kt = x8.MOTOR_KT
-    return {
-        ("p", "p"): roll_acceleration(arm * x8.CR_P * span_rate, arm * x8.CN_P * span_rate),
-        ("p", "r"): roll_acceleration(arm * x8.CR_R * span_rate, arm * x8.CN_R * span_rate),
-        ("p", "beta"): roll_acceleration(arm * x8.CR_B, arm * x8.CN_B),
-        ("p", "aileron_position"): roll_acceleration(arm * x8.CR_DA, arm * x8.CN_DA),
-        ("r", "p"): yaw_acceleration(arm * x8.CR_P * span_rate, arm * x8.CN_P * span_rate),
-        ("r", "r"): yaw_acceleration(arm * x8.CR_R * span_rate, arm * x8.CN_R * span_rate),
-        ("r", "beta"): yaw_acceleration(arm * x8.CR_B, arm * x8.CN_B),
-        ("r", "aileron_position"): yaw_acceleration(arm * x8.CR_DA, arm * x8.CN_DA),
-        ("q", "alpha"): force * x8.CHORD * x8.CM_A / x8.JY,
-        ("q", "q"): force * x8.CHORD * x8.CM_Q * chord_rate / x8.JY,
-        ("q", "elevator_position"): force * x8.CHORD * x8.CM_DE / x8.JY,
-        ("alpha", "alpha"): -(force * x8.CL_A + pull * math.cos(found.alpha)) / (x8.MASS * v),
-        ("alpha", "q"): 1.0 - force * x8.CL_Q * chord_rate / (x8.MASS * v),
-        ("beta", "aileron_position"): force * x8.CY_DA / (x8.MASS * v),
-        # The rotor's angular momentum H ahead: -omega x H is (0, -r H, q H).
-        ("q", "r"): -momentum / x8.JY,
-        ("r", "q"): yaw_acceleration(0.0, momentum),
-        ("p", "q"): roll_acceleration(0.0, momentum),
-        # More voltage turns the motor harder to the right, and the airframe to the left, at once.
-        ("p", "throttle"): roll_acceleration(-kt * x8.BATTERY / x8.MOTOR_RESISTANCE, 0.0),
-        ("p", "propeller_speed"): roll_acceleration(kt**2 / x8.MOTOR_RESISTANCE, 0.0),
-        ("airspeed", "pitch"): -x8.equatorial_gravity(found.altitude),
-        ("heading_rate", "roll"): x8.equatorial_gravity(found.altitude) / v,
-        ("altitude", "pitch"): v,
-        ("altitude", "alpha"): -v,
-    }
-
-
-def test_the_classic_derivatives_are_formulas_in_the_published_coefficients(trims, models):
-    for (rate, source), expected in analytic(trims["level"]).items():
-        # Inertia 1e-4 (see above). The gyroscopic ones are a hundredth of the aerodynamic ones and
-        # carry the rounding of differences over 0.002 rad/s.
-        found = entry(models["level"], rate, source)
-        assert found == pytest.approx(expected, rel=1e-3), (rate, source)
-
-
 def test_servo_poles_are_those_of_the_model_file(models):
     # 40 rad/s. JSBSim's trapezoidal lag leaves (2 - a)/(2 + a) a step with a = 40/120: 40.38 rad/s
     # in continuous time, 1 % more.
@@ -162,40 +109,6 @@ def test_the_propellers_pole_is_that_of_motor_and_load_under_eulers_rule(trims, 
         assert entry(models[name], "propeller_speed", source) / pole == pytest.approx(
             row[column] / -rate, rel=0.05
         )
-
-
-def test_the_modes_are_where_textbooks_put_them(models):
-    poles = models["level"].poles()
-    oscillating = sorted((p for p in poles if p.imag > 1e-6), key=abs)
-    phugoid, dutch_roll, short_period = oscillating
-    real = sorted(p.real for p in poles if abs(p.imag) <= 1e-6)
-    density, v, pi = x8.standard_density(100.0), 20.0, math.pi
-    force = 0.5 * density * v**2 * x8.WING_AREA
-    # Lanchester: the phugoid's period is pi sqrt(2) V/g, without drag and pitch damping; textbooks
-    # allow it a fifth.
-    assert abs(phugoid) == pytest.approx(2.0 * pi / (pi * math.sqrt(2.0) * v / 9.78), rel=0.2)
-    assert 0.0 < -phugoid.real / abs(phugoid) < 0.5
-    # Short period: omega^2 = -M_alpha - M_q Z_alpha/(mV) in the two-state approximation, damping
-    # half of -(M_q + Z_alpha/(mV)).
-    m_alpha = force * x8.CHORD * x8.CM_A / x8.JY
-    m_q = force * x8.CHORD**2 * x8.CM_Q / (2.0 * v * x8.JY)
-    z_alpha = -force * x8.CL_A / (x8.MASS * v)
-    q_gain = 1.0 - force * x8.CL_Q * x8.CHORD / (2.0 * v * x8.MASS * v)
-    # Two states of twelve.
-    assert abs(short_period) == pytest.approx(math.sqrt(m_q * z_alpha - m_alpha * q_gain), rel=0.02)
-    assert short_period.real == pytest.approx(0.5 * (m_q + z_alpha), rel=0.02)
-    # Roll mode: L_p, changed by a few per cent by its coupling to yaw and sideslip.
-    roll_rate = force * x8.SPAN**2 * x8.CR_P / (2.0 * v * x8.JX)
-    assert min(abs(p - roll_rate) for p in real) < 0.05 * abs(roll_rate)
-    # Dutch roll: omega^2 = N_beta of a body that also rolls; between N_beta alone and three times
-    # it with this much dihedral.
-    n_beta = force * x8.SPAN * x8.CN_B / x8.JZ
-    assert math.sqrt(n_beta) < abs(dutch_roll) < math.sqrt(3.0 * n_beta)
-    assert dutch_roll.real < 0.0
-    # What is left: two servos, propeller, roll mode, spiral and height's weak return through
-    # density. All but those two are fast.
-    assert len(real) == 6
-    assert all(-0.5 < p < 0.05 for p in real[-2:])
 
 
 READS = {

@@ -25,15 +25,6 @@ so nothing fails by chance.
 """
 
 
-def test_at_1000_feet_all_scale_lengths_are_1000_feet_and_all_intensities_a_tenth_of_the_wind():
-    # MIL-F-8785C, figures 10 and 11: the curves along and across meet those of the vertical at
-    # 1,000 ft. Tolerance: 0.177 + 0.823.
-    air = low_altitude_turbulence(1000.0 * FOOT, 20.0)
-    assert (air.horizontal, air.vertical) == pytest.approx((2.0, 2.0), rel=1e-12)
-    lengths = (air.horizontal_length, air.vertical_length)
-    assert lengths == pytest.approx((1000.0 * FOOT, 1000.0 * FOOT), rel=1e-12)
-
-
 def test_light_moderate_and_severe_turbulence_shake_with_1_5_3_and_4_5_knots():
     # MIL-F-8785C, figures 9 and 11: a tenth of the wind at 20 ft, which is 15, 30 and 45 knots; a
     # knot is 1852 m an hour.

@@ -136,23 +136,3 @@ def test_angular_acceleration_obeys_eulers_equation_for_one_sign_of_the_product_
         # The other sign would show a hundred times the tolerance above.
         off = np.abs(flown - eulers_equation(other, moment, case["rates"])).max()
         assert off > 2e-2 * np.abs(flown).max()
-
-
-def test_aileron_alone_rolls_and_yaws_as_coefficients_and_inertia_say(x8_fdm):
-    deflection = 0.1
-    with_aileron, without = (
-        angular_acceleration_and_moment(
-            x8_fdm, {"beta": 0.0, "aileron": command, "rates": (0.0, 0.0, 0.0)}
-        )[0]
-        for command in (deflection / x8.ELEVON_FULL, 0.0)
-    )
-    density = x8.standard_density(100.0)
-    air = (x8.Air(airspeed=20.0, alpha=0.03, aileron=a) for a in (deflection, 0.0))
-    moment, none = (x8.aero_moment(a, density) for a in air)
-    # Nothing of this is read from JSBSim. Three quarters of the yaw to the left is the product of
-    # inertia, the rest C_nda.
-    expected = np.linalg.solve(x8.INERTIA, moment - none)
-    np.testing.assert_allclose(
-        with_aileron - without, expected, rtol=JSBSIM_INERTIA_ERROR, atol=1e-5
-    )
-    assert expected[2] < 0.0

@@ -43,11 +43,6 @@ def test_every_aircraft_of_jsbsim_is_found_or_refused_with_a_reason(name):
     assert "own autopilot off" in spec.source
 
 
-@pytest.mark.parametrize("name", ["c172x", "c310", "T37", "737", "J3Cub"])
-def test_aeroplanes_with_engines_are_found(name):
-    assert find_spec(name).envelope is None  # which is found by trimming it
-
-
 # Each is what its name says; the reason names what it is or has not.
 @pytest.mark.parametrize(
     ("name", "why"),

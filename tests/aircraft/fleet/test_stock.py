@@ -30,16 +30,6 @@ def placed(request):
     return name, fdm, state
 
 
-def test_every_engine_runs_after_the_first_placing_and_pulls(placed):
-    _, fdm, _ = placed
-    with fdm.frozen():
-        fdm.step(240)
-    for flag in fdm.spec.engine_flags:
-        assert fdm.read(flag) == 1.0
-        # 0.7 of throttle at these airspeeds: no propeller wind-mills and no turbine idles.
-        assert fdm.read(flag.replace("set-running", "thrust-lbs")) > 100.0
-
-
 def test_an_engine_that_jsbsim_does_not_start_at_once_is_started_by_its_starter():
     # The Mustang's: asked to run at once, its running flag stays 0.
     fdm = Fdm(find_spec("p51d"))
