@@ -10,14 +10,7 @@ from hypothesis import strategies as st
 
 from aircraft.fdm import TIME_STEP, Fdm
 from aircraft.fleet.x8 import X8
-from aircraft.state import (
-    EquatorFrame,
-    body_velocity,
-    course_rate,
-    euler_rates,
-    level,
-    turn_rates,
-)
+from aircraft.state import EquatorFrame, body_velocity, course_rate, euler_rates, level, turn_rates
 from aircraft.trim import trim
 from common.geodesy import LocalFrame
 

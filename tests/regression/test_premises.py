@@ -15,11 +15,7 @@ from scenarios.studies.base import run_study
 pytestmark = pytest.mark.slow
 
 LAW = f"guidance.law={Path(__file__).parent}/law_past_the_ship.py:PastTheShip"
-STANDOFF = (
-    "following.margin_law=cascade",
-    "guidance.mission=standoff",
-    "vessel.speed_mps=3",
-)
+STANDOFF = ("following.margin_law=cascade", "guidance.mission=standoff", "vessel.speed_mps=3")
 NO_SATELLITES = (
     *STANDOFF,
     "keepout.radius_m=100",

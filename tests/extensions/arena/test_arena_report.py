@@ -12,12 +12,7 @@ from snapshots import assert_reads_as_before
 from extensions.arena.entrants import Entrant
 from extensions.arena.paired_bootstrap import Estimate
 from extensions.arena.record import ERROR, read_arena
-from extensions.arena.report import (
-    _headline,
-    arena_content,
-    by_condition_table,
-    tracking_table,
-)
+from extensions.arena.report import _headline, arena_content, by_condition_table, tracking_table
 from extensions.arena.results import estimates
 from reports.registry import content
 from reports.run.run_data import read_run

@@ -5,9 +5,7 @@ import time
 import pytest
 
 from extensions.convergence.motion import Vehicle
-from extensions.convergence.references import (
-    REFERENCES,
-)
+from extensions.convergence.references import REFERENCES
 from extensions.convergence.study import (
     COLUMNS,
     ConvergenceWork,

@@ -15,14 +15,7 @@ from extensions.patrol.order import (
     exact_order,
     inserted_order,
 )
-from extensions.patrol.route import (
-    Air,
-    Mover,
-    keeps_clear,
-    nearest_on,
-    route,
-    straight_leg,
-)
+from extensions.patrol.route import Air, Mover, keeps_clear, nearest_on, route, straight_leg
 
 V_R = 20.0
 RADIUS = 800.0

@@ -9,12 +9,7 @@ import pandas as pd
 import pytest
 from snapshots import assert_reads_as_before
 
-from extensions.patrol.report import (
-    counts_of,
-    oracle_table,
-    patrol_content,
-    read_patrols,
-)
+from extensions.patrol.report import counts_of, oracle_table, patrol_content, read_patrols
 from reports.document.blocks import CARDS_MAX
 from reports.registry import content
 from reports.run.run_data import read_run

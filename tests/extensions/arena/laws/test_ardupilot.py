@@ -6,11 +6,7 @@ import math
 
 import pytest
 
-from extensions.arena.laws.ardupilot import (
-    FRESH,
-    update_loiter,
-    update_waypoint,
-)
+from extensions.arena.laws.ardupilot import FRESH, update_loiter, update_waypoint
 
 START, END = (-100.0, 0.0), (2000.0, 0.0)
 # ArduPilot computes in single precision: 1e-7 relative at each of some ten operations.
