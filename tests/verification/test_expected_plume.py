@@ -6,12 +6,10 @@ import numpy as np
 import pytest
 from exhaust_cases import SENSOR
 
-from gnc.estimation.plume.estimator import HIT
 from gnc.estimation.plume.prior import Expectation, PlumePrior, expected_plume, rise
 from gnc.mission.axis import AxisHeight
 from measurement.emission import Emission, emission_of, fuel_preset, ship_of
 from measurement.gases import GASES
-from measurement.plume import fluctuating_plume
 from measurement.plume.spread import MarineAir, PlumeSettings, spreads
 
 EMISSION = emission_of(ship_of("container"), fuel_preset("mgo", 0.1), power=10e6)
@@ -167,7 +165,3 @@ def test_rise_by_buoyancy_is_briggs_law() -> None:
     assert rise(0.0, 49.6, 200.0, 10.0) == pytest.approx(
         1.609 * 49.6 ** (1 / 3) * 200.0 ** (2 / 3) / 10.0, rel=1e-3
     )
-
-
-def test_a_hit_of_the_guidance_is_a_hit_of_the_figures() -> None:
-    assert HIT == fluctuating_plume.HIT
