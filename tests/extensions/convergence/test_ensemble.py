@@ -195,29 +195,3 @@ def test_the_mirrored_start_flies_the_mirrored_path(law, north, east, course, ra
     assert result.distance[0] == pytest.approx(result.distance[1], rel=1e-6, abs=1e-6)
     assert result.phi[0] == pytest.approx(-result.phi[1], abs=1e-6)
     assert result.heading_rate_max[0] == pytest.approx(result.heading_rate_max[1], rel=1e-6)
-
-
-@examples(15)
-@given(north=offsets, east=offsets, course=courses, rate=st.floats(-0.5, 0.5))
-def test_the_cut_command_never_exceeds_its_bound(north, east, course, rate):
-    result = fly(
-        Steering.CASCADE_CUT, references(rate=[rate]), [[north], [east]], [course], time_max=60.0
-    )
-    assert result.heading_rate_max[0] <= HEADING_RATE_MAX
-
-
-def test_the_number_of_places_and_the_company_do_not_change_a_trajectory():
-    count = 7
-    rng = np.random.default_rng(5)
-    refs = references(
-        course=rng.uniform(-3.0, 3.0, count),
-        rate=rng.uniform(0.1, 0.4, count),
-        terms=[(0.1, 0.5, 1.0)],
-    )
-    to_reference, course = rng.uniform(-300.0, 300.0, (2, count)), rng.uniform(-3.0, 3.0, count)
-    together = fly(Steering.CASCADE, refs, to_reference, course)
-    in_turn = fly(Steering.CASCADE, refs, to_reference, course, places=2)
-    # Vector and scalar sines may differ in their last bit.
-    assert in_turn.settling_time == pytest.approx(together.settling_time, rel=1e-9)
-    assert in_turn.duration == pytest.approx(together.duration, rel=1e-9)
-    assert in_turn.outcome == together.outcome == (Outcome.CONVERGED,) * count

@@ -109,33 +109,6 @@ def test_the_papers_guidance_as_a_policy_flies_the_flight_of_a_run_to_the_last_b
     assert total == pytest.approx(np.minimum(1.0, 200.0 / crossed).sum(), rel=0.02)
 
 
-@pytest.mark.usefixtures("x8_design")
-def test_an_episode_in_a_simulation_that_has_flown_before_is_the_same():
-    env = make(**SHORT)
-    tracks = []
-    for _ in range(2):
-        _, info = env.reset(seed=5)
-        places = []
-        for _ in range(300):
-            observed, *_, info = env.step(info["guidance"])
-            places.append(observed[:2])
-        tracks.append(places)
-    # Half a minute. JSBSim's clock goes on from flight to flight, and leaves 1e-12 m in the last
-    # digits.
-    assert np.array(tracks[0]) == pytest.approx(np.array(tracks[1]), abs=1e-9)
-
-
-def test_a_seed_gives_the_same_episodes_and_another_seed_others(kinematic):
-    def starts(seed):
-        first, _ = kinematic.reset(seed=seed)
-        return [first, *(kinematic.reset()[0] for _ in range(2))]
-
-    once, again, other = starts(7), starts(7), starts(8)
-    assert np.array_equal(once, again)
-    assert not np.array_equal(once, other)
-    assert not np.array_equal(once[1], once[2])
-
-
 def test_flying_at_the_vessel_ends_in_the_keepout_area_with_its_reward(kinematic):
     observed, _ = kinematic.reset(options={"flight_id": "nu_0.30"})
     names, limit = list(MEANINGS), kinematic.action_space.high[0]

@@ -175,36 +175,12 @@ def test_a_patrol_that_fails_is_a_row_with_its_reason():
     assert row["message"].startswith("patrol.separation_m is 20000 m")
 
 
-def ship(number, **values):
-    """Return the row of a ship that was served, with other values."""
-    row = {
-        "ship": number,
-        "position": number,
-        "verdict": "below",
-        "correct": True,
-        "outcome": "completed",
-        "message": "",
-    }
-    return (
-        row
-        | {
-            "keepout_violations": 0,
-            "kept_out": True,
-            "min_distance_m": 250.0,
-            "others_distance_min_m": 900.0,
-        }
-        | values
-    )
-
-
 @pytest.mark.parametrize(
     ("override", "words"),
     [
-        ("patrol.ships=0", ("patrol.ships is 0; input should be greater than or equal to 1",)),
         ("patrol.separation_m=9000", ("patrol.separation_m is 9000 m", "patrol.area_m")),
         ("flight.until=flown", ("flight.until is 'flown'", "'verdict'")),
         ("vessel.manoeuvres=[{at_s=20.0,turn_deg=30.0}]", ("vessel.manoeuvres",)),
-        ("start.place_m=[-500,10]", ("beside start.place_m",)),
         (
             "patrol.clearance_m=700",
             ("are 900 m together, more than start.distance_m, whose end is 800 m",),

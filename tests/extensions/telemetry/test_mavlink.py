@@ -6,16 +6,11 @@ import socket
 import struct
 import subprocess
 import sys
-from dataclasses import replace
 
-import numpy as np
 import pytest
 
-from extensions.telemetry.mavlink import messages
 from reports.build import stream_run
 from reports.errors import ReportError
-from reports.export.geographic import recorded_flights
-from reports.run.run_data import read_run
 from tests.in_process import assert_refused, run_command
 from tests.reports.export.placed_flight import START, TOLERANCE, exported, off, track
 
@@ -63,21 +58,6 @@ def test_a_telemetry_log_is_read_by_pymavlink(run_path, truth):
         at += 8 + length
     assert microseconds == round(1e6 * (START + 60.0))
     check_messages(received(packets), truth)
-
-
-def test_a_vessel_at_rest_has_her_heading_and_no_course(run_path):
-    flight = next(recorded_flights(read_run(run_path)))
-    still = np.zeros(len(flight.time))
-    flight = replace(
-        flight, vessel=replace(flight.vessel, north=still, east=still), vessel_heading=still + 90.0
-    )
-    said = {
-        message.get_type(): message
-        for message in received([packet for _, packet in messages(flight)])
-    }
-    ais, adsb = said["AIS_VESSEL"], said["ADSB_VEHICLE"]
-    assert (ais.heading, ais.velocity, ais.flags) == (9000, 0, 1 | 4 | 4096)
-    assert (adsb.heading, adsb.hor_velocity) == (9000, 0)
 
 
 def test_a_flight_is_streamed_in_real_time_and_received_by_a_second_process(run_path):
