@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 from x8_published import equatorial_gravity, standard_density
 
-from aircraft.fdm import TIME_STEP, Fdm
+from aircraft.fdm import Fdm
 from aircraft.fleet.aerosonde import AEROSONDE
-from aircraft.linearise import linearise
 from aircraft.state import RigidBodyState, body_velocity
 from aircraft.trim import trim
 
@@ -169,32 +168,3 @@ def test_the_published_equations_are_in_balance_at_every_trim(fdm, name):
     assert rates["propeller_speed"] == pytest.approx(0.0, abs=0.09)
     assert found.beta == pytest.approx(0.0, abs=1e-9)  # what the rudder is for
     assert found.residual < 1e-5
-
-
-@pytest.mark.parametrize("bank", [0.0, 0.6])
-def test_the_poles_of_the_linear_model_are_those_of_the_published_equations(bank):
-    time_step = TIME_STEP / 10.0
-    found = trim(Fdm(AEROSONDE), airspeed=25.0, altitude=100.0, bank=bank)
-    model = linearise(Fdm(AEROSONDE, time_step=time_step), found)
-    y, commands = published_state(found)
-    world = bm.World(standard_density, equatorial_gravity(100.0))
-    steps = np.diag([1e-4] * 9 + [1.0] + [1e-4] * 3 + [1e-2])
-    columns = [
-        (
-            bm.flown_rates(y + step, commands, world, LAGS)
-            - bm.flown_rates(y - step, commands, world, LAGS)
-        )
-        / (2.0 * step.sum())
-        for step in steps
-    ]
-    # Yaw does not act back: a pole at zero.
-    without_yaw = [i for i, name in enumerate(bm.FLOWN_STATES) if name != "yaw"]
-    expected = np.linalg.eigvals(np.column_stack(columns)[np.ix_(without_yaw, without_yaw)])
-    found_poles = model.poles()
-    for pole in expected:
-        nearest = found_poles[np.argmin(np.abs(found_poles - pole))]
-        # The propeller's pole k (52 rad/s) is read from JSBSim's Euler steps as -ln(1 - k dt)/dt,
-        # 2.2 % more in steps of 1/1200 s. Otherwise inertia 9e-5, and 0.6 % of thrust's slope for
-        # the phugoid; the earth's rate, 7e-5 rad/s, for the slowest.
-        assert abs(nearest - pole) < (0.025 if pole.real < -45.0 else 2e-3) * abs(pole) + 1e-3, pole
-    assert len(found_poles) == len(expected)

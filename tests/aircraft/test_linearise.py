@@ -168,20 +168,6 @@ def test_in_short_time_steps_a_small_doublet_is_flown_as_the_linear_model_predic
     assert doublet_errors(trims["level"], name, 1.0 / 1200.0).max() < 0.025
 
 
-@pytest.mark.parametrize("name", DOUBLETS)
-def test_at_120_hertz_a_small_doublet_is_flown_as_predicted_but_for_the_step(trims, name):
-    coarse, fine = (
-        doublet_errors(trims["level"], name, step).max() for step in (TIME_STEP, TIME_STEP / 4.0)
-    )
-    # JSBSim moves the body with the forces of the step before and by rectangles: an error of first
-    # order in the step. For the quickest motions, 16 and 24 rad/s, that is 0.13 and 0.2 in a step,
-    # smoothed by the servo.
-    assert coarse < 0.18
-    # And of first order it is: four times less with a quarter of the step, down to thrust's change
-    # of slope (airspeed, 2 %).
-    assert fine < max(0.3 * coarse, 0.03)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["T37"])
 def test_small_doublets_of_a_stock_aircraft_are_flown_as_its_linear_model_predicts(designs, name):

@@ -24,23 +24,25 @@ def reason(name):
     return str(caught.value)
 
 
-@pytest.mark.parametrize("name", stock_names())
-def test_every_aircraft_of_jsbsim_is_found_or_refused_with_a_reason(name):
-    try:
-        spec = find_spec(name)
-    except AircraftError as error:
-        spec, refusal = None, str(error)
-    if spec is None:
-        assert re.fullmatch(rf"aircraft '{name}' cannot be flown: [^\n]{{10,}}", refusal)
-        return
-    assert (spec.name, spec.model, spec.root) == (name, name, STOCK.parent)
-    assert {i.name for i in spec.inputs} == {"elevator", "aileron", "throttle", "rudder"}
-    # A throttle for each engine in the model's own file.
-    text = (STOCK / name / f"{name}.xml").read_text(encoding="utf-8", errors="replace")
-    engines = len(re.findall(r"<engine\s", re.sub(r"<!--.*?-->", "", text, flags=re.DOTALL)))
-    assert len(spec.input("throttle").commands) == engines
-    assert len(set(spec.input("throttle").commands)) == engines
-    assert "own autopilot off" in spec.source
+def test_every_aircraft_of_jsbsim_is_found_or_refused_with_a_reason():
+    found = []
+    for name in stock_names():
+        try:
+            spec, refusal = find_spec(name), ""
+        except AircraftError as error:
+            spec, refusal = None, str(error)
+        if spec is None:
+            assert re.fullmatch(rf"aircraft '{name}' cannot be flown: [^\n]{{10,}}", refusal)
+            continue
+        assert (spec.name, spec.model, spec.root) == (name, name, STOCK.parent)
+        assert {i.name for i in spec.inputs} == {"elevator", "aileron", "throttle", "rudder"}
+        # A throttle for each engine in the model's file.
+        text = (STOCK / name / f"{name}.xml").read_text(encoding="utf-8", errors="replace")
+        engines = len(re.findall(r"<engine\s", re.sub(r"<!--.*?-->", "", text, flags=re.DOTALL)))
+        commands = spec.input("throttle").commands
+        assert len(commands) == len(set(commands)) == engines, name
+        found.append(name)
+    assert {"c172x", "c310", "T37", "737", "J3Cub"} <= set(found)
 
 
 # Each is what its name says; the reason names what it is or has not.
