@@ -53,7 +53,7 @@ _ACTUATOR_NAME = re.compile(
     r"(?!(engine|none|vessel_data|satellite_navigation|sniffer_(dead|saturated))$)"
     r"[A-Za-z_][A-Za-z0-9_.\-]*"
 )
-"""Names of actuators: they become part of a JSBSim property, and differ from other faults' names.
+"""Names of actuators: they become part of a JSBSim property, and no other fault has the same name.
 """
 
 _REQUIRED_INPUTS = ("elevator", "aileron", "throttle")
