@@ -174,10 +174,10 @@ def test_proportional_navigation_turns_with_the_line_of_sight():
     assert found == pytest.approx(3.0 * SPEED / 100.0)
 
 
-def test_pure_pursuit_close_by_turns_as_if_it_were_30_metres_away():
-    assert commanded("pure_pursuit", reference(), (0.0, 10.0), 0.0) == pytest.approx(
-        2.0 * SPEED / 30.0
-    )
+@pytest.mark.parametrize("name", ["pure_pursuit", "park_l1_point"])
+def test_pursuit_of_a_point_close_by_turns_as_if_it_were_30_metres_away(name):
+    found = commanded(name, reference(), (0.0, 10.0), 0.0)
+    assert found == pytest.approx(2.0 * SPEED / 30.0)
 
 
 def test_ardupilots_loiter_goes_by_the_velocity_over_the_ground():
