@@ -5,12 +5,10 @@ import math
 import aerosonde_published as bm
 import numpy as np
 import pytest
-from x8_published import equatorial_gravity, standard_density
 
 from aircraft.fdm import Fdm
 from aircraft.fleet.aerosonde import AEROSONDE
 from aircraft.state import RigidBodyState, body_velocity
-from aircraft.trim import trim
 
 N_PER_LBF = 4.4482216152605
 NM_PER_LBF_FT = 1.3558179483314
@@ -119,52 +117,3 @@ def test_with_little_throttle_the_propeller_windmills_and_brakes_as_published(
     assert speed == pytest.approx(published, rel=1e-3)
     assert thrust == pytest.approx(bm.thrust(airspeed, published, density), rel=2.5e-3)
     assert thrust < -10.0
-
-
-TRIMS = {
-    "slow": {"airspeed": 20.0},
-    "middle": {"airspeed": 25.0},
-    "fast": {"airspeed": 30.0},
-    "climbing": {"airspeed": 25.0, "climb_angle": 0.1},
-    "descending": {"airspeed": 25.0, "climb_angle": -0.1},
-    "turning right": {"airspeed": 25.0, "bank": math.radians(45.0)},
-    "turning left": {"airspeed": 22.5, "bank": math.radians(-55.0)},
-    "climbing turn": {"airspeed": 25.0, "bank": 0.5, "climb_angle": 0.08},
-}
-
-
-def published_state(found):
-    """A trim in the order of FLOWN_STATES, and its commands."""
-    velocity = body_velocity(found.airspeed, found.alpha, found.beta)
-    surfaces = [found.driven[f"{name}_position"] for name in bm.SURFACES]
-    body = [*velocity, found.roll, found.pitch, 0.0, *found.rates_body, found.altitude]
-    return np.array([*body, *surfaces, found.driven["propeller_speed"]]), [
-        *surfaces,
-        found.inputs["throttle"],
-    ]
-
-
-@pytest.mark.parametrize("name", TRIMS)
-def test_the_published_equations_are_in_balance_at_every_trim(fdm, name):
-    found = trim(fdm, altitude=100.0, **TRIMS[name])
-    world = bm.World(standard_density, equatorial_gravity(100.0))
-    rates = dict(
-        zip(bm.FLOWN_STATES, bm.flown_rates(*published_state(found), world, LAGS), strict=True)
-    )
-    # The earth turns (2 omega V = 4e-3 m/s^2 where motion is not north, in turns) and is round
-    # (V^2/R = 1e-4 m/s^2).
-    coriolis = 2.0 * 7.292e-5 * found.airspeed
-    assert (rates["u"], rates["v"], rates["w"]) == pytest.approx((0.0, 0.0, 0.0), abs=coriolis)
-    # A thousandth of full elevator gives 0.03 rad/s^2. What is left is density (2e-5) and inertia
-    # (9e-5) of moments that balance.
-    assert (rates["p"], rates["q"], rates["r"]) == pytest.approx((0.0, 0.0, 0.0), abs=1e-3)
-    assert (rates["roll"], rates["pitch"]) == pytest.approx((0.0, 0.0), abs=1e-12)  # rounding
-    assert rates["yaw"] == pytest.approx(found.yaw_rate, abs=1e-12)
-    assert rates["altitude"] == pytest.approx(
-        found.airspeed * math.sin(found.climb_angle), abs=1e-9
-    )
-    # rad/s^2. Interpolation in steps of 0.01 is 4e-7 of C_Q off, whose unit is 390 N m at 30 m/s,
-    # on a rotor of 2.1e-3 kg m^2; and JSBSim's horsepower is 1.3e-5 of 1 N m.
-    assert rates["propeller_speed"] == pytest.approx(0.0, abs=0.09)
-    assert found.beta == pytest.approx(0.0, abs=1e-9)  # what the rudder is for
-    assert found.residual < 1e-5

@@ -2,7 +2,6 @@
 
 import math
 
-import control
 import numpy as np
 import pytest
 import x8_published as x8
@@ -109,63 +108,6 @@ def test_the_propellers_pole_is_that_of_motor_and_load_under_eulers_rule(trims, 
         assert entry(models[name], "propeller_speed", source) / pole == pytest.approx(
             row[column] / -rate, rel=0.05
         )
-
-
-READS = {
-    "q": ("velocities/q-rad_sec", 1.0),
-    "alpha": ("aero/alpha-rad", 1.0),
-    "pitch": ("attitude/theta-rad", 1.0),
-    "p": ("velocities/p-rad_sec", 1.0),
-    "r": ("velocities/r-rad_sec", 1.0),
-    "beta": ("aero/beta-rad", 1.0),
-    "roll": ("attitude/phi-rad", 1.0),
-    "airspeed": ("velocities/vt-fps", 0.3048),
-    "propeller_speed": ("propulsion/engine/propeller-rpm", math.pi / 30.0),
-}
-DOUBLETS = {
-    "elevator": ("q", "alpha", "pitch"),
-    "aileron": ("p", "r", "beta", "roll"),
-    "throttle": ("propeller_speed", "airspeed"),
-}
-
-
-def doublet_errors(found, name, time_step):
-    """Largest difference of each output between JSBSim and the linear model, as a share of the
-    output's largest deviation.
-
-    The doublet has 1 % of full command, a quarter of a second each way, and is watched for a
-    second.
-    """
-    quarter = round(0.25 / time_step)
-    inputs = 0.01 * np.concatenate([np.ones(quarter), -np.ones(quarter), np.zeros(2 * quarter)])
-    fdm = Fdm(X8, time_step=time_step)
-    model = linearise(fdm, found)
-    nodes = [(fdm.node(READS[output][0]), READS[output][1]) for output in DOUBLETS[name]]
-    fdm.command(dict(found.inputs))
-    fdm.hold(found.state(), round(2.0 / time_step))
-    flown = [[node.get_double_value() * scale for node, scale in nodes]]
-    for u in inputs:
-        fdm.command({name: found.inputs[name] + float(u)})
-        fdm.step()
-        flown.append([node.get_double_value() * scale for node, scale in nodes])
-    flown = np.array(flown) - flown[0]
-    held = np.zeros((3, len(inputs) + 1))
-    held[model.input_labels.index(name), :-1] = inputs
-    sampled = control.sample_system(
-        control.ss(model.A, model.B, model.C, model.D), time_step, method="zoh"
-    )
-    predicted = control.forced_response(
-        sampled, time_step * np.arange(len(inputs) + 1), held
-    ).outputs
-    rows = np.array([predicted[model.output_labels.index(output)] for output in DOUBLETS[name]]).T
-    return np.abs(flown - rows).max(axis=0) / np.abs(rows).max(axis=0)
-
-
-@pytest.mark.parametrize("name", DOUBLETS)
-def test_in_short_time_steps_a_small_doublet_is_flown_as_the_linear_model_predicts(trims, name):
-    # What is left at 1/1200 s is JSBSim's order of work, forces one step before motion (see below),
-    # and, for airspeed, thrust's change of slope from one table segment to the next.
-    assert doublet_errors(trims["level"], name, 1.0 / 1200.0).max() < 0.025
 
 
 @pytest.mark.slow
