@@ -21,7 +21,7 @@ CENTIMETRE = 0.01
 """[m]"""
 
 
-@pytest.fixture(params=[0.0, GEOID, None])
+@pytest.fixture(params=[GEOID, None])
 def geoid(request, run_path):
     """Give the run a place with a geoid height, or none, as runs have that were made without it."""
     manifest = json.loads((run_path / "manifest.json").read_text(encoding="utf-8"))
