@@ -379,8 +379,8 @@ def _problems(spec: AircraftSpec) -> Iterator[str]:
             set(actuator.commands) <= set(i.commands) for i in spec.inputs
         ):
             yield (
-                f"actuator '{actuator.name}' has commands of its own and no feedback; name the"
-                " properties that read its command and position"
+                f"actuator '{actuator.name}' has commands of no control input and no feedback;"
+                " name the properties that read its command and position"
             )
     least, most = SETTLE_TIMES
     if not least <= spec.settle_time <= most:

@@ -1,7 +1,7 @@
 """Corners of what scenarios declare in which the former keep-out guard let the aircraft in: each
 was found by a search.
 
-The guard kept off where the vessel was predicted; a report that moved her, a long silence, gusts
+The guard kept off where the vessel was predicted; a report that moved the vessel, a long silence, gusts
 and steep banks got the X8 in.
 """
 

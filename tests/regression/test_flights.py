@@ -120,8 +120,8 @@ def test_from_anywhere_about_the_ship_nothing_enters(fly, seed, nu, approach, du
 
 
 def test_law_and_guard_do_not_hold_each_other_beside_a_fast_ship(fly):
-    # The law turned parallel to her 3 m outside, and the way to the orbit led through the course to
-    # her: for 58.5 s.
+    # The law turned parallel to the ship 3 m outside, and the way to the orbit led through the
+    # course to the ship: for 58.5 s.
     row, _ = fly("start.spread_deg=180", "seed=5", "flight.crossings=2", nu=0.9)
     assert row["keepout_violations"] == 0
     assert 0.0 < row["guard_time_s"] < 5.0

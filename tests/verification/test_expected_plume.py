@@ -75,7 +75,7 @@ def test_height_spreads_and_peak_are_those_of_the_plume_model(
 def test_a_plume_that_is_not_searched_for_is_followed_at_the_height_of_the_plume_model(
     apparent: float, source: float
 ) -> None:
-    """At a sixth of her power, whose slow exhaust the wake of the funnel draws down by up to 3.6 m,
+    """At a sixth of the ship's power, whose slow exhaust the wake of the funnel draws down by up to 3.6 m,
     and never below the sea.
     """
     weak = emission_of(ship_of("container"), fuel_preset("mgo", 0.1), power=2e6)

@@ -28,17 +28,17 @@ class Served:
     ----------
     url : where it is
     simulation : the vehicle itself
-    heard : messages that have come, each with the vehicle's time
+    received : messages that have come, each with the vehicle's time
     failures : exceptions of its thread
     """
 
     url: str
     simulation: Simulation
-    heard: list[tuple[float, Any]] = field(default_factory=list)
+    received: list[tuple[float, Any]] = field(default_factory=list)
     failures: list[Exception] = field(default_factory=list)
 
     def count(self, kind, *, after=0.0):
-        return sum(at > after and message.get_type() == kind for at, message in self.heard)
+        return sum(at > after and message.get_type() == kind for at, message in self.received)
 
 
 def free_port(kind=socket.SOCK_STREAM):
@@ -57,8 +57,8 @@ def served(scenario, *settings, lockstep=True, mode="GUIDED", scheme="tcp", flig
     Parameters
     ----------
     scenario, settings, flight : the flight
-    muted : times of the vehicle between which it tells nothing but its clock [s]
-    change : of each message that it tells; None for none
+    muted : times of the vehicle between which it sends nothing but its clock [s]
+    change : of each message that it sends; None for none
     at_step : called before each step
     sniffer : where the readings of the scenario's sniffer are sent, or none
     log : telemetry log of both directions, or none
@@ -78,23 +78,23 @@ def served(scenario, *settings, lockstep=True, mode="GUIDED", scheme="tcp", flig
     found = Served(url, simulation)
     send, receive, step = port.send, port.receive, simulation.step
 
-    def told(message, peer=None):
+    def send_changed(message, peer=None):
         silent = muted and muted[0] <= simulation.time < muted[1]
         if message.get_type() != "SYSTEM_TIME":
             message = None if silent else change(message)
         if message is not None:
             send(message, peer)
 
-    def heard(timeout):
+    def receive_noted(timeout):
         come = receive(timeout)
-        found.heard += [(simulation.time, message) for _, message in come]
+        found.received += [(simulation.time, message) for _, message in come]
         return come
 
     def stepped():
         at_step(simulation)
         step()
 
-    port.send, port.receive, simulation.step = told, heard, stepped
+    port.send, port.receive, simulation.step = send_changed, receive_noted, stepped
     server = Server(simulation, port, lockstep=lockstep)
 
     def serve():

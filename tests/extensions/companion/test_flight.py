@@ -66,9 +66,9 @@ def test_a_perfect_link_flies_the_flight_of_the_study_and_arms_nothing(tmp_path)
     crossed = [pd.read_csv(of / "crossings.csv") for of in (linked, study)]
     for column, tolerance in (("time_s", 0.01), ("distance_m", 0.3), ("angle_deg", 0.5)):
         assert crossed[0][column].to_numpy() == pytest.approx(crossed[1][column], abs=tolerance)
-    kinds = {message.get_type() for _, message in vehicle.heard}
+    kinds = {message.get_type() for _, message in vehicle.received}
     assert "SET_MODE" not in kinds
-    commands = [m for _, m in vehicle.heard if m.get_type() in ("COMMAND_INT", "COMMAND_LONG")]
+    commands = [m for _, m in vehicle.received if m.get_type() in ("COMMAND_INT", "COMMAND_LONG")]
     # Intervals of messages, place to retreat to, airspeed, altitude.
     assert {message.command for message in commands} <= {511, 192, 43000, 43001}
     # No place to retreat to changes the mode.
@@ -88,11 +88,11 @@ def test_a_course_link_flies_it_as_well_over_a_bad_link(tmp_path):
     assert row(tmp_path / "run")["tracking_error_rms_m"] < 1.5
     assert row(tmp_path / "run")["crossing_interval_mean_s"] == pytest.approx(9.5, abs=0.1)
     # A heading is sticky, and a place to retreat to would end it: there is one at the end alone.
-    headings = [at for at, m in vehicle.heard if is_command(m, 43002)]
+    headings = [at for at, m in vehicle.received if is_command(m, 43002)]
     over = max(headings)
     # In every second step at most: ten a second.
     assert 0.5 * 10.0 * over < len(headings) < 10.0 * over
-    assert all(at >= over for at, m in vehicle.heard if is_command(m, 192))
+    assert all(at >= over for at, m in vehicle.received if is_command(m, 192))
     assert vehicle.count("COMMAND_INT", after=over) > 0
 
 
@@ -160,7 +160,9 @@ def test_a_companion_that_is_killed_at_the_closest_approach_leaves_the_vehicle_o
         simulation = vehicle.simulation
         assert afterwards(simulation) > 200.0
         assert simulation.plane.mode is PlaneMode.GUIDED
-    last = max(at for at, message in vehicle.heard if message.get_type() == "SET_ATTITUDE_TARGET")
+    last = max(
+        at for at, message in vehicle.received if message.get_type() == "SET_ATTITUDE_TARGET"
+    )
     assert last <= approach.at
 
 
@@ -211,7 +213,7 @@ def test_a_vehicle_that_does_not_follow_is_given_back_and_not_flown_into_the_sea
     assert "given back: control lost" in ended.out
     assert row(tmp_path / "run")["message"].startswith("control lost, by the heading rate at ")
     assert row(tmp_path / "run")["outcome"] == "not_settled"
-    heights = [m.z for _, m in vehicle.heard if is_command(m, 43001) or is_command(m, 192)]
+    heights = [m.z for _, m in vehicle.received if is_command(m, 43001) or is_command(m, 192)]
     assert heights
     assert min(heights) > 50.0
 
@@ -336,7 +338,7 @@ def test_in_real_time_it_commands_once_a_step_at_most(tmp_path):
                 parameters={"GUIDED_TIMEOUT": 0.5}) as vehicle:  # fmt: skip
         ended = companion(vehicle, "sim3", tmp_path / "run", "--no-report", settings=settings)
     assert "given back: the flight is over" in ended.out
-    sent = [at for at, m in vehicle.heard if m.get_type() == "SET_ATTITUDE_TARGET"]
+    sent = [at for at, m in vehicle.received if m.get_type() == "SET_ATTITUDE_TARGET"]
     commanded = [at for at in sent if at <= sent[0] + duration]
     # Steps of 0.1 s. How many of them a busy machine leaves out is not tested.
     assert 1 < len(commanded) <= 24

@@ -102,8 +102,8 @@ def test_messages_go_both_ways_and_damaged_ones_are_counted(scheme):
         Port(opened("--connect", address, listening=False), system=1, component=191) as here,
     ):
         here.send(beat)
-        (peer, heard), *_ = received(there)
-        assert heard.get_srcComponent() == 191
+        (peer, found), *_ = received(there)
+        assert found.get_srcComponent() == 191
         there.send(beat, peer)
         assert received(here)[0][1].get_srcComponent() == 1
         damaged = bytearray(beat.pack(mavlink.MAVLink(None, srcSystem=1, srcComponent=191)))
@@ -144,7 +144,7 @@ def test_no_message_and_no_rubbish_ends_the_vehicle():
                 time.sleep(0.05)
         assert vehicle.simulation.time == 0.0
         vehicle.simulation.step()
-    assert len({message.get_type() for _, message in vehicle.heard}) > 100
+    assert len({message.get_type() for _, message in vehicle.received}) > 100
 
 
 def packed(kind, payload, packer):

@@ -96,8 +96,8 @@ def test_a_way_past_ships_keeps_clear_of_all_of_them_and_costs_little():
             one.end == other.start and one.ends == other.begins
             for one, other in itertools.pairwise(legs)
         )
-        # Round three octagons of 541 m: with each at most half her circumference more than through
-        # her, 3 (pi/2 - 1) 2 x 541 m, at the UAV's advance over the ships of 0.1 V_R at least.
+        # Round three octagons of 541 m: round each at most half its circumference more than through
+        # it, 3 (pi/2 - 1) 2 x 541 m, at the UAV's advance over the ships of 0.1 V_R at least.
         assert straight.ends < legs[-1].ends < straight.ends + 3.0 * 0.571 * 1082.0 / (0.1 * V_R)
     assert tried > 6
 

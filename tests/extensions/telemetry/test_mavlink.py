@@ -41,8 +41,8 @@ def check_messages(messages, truth):
     assert (at.time_boot_ms, at.alt) == (10000, round(1000.0 * (60.0 + math.sin(10.0))))
     assert by_type["VFR_HUD"][0].throttle == 40
     vessel = by_type["AIS_VESSEL"][0]
-    # AIS_FLAGS: POSITION_ACCURACY, VALID_COG, VALID_VELOCITY, VALID_NAME; her turn rate is not
-    # known.
+    # AIS_FLAGS: POSITION_ACCURACY, VALID_COG, VALID_VELOCITY, VALID_NAME; the turn rate is
+    # not known.
     assert vessel.flags == 1 | 2 | 4 | 4096
     assert vessel.velocity == round(100.0 * math.hypot(5.0, 6.0))
     assert pytest.approx(math.degrees(math.atan2(6.0, 5.0)), abs=0.02) == vessel.COG / 100.0

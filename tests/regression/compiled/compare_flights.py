@@ -72,7 +72,7 @@ STUDIES = {
 
 
 def rows_and_histories(path, name, *overrides, **environment):
-    """Fly a study in a process of its own; return its summary, crossings and time histories."""
+    """Fly a study in a separate process; return its summary, crossings and time histories."""
     words = [word for override in overrides for word in ("--set", override)]
     command = [
         sys.executable,
