@@ -10,7 +10,8 @@ from aircraft.fdm import Fdm
 from aircraft.fleet.find import find_spec
 from aircraft.fleet.x8 import X8
 from aircraft.spec import AircraftError
-from aircraft.trim import TrimOutcome, trim
+from aircraft.state import body_velocity
+from aircraft.trim import TrimOutcome, search_trim, trim
 
 CONDITIONS = {
     "slow": {"airspeed": 14.0, "altitude": 100.0},
@@ -78,6 +79,17 @@ def test_the_published_equations_are_in_balance_at_every_trim(trims):
             found.airspeed * math.sin(found.climb_angle), abs=1e-9
         )
         assert rates["heading_rate"] == pytest.approx(found.yaw_rate, abs=coriolis / found.airspeed)
+        velocity = np.array(body_velocity(found.airspeed, found.alpha, found.beta))
+        north, east, _ = x8.body_from_ned(found.roll, found.pitch).T @ velocity
+        assert found.course_offset() == pytest.approx(math.atan2(east, north), abs=1e-12)
+
+
+def test_an_equilibrium_beyond_a_limit_does_not_count_and_names_it(x8_fdm):
+    # The equations balance, with twice the throttle that there is.
+    found = search_trim(x8_fdm, airspeed=60.0, altitude=100.0)
+    assert found.residual < 1e-5
+    assert found.outcome is TrimOutcome.LIMITED
+    assert found.limits == ("throttle at its upper limit",)
 
 
 @pytest.mark.parametrize("airspeed", [-3.0, 0.0, math.nan, math.inf])
