@@ -6,8 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from aircraft import fdm as fdm_module
-from aircraft.fdm import CLOCK, TIME_STEP, Fdm, paced
+from aircraft.fdm import CLOCK, TIME_STEP, Fdm
 from aircraft.fleet.find import find_spec
 from aircraft.fleet.x8 import X8
 from aircraft.spec import MODELS, AircraftError
@@ -157,31 +156,3 @@ def test_a_flight_that_is_shown_is_the_same_to_the_last_bit():
         "velocities/vt-fps",
     )
     assert [shown.read(name) for name in names] == [alone.read(name) for name in names]
-
-
-def test_a_paced_simulation_waits_for_the_clock_and_catches_up(monkeypatch):
-    now, slept = [100.0], []
-
-    class Clock:
-        @staticmethod
-        def monotonic():
-            return now[0]
-
-        @staticmethod
-        def sleep(seconds):
-            slept.append(seconds)
-            now[0] += seconds
-
-    def step():
-        now[0] += took.pop(0)
-
-    monkeypatch.setattr(fdm_module, "time", Clock)
-    took = [0.1, 2.5, 0.1, 0.1]
-    run = paced(step, 1.0)
-    for _ in range(4):
-        run()
-    # The first step is 0.9 s early; the second ends 1.5 s late, the third 0.6 s; the fourth is 0.3
-    # s early again.
-    assert slept == pytest.approx([0.9, 0.3])
-    assert now[0] == pytest.approx(104.0)
-    assert math.isclose(sum(slept), 1.2)

@@ -4,11 +4,10 @@ one that cannot be.
 
 from dataclasses import replace
 
-import pandas as pd
 import pytest
 from snapshots import assert_reads_as_before
 
-from extensions.patrol.report import oracle_table, patrol_content, read_patrols
+from extensions.patrol.report import patrol_content
 from reports.document.blocks import CARDS_MAX
 from reports.registry import content
 from reports.run.run_data import read_run
@@ -65,24 +64,6 @@ def test_a_violation_and_a_lost_aircraft_stand_on_page_1(run):
     assert found.headline.startswith("2 keep-out violations. ")
     assert found.tone == "bad"
     assert {card.name: card.value for card in found.cards}["Aircraft lost"] == "1"
-
-
-def test_a_patrol_that_failed_is_a_row_of_dashes_with_its_reason(run):
-    failed = pd.DataFrame(
-        [
-            {
-                "flight_id": "patrol_00001",
-                "criteria_met": False,
-                "outcome": "failed",
-                "message": "no room",
-            }
-        ]
-    )
-    both = replace(run, summary=pd.concat([run.summary, failed], ignore_index=True))
-    assert oracle_table(read_patrols(both)).rows[1][1:] == ["–"] * 13
-    found = patrol_content(both)
-    assert found.verdict.failures == ["patrol_00001: no room"]
-    assert not found.verdict.complete
 
 
 def test_patrols_read_as_before(run):
