@@ -8,7 +8,7 @@ import pytest
 
 from extensions.arena.laws.ardupilot import update_loiter
 from extensions.arena.laws.path import path_motion
-from gnc.laws import ON_CIRCLE, ON_OSCILLATION, STEERING_LAWS
+from gnc.laws import ON_OSCILLATION, STEERING_LAWS
 from gnc.steering import Air, Motion, started
 from gnc.vectors import along, course_of, norm, plus, scaled
 
@@ -22,7 +22,6 @@ def unsupported_tasks(name):
 
 
 CIRCLES = [name for name in LAWS if ON_OSCILLATION in unsupported_tasks(name)]
-POINTS = [name for name in LAWS if ON_CIRCLE in unsupported_tasks(name)]
 
 
 def reference(course=0.3, heading_rate=0.15, speed=SPEED):
