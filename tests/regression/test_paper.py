@@ -38,6 +38,7 @@ def directory(tmp_path_factory):
         patch.setattr(paper, "RESERVES", FEW_RESERVES)
         result = run_study(load_study("paper"), "paper", path, executor_factory=InProcessExecutor)
     assert result.verdict.counts.planned == result.verdict.counts.done == len(rows_of(path)) == 8
+    assert all(row["criteria_met"] for row in rows_of(path))
     return path
 
 
@@ -136,7 +137,7 @@ def test_sim_2_the_line_of_sight_is_near_sooner_but_never_on_the_reference(histo
     assert rows["sim2_los_kinematic"]["tracking_error_end_m"] > 10.0
 
 
-def test_bounds_stand_beside_the_worst_states_found(directory):
+def test_bounds_stand_beside_the_worst_states_found(directory, rows):
     assert paper.SEARCH_STATES >= 1_000_000
     assert set(FEW_RESERVES) < set(paper.RESERVES)
     record = json.loads((directory / "bounds.json").read_text(encoding="utf-8"))
@@ -148,6 +149,10 @@ def test_bounds_stand_beside_the_worst_states_found(directory):
         )
         if row["tuning"] == "bounded":
             assert row["bound_rad_s"] <= row["heading_rate_max_rad_s"]
+        # The bound is for a speed that no flight exceeds; rounding of a hypotenuse.
+        for flight_id in row["flights"]:
+            assert rows[flight_id]["speed_max_mps"] <= row["speed_mps"] * (1.0 + 1e-12)
+    assert any(row["flights"] for row in record["flown"])
     by_reserve = {row["reserve"]: row for row in record["guaranteed"]}
     # A reference that spends all of omega_max leaves no bound; every reserve that does has a price
     # that falls.
