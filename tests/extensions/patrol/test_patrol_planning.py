@@ -43,16 +43,9 @@ def airs(count):
 
 
 def prospect(of, air, *, endurance=5400.0, service=165.0, deviation=40.0):
-    count = len(of)
-    return Prospect(
-        ships=of,
-        service=[service] * count,
-        deviation=deviation,
-        chance=[1.0] * count,
-        radius=RADIUS,
-        air=air,
-        endurance=endurance,
-    )
+    count, limits = len(of), {"radius": RADIUS, "air": air, "endurance": endurance}
+    times = {"service": [service] * count, "deviation": deviation}
+    return Prospect(ships=of, chance=[1.0] * count, **times, **limits)
 
 
 @pytest.mark.parametrize("air", airs(5))
@@ -64,9 +57,8 @@ def test_a_leg_ends_at_the_radius_from_the_ship_and_is_flown_at_the_airspeed(air
         assert abs(leg.velocity - air.wind) == pytest.approx(V_R, rel=1e-9)
         # It points at the ship where the way ends: no other straight way is as quick.
         to_ship = ship.at(leg.ends) - leg.end
-        assert math.remainder(leg.course(air) - cmath.phase(to_ship), math.tau) == pytest.approx(
-            0.0, abs=1e-9
-        )
+        off = math.remainder(leg.course(air) - cmath.phase(to_ship), math.tau)
+        assert off == pytest.approx(0.0, abs=1e-9)
 
 
 def test_a_way_past_ships_keeps_clear_of_all_of_them_and_costs_little():
@@ -103,11 +95,9 @@ def test_a_way_past_ships_keeps_clear_of_all_of_them_and_costs_little():
 
 
 def test_a_ship_that_cannot_be_caught_has_no_way():
-    air = Air(0j, V_R)
-    assert (
-        route(0j, 0.0, Mover(5000 + 0j, 21 + 0j), RADIUS, air=air, ships=[], clearance=CLEARANCE)
-        is None
-    )
+    fast = Mover(5000 + 0j, 21 + 0j)
+    way = route(0j, 0.0, fast, RADIUS, air=Air(0j, V_R), ships=[], clearance=CLEARANCE)
+    assert way is None
 
 
 @pytest.mark.parametrize("count", [1, 3, 5])
