@@ -104,11 +104,8 @@ def test_a_slow_engine_settles_where_it_would_at_its_own_pace(throttle):
     # thousand steps and more.
     fdm = Fdm(find_spec("c172x"))
     fdm.command({"throttle": 0.7})
-    fdm.place(
-        RigidBodyState(
-            altitude=500.0, roll=0.0, pitch=0.05, velocity_body=body_velocity(50.0, 0.05, 0.0)
-        )
-    )
+    velocity = body_velocity(50.0, 0.05, 0.0)
+    fdm.place(RigidBodyState(altitude=500.0, roll=0.0, pitch=0.05, velocity_body=velocity))
     with fdm.frozen():
         assert fdm.settle(2e-9)
         fdm.command({"throttle": throttle})
@@ -132,22 +129,11 @@ def test_a_slow_engine_settles_where_it_would_at_its_own_pace(throttle):
     assert fdm.read(CLOCK) - clock == pytest.approx(1.0)
 
 
-NEAR_THE_ORIGIN = RigidBodyState(
-    latitude=0.01,
-    longitude=-0.02,
-    altitude=120.0,
-    roll=0.3,
-    pitch=0.1,
-    yaw=1.2,
-    velocity_body=(20.0, 0.0, 1.0),
-)
-
-
 def test_a_flight_that_is_shown_is_the_same_to_the_last_bit():
     shown, alone = Fdm(X8), Fdm(X8)
     shown.stream('<output name="127.0.0.1" type="FLIGHTGEAR" port="9" protocol="UDP" rate="30"/>')
     for fdm in (shown, alone):
-        fdm.place(NEAR_THE_ORIGIN)
+        fdm.place(SOMEWHERE)
         fdm.step(30)
     names = (
         "position/lat-geod-rad",
