@@ -31,32 +31,6 @@ CONDITIONS = [
 ]
 
 
-def settled(fdm, airspeed, throttle, rates=(0.0, 0.0, 0.0)):
-    """Hold the aircraft, moving straight ahead, until the propeller stands; return its speed
-    [rad/s] and the density [kg/m^3].
-    """
-    fdm.command({"elevator": 0.0, "aileron": 0.0, "throttle": throttle})
-    fdm.place(
-        RigidBodyState(
-            altitude=100.0,
-            roll=0.0,
-            pitch=0.0,
-            velocity_body=(airspeed, 0.0, 0.0),
-            rates_body=rates,
-        )
-    )
-    assert fdm.settle()
-    return propeller_speed(fdm), fdm.read("atmosphere/rho-slugs_ft3") * KG_M3_PER_SLUG_FT3
-
-
-def propeller_speed(fdm):
-    return fdm.read("propulsion/engine/propeller-rpm") * RAD_S_PER_RPM
-
-
-def shaft_torque(fdm):
-    return -fdm.read("propulsion/engine/propeller-torque-ftlb") * NM_PER_LBF_FT
-
-
 def speed_where_torques_meet(airspeed, throttle, density):
     """Speed [rad/s] at which the published motor and propeller have the same torque."""
     low, high = 50.0, x8.BATTERY / x8.MOTOR_KT
@@ -72,9 +46,14 @@ def speed_where_torques_meet(airspeed, throttle, density):
 def test_settled_thrust_torque_and_speed_are_those_of_the_published_equations(x8_fdm):
     for airspeed, throttle in CONDITIONS:
         with x8_fdm.frozen():
-            speed, density = settled(x8_fdm, airspeed, throttle)
+            x8_fdm.command({"elevator": 0.0, "aileron": 0.0, "throttle": throttle})
+            ahead = (airspeed, 0.0, 0.0)
+            x8_fdm.place(RigidBodyState(altitude=100.0, roll=0.0, pitch=0.0, velocity_body=ahead))
+            assert x8_fdm.settle()
+            density = x8_fdm.read("atmosphere/rho-slugs_ft3") * KG_M3_PER_SLUG_FT3
+            speed = x8_fdm.read("propulsion/engine/propeller-rpm") * RAD_S_PER_RPM
             thrust = x8_fdm.read("propulsion/engine/thrust-lbs") * N_PER_LBF
-            torque = shaft_torque(x8_fdm)
+            torque = -x8_fdm.read("propulsion/engine/propeller-torque-ftlb") * NM_PER_LBF_FT
         unit = density * (speed / (2.0 * math.pi)) ** 2 * x8.PROPELLER_DIAMETER**4
         torque_error = CQ_ERROR * unit * x8.PROPELLER_DIAMETER
         assert thrust == pytest.approx(x8.thrust(airspeed, speed, density), abs=CT_ERROR * unit)

@@ -1,5 +1,6 @@
 """A simulated vehicle that is served in this process, and a companion's command against it."""
 
+import math
 import socket
 import tempfile
 import threading
@@ -48,27 +49,24 @@ def free_port(kind=socket.SOCK_STREAM):
 
 
 @contextmanager
-def served(scenario, *settings, lockstep=True, mode="GUIDED", scheme="tcp", flight=None,
-           parameters=None, muted=(), home=HOME, change=lambda message: message,
-           at_step=lambda _: None,
-    sniffer=None, duration=1e6, log=None):  # fmt: skip
+def served(scenario, *settings, lockstep=True, scheme="tcp", parameters=None, sniffer=None,
+           log=None, change=lambda message: message, at_step=lambda _: None):  # fmt: skip
     """Serve the vehicle of a flight.
 
     Parameters
     ----------
-    scenario, settings, flight : the flight
-    muted : times of the vehicle between which it sends nothing but its clock [s]
+    scenario, settings : the flight, the only one of the scenario
     change : of each message that it sends; None for none
     at_step : called before each step
     sniffer : where the readings of the scenario's sniffer are sent, or none
     log : telemetry log of both directions, or none
     """
-    single = command._flight(SingleFlight, scenario, list(settings), flight)
+    single = command._flight(SingleFlight, scenario, list(settings), None)
     with tempfile.TemporaryDirectory() as folder:
         work = single.work(RunDirectory(Path(folder)))
         request = work.request(single.task)
-        simulation = Simulation(work.plan(request), work.setup_of(request), home=home,
-                                mode=PlaneMode[mode], parameters=parameters)  # fmt: skip
+        simulation = Simulation(work.plan(request), work.setup_of(request), home=HOME,
+                                mode=PlaneMode.GUIDED, parameters=parameters)  # fmt: skip
         readings = sniffer and opened("--sniffer", sniffer, listening=False)
         if readings:
             send_readings(simulation, request, work.plan(request), readings)
@@ -79,9 +77,8 @@ def served(scenario, *settings, lockstep=True, mode="GUIDED", scheme="tcp", flig
     send, receive, step = port.send, port.receive, simulation.step
 
     def send_changed(message, peer=None):
-        silent = muted and muted[0] <= simulation.time < muted[1]
         if message.get_type() != "SYSTEM_TIME":
-            message = None if silent else change(message)
+            message = change(message)
         if message is not None:
             send(message, peer)
 
@@ -99,7 +96,7 @@ def served(scenario, *settings, lockstep=True, mode="GUIDED", scheme="tcp", flig
 
     def serve():
         try:
-            server.run(duration)
+            server.run(math.inf)
         except Exception as error:  # noqa: BLE001 - the test looks at it
             found.failures.append(error)
 
