@@ -77,7 +77,8 @@ def test_every_derivative_of_the_rigid_body_is_that_of_the_published_equations(t
         if rate == "propeller_speed":
             continue
         found = [entry(models[name], rate, source) for source in (*x8.STATES, "throttle")]
-        # Relative: JSBSim's inertia and density are off by 1e-4 and 1e-5 (test_x8_forces);
+        # Relative: JSBSim takes 1 lbf ft s^2 as 1.35594 kg m^2 where it is 1.35582, so that inertia
+        # is 9e-5 low; density is 1e-5 off (test_x8_forces);
         # differences truncate less. Thrust has the slope of a table segment, where that of the
         # polynomial differs by half a segment, 0.025, times the second derivative, 0.2158, of C_T:
         # 3 % of a slope of 0.18. It enters the airspeed's rate by airspeed, angles and propeller
