@@ -73,3 +73,26 @@ def test_each_elevon_stops_at_full_deflection_on_its_own(x8_fdm, elevator, ailer
     assert step_answer(x8_fdm, inputs, 240, "fcs/right-elevon-pos-rad")[-1] == pytest.approx(
         right * FULL, abs=1e-9
     )
+
+
+def test_elevator_and_aileron_are_the_symmetric_and_antisymmetric_part(x8_fdm):
+    inputs = {"elevator": 0.2, "aileron": -0.3}
+    # Twenty time constants leave 1e-9 of the step.
+    assert step_answer(x8_fdm, inputs, 60, "fcs/elevator-pos-rad")[-1] == pytest.approx(
+        0.2 * FULL, abs=1e-8
+    )
+    assert step_answer(x8_fdm, inputs, 60, "fcs/aileron-pos-rad")[-1] == pytest.approx(
+        -0.3 * FULL, abs=1e-8
+    )
+
+
+def test_positive_aileron_rolls_right_and_positive_elevator_pitches_down(x8_fdm):
+    # Trailing edge down is positive: C_mde < 0, and the left elevon down (C_lda > 0) lifts the left
+    # wing. The sizes have their own tests; C_m0 works against the elevator.
+    with x8_fdm.frozen():
+        x8_fdm.command({"elevator": 0.3, "aileron": 0.2, "throttle": 0.5})
+        x8_fdm.place(LEVEL)
+        assert x8_fdm.settle()
+        p_dot, q_dot, _ = x8_fdm.angular_acceleration()
+    assert p_dot > 10.0
+    assert q_dot < -5.0
