@@ -27,7 +27,7 @@ EARTH_RATE = 7.292115e-5
 """Rotation rate of the earth, as in JSBSim's default planet [rad/s]."""
 
 CLOCK = "simulation/sim-time-sec"
-"""Time since the aircraft was placed last [s]."""
+"""Property of the time since the last placing of the aircraft [s]."""
 
 INTEGRATORS = tuple(
     f"simulation/integrator/{kind}/{motion}"
@@ -87,7 +87,7 @@ _SLOW_AFTER = 120
 _SLOW_STEP_RATIO = 8
 """Step length for slow engines over the time step [-].
 
-It stays short against the second that a piston engine takes to change its speed.
+The longer step is still short: a piston engine takes a second to change its speed.
 """
 
 _NAMED = re.compile(r'<\w+\s[^>]*?name\s*=\s*"([^"]+)"')
@@ -268,7 +268,7 @@ class Fdm:
         self._engines_started = False
 
     def allow_engine_restart(self) -> None:
-        """Have the next placing start engines that stalled for lack of throttle."""
+        """Let the next placing start engines that have stalled for lack of throttle."""
         self._engines_started = self._engines_started and self._engines_run()
 
     def _initialise(self, state: RigidBodyState, wind: tuple[float, float] | None) -> None:

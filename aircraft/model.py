@@ -148,7 +148,7 @@ def model_hash(files: ModelFiles) -> str:
 
 
 def _unread_files(folder: str, names: list[str]) -> list[str]:
-    """Names that JSBSim does not read, such as large pictures and sounds, or broken links."""
+    """Names of files that JSBSim does not read, such as large pictures, sounds and broken links."""
 
     def is_read(path: Path) -> bool:
         return path.is_dir() or (path.name.endswith((".xml", ".toml")) and path.is_file())
@@ -310,7 +310,7 @@ PERTURBATIONS = {
 _MASSES = ("emptywt", "pointmass/weight")
 _MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 _TANKS = ("tank/contents", "tank/capacity")
-"""Scaled elements of a tank: JSBSim allows no contents above the capacity."""
+"""Elements of a tank that are scaled together: JSBSim allows no contents above the capacity."""
 
 _DEFLECTION = re.compile(r"^-?fcs/.*pos")
 """Properties of surface deflections, JSBSim's own and the models'."""

@@ -53,7 +53,7 @@ _ACTUATOR_NAME = re.compile(
     r"(?!(engine|none|vessel_data|satellite_navigation|sniffer_(dead|saturated))$)"
     r"[A-Za-z_][A-Za-z0-9_.\-]*"
 )
-"""Names of actuators: they become part of a JSBSim property, and differ from other faults' names.
+"""Names of actuators: they become part of a JSBSim property, and no other fault has the same name.
 """
 
 _REQUIRED_INPUTS = ("elevator", "aileron", "throttle")
@@ -379,8 +379,8 @@ def _problems(spec: AircraftSpec) -> Iterator[str]:
             set(actuator.commands) <= set(i.commands) for i in spec.inputs
         ):
             yield (
-                f"actuator '{actuator.name}' has commands of its own and no feedback; name the"
-                " properties that read its command and position"
+                f"actuator '{actuator.name}' has commands of no control input and no feedback;"
+                " name the properties that read its command and position"
             )
     least, most = SETTLE_TIMES
     if not least <= spec.settle_time <= most:

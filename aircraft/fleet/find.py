@@ -86,7 +86,7 @@ def stock_spec(name: str) -> AircraftSpec:
     AircraftError : the aircraft is not an aeroplane with engines and the usual controls
     """
     files = ModelFiles(model=name, folder=stock_root() / "aircraft" / name, roots=(stock_root(),))
-    source = f"JSBSim's own model '{name}', gear up, fuel held, its own autopilot off"
+    source = f"JSBSim's own model '{name}', gear up, fuel held, the model's autopilot off"
     return spec_of_model(files, name=name, source=source)
 
 
@@ -162,7 +162,7 @@ def folder_spec(path: str) -> AircraftSpec:
     return spec_of_model(
         files,
         name=folder.name,
-        source=f"the user's own model '{model}', gear up, fuel held, its own autopilot off",
+        source=f"the user's own model '{model}', gear up, fuel held, the model's autopilot off",
         settings=read_settings(settings) if settings.is_file() else ModelSettings(),
     )
 

@@ -299,7 +299,7 @@ def _lifts(thruster: ET.Element) -> bool:
     try:
         pitch = float(thruster.findtext("orient/pitch", "0"))
     except ValueError:
-        return False  # JSBSim refuses it in its own words
+        return False  # JSBSim refuses it with a message
     unit = next((orient.get("unit") for orient in thruster.iterfind("orient")), None)
     return abs(math.radians(pitch) if unit == "DEG" else pitch) > math.pi / 4.0
 

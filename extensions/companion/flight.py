@@ -77,7 +77,7 @@ one.
 SNIFFER = "sniffer"
 """The instrument whose readings may come on a line."""
 
-_RIVALS_SEEN_IN, _RIVALS_LOOK = 1.2, 0.02
+RIVALS_SEEN_IN, _RIVALS_LOOK = 1.2, 0.02
 """Time of waiting for other companions before a takeover, and interval of the checks [s]."""
 
 _LOITER_RADIUS, _GUIDED_TIMEOUT, _GUIDED_P = "WP_LOITER_RAD", "GUIDED_TIMEOUT", "GUIDED_P"
@@ -231,7 +231,7 @@ class Companion:
         """Refuse a vehicle that another companion flies, which says so once a second of real time,
         also where the vehicle's clock waits.
         """
-        until = time.monotonic() + _RIVALS_SEEN_IN
+        until = time.monotonic() + RIVALS_SEEN_IN
         while time.monotonic() < until:
             self.link.advance(self.link.now)
             self._refuse_rival()

@@ -55,5 +55,5 @@ def _place(body: Body, i: int) -> str:
 
 
 def _escaped(text: str) -> str:
-    """Return a text in which commas, and what would end a line, stand for themselves."""
+    """Return a text with its backslashes, commas and line ends escaped."""
     return text.replace("\\", "\\\\").replace(",", "\\,").replace("\n", "\\\n")

@@ -111,8 +111,8 @@ def _moving(
 
 
 def _readings(flight: GeographicFlight) -> dict[str, Any]:
-    """Return what the sniffer read, as properties of the UAV over time; nothing of a flight without
-    one.
+    """Return the sniffer's readings as properties of the UAV over time; empty without a
+    sniffer.
     """
     properties = {}
     for name, values in flight.readings.items():

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from aircraft.fdm import Fdm
 
 _OUTPUT = '<output name="{host}" type="FLIGHTGEAR" port="{port}" protocol="UDP" rate="30"/>'
-"""JSBSim's output of FlightGear's packets, 30 a second."""
+"""JSBSim's output element, which sends FlightGear 30 packets a second."""
 
 
 @dataclass(frozen=True)

@@ -18,17 +18,17 @@ from reports.run.run_data import RunData
 _MAGIC, _SYSTEM, _COMPONENT = 0xFD, 1, 1
 
 _FIXED_WING, _NO_AUTOPILOT, _ACTIVE, _ARMED, _VERSION = 1, 8, 4, 128, 3
-"""Of a heartbeat: MAV_TYPE, MAV_AUTOPILOT_INVALID, MAV_STATE, MAV_MODE_FLAG_SAFETY_ARMED, and the
-protocol's version.
+"""Values in a HEARTBEAT: MAV_TYPE, MAV_AUTOPILOT_INVALID, MAV_STATE, MAV_MODE_FLAG_SAFETY_ARMED and
+the version of the protocol.
 """
 
 _GEOMETRIC, _SURFACE_VEHICLE, _ADSB_VALID = 1, 18, 1 | 2 | 4 | 8
-"""Of an ADSB_VEHICLE: altitude by satellites, MAV's emitter type of a service vehicle on the
-surface, and which fields are valid: place, altitude, heading, velocity."""
+"""Values in an ADSB_VEHICLE: altitude by satellites; emitter type, a service vehicle on the
+surface; flags of the valid fields, which are place, altitude, heading and velocity."""
 
 _CARGO, _AIS_VALID, _VALID_COG = 70, 1 | 4 | 4096, 2
-"""Of an AIS_VESSEL: its type, and its AIS_FLAGS: POSITION_ACCURACY, VALID_VELOCITY, VALID_NAME;
-VALID_COG of one that moves. Turns are unknown."""
+"""Values in an AIS_VESSEL: its type; the AIS_FLAGS POSITION_ACCURACY, VALID_VELOCITY and
+VALID_NAME; and VALID_COG, for a vessel that moves. The rate of turn is not known."""
 
 _AT_REST = 0.05
 """Speed below which a vessel has no course over the ground [m/s]; AIS gives speeds in steps of
@@ -36,10 +36,10 @@ _AT_REST = 0.05
 """
 
 _MMSI = 999_999_999
-"""Of a vessel whose MMSI is not recorded."""
+"""MMSI of a vessel for which the run has recorded none."""
 
 _INFO = 6
-"""MAV_SEVERITY of a text."""
+"""MAV_SEVERITY of a STATUSTEXT."""
 
 _SLOW = 1.0
 """Time between heartbeats, and between reports of the vessel [s]."""
@@ -54,8 +54,8 @@ _MESSAGES: dict[str, tuple[int, int, str]] = {
     "STATUSTEXT": (253, 83, "<B50sHB"),
     "AIS_VESSEL": (301, 243, "<IiiHHHHHHHbBBBB7s20s"),
 }
-"""Number, seed of the checksum, and fields in the order in which they are sent, of the common
-message set.
+"""Messages of the common set by name: number, seed of the checksum, and format of the fields in the
+order in which MAVLink sends them.
 """
 
 
@@ -113,7 +113,7 @@ class UdpStream:
                 try:
                     link.sendto(message, self._host)
                 except ConnectionRefusedError:
-                    # Nobody listens yet: a ground station may come later.
+                    # No program listens there yet; a ground station may start later.
                     continue
                 except OSError as error:
                     host, port = self._host
@@ -134,7 +134,7 @@ class Packer:
     def pack(self, name: str, *values: float | bytes) -> bytes:
         """Return a message with its values in the order of ``_MESSAGES``."""
         number, seed, fields = _MESSAGES[name]
-        # Zeros at the end are not sent, but for the first byte.
+        # MAVLink 2 leaves out zeros at the end, but never the first byte.
         payload = struct.pack(fields, *values)
         payload = payload[:1] + payload[1:].rstrip(b"\0")
         head = struct.pack(
@@ -150,7 +150,7 @@ def messages(flight: GeographicFlight) -> Iterator[tuple[float, bytes]]:
     heartbeat and vessel each second.
     """
     packer, due = Packer(), -math.inf
-    # 50 letters at most.
+    # A STATUSTEXT has room for 50 letters.
     heights = b"Heights are above mean sea level"
     yield float(flight.time[0]), packer.pack("STATUSTEXT", _INFO, heights, 0, 0)
     for i, time in enumerate(flight.time.tolist()):
@@ -217,7 +217,7 @@ def _ais(packer: Packer, vessel: Body, i: int, bow: int) -> bytes:
 
 
 def _adsb(packer: Packer, vessel: Body, i: int, bow: int) -> bytes:
-    """Return the vessel once more, for ground stations that show no AIS."""
+    """Return the vessel as an ADSB_VEHICLE, for ground stations that do not show AIS."""
     speed = _centi(vessel.speed[i])
     return packer.pack(
         "ADSB_VEHICLE",

@@ -66,8 +66,8 @@ class Mcap:
         """Write one flight."""
         from mcap.writer import Writer
 
-        # The schema says "Altitude in meters"; sensor_msgs/NavSatFix, which the programs show in
-        # the same way, is above the WGS 84 ellipsoid.
+        # The schema says "Altitude in meters" and not above what. The programs show it as they
+        # show sensor_msgs/NavSatFix, whose altitude is above the WGS 84 ellipsoid.
         flight = next(recorded_flights(run)).above_ellipsoid()
         drawn = set(flight.every(_DRAWN_EVERY))
         with path.open("wb") as file:
@@ -104,7 +104,7 @@ class Mcap:
 
 
 def _messages(flight: GeographicFlight, i: int, nanoseconds: int) -> dict[str, dict[str, Any]]:
-    """Return what is said of a sample, by topic."""
+    """Return the messages of one sample, by topic."""
     stamp = {"sec": nanoseconds // 10**9, "nsec": nanoseconds % 10**9}
     motion = {
         "airspeed_mps": float(flight.airspeed[i]), "ground_speed_mps": float(flight.uav.speed[i]),
@@ -149,7 +149,7 @@ def _drawings(flight: GeographicFlight, i: int) -> dict[str, dict[str, Any]]:
 
 
 def _quaternion(flight: GeographicFlight, i: int) -> dict[str, float]:
-    """Return the turn from axes east, north, up to axes forward, left, up of the aircraft."""
+    """Return the rotation from axes east, north, up to the aircraft's axes forward, left, up."""
     yaw, pitch, roll = (
         0.5 * math.radians(a) for a in (90.0 - flight.heading[i], -flight.pitch[i], flight.roll[i])
     )

@@ -49,28 +49,15 @@ def test_a_stated_envelope_has_a_note_where_an_equilibrium_lacks_a_reserve_and_n
     assert f"11 m/s and 55 deg of bank take {elevator:.2f} of elevator; -0.9 to 0.9" in note
 
 
-@pytest.mark.parametrize(
-    ("key", "pattern", "found"),
-    [
-        ("emptywt", r"(<emptywt[^>]*>)[^<]*", "weight is -"),
-        ("emptywt", r"(<emptywt[^>]*>)[^<]*", "weight is 0 N"),
-        ("wingarea", r"(<wingarea[^>]*>)[^<]*", "wing area is 0 m²"),
-    ],
-)
-@pytest.mark.parametrize("stated", [True, False])
-def test_a_model_without_weight_or_wing_area_is_refused_in_a_line(
-    tmp_path, key, pattern, found, stated
-):
+@pytest.mark.parametrize(("key", "found"), [("emptywt", "weight is -"), ("wingarea", "area is 0")])
+def test_a_model_without_weight_or_wing_area_is_refused(tmp_path, key, found):
     root = shutil.copytree(MODELS, tmp_path / "models")
     file = root / "aircraft" / "x8" / "x8.xml"
     number = "-3.0" if found.endswith("-") else "0.0"
-    file.write_text(
-        re.sub(pattern, rf"\g<1> {number} ", file.read_text(encoding="utf-8")), encoding="utf-8"
-    )
-    spec = replace(X8, root=root, envelope=X8.envelope if stated else None)
-    with pytest.raises(AircraftError, match=found) as caught:
-        first_trim(Fdm(spec), ALTITUDE)
-    assert str(caught.value).endswith(f"it must be above 0: correct {key} in the model")
+    text = re.sub(rf"(<{key}[^>]*>)[^<]*", rf"\g<1>{number}", file.read_text(encoding="utf-8"))
+    file.write_text(text, encoding="utf-8")
+    with pytest.raises(AircraftError, match=rf"{found}.* must be above 0: correct {key} in"):
+        first_trim(Fdm(replace(X8, root=root)), ALTITUDE)
 
 
 def test_the_stall_is_where_the_largest_lift_just_carries_the_weight(jet, envelope):

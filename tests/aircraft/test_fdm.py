@@ -6,8 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from aircraft import fdm as fdm_module
-from aircraft.fdm import CLOCK, TIME_STEP, Fdm, paced
+from aircraft.fdm import CLOCK, TIME_STEP, Fdm
 from aircraft.fleet.find import find_spec
 from aircraft.fleet.x8 import X8
 from aircraft.spec import MODELS, AircraftError
@@ -63,13 +62,6 @@ def test_a_root_without_the_engine_files_gets_one_line_with_the_file_that_is_mis
     assert "\n" not in str(caught.value)
 
 
-def test_loading_and_flying_prints_nothing(capfd):
-    fdm = Fdm(X8)
-    fdm.place(SOMEWHERE)
-    fdm.step(3)
-    assert capfd.readouterr() == ("", "")
-
-
 def test_a_placed_aircraft_is_where_and_as_it_was_asked(x8_fdm):
     x8_fdm.place(SOMEWHERE)
     # Feet and quaternions in between: twelve digits survive.
@@ -106,31 +98,14 @@ def test_hold_releases_at_the_asked_place_with_the_asked_yaw_and_motion(x8_fdm, 
     assert rates_body(x8_fdm) == pytest.approx(state.rates_body, abs=1e-6)
 
 
-def test_hold_lets_servos_and_propeller_come_to_rest(x8_fdm):
-    x8_fdm.command({"elevator": 0.1, "aileron": 0.05, "throttle": 0.6})
-    x8_fdm.hold(SOMEWHERE, 240)
-    # Elevons mix to command times 0.5236 rad (model file). Two seconds are 80 servo time constants:
-    # nothing is left.
-    assert x8_fdm.read("fcs/elevator-pos-rad") == pytest.approx(0.05236, abs=1e-12)
-    assert x8_fdm.read("fcs/aileron-pos-rad") == pytest.approx(0.02618, abs=1e-12)
-    speed = x8_fdm.read("propulsion/engine/propeller-rpm")
-    with x8_fdm.frozen():
-        assert x8_fdm.settle()
-    # Forty of the propeller's time constants of about 0.05 s.
-    assert x8_fdm.read("propulsion/engine/propeller-rpm") == pytest.approx(speed, rel=1e-6)
-
-
 @pytest.mark.parametrize("throttle", [0.5, 0.9])
 def test_a_slow_engine_settles_where_it_would_at_its_own_pace(throttle):
     # The Cessna's piston engine changes its speed in a second: from 0.7 of its throttle it takes a
     # thousand steps and more.
     fdm = Fdm(find_spec("c172x"))
     fdm.command({"throttle": 0.7})
-    fdm.place(
-        RigidBodyState(
-            altitude=500.0, roll=0.0, pitch=0.05, velocity_body=body_velocity(50.0, 0.05, 0.0)
-        )
-    )
+    velocity = body_velocity(50.0, 0.05, 0.0)
+    fdm.place(RigidBodyState(altitude=500.0, roll=0.0, pitch=0.05, velocity_body=velocity))
     with fdm.frozen():
         assert fdm.settle(2e-9)
         fdm.command({"throttle": throttle})
@@ -154,22 +129,11 @@ def test_a_slow_engine_settles_where_it_would_at_its_own_pace(throttle):
     assert fdm.read(CLOCK) - clock == pytest.approx(1.0)
 
 
-NEAR_THE_ORIGIN = RigidBodyState(
-    latitude=0.01,
-    longitude=-0.02,
-    altitude=120.0,
-    roll=0.3,
-    pitch=0.1,
-    yaw=1.2,
-    velocity_body=(20.0, 0.0, 1.0),
-)
-
-
 def test_a_flight_that_is_shown_is_the_same_to_the_last_bit():
     shown, alone = Fdm(X8), Fdm(X8)
     shown.stream('<output name="127.0.0.1" type="FLIGHTGEAR" port="9" protocol="UDP" rate="30"/>')
     for fdm in (shown, alone):
-        fdm.place(NEAR_THE_ORIGIN)
+        fdm.place(SOMEWHERE)
         fdm.step(30)
     names = (
         "position/lat-geod-rad",
@@ -178,31 +142,3 @@ def test_a_flight_that_is_shown_is_the_same_to_the_last_bit():
         "velocities/vt-fps",
     )
     assert [shown.read(name) for name in names] == [alone.read(name) for name in names]
-
-
-def test_a_paced_simulation_waits_for_the_clock_and_catches_up(monkeypatch):
-    now, slept = [100.0], []
-
-    class Clock:
-        @staticmethod
-        def monotonic():
-            return now[0]
-
-        @staticmethod
-        def sleep(seconds):
-            slept.append(seconds)
-            now[0] += seconds
-
-    def step():
-        now[0] += took.pop(0)
-
-    monkeypatch.setattr(fdm_module, "time", Clock)
-    took = [0.1, 2.5, 0.1, 0.1]
-    run = paced(step, 1.0)
-    for _ in range(4):
-        run()
-    # The first step is 0.9 s early; the second ends 1.5 s late, the third 0.6 s; the fourth is 0.3
-    # s early again.
-    assert slept == pytest.approx([0.9, 0.3])
-    assert now[0] == pytest.approx(104.0)
-    assert math.isclose(sum(slept), 1.2)

@@ -2,7 +2,6 @@
 
 import math
 
-import control
 import numpy as np
 import pytest
 import x8_published as x8
@@ -78,7 +77,8 @@ def test_every_derivative_of_the_rigid_body_is_that_of_the_published_equations(t
         if rate == "propeller_speed":
             continue
         found = [entry(models[name], rate, source) for source in (*x8.STATES, "throttle")]
-        # Relative: JSBSim's inertia and density are off by 1e-4 and 1e-5 (test_x8_forces);
+        # Relative: JSBSim takes 1 lbf ft s^2 as 1.35594 kg m^2 where it is 1.35582, so that inertia
+        # is 9e-5 low; density is 1e-5 off (test_x8_forces);
         # differences truncate less. Thrust has the slope of a table segment, where that of the
         # polynomial differs by half a segment, 0.025, times the second derivative, 0.2158, of C_T:
         # 3 % of a slope of 0.18. It enters the airspeed's rate by airspeed, angles and propeller
@@ -86,59 +86,6 @@ def test_every_derivative_of_the_rigid_body_is_that_of_the_published_equations(t
         # acceleration, 3e-3 m/s^2 per rad at 20 m/s.
         relative, absolute = (3.5e-2, 3e-3) if rate == "airspeed" else (3e-4, 2e-4)
         np.testing.assert_allclose(found, expected, rtol=relative, atol=absolute, err_msg=rate)
-
-
-def analytic(found):
-    """The classic derivatives at level trim, each a formula in the published coefficients."""
-    v, density = found.airspeed, x8.standard_density(found.altitude)
-    force = 0.5 * density * v**2 * x8.WING_AREA
-    span_rate, chord_rate = x8.SPAN / (2.0 * v), x8.CHORD / (2.0 * v)
-    determinant = x8.JX * x8.JZ - x8.JXZ**2
-
-    def roll_acceleration(roll, yaw):
-        return (x8.JZ * roll + x8.JXZ * yaw) / determinant
-
-    def yaw_acceleration(roll, yaw):
-        return (x8.JXZ * roll + x8.JX * yaw) / determinant
-
-    arm, momentum = force * x8.SPAN, x8.PROPELLER_INERTIA * found.driven["propeller_speed"]
-    pull = x8.thrust(v * math.cos(found.alpha), found.driven["propeller_speed"], density)
-    kt = x8.MOTOR_KT
-    return {
-        ("p", "p"): roll_acceleration(arm * x8.CR_P * span_rate, arm * x8.CN_P * span_rate),
-        ("p", "r"): roll_acceleration(arm * x8.CR_R * span_rate, arm * x8.CN_R * span_rate),
-        ("p", "beta"): roll_acceleration(arm * x8.CR_B, arm * x8.CN_B),
-        ("p", "aileron_position"): roll_acceleration(arm * x8.CR_DA, arm * x8.CN_DA),
-        ("r", "p"): yaw_acceleration(arm * x8.CR_P * span_rate, arm * x8.CN_P * span_rate),
-        ("r", "r"): yaw_acceleration(arm * x8.CR_R * span_rate, arm * x8.CN_R * span_rate),
-        ("r", "beta"): yaw_acceleration(arm * x8.CR_B, arm * x8.CN_B),
-        ("r", "aileron_position"): yaw_acceleration(arm * x8.CR_DA, arm * x8.CN_DA),
-        ("q", "alpha"): force * x8.CHORD * x8.CM_A / x8.JY,
-        ("q", "q"): force * x8.CHORD * x8.CM_Q * chord_rate / x8.JY,
-        ("q", "elevator_position"): force * x8.CHORD * x8.CM_DE / x8.JY,
-        ("alpha", "alpha"): -(force * x8.CL_A + pull * math.cos(found.alpha)) / (x8.MASS * v),
-        ("alpha", "q"): 1.0 - force * x8.CL_Q * chord_rate / (x8.MASS * v),
-        ("beta", "aileron_position"): force * x8.CY_DA / (x8.MASS * v),
-        # The rotor's angular momentum H ahead: -omega x H is (0, -r H, q H).
-        ("q", "r"): -momentum / x8.JY,
-        ("r", "q"): yaw_acceleration(0.0, momentum),
-        ("p", "q"): roll_acceleration(0.0, momentum),
-        # More voltage turns the motor harder to the right, and the airframe to the left, at once.
-        ("p", "throttle"): roll_acceleration(-kt * x8.BATTERY / x8.MOTOR_RESISTANCE, 0.0),
-        ("p", "propeller_speed"): roll_acceleration(kt**2 / x8.MOTOR_RESISTANCE, 0.0),
-        ("airspeed", "pitch"): -x8.equatorial_gravity(found.altitude),
-        ("heading_rate", "roll"): x8.equatorial_gravity(found.altitude) / v,
-        ("altitude", "pitch"): v,
-        ("altitude", "alpha"): -v,
-    }
-
-
-def test_the_classic_derivatives_are_formulas_in_the_published_coefficients(trims, models):
-    for (rate, source), expected in analytic(trims["level"]).items():
-        # Inertia 1e-4 (see above). The gyroscopic ones are a hundredth of the aerodynamic ones and
-        # carry the rounding of differences over 0.002 rad/s.
-        found = entry(models["level"], rate, source)
-        assert found == pytest.approx(expected, rel=1e-3), (rate, source)
 
 
 def test_servo_poles_are_those_of_the_model_file(models):
@@ -162,111 +109,6 @@ def test_the_propellers_pole_is_that_of_motor_and_load_under_eulers_rule(trims, 
         assert entry(models[name], "propeller_speed", source) / pole == pytest.approx(
             row[column] / -rate, rel=0.05
         )
-
-
-def test_the_modes_are_where_textbooks_put_them(models):
-    poles = models["level"].poles()
-    oscillating = sorted((p for p in poles if p.imag > 1e-6), key=abs)
-    phugoid, dutch_roll, short_period = oscillating
-    real = sorted(p.real for p in poles if abs(p.imag) <= 1e-6)
-    density, v, pi = x8.standard_density(100.0), 20.0, math.pi
-    force = 0.5 * density * v**2 * x8.WING_AREA
-    # Lanchester: the phugoid's period is pi sqrt(2) V/g, without drag and pitch damping; textbooks
-    # allow it a fifth.
-    assert abs(phugoid) == pytest.approx(2.0 * pi / (pi * math.sqrt(2.0) * v / 9.78), rel=0.2)
-    assert 0.0 < -phugoid.real / abs(phugoid) < 0.5
-    # Short period: omega^2 = -M_alpha - M_q Z_alpha/(mV) in the two-state approximation, damping
-    # half of -(M_q + Z_alpha/(mV)).
-    m_alpha = force * x8.CHORD * x8.CM_A / x8.JY
-    m_q = force * x8.CHORD**2 * x8.CM_Q / (2.0 * v * x8.JY)
-    z_alpha = -force * x8.CL_A / (x8.MASS * v)
-    q_gain = 1.0 - force * x8.CL_Q * x8.CHORD / (2.0 * v * x8.MASS * v)
-    # Two states of twelve.
-    assert abs(short_period) == pytest.approx(math.sqrt(m_q * z_alpha - m_alpha * q_gain), rel=0.02)
-    assert short_period.real == pytest.approx(0.5 * (m_q + z_alpha), rel=0.02)
-    # Roll mode: L_p, changed by a few per cent by its coupling to yaw and sideslip.
-    roll_rate = force * x8.SPAN**2 * x8.CR_P / (2.0 * v * x8.JX)
-    assert min(abs(p - roll_rate) for p in real) < 0.05 * abs(roll_rate)
-    # Dutch roll: omega^2 = N_beta of a body that also rolls; between N_beta alone and three times
-    # it with this much dihedral.
-    n_beta = force * x8.SPAN * x8.CN_B / x8.JZ
-    assert math.sqrt(n_beta) < abs(dutch_roll) < math.sqrt(3.0 * n_beta)
-    assert dutch_roll.real < 0.0
-    # What is left: two servos, propeller, roll mode, spiral and height's weak return through
-    # density. All but those two are fast.
-    assert len(real) == 6
-    assert all(-0.5 < p < 0.05 for p in real[-2:])
-
-
-READS = {
-    "q": ("velocities/q-rad_sec", 1.0),
-    "alpha": ("aero/alpha-rad", 1.0),
-    "pitch": ("attitude/theta-rad", 1.0),
-    "p": ("velocities/p-rad_sec", 1.0),
-    "r": ("velocities/r-rad_sec", 1.0),
-    "beta": ("aero/beta-rad", 1.0),
-    "roll": ("attitude/phi-rad", 1.0),
-    "airspeed": ("velocities/vt-fps", 0.3048),
-    "propeller_speed": ("propulsion/engine/propeller-rpm", math.pi / 30.0),
-}
-DOUBLETS = {
-    "elevator": ("q", "alpha", "pitch"),
-    "aileron": ("p", "r", "beta", "roll"),
-    "throttle": ("propeller_speed", "airspeed"),
-}
-
-
-def doublet_errors(found, name, time_step):
-    """Largest difference of each output between JSBSim and the linear model, as a share of the
-    output's largest deviation.
-
-    The doublet has 1 % of full command, a quarter of a second each way, and is watched for a
-    second.
-    """
-    quarter = round(0.25 / time_step)
-    inputs = 0.01 * np.concatenate([np.ones(quarter), -np.ones(quarter), np.zeros(2 * quarter)])
-    fdm = Fdm(X8, time_step=time_step)
-    model = linearise(fdm, found)
-    nodes = [(fdm.node(READS[output][0]), READS[output][1]) for output in DOUBLETS[name]]
-    fdm.command(dict(found.inputs))
-    fdm.hold(found.state(), round(2.0 / time_step))
-    flown = [[node.get_double_value() * scale for node, scale in nodes]]
-    for u in inputs:
-        fdm.command({name: found.inputs[name] + float(u)})
-        fdm.step()
-        flown.append([node.get_double_value() * scale for node, scale in nodes])
-    flown = np.array(flown) - flown[0]
-    held = np.zeros((3, len(inputs) + 1))
-    held[model.input_labels.index(name), :-1] = inputs
-    sampled = control.sample_system(
-        control.ss(model.A, model.B, model.C, model.D), time_step, method="zoh"
-    )
-    predicted = control.forced_response(
-        sampled, time_step * np.arange(len(inputs) + 1), held
-    ).outputs
-    rows = np.array([predicted[model.output_labels.index(output)] for output in DOUBLETS[name]]).T
-    return np.abs(flown - rows).max(axis=0) / np.abs(rows).max(axis=0)
-
-
-@pytest.mark.parametrize("name", DOUBLETS)
-def test_in_short_time_steps_a_small_doublet_is_flown_as_the_linear_model_predicts(trims, name):
-    # What is left at 1/1200 s is JSBSim's order of work, forces one step before motion (see below),
-    # and, for airspeed, thrust's change of slope from one table segment to the next.
-    assert doublet_errors(trims["level"], name, 1.0 / 1200.0).max() < 0.025
-
-
-@pytest.mark.parametrize("name", DOUBLETS)
-def test_at_120_hertz_a_small_doublet_is_flown_as_predicted_but_for_the_step(trims, name):
-    coarse, fine = (
-        doublet_errors(trims["level"], name, step).max() for step in (TIME_STEP, TIME_STEP / 4.0)
-    )
-    # JSBSim moves the body with the forces of the step before and by rectangles: an error of first
-    # order in the step. For the quickest motions, 16 and 24 rad/s, that is 0.13 and 0.2 in a step,
-    # smoothed by the servo.
-    assert coarse < 0.18
-    # And of first order it is: four times less with a quarter of the step, down to thrust's change
-    # of slope (airspeed, 2 %).
-    assert fine < max(0.3 * coarse, 0.03)
 
 
 @pytest.mark.slow

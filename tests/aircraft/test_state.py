@@ -10,14 +10,7 @@ from hypothesis import strategies as st
 
 from aircraft.fdm import TIME_STEP, Fdm
 from aircraft.fleet.x8 import X8
-from aircraft.state import (
-    EquatorFrame,
-    body_velocity,
-    course_rate,
-    euler_rates,
-    level,
-    turn_rates,
-)
+from aircraft.state import EquatorFrame, body_velocity, course_rate, euler_rates, level, turn_rates
 from aircraft.trim import trim
 from common.geodesy import LocalFrame
 
@@ -38,13 +31,6 @@ def test_level_is_the_rotation_back_from_body_to_ahead_right_down(vector, roll, 
 def test_the_rates_of_a_steady_turn_move_yaw_alone(yaw_rate, roll, pitch):
     roll_rate, pitch_rate, turned = euler_rates(turn_rates(yaw_rate, roll, pitch), roll, pitch)
     assert (roll_rate, pitch_rate, turned) == pytest.approx((0.0, 0.0, yaw_rate), abs=ROUNDING)
-
-
-@given(yaw_rate=st.floats(-3.0, 3.0), roll=rolls, pitch=pitches)
-def test_a_steady_turn_is_a_rotation_about_the_vertical(yaw_rate, roll, pitch):
-    assert level(turn_rates(yaw_rate, roll, pitch), roll, pitch) == pytest.approx(
-        (0.0, 0.0, yaw_rate), abs=ROUNDING
-    )
 
 
 @given(rates=vectors, roll=rolls, pitch=pitches)
@@ -79,19 +65,6 @@ def test_what_pulls_straight_down_does_not_turn_the_course(
         assert course_rate(velocity, pulled, roll, pitch) == pytest.approx(
             course_rate(velocity, acceleration, roll, pitch), abs=rounding + 1e-10
         )
-
-
-@given(
-    airspeed=st.floats(5.0, 50.0),
-    yaw_rate=st.floats(-1.0, 1.0),
-    roll=st.floats(-1.2, 1.2),
-    pitch=st.floats(-0.3, 0.3),
-)
-def test_in_a_steady_turn_the_course_turns_at_the_yaw_rate(airspeed, yaw_rate, roll, pitch):
-    velocity = body_velocity(airspeed, 0.05, -0.03)
-    acceleration = np.cross(turn_rates(yaw_rate, roll, pitch), velocity)
-    turned = course_rate(velocity, tuple(float(a) for a in acceleration), roll, pitch)
-    assert turned == pytest.approx(yaw_rate, abs=1e-10)
 
 
 @pytest.mark.parametrize("time", [0.0, 0.4, 1.1, 2.7])
@@ -154,27 +127,11 @@ def test_it_is_the_azimuthal_equidistant_frame_at_the_origin(distance, error):
         )
 
 
-FLIGHTS = {
-    "straight east": (math.pi / 2.0, lambda _: 0.0),
-    "straight north": (0.0, lambda _: 0.0),
-    "in circles": (1.0, lambda _: 0.1),
-    "winding east": (math.pi / 2.0, lambda t: 0.1 * math.sin(0.1 * t)),
-    "winding north-west": (-math.pi / 4.0, lambda t: 0.3 * math.sin(0.3 * t)),
-}
-
-
-@pytest.fixture(scope="module")
-def start():
-    return trim(Fdm(X8), airspeed=20.0, altitude=100.0)
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize("name", FLIGHTS)
-def test_local_metres_are_the_integral_of_ground_velocity_over_a_long_flight(
-    x8_aircraft, start, name
-):
-    yaw, heading_rate = FLIGHTS[name]
-    x8_aircraft.release(start.state(yaw=yaw), airspeed=20.0, altitude=100.0)
+def test_local_metres_are_the_integral_of_ground_velocity_over_a_long_flight(x8_aircraft):
+    # Winding to the north-west.
+    start = trim(Fdm(X8), airspeed=20.0, altitude=100.0)
+    x8_aircraft.release(start.state(yaw=-0.25 * math.pi), airspeed=20.0, altitude=100.0)
     fdm = x8_aircraft.fdm
     names = (
         "velocities/v-north-fps",
@@ -188,7 +145,7 @@ def test_local_metres_are_the_integral_of_ground_velocity_over_a_long_flight(
     log = np.empty((steps + 1, 4))
     for i in range(steps + 1):
         log[i] = [node.get_double_value() for node in nodes]
-        x8_aircraft.command_heading_rate(heading_rate(i * TIME_STEP))
+        x8_aircraft.command_heading_rate(0.3 * math.sin(0.3 * i * TIME_STEP))
         fdm.run()
     velocity = log[:, :2] * METRES_PER_FOOT
     integral = np.vstack(
@@ -200,5 +157,5 @@ def test_local_metres_are_the_integral_of_ground_velocity_over_a_long_flight(
     # Altitude moves by centimetres, no more; JSBSim's own steps make 1e-5 of the distance, here 1
     # cm in 1.2 km.
     assert np.abs(local - integral).max() < 1e-5 * distance
-    # And the flight went somewhere: circles of 200 m radius, or kilometres.
+    # And the flight went somewhere.
     assert np.hypot(*local.T).max() > 390.0

@@ -19,31 +19,11 @@ from aircraft.weather import (
 )
 
 FOOT = 0.3048
+LEVEL = RigidBodyState(altitude=60.0, roll=0.0, pitch=0.0, velocity_body=(20.0, 0.0, 0.0))
 SIGMAS = 3.0
 """Tolerance of what is estimated from a sample, in its own standard deviations: the seed is fixed,
 so nothing fails by chance.
 """
-
-
-def test_at_1000_feet_all_scale_lengths_are_1000_feet_and_all_intensities_a_tenth_of_the_wind():
-    # MIL-F-8785C, figures 10 and 11: the curves along and across meet those of the vertical at
-    # 1,000 ft. Tolerance: 0.177 + 0.823.
-    air = low_altitude_turbulence(1000.0 * FOOT, 20.0)
-    assert (air.horizontal, air.vertical) == pytest.approx((2.0, 2.0), rel=1e-12)
-    lengths = (air.horizontal_length, air.vertical_length)
-    assert lengths == pytest.approx((1000.0 * FOOT, 1000.0 * FOOT), rel=1e-12)
-
-
-def test_light_moderate_and_severe_turbulence_shake_with_1_5_3_and_4_5_knots():
-    # MIL-F-8785C, figures 9 and 11: a tenth of the wind at 20 ft, which is 15, 30 and 45 knots; a
-    # knot is 1852 m an hour.
-    shaking = [
-        low_altitude_turbulence(60.0, TURBULENCE[name].wind_at_20ft).vertical
-        for name in ("light", "moderate", "severe")
-    ]
-    assert shaking == pytest.approx(
-        [1.5 * 1852 / 3600, 3.0 * 1852 / 3600, 4.5 * 1852 / 3600], rel=1e-12
-    )
 
 
 @pytest.mark.parametrize("altitude", [305.0, math.nan])
@@ -66,16 +46,7 @@ def blown(x8_fdm):
             (0.0, 0.0),
         )
         begin_weather(x8_fdm, weather)
-        nodes = [
-            x8_fdm.node(f"atmosphere/turb-{component}-fps")
-            for component in ("north", "east", "down")
-        ]
-        log = np.empty((steps, 3))
-        with x8_fdm.frozen():
-            for row in log:
-                x8_fdm.run()
-                row[:] = [node.get_double_value() for node in nodes]
-        return log * FOOT
+        return met(x8_fdm, x8_fdm.run, steps, "turb")
 
     return blow
 
@@ -116,9 +87,7 @@ def test_jsbsim_shakes_as_strongly_as_the_standard_says_and_has_the_spectra_of_d
     [((0.0, 7.0), 90.0), ((0.0, -7.0), 270.0), ((-5.0, 0.0), 180.0), ((0.0, 0.0), 0.0)],
 )
 def test_turbulence_has_its_axes_in_the_wind_wherever_it_blows(x8_fdm, wind, toward):
-    x8_fdm.place(
-        RigidBodyState(altitude=60.0, roll=0.0, pitch=0.0, velocity_body=(20.0, 0.0, 0.0)), wind
-    )
+    x8_fdm.place(LEVEL, wind)
     x8_fdm.step()
     # JSBSim leaves its axes where they were in a wind that has no north at all; 1e-6 ft/s of it
     # turn 7 m/s by 5e-8 rad.
@@ -132,12 +101,8 @@ def test_a_seed_gives_its_own_turbulence_each_time(blown, x8_fdm):
     np.testing.assert_array_equal(blown(weather, 200, 60.0, 20.0), first)
     end_weather(x8_fdm)
     # Of 0.8 m/s.
-    assert (
-        np.abs(
-            blown(Weather(turbulence=TURBULENCE["light"], seed=6), 200, 60.0, 20.0) - first
-        ).max()
-        > 0.1
-    )
+    other = blown(Weather(turbulence=TURBULENCE["light"], seed=6), 200, 60.0, 20.0)
+    assert np.abs(other - first).max() > 0.1
 
 
 FIRST = Gust(start=0.5, rise=1.0, hold=0.5, fall=0.25, velocity_ned=(3.0, -4.0, 1.0))
@@ -153,12 +118,9 @@ def one_minus_cosine(gust, times):
     )
 
 
-def met(fdm, run, steps):
+def met(fdm, run, steps, kind="total-wind"):
     """Wind [m/s] that a held aircraft meets at each step, shape (steps, 3): north, east, down."""
-    nodes = [
-        fdm.node(f"atmosphere/total-wind-{component}-fps")
-        for component in ("north", "east", "down")
-    ]
+    nodes = [fdm.node(f"atmosphere/{kind}-{way}-fps") for way in ("north", "east", "down")]
     log = np.empty((steps, 3))
     with fdm.frozen():
         for row in log:
@@ -169,10 +131,7 @@ def met(fdm, run, steps):
 
 @pytest.fixture
 def held(x8_fdm):
-    x8_fdm.place(
-        RigidBodyState(altitude=60.0, roll=0.0, pitch=0.0, velocity_body=(20.0, 0.0, 0.0)),
-        (0.0, 0.0),
-    )
+    x8_fdm.place(LEVEL, (0.0, 0.0))
     return x8_fdm
 
 
@@ -189,10 +148,7 @@ def test_two_gusts_blow_one_after_the_other_in_their_own_directions(held):
 def test_a_gust_that_was_cut_short_leaves_nothing_for_the_next(held):
     met(held, begin_weather(held, Weather(gusts=(FIRST,))), round(1.2 / TIME_STEP))
     end_weather(held)
-    held.place(
-        RigidBodyState(altitude=60.0, roll=0.0, pitch=0.0, velocity_body=(20.0, 0.0, 0.0)),
-        (0.0, 0.0),
-    )
+    held.place(LEVEL, (0.0, 0.0))
     wind = met(held, begin_weather(held, Weather(gusts=(SECOND,))), round(3.5 / TIME_STEP) + 1)
     # SECOND at its height, and eastward all the while; the least north wind is 1e-6 ft/s.
     assert wind[-1] == pytest.approx([0.0, 2.0, 0.0], abs=1e-6)

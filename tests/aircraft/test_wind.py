@@ -33,17 +33,12 @@ def test_its_largest_change_within_an_interval_is_that_of_every_pair_of_times():
     assert wind.largest_change(20.0, 180.0, [10.0]) == pytest.approx(math.hypot(6.0, 1.0))
     # What comes after the flight does not count, and nothing changes where the table has one time.
     assert wind.largest_change(20.0, 90.0, [10.0]) == 0.0
-    assert (
-        over_the_sea(np.array([[5.0, 0.0]]), [0.0], roughness=2e-4, height=10.0).largest_change(
-            20.0, 90.0, [10.0, 100.0]
-        )
-        == 0.0
-    )
+    steady = over_the_sea(np.array([[5.0, 0.0]]), [0.0], roughness=2e-4, height=10.0)
+    assert steady.largest_change(20.0, 90.0, [10.0, 100.0]) == 0.0
     # At any of the heights: at 100 m it changes by (4, 8) m/s in 100 s, at 10 m by (4, 2).
-    assert CHANGING.largest_change(50.0, 190.0, [10.0]) == pytest.approx(0.5 * math.hypot(4.0, 2.0))
-    assert CHANGING.largest_change(50.0, 190.0, [10.0, 100.0]) == pytest.approx(
-        0.5 * math.hypot(4.0, 8.0)
-    )
+    for heights, change in (([10.0], (4.0, 2.0)), ([10.0, 100.0], (4.0, 8.0))):
+        found = CHANGING.largest_change(50.0, 190.0, heights)
+        assert found == pytest.approx(0.5 * math.hypot(*change))
 
 
 def test_its_largest_shear_is_that_of_every_pair_of_heights():
@@ -54,19 +49,13 @@ def test_its_largest_shear_is_that_of_every_pair_of_heights():
     north, east = wind.at(0.0, height)
     for apart in (3.0, 18.0, 500.0):
         near = np.abs(np.subtract.outer(height, height)) <= apart + 1e-9
-        sheared = np.hypot(np.subtract.outer(north, north), np.subtract.outer(east, east))[
-            near
-        ].max()
-        assert wind.largest_shear(apart, 20.0, 120.0, 60.0) == pytest.approx(sheared, abs=0.01)
+        shear = np.hypot(np.subtract.outer(north, north), np.subtract.outer(east, east))[near].max()
+        assert wind.largest_shear(apart, 20.0, 120.0, 60.0) == pytest.approx(shear, abs=0.01)
     # At any time of the flight; and none where one height is flown, or the table has one.
-    assert CHANGING.largest_shear(90.0, 10.0, 100.0, 500.0) > CHANGING.largest_shear(
-        90.0, 10.0, 100.0, 100.0
-    )
-    assert (
-        wind.largest_shear(18.0, 60.0, 60.0, 60.0)
-        == WindField([3.0, 0.0]).largest_shear(18.0, 20.0, 120.0, 60.0)
-        == 0.0
-    )
+    late, early = (CHANGING.largest_shear(90.0, 10.0, 100.0, end) for end in (500.0, 100.0))
+    assert late > early
+    assert wind.largest_shear(18.0, 60.0, 60.0, 60.0) == 0.0
+    assert WindField([3.0, 0.0]).largest_shear(18.0, 20.0, 120.0, 60.0) == 0.0
 
 
 def test_it_is_the_table_at_its_points_and_linear_between_them():
@@ -138,23 +127,15 @@ def test_what_is_no_wind_is_refused(values, message):
         WindField(**values)
 
 
-@pytest.fixture(scope="module")
-def x8_start():
-    return trim(Fdm(X8), airspeed=20.0, altitude=100.0)
-
-
-def test_jsbsim_feels_the_wind_of_the_time_and_the_height(x8_aircraft, x8_start):
+def test_jsbsim_feels_the_wind_of_the_time_and_the_height(x8_aircraft):
     wind = WindField([[[0.0, 0.0]], [[6.0, 0.0]]], times=(0.0, 6.0), heights=(10.0,))
     gust = Gust(start=100.0, rise=1.0, fall=1.0, velocity_ned=(0.0, 1.0, 0.0))
-    x8_aircraft.release(
-        x8_start.state(), airspeed=20.0, altitude=100.0, weather=Weather(wind=wind, gusts=(gust,))
-    )
+    start = trim(Fdm(X8), airspeed=20.0, altitude=100.0).state()
+    weather = Weather(wind=wind, gusts=(gust,))
+    x8_aircraft.release(start, airspeed=20.0, altitude=100.0, weather=weather)
     for _ in range(3 * 120):
         x8_aircraft.run()
     # The last of 360 steps was made in the wind of 2.99 s: 1 m/s^2 of 120 steps a second.
-    assert x8_aircraft.fdm.read("atmosphere/wind-north-fps") * 0.3048 == pytest.approx(
-        3.0 - 1.0 / 120.0, abs=1e-9
-    )
-    assert x8_aircraft.fdm.read("atmosphere/total-wind-north-fps") * 0.3048 == pytest.approx(
-        3.0 - 1.0 / 120.0, abs=1e-6
-    )
+    for name, tolerance in (("wind", 1e-9), ("total-wind", 1e-6)):
+        north = x8_aircraft.fdm.read(f"atmosphere/{name}-north-fps") * 0.3048
+        assert north == pytest.approx(3.0 - 1.0 / 120.0, abs=tolerance)

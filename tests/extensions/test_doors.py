@@ -2,12 +2,16 @@
 
 import csv
 import json
+import os
 import re
+import subprocess
+import sys
 from html import unescape
 
 import pytest
 
-from tests.extensions.added_package import AddedPackage
+from tests.in_process import Ended, assert_refused
+from tests.standing_alone import ROOT
 
 pytestmark = pytest.mark.slow
 
@@ -94,6 +98,66 @@ width_m = 12.0
 """
 
 
+COMMANDS = """
+import dataclasses, json, sys
+from tests.in_process import run_command
+
+ended = [run_command("scenarios.cli.main", *each) for each in json.loads(sys.argv[1])]
+print(json.dumps([dataclasses.asdict(each) for each in ended]))
+"""
+
+
+class AddedPackage:
+    """A package in its folder, known to every process that it starts.
+
+    Parameters
+    ----------
+    folder : that holds it
+    files : their texts, by paths below the folder
+    points : entry points ``name = module:object`` by the kind of part
+    """
+
+    def __init__(self, folder, files, points):
+        self.folder = folder
+        metadata = "added_package-1.0.dist-info"
+        announced = [
+            line
+            for kind, named in points.items()
+            for line in (
+                f"[plume_flight_study.{kind}]",
+                *(f"{name} = {value}" for name, value in named.items()),
+            )
+        ]
+        written = {
+            **files,
+            f"{metadata}/METADATA": "Metadata-Version: 2.1\nName: added-package\nVersion: 1.0\n",
+            f"{metadata}/entry_points.txt": "\n".join(announced) + "\n",
+        }
+        for name, text in written.items():
+            path = folder / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+
+    def commands(self, *each):
+        """Run ``plume-flight`` with each list of arguments, one after the other in one process where
+        the package is installed; return how they ended.
+        """
+        ran = subprocess.run(
+            [sys.executable, "-c", COMMANDS, json.dumps(each)],
+            cwd=self.folder,
+            env={**os.environ, "PYTHONPATH": f"{self.folder}{os.pathsep}{ROOT}"},
+            capture_output=True,
+            text=True,
+            timeout=300,
+            check=False,
+        )
+        assert ran.returncode == 0, ran.stderr
+        return [Ended(**ended) for ended in json.loads(ran.stdout)]
+
+
+FLY = ("run", "weaving_about", "--set", "weaves=3", "--out", "run", "--jobs", "1")
+
+
 @pytest.fixture(scope="module")
 def package(tmp_path_factory):
     return AddedPackage(
@@ -116,12 +180,13 @@ def package(tmp_path_factory):
     )
 
 
-def test_its_scenario_is_in_the_catalog_and_flies_its_study_with_its_keys_and_report(package):
-    assert re.search(r"^weaving_about +Weaving$", package.command("run", "--list").stdout, re.M)
-    ran = package.command(
-        "run", "weaving_about", "--set", "weaves=3", "--out", "run", "--jobs", "1"
-    )
-    assert ran.returncode in (0, 1), ran.stderr
+def test_a_package_adds_a_scenario_a_study_keys_a_report_and_a_command(package):
+    listed, ran, keys, key, _, helped, woven = package.commands(
+        ("run", "--list"), FLY, ("describe", "weaving"), ("describe", "weaves"),
+        ("new", "all.toml", "--from", "weaving_about"), ("--help",), ("weave", "--times", "2"),
+    )  # fmt: skip
+    assert re.search(r"^weaving_about +Weaving$", listed.out, re.M)
+    assert ran.status in (0, 1), ran.errors
     run = package.folder / "run"
     assert (run / "weaving.txt").read_text(encoding="utf-8") == "3 times 12 m"
     with (run / "summary.csv").open(encoding="utf-8") as file:
@@ -132,41 +197,28 @@ def test_its_scenario_is_in_the_catalog_and_flies_its_study_with_its_keys_and_re
     assert "Wove 3 times 12 m." in html
     # Page 1 answers the question of the study in its own words.
     assert "<strong>✓ Wove in 1 of 1 flights</strong>" in html
-    assert (run / "report.pdf").is_file()
+    assert "Flights that weave." in keys.out
+    assert "width_m" in keys.out
+    assert "flights that weave" in key.out
+    template = (package.folder / "all.toml").read_text(encoding="utf-8")
+    assert "[weaving]" in template
+    assert "width_m = 12.0" in template
+    assert "weave" in helped.out
+    assert woven.out == "wove 2 times\n"
 
 
-def test_its_keys_are_described_and_stand_in_templates(package):
-    told = package.command("describe", "weaving").stdout
-    assert "Flights that weave." in told
-    assert "width_m" in told
-    assert "flights that weave" in package.command("describe", "weaves").stdout
-    package.command("new", "all.toml", "--from", "weaving_about")
-    text = (package.folder / "all.toml").read_text(encoding="utf-8")
-    assert "[weaving]" in text
-    assert "width_m = 12.0" in text
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
+def test_what_is_wrong_with_its_keys_is_one_line(package):
+    wrong = {
         (
-            ["sweep_nu", "--set", "weaving.width_m=3"],
-            "it is used by flights that weave: set study to 'weaving'",
-        ),
-        (["weaving_about", "--set", "weaving.width_m=-3"], "weaving.width_m is -3"),
-        (["weaving_about", "--set", "weaving.wdth_m=3"], "weaving.width_m"),
-    ],
-)
-def test_what_is_wrong_with_its_keys_is_one_line(package, arguments, words):
-    ran = package.command("run", *arguments)
-    assert ran.returncode == 2
-    assert words in ran.stderr
-    assert ran.stderr.count("\n") == 1
-
-
-def test_its_command_stands_beside_the_others(package):
-    assert "weave" in package.command("--help").stdout
-    assert package.command("weave", "--times", "2").stdout == "wove 2 times\n"
+            "sweep_nu",
+            "weaving.width_m=3",
+        ): "it is used by flights that weave: set study to 'weaving'",
+        ("weaving_about", "weaving.width_m=-3"): "weaving.width_m is -3",
+        ("weaving_about", "weaving.wdth_m=3"): "weaving.width_m",
+    }
+    ended = package.commands(*(("run", scenario, "--set", key) for scenario, key in wrong))
+    for found, words in zip(ended, wrong.values(), strict=True):
+        assert_refused(found, words)
 
 
 def test_a_package_that_does_not_load_is_in_the_way_of_its_own_study_alone(tmp_path):
@@ -179,9 +231,10 @@ def test_a_package_that_does_not_load_is_in_the_way_of_its_own_study_alone(tmp_p
             "scenario": {"found": "lost:File"},
         },
     )
-    assert broken.command("run", "--list").returncode == 0
-    for study in ("lost", "found"):
-        ran = broken.command("run", "sweep_nu", "--set", f"study={study}")
-        assert ran.returncode == 2
-        assert "No module named 'no_such_module'" in ran.stderr
-        assert ran.stderr.count("\n") == 1
+    listed, *refused = broken.commands(
+        ("run", "--list"),
+        *(("run", "sweep_nu", "--set", f"study={study}") for study in ("lost", "found")),
+    )
+    assert listed.status == 0
+    for ended in refused:
+        assert_refused(ended, "No module named 'no_such_module'")

@@ -1,6 +1,6 @@
 """A steering law that flies at a steady ship, ahead of it, or along a tangent of a disc about it.
 
-It knows the ship from keys of its own, and where it is from the wind that it is given.
+Its keys say how the ship moves; where the ship is follows from them and from the wind.
 """
 
 import math

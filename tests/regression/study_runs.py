@@ -63,7 +63,7 @@ def fly_study(path, aircraft, *overrides, nus=(0.5,)):
 
 
 def assert_flown_as_the_issue_asks(row):
-    """Assert what is asked of every flight of every aircraft."""
+    """Assert what the issue requires of every flight of every aircraft."""
     assert row["outcome"] == "completed", row["message"]
     # Issue: no keep-out violation over the whole flight, every crossing outside r_min.
     assert row["keepout_violations"] == 0

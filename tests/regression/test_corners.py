@@ -1,7 +1,7 @@
 """Corners of what scenarios declare in which the former keep-out guard let the aircraft in: each
 was found by a search.
 
-The guard kept off where the vessel was predicted; a report that moved her, a long silence, gusts
+The guard kept off where the vessel was predicted; a report that moved the vessel, a long silence, gusts
 and steep banks got the X8 in.
 """
 
@@ -24,12 +24,8 @@ GUSTS = [
     "flight.crossings=0",
 ]  # fmt: skip
 WITHOUT_SATELLITES = [
-    "sea_wind",
-    "flights=2",
-    "fault.kind=satellite_navigation",
-    "flight.duration_max_s=251",
-    "flight.crossings=0",
-]
+    "sea_wind", "flights=2", "fault.kind=satellite_navigation", "flight.duration_max_s=251", "flight.crossings=0",
+]  # fmt: skip
 STEEP = [
     "sweep_nu", "sweep.nu=[0.1,0.6]", "start.spread_deg=180", "guidance.bank_deg=49.9", "flight.crossings=4",
     "flight.duration_max_s=130",
@@ -112,11 +108,12 @@ def test_an_aircraft_that_is_gaining_speed_turns_away_as_predicted(tmp_path):
 @pytest.mark.parametrize(
     ("nu", "flight_seed", "keys"),
     [
-        (0.6, 3657000729, {"law": "lyapunov"}),
+        (0.6, 3657000729, "guidance.law=lyapunov"),
         (
             0.9,
             3988975038,
-            {"law": "constant_bearing", "airspeed_trim_max_mps": 5, "airspeed_gain_per_s": 1},
+            "guidance.law=constant_bearing guidance.airspeed_trim_max_mps=5"
+            " guidance.airspeed_gain_per_s=1",
         ),
     ],
 )
@@ -124,24 +121,11 @@ def test_a_vehicle_that_takes_on_any_airspeed_at_once_keeps_out(tmp_path, nu, fl
     # It has no deviation that the guard keeps. One came in by 2 cm, since airspeeds 0.5 m/s apart
     # were predicted as one, and one by 9 cm, since the slower pace commanded for a step was not
     # predicted.
-    words = [
-        "fidelity=kinematic",
-        "keepout.radius_m=50",
-        "start.distance_m=[70,300]",
-        "start.spread_deg=180",
-        f"sweep.nu=[{nu}]",
-    ]
-    flight = [
-        "flights=1",
-        f"flight_seed={flight_seed}",
-        "flight.duration_max_s=200",
-        "flight.crossings=0",
-    ]
-    law = [
-        "comparison.variants=[]",
-        "guidance.approach=false",
-        *(f"guidance.{key}={value}" for key, value in keys.items()),
-    ]
-    rows = flown(tmp_path / "run", "sweep_nu", *words, *flight, *law)
+    words = (
+        f"fidelity=kinematic keepout.radius_m=50 start.distance_m=[70,300] start.spread_deg=180"
+        f" sweep.nu=[{nu}] flights=1 flight_seed={flight_seed} flight.duration_max_s=200"
+        f" flight.crossings=0 comparison.variants=[] guidance.approach=false {keys}"
+    )
+    rows = flown(tmp_path / "run", "sweep_nu", *words.split())
     assert rows["guard_interventions"].sum() > 0
     assert (rows["min_distance_m"] > rows["keepout_radius_m"]).all()

@@ -22,112 +22,96 @@ REVERSED = """time_utc,speed_mps,from_deg
 SHEARED = "height_m,speed_mps,from_deg\n1,8,0\n38,8,0\n45,10,180\n200,10,180\n"
 
 
-def flown(tmp_path, *overrides, table=None):
-    """Return the rows of a run of ``sea_wind``."""
-    if table is not None:
-        (tmp_path / "wind.csv").write_text(table)
-        overrides = (*overrides, f"wind.table={tmp_path / 'wind.csv'}")
-    return study_runs.flown(tmp_path / "run", "sea_wind", *NOWHERE, *overrides)
+NO_SATELLITES = "fault.kind=satellite_navigation"
+CONTAINER = ("plume.model=fluctuating", "emission.ship=container", "plume.source_height_m=35")
+WITHIN_R_MIN = (
+    "guidance.mission=standoff",
+    "reference.standoff_radius_m=120",
+    "guidance.law=park_l1",
+)
+"""A law that circles within r_min."""
 
-
-@pytest.mark.parametrize("outage", [60, 150])
-def test_satellites_are_lost_while_the_wind_turns_round(tmp_path, outage):
+CORNERS = {
     # 12 of 12 flights had come in, as near as 57 and 4 m: dead reckoning went wrong by 4.7 m/s, and
     # 1 m/s was allowed for.
-    rows = flown(
-        tmp_path, "flights=1", "vessel.speed_mps=4", "place.utc=2026-06-01T12:00:00Z", "fault.kind=satellite_navigation",
-        f"fault.satellite_navigation_s={outage}", "fault.at_s=120", "flight.duration_max_s=200", table=REVERSED,
-    )  # fmt: skip
-    assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
-
-
-def test_the_wind_turns_round_between_two_heights_that_exhaust_is_followed_to(tmp_path):
+    **{
+        f"{outage} s without satellites while the wind turns round": (
+            REVERSED, "flights=1", "vessel.speed_mps=4", "place.utc=2026-06-01T12:00:00Z", NO_SATELLITES,
+            f"fault.satellite_navigation_s={outage}", "fault.at_s=120", "flight.duration_max_s=200",
+        )
+        for outage in (60, 150)
+    },
     # 2 of 8 had come in, as near as 190.7 m.
-    rows = flown(
-        tmp_path, "flights=2", "flight.duration_max_s=60", "vessel.speed_mps=3", "plume.model=fluctuating",
-        "emission.ship=container", "plume.source_height_m=35", table=SHEARED,
-    )  # fmt: skip
-    assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
-
-
-def test_satellites_are_lost_on_the_way_to_another_height_in_shear(tmp_path):
+    "the wind turns round between two heights that exhaust is followed to": (
+        SHEARED, "flights=2", "flight.duration_max_s=60", "vessel.speed_mps=3", *CONTAINER,
+    ),
     # 8 of 8 had come in, by up to 185 m.
-    rows = flown(
-        tmp_path, "flights=1", "flight.duration_max_s=150", "vessel.speed_mps=3", "plume.model=fluctuating",
-        "emission.ship=container", "plume.source_height_m=35", "fault.kind=satellite_navigation", "fault.at_s=[5,60]",
-        "fault.satellite_navigation_s=150", table="height_m,speed_mps,from_deg\n1,8,0\n36,8,0\n45,2,180\n90,2,180\n",
-    )  # fmt: skip
-    assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
-
-
-def test_a_flight_begins_lower_than_the_plume_and_shear_is_between(tmp_path):
+    "satellites are lost on the way to another height in shear": (
+        "height_m,speed_mps,from_deg\n1,8,0\n36,8,0\n45,2,180\n90,2,180\n",
+        "flights=1", "flight.duration_max_s=150", "vessel.speed_mps=3", *CONTAINER, NO_SATELLITES, "fault.at_s=[5,60]",
+        "fault.satellite_navigation_s=150",
+    ),
     # 6 of 12 had come in, by up to 11 m.
-    rows = flown(
-        tmp_path, "flights=1", "flight_seed=2731240877", "flight.duration_max_s=60", "vessel.speed_mps=3",
-        "plume.source_height_m=55", "flight.altitude_m=30", table=SHEARED,
-    )  # fmt: skip
-    assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
-
-
-def test_dead_reckoning_goes_by_a_compass_with_noise(tmp_path):
+    "a flight begins lower than the plume and shear is between": (
+        SHEARED, "flights=1", "flight_seed=2731240877", "flight.duration_max_s=60", "vessel.speed_mps=3",
+        "plume.source_height_m=55", "flight.altitude_m=30",
+    ),
     # 4 of 8 had come in, by up to 5.5 m.
-    rows = flown(
-        tmp_path, "flights=1", "flight_seed=98897466", "flight.duration_max_s=101", "wind.speed_mps=4", "vessel.speed_mps=4",
-        "guidance.mission=standoff", "reference.standoff_radius_m=120", "guidance.law=park_l1", "sensors.heading_sigma_deg=10",
-        "fault.at_s=[0,100]", "fault.kind=satellite_navigation", "fault.satellite_navigation_s=150",
-    )  # fmt: skip
-    assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
-
-
-@pytest.mark.parametrize(
-    "noise", ["velocity_sigma_mps=1", "airspeed_sigma_mps=1"], ids=["velocity", "airspeed"]
-)
-def test_noise_of_the_own_velocity_does_not_make_commands_look_safe(tmp_path, noise):
-    # A law that circles within r_min: the guard decides at each step, and went by the lucky ones
-    # (185.8 and 198.8 m).
-    rows = flown(
-        tmp_path, "flights=1", "flight.duration_max_s=80", "vessel.speed_mps=4", "wind.speed_mps=4", "guidance.mission=standoff",
-        "reference.standoff_radius_m=120", "guidance.law=park_l1", f"sensors.{noise}",
-    )  # fmt: skip
-    assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
-    assert rows["guard_interventions"].sum() > 0
-
-
-@pytest.mark.parametrize(
-    ("flight_seed", "wind", "from_deg", "vessel"),
-    [(1309792723, 4.757, 236.178, 1.547), (1339808699, 9.146, 196.918, 6.008)],
-)
-def test_satellites_are_lost_when_a_noisy_compass_has_measured_the_wind_once(
-    tmp_path, flight_seed, wind, from_deg, vessel
-):
+    "dead reckoning goes by a compass with noise": (
+        None, "flights=1", "flight_seed=98897466", "flight.duration_max_s=101", "wind.speed_mps=4", "vessel.speed_mps=4",
+        *WITHIN_R_MIN, "sensors.heading_sigma_deg=10", "fault.at_s=[0,100]", NO_SATELLITES,
+        "fault.satellite_navigation_s=150",
+    ),
+    # The guard decides at each step, and went by the lucky ones (185.8 and 198.8 m).
+    **{
+        f"noise of the {noise} does not make commands look safe": (
+            None, "flights=1", "flight.duration_max_s=80", "vessel.speed_mps=4", "wind.speed_mps=4", *WITHIN_R_MIN,
+            f"sensors.{noise}_sigma_mps=1",
+        )
+        for noise in ("velocity", "airspeed")
+    },
     # 5 of 60 had come in, by up to 126 m: the first measurement, 3.5 m/s wrong, was taken for the
     # wind for 60 s.
-    rows = flown(
-        tmp_path, "fidelity=six_dof", "flights=1", f"flight_seed={flight_seed}", f"wind.speed_mps={wind}",
-        f"wind.from_deg={from_deg}", f"vessel.speed_mps={vessel}", "fault.kind=satellite_navigation", "fault.at_s=0",
-        "fault.satellite_navigation_s=60", "sensors.heading_sigma_deg=5", "flight.duration_max_s=100",
-    )  # fmt: skip
-    assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
-    assert rows["guard_interventions"].sum() > 0
-
-
-@pytest.mark.parametrize(
-    "keys",
-    [
-        ["fidelity=six_dof", "turbulence.level=moderate", "wind.speed_mps=25", "wind.from_deg=180", "vessel.speed_mps=14",
-         "fault.satellite_navigation_s=60", "start.distance_m=[450,900]", "flight.duration_max_s=45", "flight_seed=4168118249"],
-        ["guidance.airspeed_mps=100", "kinematic.heading_rate_lag_s=0.4", "keepout.radius_m=1000", "wind.speed_mps=40",
-         "wind.from_deg=60", "vessel.speed_mps=4", "fault.satellite_navigation_s=140", "start.distance_m=[3500,5000]",
-         "flight.duration_max_s=120"],
-    ],
-    ids=["turbulence", "a fast vehicle"],
-)  # fmt: skip
-def test_satellites_are_lost_at_the_start_in_a_strong_wind(tmp_path, keys):
+    **{
+        f"a noisy compass has measured a wind of {wind} m/s once": (
+            None, "fidelity=six_dof", "flights=1", f"flight_seed={flight_seed}", f"wind.speed_mps={wind}",
+            f"wind.from_deg={from_deg}", f"vessel.speed_mps={vessel}", NO_SATELLITES, "fault.at_s=0",
+            "fault.satellite_navigation_s=60", "sensors.heading_sigma_deg=5", "flight.duration_max_s=100",
+        )
+        for flight_seed, wind, from_deg, vessel in (
+            (1309792723, 4.757, 236.178, 1.547), (1339808699, 9.146, 196.918, 6.008),
+        )
+    },
     # 2 of 4 and 1 of 4 had come in, by up to 77 and 223 m: the filter of the wind began with 10 m/s
     # either way for likely, so that what gusts or a high speed hide was estimated too weak, and
     # stayed so.
-    rows = flown(tmp_path, "flights=1", "fault.kind=satellite_navigation", "fault.at_s=0", *keys)
+    "satellites are lost at the start in turbulence": (
+        None, "flights=1", NO_SATELLITES, "fault.at_s=0", "fidelity=six_dof", "turbulence.level=moderate",
+        "wind.speed_mps=25", "wind.from_deg=180", "vessel.speed_mps=14", "fault.satellite_navigation_s=60",
+        "start.distance_m=[450,900]", "flight.duration_max_s=45", "flight_seed=4168118249",
+    ),
+    "satellites are lost at the start of a fast vehicle": (
+        None, "flights=1", NO_SATELLITES, "fault.at_s=0", "guidance.airspeed_mps=100", "kinematic.heading_rate_lag_s=0.4",
+        "keepout.radius_m=1000", "wind.speed_mps=40", "wind.from_deg=60", "vessel.speed_mps=4",
+        "fault.satellite_navigation_s=140", "start.distance_m=[3500,5000]", "flight.duration_max_s=120",
+    ),
+}  # fmt: skip
+"""Tables of the wind, or none, and settings of ``sea_wind``."""
+
+BY_THE_GUARD = ("noise of", "a noisy compass")
+"""Corners in which the guard has to act."""
+
+
+@pytest.mark.parametrize("name", CORNERS)
+def test_a_declared_corner_of_air_and_sensors_is_kept_out_of(tmp_path, name):
+    table, *overrides = CORNERS[name]
+    if table is not None:
+        (tmp_path / "wind.csv").write_text(table)
+        overrides.append(f"wind.table={tmp_path / 'wind.csv'}")
+    rows = study_runs.flown(tmp_path / "run", "sea_wind", *NOWHERE, *overrides)
     assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
+    if name.startswith(BY_THE_GUARD):
+        assert rows["guard_interventions"].sum() > 0
 
 
 @pytest.mark.parametrize(

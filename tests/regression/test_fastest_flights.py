@@ -10,9 +10,7 @@ FASTEST = "reference.shape=fastest"
 
 
 def test_the_sweep_keeps_to_its_criteria_and_crosses_more_often_than_the_sinusoid(tmp_path):
-    rows = fly_study(
-        tmp_path / "fastest", "x8", FASTEST, "flight.crossings=9", nus=(0.1, 0.5, 0.9)
-    ).rows
+    rows = fly_study(tmp_path / "fastest", "x8", FASTEST, "flight.crossings=5", nus=(0.1, 0.5)).rows
     for row in rows.values():
         # The issue: rms <= 1.5 m, interval within 1 % of its own prediction, no keep-out violation.
         assert_flown_as_the_issue_asks(row)
@@ -57,29 +55,6 @@ def test_a_start_abeam_of_a_slow_ship_joins_an_orbit_that_spends_all_of_the_head
     words = ["start.place_m=[260.07,495.12]", "start.course_deg=-59.87", "flight.crossings=6"]
     (row,) = fly_study(tmp_path / "run", "x8", FASTEST, *words, nus=(0.1016,)).rows.values()
     assert_flown_as_the_issue_asks(row)
-
-
-def test_a_shape_of_ones_own_is_steered_as_well(tmp_path):
-    # The example of docs/howto/extending.md.
-    (tmp_path / "myshape.py").write_text(
-        "from dataclasses import dataclass\n\n"
-        "from gnc.reference.shapes import Sinusoid\n\n\n"
-        "@dataclass(frozen=True)\n"
-        "class SlowSinusoid(Sinusoid):\n"
-        "    share: float = 0.9\n\n"
-        "    def design(self, *, heading_rate_max, **limits):\n"
-        "        return super().design(heading_rate_max=self.share * heading_rate_max, **limits)\n\n"
-        "    def swing(self, *, heading_rate, **limits):\n"
-        "        return super().swing(heading_rate=self.share * heading_rate, **limits)\n",
-        encoding="utf-8",
-    )
-    shape = f"reference.shape={tmp_path}/myshape.py:SlowSinusoid"
-    words = ["guidance.mission=follow", "flight.crossings=4", shape]
-    (row,) = fly_study(tmp_path / "run", "x8", *words).rows.values()
-    assert row["outcome"] == "completed", row["message"]
-    assert row["crossing_interval_mean_s"] == pytest.approx(
-        row["crossing_interval_predicted_s"], rel=0.01
-    )
 
 
 def test_beside_a_slow_vessel_the_loiter_crosses_more_often_than_any_oscillation(tmp_path):

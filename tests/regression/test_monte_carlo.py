@@ -1,33 +1,16 @@
-"""The Monte Carlo study as it comes, with few and short flights of the X8; thousands are flown by
-the command.
-"""
+"""The Monte Carlo study as it comes, with few and short flights of the X8."""
 
-import json
-
-import pandas as pd
 import pytest
-
-from scenarios.engine.processes import InProcessExecutor
-from scenarios.scenario.files import load_study
-from scenarios.studies.base import run_study
+from study_runs import flown
 
 pytestmark = pytest.mark.slow
 
 FLIGHTS = 6
 
 
-@pytest.fixture(scope="module")
-def directory(tmp_path_factory):
-    out = tmp_path_factory.mktemp("monte_carlo") / "run"
-    scenario = load_study(
-        "monte_carlo", [f"flights={FLIGHTS}", "flight.duration_max_s=60", "histories=1"]
-    )
-    run_study(scenario, "monte_carlo", out, executor_factory=InProcessExecutor)
-    return out
-
-
-def test_no_flight_enters_the_keep_out_area(directory):
-    summary = pd.read_csv(directory / "summary.csv")
+def test_no_flight_enters_the_keep_out_area(tmp_path):
+    keys = (f"flights={FLIGHTS}", "flight.duration_max_s=60", "histories=1")
+    summary = flown(tmp_path / "run", "monte_carlo", *keys)
     assert len(summary) == FLIGHTS
     # Not all of them settle within 60 s: those are not met, and keep out all the same.
     assert set(summary["outcome"]) <= {"completed", "not_settled", "incomplete"}
@@ -39,11 +22,3 @@ def test_no_flight_enters_the_keep_out_area(directory):
     # Light and moderate turbulence plan more than still air does.
     margin = summary.groupby("turbulence")["keepout_margin_m"].min()
     assert margin["none"] < margin["light"] < margin["moderate"]
-
-
-def test_the_bound_follows_from_their_number(directory):
-    statistics = json.loads((directory / "statistics.json").read_text(encoding="utf-8"))
-    # One-sided, Clopper and Pearson: 0 of n.
-    assert statistics["violation"]["pessimistic"]["upper"] == pytest.approx(
-        1.0 - 0.05 ** (1.0 / FLIGHTS), rel=1e-9
-    )

@@ -9,7 +9,7 @@ from tests.run_tables import rows_of
 
 pytestmark = pytest.mark.slow
 
-# Of the issue: in light turbulence a c172p is ordered from its slowest airspeed to 1.35 times that,
+# Of the issue, there with a c172p, here with the heavier one that other tests design anyway: in light turbulence a c172p is ordered from its slowest airspeed to 1.35 times that,
 # beside a ship that turns. After 61 s its mean airspeed was so far below the order, and was still
 # falling in the mean, that its thrust was taken for lost; it glided into the sea at 70.9 s.
 MANOEUVRES = (
@@ -17,7 +17,6 @@ MANOEUVRES = (
     "{at_s=81.1,turn_deg=-49,turn_rate_deg_s=2.2331819573996654}",
 )
 KEYS = (
-    "aircraft=c172p",
     "seed=767274",
     "keepout.radius_m=380",
     "vessel.speed_mps=6",
@@ -32,10 +31,13 @@ KEYS = (
 )
 
 
-def test_a_sound_light_aircraft_that_slows_down_and_speeds_up_as_ordered_is_not_ditched(tmp_path):
+def test_a_sound_light_aircraft_that_slows_down_and_speeds_up_as_ordered_is_not_ditched(
+    heavy_design, tmp_path
+):
     file = tmp_path / "scenario.toml"
     file.write_text('extends = "operational"\ntitle = "sound engine"\n', encoding="utf-8")
-    study = load_study(str(file), list(KEYS))
+    folder = heavy_design.design.schedule.spec.folder
+    study = load_study(str(file), [f"aircraft={folder}", *KEYS])
     run_study(study, "sound", tmp_path / "run", executor_factory=InProcessExecutor)
     (row,) = rows_of(tmp_path / "run")
     assert row["outcome"] != "aircraft_lost", row["message"]

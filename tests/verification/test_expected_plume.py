@@ -6,25 +6,27 @@ import numpy as np
 import pytest
 from exhaust_cases import SENSOR
 
-from gnc.estimation.plume.estimator import HIT
-from gnc.estimation.plume.prior import Expectation, PlumePrior, expected_plume, rise
+from gnc.estimation.plume.prior import Expectation, expected_plume, rise
 from gnc.mission.axis import AxisHeight
-from measurement.emission import Emission, emission_of, fuel_preset, ship_of
+from measurement.emission import emission_of, fuel_preset, ship_of
 from measurement.gases import GASES
-from measurement.plume import fluctuating_plume
 from measurement.plume.spread import MarineAir, PlumeSettings, spreads
 
 EMISSION = emission_of(ship_of("container"), fuel_preset("mgo", 0.1), power=10e6)
 
 
-def prior_of(
-    of: Emission = EMISSION,
-    *,
-    load_deviation: float = 0.3,
-    wind_deviation: float,
-    source_height: float,
-    **situation: float,
-) -> PlumePrior:
+NAMES = ("height", "relative_y", "relative_z", "meander_y", "meander_z")
+
+
+def model_at(of, ages, *, apparent, wind, source):
+    """Return what the plume model has at ages [s]; its table has steps of 0.1 s."""
+    air = MarineAir(wind_speed=wind)
+    table = spreads(of, air, source, np.array([apparent]), max(ages) + 1.0, PlumeSettings())
+    times = 0.1 * np.arange(table.height.shape[1])
+    return {name: np.interp(ages, times, getattr(table, name)[0]) for name in NAMES}
+
+
+def prior_of(of=EMISSION, *, load_deviation=0.3, wind_deviation, source_height, **situation):
     expected = Expectation(
         stack_diameter=of.stack_diameter, exhaust_speed=of.exhaust_speed, momentum_flux=of.momentum_flux,
         buoyancy_flux=of.buoyancy_flux, co2_rate=of.rates[GASES.index("co2")], load_deviation=load_deviation, sensor=SENSOR,
@@ -37,23 +39,11 @@ def prior_of(
 @pytest.mark.parametrize(
     ("apparent", "wind"), [(5.0, 7.0), (6.0, 12.0), (10.0, 10.0), (14.0, 5.0), (18.0, 8.0)]
 )
-def test_height_spreads_and_peak_are_those_of_the_plume_model(
-    apparent: float, wind: float, source: float
-) -> None:
-    distance = 270.0
-    prior = prior_of(
-        distance=distance,
-        apparent_wind=apparent,
-        wind_speed=wind,
-        wind_deviation=0.6,
-        source_height=source,
-    )
-    age = distance / apparent
-    of = spreads(
-        EMISSION, MarineAir(wind_speed=wind), source, np.array([apparent]), age, PlumeSettings()
-    )
-    true = {name: float(np.interp(age, 0.1 * np.arange(getattr(of, name).shape[1]), getattr(of, name)[0])) for name in (
-        "height", "relative_y", "relative_z", "meander_y", "meander_z")}  # fmt: skip
+def test_height_spreads_and_peak_are_those_of_the_plume_model(apparent, wind, source):
+    prior = prior_of(distance=270.0, apparent_wind=apparent, wind_speed=wind, wind_deviation=0.6,
+                     source_height=source)  # fmt: skip
+    model = model_at(EMISSION, [270.0 / apparent], apparent=apparent, wind=wind, source=source)
+    true = {name: float(values[0]) for name, values in model.items()}
     # Rise and downwash are the same equations; the model's table has steps of 0.1 s.
     assert prior.height == pytest.approx(true["height"], abs=0.01)
     # The share of a plume's own turbulence is a fit to 5 %, and the spread of the source is 4 m
@@ -64,92 +54,57 @@ def test_height_spreads_and_peak_are_those_of_the_plume_model(
     ):  # fmt: skip
         assert abs(math.log(expected / true[name])) < limit, name
     assert prior.meander_z == pytest.approx(true["meander_z"], rel=0.3, abs=3.0)
-    peak = (
-        1e6
-        * EMISSION.rates[GASES.index("co2")]
-        / (2.0 * math.pi * apparent * true["relative_y"] * true["relative_z"] * 42.3)
-    )
+    flow = 2.0 * math.pi * apparent * true["relative_y"] * true["relative_z"] * 42.3
+    peak = 1e6 * EMISSION.rates[GASES.index("co2")] / flow
     assert abs(math.log(prior.peak / peak)) < 0.3
 
 
 @pytest.mark.parametrize("source", [2.0, 35.0])
 @pytest.mark.parametrize("apparent", [5.0, 10.0, 18.0])
 def test_a_plume_that_is_not_searched_for_is_followed_at_the_height_of_the_plume_model(
-    apparent: float, source: float
-) -> None:
-    """At a sixth of her power, whose slow exhaust the wake of the funnel draws down by up to 3.6 m,
-    and never below the sea.
+    apparent, source
+):
+    """At a sixth of the ship's power, at which the wake of the funnel draws the slow exhaust down by
+    up to 3.6 m, and never below the sea.
     """
     weak = emission_of(ship_of("container"), fuel_preset("mgo", 0.1), power=2e6)
     height = AxisHeight(
         source=source, momentum_flux=weak.momentum_flux, buoyancy_flux=weak.buoyancy_flux, stack_diameter=weak.stack_diameter,
         exhaust_speed=weak.exhaust_speed,
     )  # fmt: skip
-    age = 270.0 / apparent
-    of = spreads(
-        weak, MarineAir(wind_speed=8.0), source, np.array([apparent]), age, PlumeSettings()
-    )
+    true = model_at(weak, [270.0 / apparent], apparent=apparent, wind=8.0, source=source)["height"]
     # The model's table has steps of 0.1 s.
-    true = float(np.interp(age, 0.1 * np.arange(of.height.shape[1]), of.height[0]))
-    assert height.at(270.0, apparent) == pytest.approx(true, abs=0.02)
+    assert height.at(270.0, apparent) == pytest.approx(float(true[0]), abs=0.02)
 
 
 @pytest.mark.parametrize(
     ("apparent", "wind", "source"),
     [(5.0, 8.0, 30.0), (6.0, 12.0, 50.0), (10.0, 5.0, 40.0), (16.0, 10.0, 25.0)],
 )
-def test_spreads_and_meander_are_carried_to_another_distance(
-    apparent: float, wind: float, source: float
-) -> None:
+def test_spreads_and_meander_are_carried_to_another_distance(apparent, wind, source):
     """From where an orbit is joined to where it has closed in, against the plume model."""
     far, near = 440.0, 270.0
-    prior = prior_of(
-        distance=far,
-        apparent_wind=apparent,
-        wind_speed=wind,
-        wind_deviation=0.3,
-        source_height=source,
-    )
-    of = spreads(
-        EMISSION,
-        MarineAir(wind_speed=wind),
-        source,
-        np.array([apparent]),
-        far / apparent + 1.0,
-        PlumeSettings(),
-    )
-    ages = 0.1 * np.arange(of.height.shape[1])
+    prior = prior_of(distance=far, apparent_wind=apparent, wind_speed=wind, wind_deviation=0.3,
+                     source_height=source)  # fmt: skip
+    ages = [near / apparent, far / apparent]
+    model = model_at(EMISSION, ages, apparent=apparent, wind=wind, source=source)
     assert prior.widened(far, apparent) == pytest.approx(1.0)
-    for name, limit in (
-        ("relative_y", 0.15),
-        ("relative_z", 0.15),
-        ("meander_y", 0.15),
-        ("meander_z", 0.25),
-    ):
-        ratio = np.interp(near / apparent, ages, getattr(of, name)[0]) / np.interp(
-            far / apparent, ages, getattr(of, name)[0]
-        )
+    for name, limit in zip(NAMES[1:], (0.15, 0.15, 0.15, 0.25), strict=True):
+        ratio = model[name][0] / model[name][1]
         # One factor for four, that differ by as much from each other: behind a low source the sea
         # stops the meander in height.
         assert prior.widened(near, apparent) == pytest.approx(float(ratio), rel=limit), name
 
 
 @pytest.mark.parametrize("load", [0.2, 0.9])
-def test_a_load_that_is_off_changes_the_peak_by_what_is_stated(load: float) -> None:
+def test_a_load_that_is_off_changes_the_peak_by_what_is_stated(load):
     """Of twice the gas, part is lost to the spread that twice the heat makes."""
     ship, fuel = ship_of("container"), fuel_preset("mgo", 0.1)
     middle, other = (emission_of(ship, fuel, power=of * ship.power_max) for of in (0.45, load))
 
-    def prior(of: Emission, load_deviation: float) -> PlumePrior:
-        return prior_of(
-            of,
-            load_deviation=load_deviation,
-            distance=270.0,
-            apparent_wind=6.0,
-            wind_speed=8.0,
-            wind_deviation=0.0,
-            source_height=40.0,
-        )
+    def prior(of, load_deviation):
+        return prior_of(of, load_deviation=load_deviation, distance=270.0, apparent_wind=6.0,
+                        wind_speed=8.0, wind_deviation=0.0, source_height=40.0)  # fmt: skip
 
     off = abs(math.log(other.rates[1] / middle.rates[1]))
     changed = abs(math.log(prior(other, 0.0).peak / prior(middle, 0.0).peak))
@@ -162,12 +117,8 @@ def test_a_load_that_is_off_changes_the_peak_by_what_is_stated(load: float) -> N
     assert stated == pytest.approx(changed, rel=0.3)
 
 
-def test_rise_by_buoyancy_is_briggs_law() -> None:
+def test_rise_by_buoyancy_is_briggs_law():
     """1.609 F^(1/3) x^(2/3) / U: Briggs' 1.6."""
     assert rise(0.0, 49.6, 200.0, 10.0) == pytest.approx(
         1.609 * 49.6 ** (1 / 3) * 200.0 ** (2 / 3) / 10.0, rel=1e-3
     )
-
-
-def test_a_hit_of_the_guidance_is_a_hit_of_the_figures() -> None:
-    assert HIT == fluctuating_plume.HIT

@@ -136,17 +136,3 @@ def test_the_reference_respects_the_roll_rate_where_equation_8_does_not():
     assert limited.eta * limited.omega_0**2 * SPEED / STANDARD_GRAVITY == pytest.approx(
         roll_rate, rel=1e-13
     )
-
-
-def test_a_reference_started_on_the_centre_at_another_phase_would_fly_off_centre():
-    oscillation = oscillation_at(0.5)
-    along, across = offset(oscillation, np.linspace(0.0, oscillation.period, 4000, endpoint=False))
-    # The notes, care 2. From phi_0 = pi/2 on, seen from where it starts, the orbit goes from 0 to
-    # -2 d_y across.
-    start = 0.5 * math.pi / oscillation.omega_0
-    shifted = across - float(offset(oscillation, start)[1])
-    _, d_y = half_widths(oscillation)
-    # Both ends of the lobes are among the 4000 samples. Rounding.
-    assert (np.min(shifted), np.max(shifted)) == pytest.approx((-2.0 * d_y, 0.0), abs=1e-10)
-    assert np.mean(across) == pytest.approx(0.0, abs=1e-10)
-    assert np.mean(along) == pytest.approx(0.0, abs=1e-10)

@@ -20,33 +20,42 @@ TURN = 0.5
 """Of the heading rate that the study's turn has, in the step that is flown [-]."""
 
 
-@pytest.fixture(scope="module", params=STOCK)
-def stock(request, designs, tmp_path_factory):
+@pytest.fixture(params=STOCK)
+def stock(request, designs, tmp_path):
     """A design, and the lag of its heading rate [s]."""
     if request.param == "737":
         # No flight of other tests asks for its record, and the search over reversals is half of the
         # time that this takes.
         design = design_autopilot(find_spec("737"), ALTITUDE)
         schedule = design.schedule
-        aircraft = AutopilotedAircraft(
-            schedule.spec, write_root(schedule, tmp_path_factory.mktemp("737"))
-        )
-        return design, measure_lag(
-            aircraft, schedule.level(schedule.middle), schedule.envelope.bank
-        )
+        aircraft = AutopilotedAircraft(schedule.spec, write_root(schedule, tmp_path / "lag"))
+        level = schedule.level(schedule.middle)
+        return design, measure_lag(aircraft, level, schedule.envelope.bank)
     # The Cessna is heavier by 150 lb: that of docs/scripts/aircraft_directory.py, which other tests
     # need anyway.
-    found = (
-        request.getfixturevalue("heavy_design")
-        if request.param == "c172p"
-        else designs(request.param)
-    )
+    is_heavy = request.param == "c172p"
+    found = request.getfixturevalue("heavy_design") if is_heavy else designs(request.param)
     return found.design, found.record["heading_rate_lag_s"]
 
 
-def test_margins_hold_at_every_grid_point_and_between_as_modelled_and_changed(stock):
-    design, _ = stock
-    checks = design.checks
+def test_a_design_has_its_margins_turns_as_its_model_and_leaves_room_for_the_study(stock, tmp_path):
+    design, lag = stock
+    schedule, weights = design.schedule, design.schedule.weights
+    assert_margins(design.checks)
+    # 2 zeta/omega_n of a second-order model; the aircraft follows it within a tenth.
+    assert lag == pytest.approx(2.0 * weights.model_damping / weights.model_frequency, rel=0.1)
+    envelope = schedule.envelope
+    assert envelope.stall > 0.0
+    # 1.3 times above stall, more in the steepest turn; and at least 12 % from end to end, or there
+    # is nothing to schedule.
+    assert envelope.airspeed_min > 1.3 * envelope.stall
+    assert envelope.airspeed_max / envelope.airspeed_min > 1.12
+    aircraft = AutopilotedAircraft(schedule.spec, write_root(schedule, tmp_path / "turns"))
+    for sign in (1.0, -1.0):
+        assert_it_turns_as_its_model(schedule, aircraft, sign)
+
+
+def assert_margins(checks):
     # 25 points of the grid and 40 half-way between, the aircraft as modelled and changed in seven
     # ways.
     assert len(checks) == 75 * 8
@@ -62,20 +71,13 @@ def test_margins_hold_at_every_grid_point_and_between_as_modelled_and_changed(st
         assert min(margin.phase_deg for margin in single) >= phase_deg, check.describe()
 
 
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_half_the_studys_turn_overshoots_its_model_by_less_than_a_tenth_and_slips_little(
-    stock, sign, tmp_path
-):
-    design, _ = stock
-    schedule = design.schedule
+def assert_it_turns_as_its_model(schedule, aircraft, sign):
+    """Assert how it flies half of the turn of the study."""
     level = schedule.level(schedule.middle)
     size = sign * TURN * 9.80665 * math.tan(schedule.envelope.bank) / level.airspeed
     duration = 20.0 / schedule.weights.model_frequency
-    aircraft = AutopilotedAircraft(schedule.spec, write_root(schedule, tmp_path))
-    flown, model = (
-        flown_step(aircraft, level, "heading_rate", size, duration),
-        model_step(schedule, size, duration),
-    )
+    flown = flown_step(aircraft, level, "heading_rate", size, duration)
+    model = model_step(schedule, size, duration)
     # The requirement on every design.
     assert flown.overshoot() < model.overshoot() + 0.1
     # It gets there, and as quickly as its model within a fifth.
@@ -86,20 +88,3 @@ def test_half_the_studys_turn_overshoots_its_model_by_less_than_a_tenth_and_slip
     assert flown.largest("beta") < math.radians(1.5)
     # Altitude keeps to what a pilot is allowed in a turn, 100 ft.
     assert flown.largest("altitude") < 30.0
-
-
-def test_the_flown_heading_rate_lags_its_command_by_what_the_guidance_is_told(stock):
-    design, lag = stock
-    weights = design.schedule.weights
-    # 2 zeta/omega_n of a second-order model; the aircraft follows it within a tenth.
-    assert lag == pytest.approx(2.0 * weights.model_damping / weights.model_frequency, rel=0.1)
-
-
-def test_the_envelope_that_was_found_leaves_room_for_the_study(stock):
-    design, _ = stock
-    envelope = design.schedule.envelope
-    assert envelope.stall > 0.0
-    # 1.3 times above stall, more in the steepest turn; and at least 12 % from end to end, or there
-    # is nothing to schedule.
-    assert envelope.airspeed_min > 1.3 * envelope.stall
-    assert envelope.airspeed_max / envelope.airspeed_min > 1.12

@@ -1,7 +1,8 @@
 """ArduPilot's L1 control, towards a waypoint and on a loiter circle.
 
 Towards a waypoint it is Park's law with period and damping set, a capture angle and an integrator.
-On a circle it captures from outside, and has proportional and derivative control on the circle.
+On a circle it first captures the circle from outside, and then has proportional and derivative
+control.
 
 Written from a description of the laws, not from ArduPilot's code, which has another licence.
 """
@@ -39,11 +40,15 @@ _INTEGRATE_WITHIN = math.radians(5.0)
 _INTEGRAL_MAX = 0.1
 """Limit of the integrator [rad]."""
 _CAPTURE_MAX = 0.7071
-"""Largest sine of the capture angle, and of the angle that counts as behind the start [-]."""
+"""Largest sine of the capture angle. The vehicle is behind the start of the line if the cosine of
+the angle from the line to it is below the negative of this [-].
+"""
 _OVERRUN = 3.0
 """Flight time beyond the end of the line after which it turns back to the end [s]."""
 _CENTRE = 0.1
-"""Distance from a centre within which the centre has no bearing [m], and speed without course."""
+"""Distance within which a centre has no bearing [m], and speed below which there is no course
+[m/s].
+"""
 
 
 # ---------------------------------------------------------------- Towards a waypoint
@@ -51,7 +56,7 @@ _CENTRE = 0.1
 
 @dataclass(frozen=True, slots=True)
 class L1State:
-    """What the law remembers from one call to the next.
+    """The memory of the law from one call to the next.
 
     Attributes
     ----------
@@ -147,7 +152,9 @@ def _angle_to(direction: Vector, velocity: Vector) -> float:
 
 
 def decided(angle: float, last: float, *, bearing: float, yaw: float) -> float:
-    """Return the angle to turn by [rad]: the last one if the target is behind and the side changed.
+    """Return the angle to turn by [rad].
+
+    If the target is behind the vehicle and the angle has changed its sign, this is the last angle.
 
     Parameters
     ----------
@@ -260,8 +267,8 @@ def update_loiter(
 ) -> float:
     """Return the lateral acceleration of the loiter, positive to the right [m/s2].
 
-    ArduPilot's indecision about a centre exactly behind the vehicle is left out: it would be the
-    only memory of the law.
+    ArduPilot's rule for a centre exactly behind the vehicle is left out, because the law would need
+    a memory for this rule alone.
 
     Parameters
     ----------
@@ -298,7 +305,7 @@ def update_loiter(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArduPilotLoiterLaw(PathLaw):
-    """ArduPilot's loiter about a moving centre, with the velocity over the ground as ArduPilot has.
+    """ArduPilot's loiter about a moving centre, by the velocity over the ground, as in ArduPilot.
 
     Attributes
     ----------

@@ -1,7 +1,7 @@
 """NPFG, the fixed-wing path following of PX4.
 
-Its look-ahead depends on the track error, it knows which bearings are feasible in wind, and it
-adapts its period.
+Its look-ahead depends on the track error. It weights its commands by how feasible a bearing is in
+the wind, and it adapts its period.
 
 Source: T. Stastny, R. Siegwart, "On Flying Backwards: Preventing Run-away of Small, Low-speed,
 Fixed-wing UAVs in Strong Winds", IROS 2019, and the law as PX4 flies it, release 1.15
@@ -21,7 +21,7 @@ _EPSILON = 1e-6
 _RADIUS_MIN = 0.5
 """Smallest turn radius that the feed-forward is formed for [m]."""
 _AIRSPEED_BUFFER = 1.5
-"""Airspeed in excess of the need of a bearing at which the bearing is wholly feasible [m/s]."""
+"""Airspeed beyond the least one for a bearing at which the bearing is wholly feasible [m/s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -18,8 +18,8 @@ from gnc.vectors import Vector, along, course_of, cross, dot, minus, norm, plus,
 def park_l1(position: Vector, velocity: Vector, target: Vector, *, range_min: float = 0.0) -> float:
     """Return the lateral acceleration, 2 v^2 sin(eta)/L1, positive to the right [m/s2].
 
-    Unlike the paper's law it keeps eta within 90 degrees: the paper's command falls off again for a
-    target behind the vehicle.
+    Unlike the law of Park, Deyst and How it limits eta to 90 degrees: their command decreases again
+    for a target behind the vehicle.
 
     Parameters
     ----------
@@ -36,7 +36,9 @@ def park_l1(position: Vector, velocity: Vector, target: Vector, *, range_min: fl
 
 
 def point_on_line(position: Vector, course: float, distance: float) -> Vector:
-    """Return the point of a line that is ``distance`` ahead [m], or the nearest if it is farther.
+    """Return the point of a line ahead of the vehicle and at ``distance`` from it [m].
+
+    If the whole line is farther away, this is its nearest point.
 
     Parameters
     ----------
@@ -53,8 +55,9 @@ def point_on_line(position: Vector, course: float, distance: float) -> Vector:
 def point_on_circle(
     position: Vector, centre: Vector, radius: float, side: int, distance: float
 ) -> Vector:
-    """Return the point of a circle that is ``distance`` ahead [m], or the nearest point without
-    one.
+    """Return the point of a circle ahead of the vehicle and at ``distance`` from it [m].
+
+    If no point of the circle has that distance, this is its nearest point.
 
     Parameters
     ----------

@@ -2,12 +2,14 @@
 
 There are three ways, and a law's ``inputs`` say which one it uses:
 
-M1, tangent. The path is the reference's tangent over the ground, anew at every step.
-M2, the frame of the centre. The path is a circle that moves with its centre. To the law this is a
-flight in the wind less the velocity of the centre.
-M3, the point. The law steers at the reference, and needs no path.
+M1, tangent. The path is the tangent of the reference's track over the ground. It changes at every
+step.
+M2, the frame of the centre. The path is a circle that moves with its centre. The law computes in
+the frame of the centre, where the wind is the true wind minus the velocity of the centre.
+M3, the point. The law steers at the reference and needs no path.
 
-M1 and M2 are the same computation, in a frame at rest over the ground or at rest with the centre.
+M1 and M2 are the same computation in two frames: one is at rest over the ground, the other moves
+with the centre.
 """
 
 import math
@@ -59,10 +61,10 @@ class PathMotion(NamedTuple):
 def path_motion(reference: Reference, own: Motion, air: Air) -> PathMotion:
     """Return the vehicle beside the path of the reference.
 
-    The reference moves at V_r through the air. The direction of its velocity in the path's frame is
-    the tangent; the turn rate of that velocity over its size is the curvature. Where it stands
-    still in that frame, the velocity through the air is used. Parameters are those of
-    ``SteeringLaw``.
+    The reference moves at V_r through the air. Its velocity in the path's frame has the direction
+    of the tangent. The curvature is the turn rate of that velocity over its magnitude. If the
+    reference is at rest in that frame, its velocity through the air is used instead. Parameters are
+    those of ``SteeringLaw``.
     """
     to_reference = reference.north - own.north, reference.east - own.east
     frame = air.path_north, air.path_east

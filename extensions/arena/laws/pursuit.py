@@ -1,4 +1,4 @@
-"""Pursuit: of the reference itself, of a carrot on its path, and of a course to its tangent.
+"""Pursuit of the reference itself, of a carrot on its path, and of the tangent of its path.
 
 Pure pursuit, proportional navigation and constant bearing are textbook laws. Carrot chasing and
 pure pursuit with line of sight (PLOS) are from P. B. Sujit, S. Saripalli, J. B. Sousa, "Unmanned
@@ -55,9 +55,9 @@ def sight_rate(to_target: Vector, relative_velocity: Vector) -> float:
 
 
 def collision_course(to_target: Vector, target_course: float, speed_ratio: float) -> float:
-    """Return the course to the point where the target will be met [rad].
+    """Return the course to the point at which the vehicle meets the target [rad].
 
-    On it the line of sight does not turn.
+    On this course the line of sight does not turn.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ class PurePursuitLaw(CheckedLaw):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProportionalNavigationLaw(CheckedLaw):
-    """Proportional navigation to the reference itself (M3). Its demand is unbounded close by.
+    """Proportional navigation to the reference (M3); near the reference its demand has no bound.
 
     Attributes
     ----------
@@ -134,7 +134,7 @@ class ConstantBearingLaw(CheckedLaw):
 
 
 def carrot_on_line(position: Vector, tangent: Vector, ahead: float) -> Vector:
-    """Return the point of a line that is ``ahead`` [m] of the nearest one [m].
+    """Return the point of a line that is ``ahead`` [m] of the point nearest to the vehicle [m].
 
     Parameters
     ----------
@@ -148,7 +148,7 @@ def carrot_on_line(position: Vector, tangent: Vector, ahead: float) -> Vector:
 def carrot_on_circle(
     position: Vector, centre: Vector, radius: float, side: int, ahead: float
 ) -> Vector:
-    """Return the point of a circle that is an angle ``ahead`` [rad] of the nearest one [m].
+    """Return the point of a circle at the angle ``ahead`` [rad] from the nearest point [m].
 
     Parameters
     ----------

@@ -1,9 +1,10 @@
 """Vector fields for lines and circles: a course for every place.
 
-The paper's law turns the vehicle into its field: D. R. Nelson, D. B. Barber, T. W. McLain, R. W.
-Beard, "Vector Field Path Following for Miniature Air Vehicles", IEEE TRO 23(3), 2007. ROSplane
-commands a course: R. W. Beard, T. W. McLain, Small Unmanned Aircraft, chapter 10, with the
-parameters of ROSplane (BSD-3-Clause). Written from equations, not from code.
+There are two kinds of laws. The first commands the heading rate that turns the vehicle into the
+field: D. R. Nelson, D. B. Barber, T. W. McLain, R. W. Beard, "Vector Field Path Following for
+Miniature Air Vehicles", IEEE TRO 23(3), 2007. The second, ROSplane, commands the course of the
+field: R. W. Beard, T. W. McLain, Small Unmanned Aircraft, chapter 10, with the parameters of
+ROSplane (BSD-3-Clause). Written from equations, not from code.
 """
 
 import math
@@ -32,7 +33,7 @@ def line_field(
     approach: float,
     line_rate: float = 0.0,
 ) -> DesiredCourse:
-    """Return the field of a line that may turn about one of its points.
+    """Return the field of a line, which may turn about one of its points.
 
     Parameters
     ----------
@@ -78,7 +79,7 @@ def orbit_field(
 
 
 def field_heading_rate(field: DesiredCourse, course: float, *, kappa: float, width: float) -> float:
-    """Return the heading rate that turns the vehicle into a field, u of the paper [rad/s].
+    """Return the heading rate that turns the vehicle into a field, u of Nelson et al. [rad/s].
 
     Parameters
     ----------

@@ -84,22 +84,15 @@ def test_settings_say_title_commands_properties_and_envelope(heavy):
     [
         ("elevatr = 'a'", r"unknown key 'elevatr'; did you mean 'elevator'\?"),
         ("elevator = 'fcs/not-there'", r"no elevator command; .* in heavy.toml, elevator = "),
-        ("elevator = []", r"elevator is \[\]; .* at least 1 item"),
         ("rudder = true", "rudder: give the JSBSim property"),
         ("envelope = 'found'", 'envelope is "found"; '),
         ("[properties]\n'fcs/flap' = 'a'", r'properties\.fcs/flap is "a"; .* number'),
-        ("title = 3", "title is 3; it must be a valid string$"),
         ("[properties]\nfcs/flap-cmd-norm[1] = 0.33", r"heavy\.toml: not valid TOML.* quotes$"),
         ("settle_time_s = 1000", "settle_time_s is 1000; it must be less than or equal to 120$"),
         (
             "[envelope]\nairspeed_min_mps=50\nairspeed_mps=45\nairspeed_max_mps=55\nbank_deg=30",
             r"envelope: airspeed is 45 m/s; it must lie between airspeed_min, 50, and",
         ),
-        (
-            "[envelope]\nairspeed_min_mps=40\nairspeed_mps=45\nairspeed_max_mps=500\nbank_deg=30",
-            r"above 0 and up to 400",
-        ),
-        ("title = ", r"heavy\.toml: not valid TOML"),
     ],
 )
 def test_settings_that_are_wrong_are_refused_in_a_line(heavy, text, why):
@@ -115,13 +108,11 @@ def test_settings_that_are_wrong_are_refused_in_a_line(heavy, text, why):
             'file="eng_none"',
             "engine file 'eng_none' is not in .*heavy', .*engine'; put it there",
         ),
-        ('file="prop_75in2f"', 'file="prop_none"', "thruster file 'prop_none' is not in"),
         (
             'file="eng_io320"',
             'file="../../../eng_io320"',
             "engine file '../../../eng_io320' leads out of the aircraft's folders",
         ),
-        ('file="eng_io320"', 'file="/etc/passwd"', "engine file '/etc/passwd' leads out"),
         ('file="eng_io320"', r'file="C:\eng_io320"', "leads out"),
         ("<fdm_config", "<fdm", "heavy.xml: not valid XML"),
         ("fcs/aileron-cmd-norm", "fcs/other-cmd", "its controls take no aileron command"),

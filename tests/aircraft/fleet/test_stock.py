@@ -30,16 +30,6 @@ def placed(request):
     return name, fdm, state
 
 
-def test_every_engine_runs_after_the_first_placing_and_pulls(placed):
-    _, fdm, _ = placed
-    with fdm.frozen():
-        fdm.step(240)
-    for flag in fdm.spec.engine_flags:
-        assert fdm.read(flag) == 1.0
-        # 0.7 of throttle at these airspeeds: no propeller wind-mills and no turbine idles.
-        assert fdm.read(flag.replace("set-running", "thrust-lbs")) > 100.0
-
-
 def test_an_engine_that_jsbsim_does_not_start_at_once_is_started_by_its_starter():
     # The Mustang's: asked to run at once, its running flag stays 0.
     fdm = Fdm(find_spec("p51d"))
@@ -64,24 +54,3 @@ def test_the_gear_is_up_and_neither_fuel_nor_mass_changes_in_flight(placed):
         fdm.step(1200)
     # Ten seconds of a 737's engines would be 15 kg.
     assert fdm.read("inertia/weight-lbs") == weight
-
-
-def test_engines_come_to_rest_and_the_same_place_gives_the_same_accelerations(placed):
-    name, fdm, state = placed
-    found = []
-    for _ in range(2):
-        with fdm.frozen():
-            fdm.place(state)
-            assert fdm.settle()
-            found.append([*fdm.acceleration_body(), *fdm.angular_acceleration()])
-            # Elsewhere in between, with another throttle.
-            fdm.command({"throttle": 0.9})
-            fdm.place(
-                RigidBodyState(
-                    altitude=2000.0, roll=0.3, pitch=0.0, velocity_body=(AIRSPEEDS[name], 1.0, 2.0)
-                )
-            )
-            fdm.step(600)
-            fdm.command({"throttle": 0.7})
-    # Settled to 1e-9 a step, behind engines as slow as a second or two (120 to 240 steps).
-    assert found[0] == pytest.approx(found[1], abs=2e-6)

@@ -1,28 +1,16 @@
 """What the report of an arena shows, of a quick one on the kinematic vehicle."""
 
-import json
-import math
 from dataclasses import replace
 
-import pandas as pd
 import pytest
-from judged_runs import changed
 from snapshots import assert_reads_as_before
 
-from extensions.arena.entrants import Entrant
 from extensions.arena.paired_bootstrap import Estimate
 from extensions.arena.record import ERROR, read_arena
-from extensions.arena.report import (
-    _headline,
-    arena_content,
-    by_condition_table,
-    tracking_table,
-)
-from extensions.arena.results import estimates
+from extensions.arena.report import _headline
 from reports.registry import content
 from reports.run.run_data import read_run
-from scenarios.scenario.files import load_study
-from tests.reports.report_parts import flown, numbers_on_page_1
+from tests.reports.report_parts import flown
 
 pytestmark = pytest.mark.slow
 
@@ -90,94 +78,6 @@ def test_the_headline_says_which_laws_cannot_be_told_from_the_best(arena, errors
         _headline(found)
         == f"Tracking: {words}; Circling: only npfg (circle) is compared, 3.00 m rms"
     )
-
-
-def of_a_few_flights(run, path, missing):
-    """Return the report of a copy of an arena of which the flights that are named by what they
-    contain could not be flown.
-    """
-    rows, record = (
-        run.summary.copy(),
-        json.loads((run.path / "arena.json").read_text(encoding="utf-8")),
-    )
-    gone = rows["flight_id"].str.contains(missing)
-    rows["keepout_violations"] = rows["keepout_violations"].astype(float)
-    figures = ["duration_s", "min_distance_m", "keepout_violations"]
-    rows.loc[gone, [*figures, "criteria_met", "kept_out"]] = [
-        math.nan,
-        math.nan,
-        math.nan,
-        False,
-        False,
-    ]
-    rows.loc[gone, ["outcome", "message"]] = ["infeasible", "too near"]
-    windows = pd.read_csv(run.path / "window.csv").set_index("flight_id")
-    figures = {
-        name: [
-            {} if gone[i] else windows.loc[row["flight_id"]].dropna().to_dict()
-            for i, row in of.iterrows()
-        ]
-        for name, of in rows.groupby("trial")
-    }
-    named = ("name", "law", "task", "inputs", "defaults")
-    entrants = [Entrant(**{key: entry[key] for key in named}) for entry in record["entrants"]]
-    record["estimates"] = estimates(entrants, figures, load_study("arena", QUICK).arena, 1)
-    (path / "arena.json").write_text(json.dumps(record), encoding="utf-8")
-    return arena_content(changed(run, path=path, summary=rows))
-
-
-def test_a_law_that_lacks_flights_is_named_and_not_called_best(run, tmp_path):
-    found = of_a_few_flights(run, tmp_path, "wind_npfg_kinematic_00001")
-    assert "Tracking: only pure pursuit is compared, " in found.verdict.headline
-    assert found.verdict.tone == "warn"
-    assert found.verdict.failures == [
-        "npfg: 1 of 4 flights could not be flown, and it is not compared: infeasible: too near"
-    ]
-    table = tracking_table(read_arena(replace(run, path=tmp_path)), tracking=True)
-    # Its mean is by far the better one, of the flights that it has.
-    assert [row[1] for row in table.rows] == ["pure pursuit", "npfg"]
-    assert [row[2].endswith(", 3 of 4") for row in table.rows] == [False, True]
-    assert {row for row, _ in table.bold} == {0}
-    each = by_condition_table(read_arena(replace(run, path=tmp_path)), ERROR, tracking=True)
-    assert [" of " in cell for cell in each.rows[1][2:]] == [False, True, True]
-
-
-def test_an_arena_of_which_nothing_was_flown_is_red(run, tmp_path):
-    verdict = of_a_few_flights(run, tmp_path, "kinematic").verdict
-    assert verdict.headline.endswith(". Nothing was flown")
-    assert verdict.tone == "bad"
-    assert "npfg: 4 of 4 flights could not be flown: infeasible: too near" in verdict.failures
-    assert not any("best" in card.name.lower() for card in verdict.figures)
-    assert {card.name: card.met for card in verdict.figures}["Keep-out violations"] is False
-
-
-def test_where_each_law_lacks_another_flight_none_is_called_best(run, tmp_path):
-    headline = of_a_few_flights(
-        run, tmp_path, "calm_npfg_kinematic_00000|wind_pure_pursuit_kinematic_00001"
-    ).verdict.headline
-    assert "Tracking: no law is compared, as each lacks flights; Circling: only npfg" in headline
-
-
-def test_every_number_on_page_1_is_that_of_the_evaluation(path, tmp_path):
-    record = json.loads((path / "arena.json").read_text(encoding="utf-8"))
-    counts = json.loads((path / "verdict.json").read_text(encoding="utf-8"))["whole"]["counts"]
-    ends = [
-        value
-        for entry in record["estimates"]
-        if entry["condition"] == "all"
-        for value in (entry["mean"], entry["low"], entry["high"])
-        if value is not None
-    ]
-    expected = {
-        *(f"{value:.2f}" for value in ends),
-        # The sulphur error of a minute is the inverse root of its mean information.
-        *(f"{1.0 / math.sqrt(value):.4f}" for value in ends if value > 0.0),
-        *(f"{counts[name]}" for name in ("keepout_violations", "lost", "violated", "flown")),
-        *map(str, range(1, len(record["entrants"]))),
-        # Confidence of the intervals, and what is required of violations and losses.
-        *("95", "0"),
-    }
-    assert numbers_on_page_1(path, tmp_path) <= expected
 
 
 def test_an_arena_reads_as_before(run):

@@ -1,5 +1,6 @@
 """A simulated vehicle that is served in this process, and a companion's command against it."""
 
+import math
 import socket
 import tempfile
 import threading
@@ -7,6 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 from extensions.companion import command
 from extensions.companion.plane import PlaneMode
@@ -27,17 +29,17 @@ class Served:
     ----------
     url : where it is
     simulation : the vehicle itself
-    heard : messages that have come, each with the vehicle's time
+    received : messages that have come, each with the vehicle's time
     failures : exceptions of its thread
     """
 
     url: str
     simulation: Simulation
-    heard: list[tuple[float, Any]] = field(default_factory=list)
+    received: list[tuple[float, Any]] = field(default_factory=list)
     failures: list[Exception] = field(default_factory=list)
 
     def count(self, kind, *, after=0.0):
-        return sum(at > after and message.get_type() == kind for at, message in self.heard)
+        return sum(at > after and message.get_type() == kind for at, message in self.received)
 
 
 def free_port(kind=socket.SOCK_STREAM):
@@ -47,27 +49,24 @@ def free_port(kind=socket.SOCK_STREAM):
 
 
 @contextmanager
-def served(scenario, *settings, lockstep=True, mode="GUIDED", scheme="tcp", flight=None,
-           parameters=None, muted=(), home=HOME, change=lambda message: message,
-           at_step=lambda _: None,
-    sniffer=None, duration=1e6, log=None):  # fmt: skip
+def served(scenario, *settings, lockstep=True, scheme="tcp", parameters=None, sniffer=None,
+           log=None, change=lambda message: message, at_step=lambda _: None):  # fmt: skip
     """Serve the vehicle of a flight.
 
     Parameters
     ----------
-    scenario, settings, flight : the flight
-    muted : times of the vehicle between which it tells nothing but its clock [s]
-    change : of each message that it tells; None for none
+    scenario, settings : the flight, the only one of the scenario
+    change : of each message that it sends; None for none
     at_step : called before each step
     sniffer : where the readings of the scenario's sniffer are sent, or none
     log : telemetry log of both directions, or none
     """
-    single = command._flight(SingleFlight, scenario, list(settings), flight)
+    single = command._flight(SingleFlight, scenario, list(settings), None)
     with tempfile.TemporaryDirectory() as folder:
         work = single.work(RunDirectory(Path(folder)))
         request = work.request(single.task)
-        simulation = Simulation(work.plan(request), work.setup_of(request), home=home,
-                                mode=PlaneMode[mode], parameters=parameters)  # fmt: skip
+        simulation = Simulation(work.plan(request), work.setup_of(request), home=HOME,
+                                mode=PlaneMode.GUIDED, parameters=parameters)  # fmt: skip
         readings = sniffer and opened("--sniffer", sniffer, listening=False)
         if readings:
             send_readings(simulation, request, work.plan(request), readings)
@@ -77,28 +76,27 @@ def served(scenario, *settings, lockstep=True, mode="GUIDED", scheme="tcp", flig
     found = Served(url, simulation)
     send, receive, step = port.send, port.receive, simulation.step
 
-    def told(message, peer=None):
-        silent = muted and muted[0] <= simulation.time < muted[1]
+    def send_changed(message, peer=None):
         if message.get_type() != "SYSTEM_TIME":
-            message = None if silent else change(message)
+            message = change(message)
         if message is not None:
             send(message, peer)
 
-    def heard(timeout):
+    def receive_noted(timeout):
         come = receive(timeout)
-        found.heard += [(simulation.time, message) for _, message in come]
+        found.received += [(simulation.time, message) for _, message in come]
         return come
 
     def stepped():
         at_step(simulation)
         step()
 
-    port.send, port.receive, simulation.step = told, heard, stepped
+    port.send, port.receive, simulation.step = send_changed, receive_noted, stepped
     server = Server(simulation, port, lockstep=lockstep)
 
     def serve():
         try:
-            server.run(duration)
+            server.run(math.inf)
         except Exception as error:  # noqa: BLE001 - the test looks at it
             found.failures.append(error)
 
@@ -116,7 +114,8 @@ def served(scenario, *settings, lockstep=True, mode="GUIDED", scheme="tcp", flig
 
 
 def companion(vehicle, scenario, out, *options, settings=()):
-    """Run ``plume-flight companion`` against a vehicle."""
+    """Run ``plume-flight companion`` against a vehicle, with a tenth of its wait for rivals."""
     keys = [word for key in settings for word in ("--set", key)]
-    return run_command("scenarios.cli.main", "companion", scenario, "--connect", vehicle.url,
-                       "--out", out, "--wait", "20", *options, *keys)  # fmt: skip
+    with mock.patch("extensions.companion.flight.RIVALS_SEEN_IN", 0.1):
+        return run_command("scenarios.cli.main", "companion", scenario, "--connect", vehicle.url,
+                           "--out", out, "--wait", "20", *options, *keys)  # fmt: skip

@@ -12,7 +12,6 @@ from extensions.companion.ais_line import AisReceiver
 from extensions.companion.ports import opened, opened_input
 from scenarios.world.ais.size import ShipSize
 from tests.extensions.companion.served import companion, free_port, served
-from tests.in_process import assert_refused
 
 pytestmark = pytest.mark.slow
 
@@ -187,10 +186,3 @@ def test_a_ship_that_is_larger_than_what_is_kept_is_refused(tmp_path):
     assert "295 m by 32 m" in message
     assert "227 m" in message
     assert vehicle.count("SET_ATTITUDE_TARGET") == 0
-
-
-def test_an_address_of_no_receiver_is_refused(tmp_path):
-    with served("sea_wind", *FLIGHT) as vehicle:
-        ended = companion(vehicle, "sea_wind", tmp_path / "run", "--lockstep", "--ais", "here",
-                          settings=FLIGHT)  # fmt: skip
-    assert_refused(ended, "--ais is 'here'", "udp://HOST:PORT")

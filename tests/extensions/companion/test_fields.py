@@ -69,27 +69,27 @@ def in_si(message, field):
 
 
 def test_a_place_is_in_degrees_and_millimetres_and_velocities_point_north_east_and_down():
-    told = sent(STATE.global_position())
-    assert in_si(told, "time_boot_ms") == pytest.approx(12.345, abs=1e-3)
-    assert in_si(told, "lat") == pytest.approx(57.5, abs=1e-7)
-    assert in_si(told, "lon") == pytest.approx(-11.25, abs=1e-7)
-    assert in_si(told, "alt") == pytest.approx(73.5, abs=1e-3)
-    assert in_si(told, "relative_alt") == pytest.approx(13.5, abs=1e-3)
-    assert in_si(told, "vx") == pytest.approx(-12.34, abs=0.005)
-    assert in_si(told, "vy") == pytest.approx(-5.67, abs=0.005)
+    decoded = sent(STATE.global_position())
+    assert in_si(decoded, "time_boot_ms") == pytest.approx(12.345, abs=1e-3)
+    assert in_si(decoded, "lat") == pytest.approx(57.5, abs=1e-7)
+    assert in_si(decoded, "lon") == pytest.approx(-11.25, abs=1e-7)
+    assert in_si(decoded, "alt") == pytest.approx(73.5, abs=1e-3)
+    assert in_si(decoded, "relative_alt") == pytest.approx(13.5, abs=1e-3)
+    assert in_si(decoded, "vx") == pytest.approx(-12.34, abs=0.005)
+    assert in_si(decoded, "vy") == pytest.approx(-5.67, abs=0.005)
     # "Ground Z Speed (Altitude, positive down)".
-    assert in_si(told, "vz") == pytest.approx(-1.5, abs=0.005)
-    assert in_si(told, "hdg") == pytest.approx(205.0, abs=0.01)
+    assert in_si(decoded, "vz") == pytest.approx(-1.5, abs=0.005)
+    assert in_si(decoded, "hdg") == pytest.approx(205.0, abs=0.01)
 
 
 def test_attitude_and_hud_are_in_radians_degrees_metres_per_second_and_percent():
-    told, hud, fix = sent(STATE.attitude()), sent(STATE.vfr_hud()), sent(STATE.gps_raw())
-    assert [in_si(told, name) for name in ("roll", "pitch", "yaw")] == pytest.approx(
+    decoded, hud, fix = sent(STATE.attitude()), sent(STATE.vfr_hud()), sent(STATE.gps_raw())
+    assert [in_si(decoded, name) for name in ("roll", "pitch", "yaw")] == pytest.approx(
         [0.4, 0.1, math.radians(-155.0)], abs=1e-6
     )
-    assert [in_si(told, name) for name in ("rollspeed", "pitchspeed", "yawspeed")] == pytest.approx(
-        STATE.rates, abs=1e-6
-    )
+    assert [
+        in_si(decoded, name) for name in ("rollspeed", "pitchspeed", "yawspeed")
+    ] == pytest.approx(STATE.rates, abs=1e-6)
     assert in_si(hud, "airspeed") == pytest.approx(18.25, abs=1e-5)
     assert in_si(hud, "groundspeed") == pytest.approx(math.hypot(12.34, 5.67), abs=1e-5)
     assert in_si(hud, "heading") == 205.0
@@ -104,24 +104,30 @@ def test_attitude_and_hud_are_in_radians_degrees_metres_per_second_and_percent()
 
 
 @pytest.mark.parametrize("towards", [0.0, 60.0, 200.0, 300.0])
-def test_wind_is_told_by_where_it_comes_from(towards):
+def test_wind_is_reported_by_where_it_comes_from(towards):
     """ "wind direction (that wind is coming from)"."""
     north, east = (5.0 * f(math.radians(towards)) for f in (math.cos, math.sin))
-    told = sent(wind(north, east))
-    assert told.speed == pytest.approx(5.0)
-    assert math.remainder(told.direction - towards - 180.0, 360.0) == pytest.approx(0.0, abs=1e-4)
+    decoded = sent(wind(north, east))
+    assert decoded.speed == pytest.approx(5.0)
+    assert math.remainder(decoded.direction - towards - 180.0, 360.0) == pytest.approx(
+        0.0, abs=1e-4
+    )
 
 
 def test_a_vessel_has_a_course_a_bow_and_a_speed_of_their_own():
-    told = sent(VESSEL.ais())
-    assert (in_si(told, "lat"), in_si(told, "lon")) == pytest.approx((-33.25, 151.75), abs=1e-7)
+    decoded = sent(VESSEL.ais())
+    assert (in_si(decoded, "lat"), in_si(decoded, "lon")) == pytest.approx(
+        (-33.25, 151.75), abs=1e-7
+    )
     # South-east by north -3 and east 4.
-    assert in_si(told, "COG") == pytest.approx(90.0 + math.degrees(math.atan2(3.0, 4.0)), abs=0.01)
-    assert in_si(told, "heading") == pytest.approx(130.0, abs=0.01)
-    assert in_si(told, "velocity") == pytest.approx(5.0, abs=0.005)
-    assert (told.MMSI, told.name, in_si(told, "tslc")) == (219000001, "EXAMPLE", 7.0)
-    assert told.flags & mavlink.AIS_FLAGS_VALID_COG
-    back = VesselState.of(told)
+    assert in_si(decoded, "COG") == pytest.approx(
+        90.0 + math.degrees(math.atan2(3.0, 4.0)), abs=0.01
+    )
+    assert in_si(decoded, "heading") == pytest.approx(130.0, abs=0.01)
+    assert in_si(decoded, "velocity") == pytest.approx(5.0, abs=0.005)
+    assert (decoded.MMSI, decoded.name, in_si(decoded, "tslc")) == (219000001, "EXAMPLE", 7.0)
+    assert decoded.flags & mavlink.AIS_FLAGS_VALID_COG
+    back = VesselState.of(decoded)
     assert (back.velocity_north, back.velocity_east) == pytest.approx((-3.0, 4.0), abs=0.01)
     assert back.latitude == pytest.approx(VESSEL.latitude, abs=1e-9)
     adsb = sent(VESSEL.adsb())
@@ -131,10 +137,10 @@ def test_a_vessel_has_a_course_a_bow_and_a_speed_of_their_own():
 
 def test_a_vessel_without_a_place_or_a_velocity_is_none():
     def changed(**fields):
-        told = sent(VESSEL.ais())
+        decoded = sent(VESSEL.ais())
         for name, value in fields.items():
-            setattr(told, name, value)
-        return VesselState.of(told)
+            setattr(decoded, name, value)
+        return VesselState.of(decoded)
 
     assert changed() is not None
     assert changed(lat=0, lon=0) is None
@@ -146,48 +152,48 @@ def test_a_vessel_without_a_place_or_a_velocity_is_none():
 
 
 def test_a_vessel_may_say_its_size_and_where_its_bow_points():
-    told = sent(VESSEL.ais())
-    assert VesselState.of(told).size is None
-    told.flags |= mavlink.AIS_FLAGS_VALID_DIMENSIONS
-    told.dimension_bow, told.dimension_stern = 225, 70
-    told.dimension_port, told.dimension_starboard = 1, 31
-    assert VesselState.of(told).size == ShipSize(295.0, 32.0, 225.0, 1.0)
+    decoded = sent(VESSEL.ais())
+    assert VesselState.of(decoded).size is None
+    decoded.flags |= mavlink.AIS_FLAGS_VALID_DIMENSIONS
+    decoded.dimension_bow, decoded.dimension_stern = 225, 70
+    decoded.dimension_port, decoded.dimension_starboard = 1, 31
+    assert VesselState.of(decoded).size == ShipSize(295.0, 32.0, 225.0, 1.0)
     # More than the field can say.
-    told.flags |= mavlink.AIS_FLAGS_LARGE_BOW_DIMENSION
-    assert VesselState.of(told).size is None
-    assert VesselState.of(told).bow == pytest.approx(VESSEL.bow)
+    decoded.flags |= mavlink.AIS_FLAGS_LARGE_BOW_DIMENSION
+    assert VesselState.of(decoded).size is None
+    assert VesselState.of(decoded).bow == pytest.approx(VESSEL.bow)
     # 511 degrees are "not available": the bow is taken to point along the course.
-    told.heading = 51100
+    decoded.heading = 51100
     course = math.atan2(VESSEL.velocity_east, VESSEL.velocity_north)
-    assert VesselState.of(told).bow == pytest.approx(course, abs=1e-3)
+    assert VesselState.of(decoded).bow == pytest.approx(course, abs=1e-3)
 
 
 def test_a_vessel_at_rest_has_no_course():
-    told = sent(dataclasses.replace(VESSEL, velocity_north=0.0, velocity_east=0.0).ais())
-    assert not told.flags & mavlink.AIS_FLAGS_VALID_COG
-    assert VesselState.of(told).velocity_north == 0.0
+    decoded = sent(dataclasses.replace(VESSEL, velocity_north=0.0, velocity_east=0.0).ais())
+    assert not decoded.flags & mavlink.AIS_FLAGS_VALID_COG
+    assert VesselState.of(decoded).velocity_north == 0.0
 
 
 @pytest.mark.parametrize("roll", [-0.7, 0.0, 0.3])
 def test_a_roll_is_commanded_alone_and_comes_back_by_the_definition_of_the_quaternion(roll):
-    told = sent(roll_target(3.0, 1, 1, roll))
-    w, x, y, z = told.q
+    decoded = sent(roll_target(3.0, 1, 1, roll))
+    w, x, y, z = decoded.q
     # Aerospace sequence, w x y z, "zero-rotation is 1, 0, 0, 0".
     assert math.atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y)) == pytest.approx(roll)
     # ArduPlane takes roll where the roll rate is not ignored; everything else is ignored.
-    assert told.type_mask == 0xFF & ~1 & ~0b00111000
-    assert roll_of(told) == pytest.approx(roll, abs=1e-6)
+    assert decoded.type_mask == 0xFF & ~1 & ~0b00111000
+    assert roll_of(decoded) == pytest.approx(roll, abs=1e-6)
 
 
 def test_a_target_without_roll_or_without_a_quaternion_is_no_roll():
-    told = sent(roll_target(3.0, 1, 1, 0.3))
-    told.type_mask |= mavlink.ATTITUDE_TARGET_TYPEMASK_BODY_ROLL_RATE_IGNORE
-    assert roll_of(told) is None
-    told = sent(roll_target(3.0, 1, 1, 0.3))
-    told.q = [0.0, 0.0, 0.0, 0.0]
-    assert roll_of(told) is None
-    told.q = [math.nan, 0.0, 0.0, 0.0]
-    assert roll_of(told) is None
+    decoded = sent(roll_target(3.0, 1, 1, 0.3))
+    decoded.type_mask |= mavlink.ATTITUDE_TARGET_TYPEMASK_BODY_ROLL_RATE_IGNORE
+    assert roll_of(decoded) is None
+    decoded = sent(roll_target(3.0, 1, 1, 0.3))
+    decoded.q = [0.0, 0.0, 0.0, 0.0]
+    assert roll_of(decoded) is None
+    decoded.q = [math.nan, 0.0, 0.0, 0.0]
+    assert roll_of(decoded) is None
 
 
 def test_equivalent_airspeed_is_that_of_jsbsim():

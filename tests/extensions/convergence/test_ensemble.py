@@ -9,7 +9,6 @@ from ensemble_cases import (
     STEERING_MAX,
     TIGHT,
     VEHICLE,
-    fly,
     history,
     oscillating,
     references,
@@ -31,7 +30,7 @@ from hypothesis import strategies as st
 from lyapunov_cases import K_1
 from scipy.integrate import solve_ivp
 
-from extensions.convergence.ensemble import DISTANCE_CONVERGED, Outcome, Tolerances
+from extensions.convergence.ensemble import DISTANCE_CONVERGED, Outcome
 from extensions.convergence.motion import MOTIONS, Steering
 from gnc.numeric import wrap
 from gnc.paper import cascade_law, lyapunov_law, relative_velocity, state_rates, v_2
@@ -175,49 +174,3 @@ def test_v_2_never_rises_along_an_ensembles_trajectory_under_law_24(refs, start)
     there = relative([*states[0][:2], refs.course[0], 0.0, 0.0, start[2]])
     # And it is V_2 of equation (25). The squares of rho and delta cancel but for their rounding.
     assert values[0] == pytest.approx(v_2(there, 1.0 / K_1), rel=1e-6)
-
-
-@LAWS
-@examples(6)
-@given(north=offsets, east=offsets, course=courses, rate=st.floats(0.05, 0.45))
-def test_the_mirrored_start_flies_the_mirrored_path(law, north, east, course, rate):
-    refs = references(course=[0.3, -0.3], rate=[rate, -rate])
-    result = fly(
-        law,
-        refs,
-        [[north, north], [east, -east]],
-        [course, -course],
-        time_max=40.0,
-        tolerances=Tolerances(relative=1e-8, absolute=1e-7),
-    )
-    # Sine and cosine are odd and even to the last bit, and so is all that follows, but for the
-    # rounding of sums.
-    assert result.distance[0] == pytest.approx(result.distance[1], rel=1e-6, abs=1e-6)
-    assert result.phi[0] == pytest.approx(-result.phi[1], abs=1e-6)
-    assert result.heading_rate_max[0] == pytest.approx(result.heading_rate_max[1], rel=1e-6)
-
-
-@examples(15)
-@given(north=offsets, east=offsets, course=courses, rate=st.floats(-0.5, 0.5))
-def test_the_cut_command_never_exceeds_its_bound(north, east, course, rate):
-    result = fly(
-        Steering.CASCADE_CUT, references(rate=[rate]), [[north], [east]], [course], time_max=60.0
-    )
-    assert result.heading_rate_max[0] <= HEADING_RATE_MAX
-
-
-def test_the_number_of_places_and_the_company_do_not_change_a_trajectory():
-    count = 7
-    rng = np.random.default_rng(5)
-    refs = references(
-        course=rng.uniform(-3.0, 3.0, count),
-        rate=rng.uniform(0.1, 0.4, count),
-        terms=[(0.1, 0.5, 1.0)],
-    )
-    to_reference, course = rng.uniform(-300.0, 300.0, (2, count)), rng.uniform(-3.0, 3.0, count)
-    together = fly(Steering.CASCADE, refs, to_reference, course)
-    in_turn = fly(Steering.CASCADE, refs, to_reference, course, places=2)
-    # Vector and scalar sines may differ in their last bit.
-    assert in_turn.settling_time == pytest.approx(together.settling_time, rel=1e-9)
-    assert in_turn.duration == pytest.approx(together.duration, rel=1e-9)
-    assert in_turn.outcome == together.outcome == (Outcome.CONVERGED,) * count

@@ -4,14 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from ensemble_cases import (
-    BAND,
-    fly,
-    history,
-    oscillating,
-    references,
-    wandering,
-)
+from ensemble_cases import BAND, fly, history, oscillating, references, wandering
 from gnc_cases import LOOK_AHEAD, SPEED
 
 from extensions.convergence.ensemble import Outcome

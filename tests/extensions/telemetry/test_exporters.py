@@ -5,12 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from tests.reports.export.placed_flight import (
-    TOLERANCE,
-    exported,
-    off,
-    track,
-)
+from tests.reports.export.placed_flight import TOLERANCE, exported, off, track
 
 
 def test_an_acmi_file_is_read_by_another_reader(run_path, truth):

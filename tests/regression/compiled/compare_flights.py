@@ -11,7 +11,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 from study_runs import AT_THE_SHIP
-from test_corners import ORDINARY_REPORTS, SILENT_BRAKING
+from test_corners import ORDINARY_REPORTS, SILENT_BRAKING, WITHOUT_SATELLITES
 
 ENGINE_FAILS = [
     "sea_wind", "draws=[]", "flights=1", *AT_THE_SHIP, "reference.standoff_radius_m=9000", "vessel.speed_mps=15",
@@ -39,22 +39,11 @@ STUDIES = {
     ],
     "the paper": ["paper"],
     "a fast oscillation": [*IN_CALM_AIR, "reference.shape=fastest"],
-    "a loiter": [
-        "sweep_nu",
-        "sweep.nu=[0.1]",
-        "comparison.variants=[]",
-        "reference.shape=loiter",
-        "flight.crossings=6",
-    ],
+    "a loiter": [*IN_CALM_AIR, "sweep.nu=[0.1]", "reference.shape=loiter"],
     "samples": ["monte_carlo", "flights=6", "flight.duration_max_s=200"],
     "silent braking": SILENT_BRAKING,
     "ordinary reports": ORDINARY_REPORTS,
-    "no satellites": [
-        "sea_wind",
-        "flights=2",
-        "fault.kind=satellite_navigation",
-        "flight.duration_max_s=251",
-    ],
+    "no satellites": WITHOUT_SATELLITES,
     "a failing engine": ENGINE_FAILS,
     "a stuck surface": [
         "sea_faults",
@@ -72,22 +61,15 @@ STUDIES = {
 
 
 def rows_and_histories(path, name, *overrides, **environment):
-    """Fly a study in a process of its own; return its summary, crossings and time histories."""
+    """Fly a study in a separate process; return its summary, crossings and time histories."""
     words = [word for override in overrides for word in ("--set", override)]
-    command = [
-        sys.executable,
-        "-m",
-        "scenarios.run",
-        name,
-        "--jobs",
-        "2",
-        "--no-report",
-        "--out",
-        str(path),
-        *words,
-    ]
+    fly = [sys.executable, "-m", "scenarios.run", name, "--jobs", "2", "--no-report", "--out", path]
     run = subprocess.run(
-        command, env={**os.environ, **environment}, capture_output=True, text=True, check=False
+        [*fly, *words],
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        check=False,
     )
     # 1: a flight did not meet what is required of it.
     assert run.returncode in {0, 1}, run.stderr
@@ -95,13 +77,8 @@ def rows_and_histories(path, name, *overrides, **environment):
         file: pd.read_csv(path / file).drop(columns="wall_time_s", errors="ignore")
         for file in ("summary.csv", "crossings.csv")
     }
-    return {
-        **tables,
-        **{
-            file.name: pd.read_parquet(file)
-            for file in sorted((path / "flights").glob("*.parquet"))
-        },
-    }
+    histories = sorted((path / "flights").glob("*.parquet"))
+    return tables | {file.name: pd.read_parquet(file) for file in histories}
 
 
 @pytest.mark.parametrize("study", STUDIES.values(), ids=STUDIES)

@@ -6,11 +6,7 @@ import math
 
 import pytest
 
-from extensions.arena.laws.ardupilot import (
-    FRESH,
-    update_loiter,
-    update_waypoint,
-)
+from extensions.arena.laws.ardupilot import FRESH, decided, update_loiter, update_waypoint
 
 START, END = (-100.0, 0.0), (2000.0, 0.0)
 # ArduPilot computes in single precision: 1e-7 relative at each of some ten operations.
@@ -69,6 +65,13 @@ def test_behind_the_start_and_beyond_the_end_it_turns_to_these_points(position, 
     assert acceleration == pytest.approx(
         2.25 * 400.0 / (0.3183099 * 0.75 * 17.0 * 20.0) * math.sin(limited), rel=1e-9
     )
+
+
+def test_a_target_behind_that_changes_sides_does_not_turn_it_round():
+    assert decided(3.0, -3.0, bearing=math.pi, yaw=0.0) == -3.0
+    # Ahead, or on the same side, the new angle counts.
+    assert decided(3.0, -3.0, bearing=1.0, yaw=0.0) == 3.0
+    assert decided(-2.9, -3.0, bearing=math.pi, yaw=0.0) == -2.9
 
 
 def test_a_loiter_is_captured_and_circled():

@@ -32,7 +32,7 @@ def test_beside_a_line_in_a_crosswind():
 
 def test_inside_a_turn_the_curvature_is_fed_forward():
     command = npfg((0.0, -10.0), (15.0, 0.0), CALM, NORTH, 1.0 / 80.0)
-    # Section 1: a = 6.011614, of which feed-forward before fading 2.5: 15^2 m2/s2 over the 90 m of
+    # Section 1: a = 6.011614, with a feed-forward of 2.5 before fading: 15^2 m2/s2 over the 90 m of
     # the vehicle's own circle.
     assert command.lateral_acceleration == pytest.approx(6.011614, rel=SINGLE)
     assert command.feed_forward == pytest.approx(2.5, rel=SINGLE)
