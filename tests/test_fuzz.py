@@ -64,7 +64,8 @@ SIZES = [
 ]
 NUMBERS = st.one_of(st.sampled_from(SIZES), st.integers(), st.floats())
 NAMES = [
-    "", ".", "..", "/", "../../x", "a\x00b", "=1+1", "<!--<script>", "none", "x8", "a" * 300, "x.py:X", "é", "\u2028",
+    "", ".", "..", "/", "../../x", "a\x00b", "=1+1", "<!--<script>", "none", "x8", "a" * 300,
+    "x.py:X", "é", "\u2028",
 ]  # fmt: skip
 WORDS = st.one_of(st.sampled_from(NAMES), st.text(max_size=8))
 VALUES = st.recursive(
@@ -232,7 +233,8 @@ def table(run):
 
 
 RUN_FILES = [
-    "manifest.json", "journal.sqlite", "journal.sqlite", "summary.csv", "draws.csv", "flights/short_00001.parquet",
+    "manifest.json", "journal.sqlite", "journal.sqlite", "summary.csv", "draws.csv",
+    "flights/short_00001.parquet",
 ]  # fmt: skip
 
 DAMAGED = given(st.sampled_from(RUN_FILES), DAMAGES, st.integers(0, 10**6))

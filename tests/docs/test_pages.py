@@ -9,7 +9,6 @@ from docstrings import as_text
 from generated_pages import FOLDER, pages
 from reference_pages.columns import tables
 from reference_pages.commands import commands_page
-from reference_pages.frames import frames_svg
 from reference_pages.keys import keys_page
 from reference_pages.markdown import literal, plain
 from repository_links import PAGES
@@ -45,17 +44,6 @@ def test_every_command_and_every_option_is_on_its_page():
     assert re.findall(r"^## (\w+)$", page, re.MULTILINE) == list(commands())
     for option in ("--set KEY=VALUE", "--resume", "--to NAME,...", "--from NAME|FILE.toml"):
         assert f"`{option}`".replace("|", r"\|") in page
-
-
-def test_the_sketch_has_the_orbit_closed_about_the_centre():
-    """Equations (2) to (6): the reference comes back to the centre of oscillation after a period."""
-    points = re.search(r'class="orbit" points="([^"]+)"', frames_svg())[1].split()
-    start, middle, end = (
-        tuple(map(float, points[i].split(","))) for i in (0, len(points) // 2, -1)
-    )
-    # A tenth of a pixel is the rounding of the picture; each of two numbers has half of it.
-    for place in (middle, end):
-        assert max(abs(a - b) for a, b in zip(start, place, strict=True)) < 0.11
 
 
 GLOSSARY = Path(__file__).parents[2] / "docs" / "reference" / "glossary.md"

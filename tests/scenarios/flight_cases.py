@@ -94,8 +94,9 @@ def fly(**changes):
 def record(history, columns, outcome=Outcome.COMPLETED, *, settled_at=0.0):
     """Return the record of a flight with a time history that is made up."""
     return FlightRecord(
-        outcome=outcome, message="", mode="tracking", settled_at=settled_at, interventions=[], columns=columns, history=history,
-        every_step=history, saturation_fraction=0.0, heading_rate_demand_max=0.6, heading_rate_command_max=0.5, guard_time=0.0,
+        outcome=outcome, message="", mode="tracking", settled_at=settled_at, interventions=[],
+        columns=columns, history=history, every_step=history, saturation_fraction=0.0,
+        heading_rate_demand_max=0.6, heading_rate_command_max=0.5, guard_time=0.0,
     )  # fmt: skip
 
 

@@ -1,4 +1,6 @@
-"""Parts that a user adds, each by one file: they fly in a sweep, and are refused or fail in one line."""
+"""Parts that a user adds, each by one file: they fly in a sweep, and are refused or fail in one
+line.
+"""
 
 from dataclasses import replace
 

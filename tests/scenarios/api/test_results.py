@@ -1,4 +1,6 @@
-"""What a program has of flights and runs: tables, exports, parts as objects, and the scripts of docs/scripts."""
+"""What a program has of flights and runs: tables, exports, parts as objects, and the scripts of
+docs/scripts.
+"""
 
 import gc
 import math
@@ -138,7 +140,8 @@ def test_laws_are_compared_and_swept_in_other_processes():
     }
     study = run(ONE, jobs=2, **laws)
     assert list(study.flights) == [
-        "nu_0.50_law_cascade", "nu_0.50_law_Pursuit", "nu_0.50_law_cascade_soft", "nu_0.50_law_Pursuit_soft",
+        "nu_0.50_law_cascade", "nu_0.50_law_Pursuit", "nu_0.50_law_cascade_soft",
+        "nu_0.50_law_Pursuit_soft",
     ]  # fmt: skip
     soft = study.flights["nu_0.50_law_cascade_soft"].history
     assert soft.equals(study.flights["nu_0.50_law_Pursuit"].history)

@@ -9,7 +9,6 @@ from scenarios.experiment.sampling import SamplingDesign
 from scenarios.scenario.files import load_study
 from scenarios.scenario.scenario import Scenario
 from scenarios.studies.base import study_of
-from scenarios.world.noise import PAYLOAD, own_generator
 
 DRAWS = [
     {"key": "wind.speed_mps", "uniform": [3.0, 8.0]},
@@ -18,8 +17,8 @@ DRAWS = [
     {"key": "vessel.speed_mps", "uniform": [2.0, 8.0]},
 ]
 BASE = {
-    "title": "t", "fidelity": "kinematic", "flights": 6, "guidance": {"mission": "follow"}, "draws": DRAWS,
-    "vessel": {"manoeuvres": [{"at_s": 50.0}]},
+    "title": "t", "fidelity": "kinematic", "flights": 6, "guidance": {"mission": "follow"},
+    "draws": DRAWS, "vessel": {"manoeuvres": [{"at_s": 50.0}]},
 }  # fmt: skip
 
 
@@ -106,21 +105,6 @@ def test_a_latin_hypercube_has_one_flight_in_each_stratum_of_each_input():
     strata = np.floor(1024 * points("latin_hypercube", 1024)).astype(int)
     for column in strata.T:
         assert sorted(column) == list(range(1024))
-
-
-WINDS = "sweep.wind.from_deg=[0, 120, 240]"
-
-
-@pytest.mark.parametrize(("common", "different"), [((), 3), (("common_random_numbers=true",), 1)])
-def test_each_wind_direction_has_an_instrument_of_its_own_unless_they_are_to_share_one(
-    common, different
-):
-    experiment = Experiment("sulphur", load_study("sulphur", [WINDS, *common]))
-    requests = [experiment.request(number) for number in range(experiment.flights)]
-    assert [of.scenario.wind.from_deg for of in requests] == [0.0, 120.0, 240.0]
-    assert len({of.seed for of in requests}) == different
-    # What the sampled instrument is made of.
-    assert len({own_generator(of.noise, PAYLOAD).random() for of in requests}) == different
 
 
 @pytest.mark.slow

@@ -83,8 +83,9 @@ AT_THE_MAST, ON_THE_WATER = (60.0,), (1.0,)
 
 
 GIVEN = {
-    "planned": 0, "flown": 12, "settled": 80.0, "mode": Mode.TRACKING, "fault": Fault.NONE, "sample": AT_THE_MAST, "trouble": "",
-    "vessel": True, "after": math.inf, "reason": None, "tracked": 0.0, "guarded": False, "saturated": 0.3, "fault_at": None,
+    "planned": 0, "flown": 12, "settled": 80.0, "mode": Mode.TRACKING, "fault": Fault.NONE,
+    "sample": AT_THE_MAST, "trouble": "", "vessel": True, "after": math.inf, "reason": None,
+    "tracked": 0.0, "guarded": False, "saturated": 0.3, "fault_at": None,
 }  # fmt: skip
 
 

@@ -12,9 +12,11 @@ from measurement.estimate.verdict import GUARD
 pytestmark = pytest.mark.slow
 
 QUICK = (
-    "fidelity=kinematic", "reports.interval_s=[0,0]", "sensors={}", "start.place_m=[-250,-120]", "start.course_deg=-90",
-    "wind.speed_mps=3", "wind.from_deg=40", "vessel.speed_mps=8", "emission.fuel=vlsfo", "emission.sulphur_percent=1.5",
-    "emission.load=0.6", "payload.sensor=fast", "flight.altitude_m=60", "flight.after_settling_s=120", "flight.duration_max_s=300",
+    "fidelity=kinematic", "reports.interval_s=[0,0]", "sensors={}", "start.place_m=[-250,-120]",
+    "start.course_deg=-90", "wind.speed_mps=3", "wind.from_deg=40", "vessel.speed_mps=8",
+    "emission.fuel=vlsfo", "emission.sulphur_percent=1.5", "emission.load=0.6",
+    "payload.sensor=fast", "flight.altitude_m=60", "flight.after_settling_s=120",
+    "flight.duration_max_s=300",
     "following={source_height_m=[20.0, 60.0], load=[0.2, 0.9], climb_gradient=0.08, plume='estimated'}",
 )  # fmt: skip
 

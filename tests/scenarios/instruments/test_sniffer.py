@@ -1,4 +1,6 @@
-"""The sniffer on board, one of the project's and one of a user: what it reads of a flight, and its verdict."""
+"""The sniffer on board, one of the project's and one of a user: what it reads of a flight, and its
+verdict.
+"""
 
 from pathlib import Path
 
@@ -51,8 +53,9 @@ def test_a_document_tells_the_verdict_of_the_row_and_leaves_the_rest(verdict):
 
 # Astern of a ship on a straight course, where the kinematic vehicle settles within a minute or two.
 QUICK = (
-    "fidelity=kinematic", "reports.interval_s=[0,0]", "sensors={}", "following={}", "start.place_m=[-250,-120]",
-    "start.course_deg=-90", "wind.speed_mps=2", "wind.from_deg=0", "vessel.speed_mps=10", "flight.after_settling_s=60",
+    "fidelity=kinematic", "reports.interval_s=[0,0]", "sensors={}", "following={}",
+    "start.place_m=[-250,-120]", "start.course_deg=-90", "wind.speed_mps=2", "wind.from_deg=0",
+    "vessel.speed_mps=10", "flight.after_settling_s=60",
 )  # fmt: skip
 
 
@@ -122,8 +125,8 @@ def test_a_background_and_a_rule_change_nothing_else(slow):
 
 EXAMPLE = str(Path(__file__).parents[3] / "docs" / "examples" / "own_ship.toml")
 QUICK_EXAMPLE = (
-    "fidelity=kinematic", "reports.interval_s=[0,0]", "sensors={}", "start.place_m=[-250,-120]", "start.course_deg=-90",
-    "wind.speed_mps=2", "wind.from_deg=0", "flight.after_settling_s=60",
+    "fidelity=kinematic", "reports.interval_s=[0,0]", "sensors={}", "start.place_m=[-250,-120]",
+    "start.course_deg=-90", "wind.speed_mps=2", "wind.from_deg=0", "flight.after_settling_s=60",
 )  # fmt: skip
 
 

@@ -175,7 +175,8 @@ def test_a_vehicle_that_leaves_for_good_is_no_longer_off_its_reference(plan, mod
     # 3 m off while it tracks, and 500 m while it leaves, which sinks and slows down meanwhile.
     off = np.where(left, 500.0, 3.0)
     columns = {
-        "mode": modes, "reference_north_m": column(history, "north_m") + off, "airspeed_command_mps": np.where(left, 12.0, 19.42),
+        "mode": modes, "reference_north_m": column(history, "north_m") + off,
+        "airspeed_command_mps": np.where(left, 12.0, 19.42),
         "altitude_command_m": np.where(left, -1000.0, plan.altitude),
     }  # fmt: skip
     row, crossings = figures(plan, weave(plan, **columns))

@@ -42,9 +42,10 @@ def made(values, outcome=Outcome.COMPLETED):
     """Return a record of straight flight north at 20 m/s with exact figures, but for ``values``."""
     time = np.arange(0.0, 60.0 + 0.5 * STEP, STEP)
     straight = {
-        "time_s": time, "north_m": 20.0 * time, "velocity_north_mps": 20.0, "altitude_m": 100.0, "airspeed_mps": 20.0,
-        "vessel_north_m": VESSEL_NORTH, "own_seen_north_m": 20.0 * time, "own_seen_speed_mps": 20.0, "disc_north_m": VESSEL_NORTH,
-        "speed_fastest_mps": 20.0, "speed_slowest_mps": 20.0, "command_change": 1.0,
+        "time_s": time, "north_m": 20.0 * time, "velocity_north_mps": 20.0, "altitude_m": 100.0,
+        "airspeed_mps": 20.0, "vessel_north_m": VESSEL_NORTH, "own_seen_north_m": 20.0 * time,
+        "own_seen_speed_mps": 20.0, "disc_north_m": VESSEL_NORTH, "speed_fastest_mps": 20.0,
+        "speed_slowest_mps": 20.0, "command_change": 1.0,
     }  # fmt: skip
     history = np.zeros((len(time), len(NAMES)))
     for name, value in (straight | values).items():
@@ -83,8 +84,9 @@ def turn(plan, *, towards_vessel=0.0, begins=10.0):
     sampled = slice(None, None, 100)
     moved = north[sampled] + np.where(time[sampled] > at - 0.5 * STEP, towards_vessel, 0.0)
     return {
-        "north_m": moved, "east_m": east[sampled], "own_seen_north_m": moved, "own_seen_east_m": east[sampled],
-        "velocity_north_mps": v_north[sampled], "velocity_east_mps": v_east[sampled], "own_seen_course_rad": course[sampled],
+        "north_m": moved, "east_m": east[sampled], "own_seen_north_m": moved,
+        "own_seen_east_m": east[sampled], "velocity_north_mps": v_north[sampled],
+        "velocity_east_mps": v_east[sampled], "own_seen_course_rad": course[sampled],
         "heading_rate_rad_s": rates[sampled], "course_commanded_rad": commanded[sampled],
         "guard": np.where(command[sampled] > 0.0, 1.0, 0.0),
     }  # fmt: skip

@@ -22,12 +22,14 @@ from scenarios.measures.verdict import Judge, counts_of
 from scenarios.scenario.sections.flight import CriteriaConfig
 
 GOOD = {
-    "outcome": "completed", "message": "", "mode_at_end": "tracking", "fault": "none", "fault_time_s": math.nan,
-    "duration_s": 300.0, "settling_time_s": 80.0, "resume_periods": 1.5, "tracking_error_end_m": 1.0,
-    "keepout_violations": 0, "keepout_depth_m": 0.0, "keepout_radius_m": 200.0, "crossing_clearance_min_m": 0.0,
-    "tracking_error_rms_m": 1.5, "airspeed_error_rms_mps": 0.3, "altitude_error_max_m": 1.5, "crossing_interval_mean_s": 10.0,
-    "crossing_interval_predicted_s": 10.0, "crossing_distance_mean_m": 215.0, "heading_rate_command_max_rad_s": 0.5,
-    "heading_rate_limit_rad_s": 0.5, "heading_rate_demand_max_rad_s": 0.6,
+    "outcome": "completed", "message": "", "mode_at_end": "tracking", "fault": "none",
+    "fault_time_s": math.nan, "duration_s": 300.0, "settling_time_s": 80.0, "resume_periods": 1.5,
+    "tracking_error_end_m": 1.0, "keepout_violations": 0, "keepout_depth_m": 0.0,
+    "keepout_radius_m": 200.0, "crossing_clearance_min_m": 0.0, "tracking_error_rms_m": 1.5,
+    "airspeed_error_rms_mps": 0.3, "altitude_error_max_m": 1.5, "crossing_interval_mean_s": 10.0,
+    "crossing_interval_predicted_s": 10.0, "crossing_distance_mean_m": 215.0,
+    "heading_rate_command_max_rad_s": 0.5, "heading_rate_limit_rad_s": 0.5,
+    "heading_rate_demand_max_rad_s": 0.6,
 }  # fmt: skip
 """A row at every limit of the criteria that there are unless a scenario says otherwise."""
 
@@ -89,16 +91,19 @@ NOT_FLOWN = ("infeasible", "trim_failed", "failed")
 def row(number=0, outcome="completed", *, met=None, trial="t", flown=None, **figures):
     """Return a row of a flight beside a vessel, which stayed outside unless figures say otherwise."""
     measured = {
-        "duration_s": 1800.0, "keepout_violations": 0, "min_distance_m": 230.0, "keepout_shape": "sphere",
-        "settling_time_s": 80.0, "tracking_error_rms_m": 1.0, "airspeed_error_rms_mps": 0.1, "altitude_error_max_m": 0.5,
-        "crossing_interval_mean_s": 10.0, "crossing_interval_predicted_s": 10.0, "heading_rate_limit_rad_s": 0.5,
-        "heading_rate_demand_max_rad_s": 0.4, "heading_rate_command_max_rad_s": 0.4, "tracking_error_end_m": 1.0,
+        "duration_s": 1800.0, "keepout_violations": 0, "min_distance_m": 230.0,
+        "keepout_shape": "sphere", "settling_time_s": 80.0, "tracking_error_rms_m": 1.0,
+        "airspeed_error_rms_mps": 0.1, "altitude_error_max_m": 0.5,
+        "crossing_interval_mean_s": 10.0, "crossing_interval_predicted_s": 10.0,
+        "heading_rate_limit_rad_s": 0.5, "heading_rate_demand_max_rad_s": 0.4,
+        "heading_rate_command_max_rad_s": 0.4, "tracking_error_end_m": 1.0,
     }  # fmt: skip
     begun = outcome not in NOT_FLOWN if flown is None else flown
     return {
-        "flight_id": f"f{number}", "trial": trial, "outcome": outcome, "message": f"why {number}", "required": "criteria",
-        "keepout_radius_m": 200.0, "fault": "none", "fault_time_s": math.nan,
-        "criteria_met": outcome == "completed" if met is None else met, **(measured if begun else {}), **figures,
+        "flight_id": f"f{number}", "trial": trial, "outcome": outcome, "message": f"why {number}",
+        "required": "criteria", "keepout_radius_m": 200.0, "fault": "none",
+        "fault_time_s": math.nan, "criteria_met": outcome == "completed" if met is None else met,
+        **(measured if begun else {}), **figures,
     }  # fmt: skip
 
 

@@ -99,22 +99,24 @@ NOT_SCALED = {
     "guidance.airspeed_mps", "following.turn_deviation_m",
     # World and equipment, and what is written for a circle about which the scenario says
     # everything.
-    "vessel.speed_mps", "vessel.gap_max_s", "air.background_s", "plume.source_height_m", "keepout.radius_m", "reference.radius_m", "wind.speed_mps",
-    "wind.roughness_m", "wind.height_m",
-    "turbulence.gust_speed_mps", "turbulence.gust_length_s", "reports.interval_s", "reports.position_sigma_m",
-    "wind.stability_per_s", "reports.velocity_sigma_mps",
+    "vessel.speed_mps", "vessel.gap_max_s", "air.background_s", "plume.source_height_m",
+    "keepout.radius_m", "reference.radius_m", "wind.speed_mps", "wind.roughness_m", "wind.height_m",
+    "turbulence.gust_speed_mps", "turbulence.gust_length_s", "reports.interval_s",
+    "reports.position_sigma_m", "wind.stability_per_s", "reports.velocity_sigma_mps",
     "reports.latency_max_s", "sensors.position_sigma_m", "sensors.velocity_sigma_mps",
-    "sensors.airspeed_sigma_mps", "sensors.airspeed_bias_mps", "vessel.length_m", "vessel.beam_m", "vessel.stack_from_bow_m", "vessel.stack_from_port_m",
-    "vessel.antenna_from_bow_m", "vessel.antenna_from_port_m", "reports.turn_rate_sigma_deg_s",
-    "fault.at_s", "fault.vessel_data_s", "fault.satellite_navigation_s",
+    "sensors.airspeed_sigma_mps", "sensors.airspeed_bias_mps", "vessel.length_m", "vessel.beam_m",
+    "vessel.stack_from_bow_m", "vessel.stack_from_port_m", "vessel.antenna_from_bow_m",
+    "vessel.antenna_from_port_m", "reports.turn_rate_sigma_deg_s", "fault.at_s",
+    "fault.vessel_data_s", "fault.satellite_navigation_s",
     # What a ship does, how well it is known, and how often the keep-out area may be touched.
-    "following.apparent_wind_min_mps", "following.vessel_acceleration_mps2", "following.vessel_speed_max_mps",
-    "following.speed_error_mps", "following.drift_rate_mps", "following.touches_per_hour", "statistics.distance_quantile_width_m",
+    "following.apparent_wind_min_mps", "following.vessel_acceleration_mps2",
+    "following.vessel_speed_max_mps", "following.speed_error_mps", "following.drift_rate_mps",
+    "following.touches_per_hour", "statistics.distance_quantile_width_m",
     # What an arena of laws tunes and measures, for the aircraft that its file names.
     "arena.tuning_duration_s", "arena.error_max_m", "arena.window_s", "arena.effort_weight_m_s",
     # Where ships are, and how long they take, for the aircraft that a patrol's file names.
-    "patrol.endurance_s", "patrol.area_m", "patrol.separation_m", "patrol.clearance_m", "patrol.patience_s", "patrol.service_s",
-    "patrol.service_deviation_s",
+    "patrol.endurance_s", "patrol.area_m", "patrol.separation_m", "patrol.clearance_m",
+    "patrol.patience_s", "patrol.service_s", "patrol.service_deviation_s",
     "reference.standoff_radius_m",
     # The paper's vehicle has no lag, however fast it turns.
     "kinematic.heading_rate_lag_s",
@@ -123,17 +125,17 @@ NOT_SCALED = {
     # The simulation runs at 120 Hz for every aircraft.
     "guidance.rate_hz", "flight.log_rate_hz",
     # Not set by default; who sets them means what they say.
-    "flight.after_settling_s", "flight.measured_s", "flight.altitude_min_m", "flight.altitude_max_m",
-    "guidance.heading_rate_max_rad_s", "start.place_m", "start.range_m",
-    "criteria.tracking_error_end_m", "criteria.crossing_interval_s",
-    "criteria.crossing_distance_m", "following.source_height_m", "flight.altitude_m", "criteria.time_to_find_s",
+    "flight.after_settling_s", "flight.measured_s", "flight.altitude_min_m",
+    "flight.altitude_max_m", "guidance.heading_rate_max_rad_s", "start.place_m", "start.range_m",
+    "criteria.tracking_error_end_m", "criteria.crossing_interval_s", "criteria.crossing_distance_m",
+    "following.source_height_m", "flight.altitude_m", "criteria.time_to_find_s",
 }  # fmt: skip
 """Keys with a length or a time in them that are what they are for every aircraft."""
 
 DIMENSIONS = {
-    "_per_hour": (0, -1), "_mps2": (1, -2),
-    "_per_m2": (-2, 0), "_per_m": (-1, 0), "_per_s": (0, -1), "_rad_s": (0, -1), "_deg_s": (0, -1), "_mps": (1, -1),
-    "_hz": (0, -1), "_m": (1, 0), "_s": (0, 1),
+    "_per_hour": (0, -1), "_mps2": (1, -2), "_per_m2": (-2, 0), "_per_m": (-1, 0),
+    "_per_s": (0, -1), "_rad_s": (0, -1), "_deg_s": (0, -1), "_mps": (1, -1), "_hz": (0, -1),
+    "_m": (1, 0), "_s": (0, 1),
 }  # fmt: skip
 """Powers of length and time in a unit, by the suffix that names it (house style); the first that
 fits.
@@ -191,8 +193,8 @@ def in_own_units(time, length, *overrides, nu, lag):
     scaled by hand, in the units of the aircraft.
     """
     by_hand = {
-        "keepout.radius_m": 200.0 * length, "guidance.rate_hz": 20.0 / time, "flight.log_rate_hz": 10.0 / time,
-        "kinematic.heading_rate_lag_s": lag * time,
+        "keepout.radius_m": 200.0 * length, "guidance.rate_hz": 20.0 / time,
+        "flight.log_rate_hz": 10.0 / time, "kinematic.heading_rate_lag_s": lag * time,
     }  # fmt: skip
     words = ["fidelity=kinematic", f"sweep.nu=[{nu}]", "comparison.variants=[]", *overrides]
     study = load_study("sweep_nu", words, refusing=False)

@@ -61,8 +61,8 @@ def test_a_vehicle_whose_lag_keeps_a_turn_away_from_leading_away_is_refused():
 
 
 SETUP = VehicleSetup(
-    lag=0.275, reversal=TurnReversalResponse(delay=0.0, lag=0.3), response_error=0.0, airspeed_bandwidth=1.0,
-    airspeed_min=15.0, airspeed_max=25.0,
+    lag=0.275, reversal=TurnReversalResponse(delay=0.0, lag=0.3), response_error=0.0,
+    airspeed_bandwidth=1.0, airspeed_min=15.0, airspeed_max=25.0,
 )  # fmt: skip
 
 

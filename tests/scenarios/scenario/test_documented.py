@@ -30,7 +30,8 @@ def test_every_number_has_a_unit_and_nothing_else_has():
 
 
 UNITS = {
-    "_m": "m", "_s": "s", "_mps": "m/s", "_deg": "deg", "_rad_s": "rad/s", "_hz": "Hz", "_per_s": "1/s",
+    "_m": "m", "_s": "s", "_mps": "m/s", "_deg": "deg", "_rad_s": "rad/s", "_hz": "Hz",
+    "_per_s": "1/s",
 }  # fmt: skip
 
 

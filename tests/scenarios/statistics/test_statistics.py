@@ -199,10 +199,12 @@ def rows(errors, *, deviation=0.02, sensor="electrochemical", fuel=0.1, verdicts
     found = expected + np.asarray(errors)
     table = pd.DataFrame(index=range(len(found)), columns=list(COLUMNS), dtype=object)
     given = {
-        "flight_id": [f"a_{i}" for i in range(len(found))], "seed": range(len(found)), "sensor": sensor, "fsc_fuel_percent": fuel,
-        "fsc_expected_percent": expected, "sulphur_limit_percent": 0.1, "verdict_2min": "open",
-        "sulphur_verdict": verdicts or ["open"] * len(found), "fsc_percent": found, "fsc_uncertainty_percent": deviation,
-        "fsc_noise_percent": 0.5 * deviation, "fsc_low_percent": found - 1.96 * deviation, "fsc_high_percent": found + 1.96 * deviation,
+        "flight_id": [f"a_{i}" for i in range(len(found))], "seed": range(len(found)),
+        "sensor": sensor, "fsc_fuel_percent": fuel, "fsc_expected_percent": expected,
+        "sulphur_limit_percent": 0.1, "verdict_2min": "open",
+        "sulphur_verdict": verdicts or ["open"] * len(found), "fsc_percent": found,
+        "fsc_uncertainty_percent": deviation, "fsc_noise_percent": 0.5 * deviation,
+        "fsc_low_percent": found - 1.96 * deviation, "fsc_high_percent": found + 1.96 * deviation,
     }  # fmt: skip
     for name, values in given.items():
         table[name] = values

@@ -1,4 +1,6 @@
-"""Flights, lists of trials and the study of the premises, and the files that a run takes parts from."""
+"""Flights, lists of trials and the study of the premises, and the files that a run takes parts
+from.
+"""
 
 import json
 import shutil

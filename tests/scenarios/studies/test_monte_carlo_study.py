@@ -14,9 +14,11 @@ pytestmark = pytest.mark.slow
 
 
 SHORT = [
-    "fidelity=kinematic", "turbulence.level=none", "turbulence.gusts=0", "turbulence.gust_speed_mps=0",
+    "fidelity=kinematic", "turbulence.level=none", "turbulence.gusts=0",
+    "turbulence.gust_speed_mps=0",
     # Too short to settle.
-    "flight.duration_max_s=3.0", "flight.log_rate_hz=5", "guidance.rate_hz=5", "criteria.required=keep_out", "histories=5",
+    "flight.duration_max_s=3.0", "flight.log_rate_hz=5", "guidance.rate_hz=5",
+    "criteria.required=keep_out", "histories=5",
     # All within the range, so that every flight is at its point; vessels at 2 m/s and more make an
     # apparent wind.
     "speed_ratio=[0.0, 5.0]", "wind.speed_mps=0.5",

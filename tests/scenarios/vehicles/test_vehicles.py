@@ -161,8 +161,9 @@ def test_the_slower_turn_at_the_largest_bank_is_as_fast_as_is_said_and_hardly_fa
     x8_schedule, heading_rate
 ):
     setup = VehicleSetup(
-        lag=0.4, reversal=TurnReversalResponse(delay=0.26, lag=0.26), response_error=3.0, airspeed_bandwidth=1.0, airspeed_min=15.0,
-        airspeed_max=25.0, turn_airspeeds=tuple(x8_schedule.airspeeds), turn_rates=_slower_turns(x8_schedule),
+        lag=0.4, reversal=TurnReversalResponse(delay=0.26, lag=0.26), response_error=3.0,
+        airspeed_bandwidth=1.0, airspeed_min=15.0, airspeed_max=25.0,
+        turn_airspeeds=tuple(x8_schedule.airspeeds), turn_rates=_slower_turns(x8_schedule),
     )  # fmt: skip
     airspeed, bank = setup.turning_airspeed(heading_rate), x8_schedule.envelope.bank_max
     rates = []

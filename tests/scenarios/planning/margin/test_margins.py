@@ -129,8 +129,8 @@ def fly_in_turbulence(root, start, flight, hold, seed):
     tracker = Tracker(flight.guidance.tracking, copy.copy(flight.guidance.mission.reference))
     reference = tracker.reference
     vehicle = JsbsimVehicle(
-        aircraft, start, X8.envelope, north=reference.north, east=reference.east, altitude=60.0, course=reference.course,
-        time_step=flight.time_step,
+        aircraft, start, X8.envelope, north=reference.north, east=reference.east, altitude=60.0,
+        course=reference.course, time_step=flight.time_step,
     )  # fmt: skip
     milspec = "atmosphere/turbulence/milspec"
     aircraft.fdm.write("atmosphere/randomseed", seed)
