@@ -203,6 +203,9 @@ OWN_VALUES = {
 }  # fmt: skip
 """Where that is what a mission has anyway, or its flight fails one limit as it does the other."""
 
+OF_MISSION = {"criteria.resumes_within_periods", "criteria.modes_at_end"}
+"""Criteria that hang on what a flight follows."""
+
 SEARCHING = (
     "following.plume", "following.search", "following.distance", "following.source_height_m", "following.load",
     "following.climb_gradient", "criteria.time_to_find_s",
@@ -224,6 +227,19 @@ OF_HULL = (
 )  # fmt: skip
 """Keys that act beside a ship with a hull."""
 
+FOLLOWED = (
+    "guidance.",
+    "following.",
+    "keepout.",
+    "vessel.",
+    "traffic.",
+    "reports.",
+    "fault.",
+    "start.",
+)
+OF_FOLLOWING = tuple(key for key in VALUES if key.startswith(FOLLOWED) or key in OF_MISSION)
+"""Keys that act on a flight that follows a ship."""
+
 OF_CIRCLE = tuple(
     key for key in VALUES if key.startswith(("guidance.", "reference.", "following.", "keepout."))
 )
@@ -234,6 +250,7 @@ OF_ANOTHER = tuple(key for key in VALUES if key.startswith("traffic.0.emission."
 
 LOOKED_AT = {
     "hull": OF_HULL,
+    "following": OF_FOLLOWING,
     "standoff": OF_CIRCLE,
     "emitting": OF_ANOTHER,
     "measuring": (*MEASURING, "plume.meander", "payload.exact"),
@@ -252,9 +269,6 @@ ELSEWHERE = {
 
 LISTS = {"vessel.manoeuvres", "traffic", "traffic.0.manoeuvres"}
 """Keys of lists of tables, whose keys are keys as well."""
-
-OF_MISSION = {"criteria.resumes_within_periods", "criteria.modes_at_end"}
-"""Criteria that hang on what a flight follows."""
 
 LEVEL = {"criteria.airspeed_error_rms_mps", "criteria.altitude_error_max_m"}
 """Criteria that the kinematic vehicle always meets: it is level and as fast as commanded."""
