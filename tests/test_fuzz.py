@@ -8,6 +8,7 @@ multiplies the number of examples, which are then others each time.
 
 import contextlib
 import json
+import math
 import os
 import resource
 import shutil
@@ -20,6 +21,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from common.command_line import BAD_INPUT
+from reports.errors import ReportError
+from reports.registry import content
+from reports.run.files import damage_named
+from reports.run.run_data import read_run
 from scenarios.engine.processes import InProcessExecutor, data_memory
 from scenarios.errors import InputError
 from scenarios.scenario.files import load_study
@@ -38,51 +43,31 @@ MEMORY_MAX = 2**30
 """What examples may use beside what the test had before them [bytes]."""
 
 FLIGHTS = 3
+KINEMATIC = ("kinematic", "x8")
 
-NUMBERS = st.one_of(
-    st.sampled_from(
-        [
-            0,
-            -1,
-            1,
-            2**31,
-            2**63,
-            -(2**63) - 1,
-            10**30,
-            1e-300,
-            1e-9,
-            1e9,
-            1e300,
-            -1e300,
-            5e-324,
-            float("inf"),
-            float("nan"),
-        ]
-    ),
-    st.integers(),
-    st.floats(),
-)
-WORDS = st.one_of(
-    st.sampled_from(
-        [
-            "",
-            ".",
-            "..",
-            "/",
-            "../../x",
-            "a\x00b",
-            "=1+1",
-            "<!--<script>",
-            "none",
-            "x8",
-            "a" * 300,
-            "x.py:X",
-            "é",
-            "\u2028",
-        ]
-    ),
-    st.text(max_size=8),
-)
+SIZES = [
+    0,
+    -1,
+    1,
+    2**31,
+    2**63,
+    -(2**63) - 1,
+    10**30,
+    1e-300,
+    1e-9,
+    1e9,
+    1e300,
+    -1e300,
+    5e-324,
+    math.inf,
+    math.nan,
+]
+NUMBERS = st.one_of(st.sampled_from(SIZES), st.integers(), st.floats())
+NAMES = [
+    "", ".", "..", "/", "../../x", "a\x00b", "=1+1", "<!--<script>", "none", "x8", "a" * 300,
+    "x.py:X", "é", "\u2028",
+]  # fmt: skip
+WORDS = st.one_of(st.sampled_from(NAMES), st.text(max_size=8))
 VALUES = st.recursive(
     st.one_of(NUMBERS, WORDS, st.booleans()),
     lambda inner: st.one_of(st.lists(inner, max_size=3), st.dictionaries(WORDS, inner, max_size=2)),
@@ -94,24 +79,14 @@ def keys_of(document, before=""):
     """Return every dotted key of a scenario."""
     keys = []
     for key, value in document.items():
-        keys += [
-            f"{before}{key}",
-            *(keys_of(value, f"{before}{key}.") if isinstance(value, dict) else []),
-        ]
+        keys.append(f"{before}{key}")
+        keys += keys_of(value, f"{before}{key}.") if isinstance(value, dict) else []
     return keys
 
 
-KEYS = st.one_of(
-    st.sampled_from(
-        [
-            *keys_of(Scenario(title="all").model_dump(mode="json")),
-            "sweep.nu",
-            "sweep.wind.speed_mps",
-            "draws.0.key",
-        ]
-    ),
-    WORDS,
-)
+SWEPT = ["sweep.nu", "sweep.wind.speed_mps", "draws.0.key"]
+KEYS = st.sampled_from([*keys_of(Scenario(title="all").model_dump(mode="json")), *SWEPT]) | WORDS
+FLAGS = ["--resume", "--no-report", "--list"]
 OPTIONS = st.sampled_from(
     [
         "--out",
@@ -120,11 +95,9 @@ OPTIONS = st.sampled_from(
         "--set",
         "--time-limit",
         "--memory-limit",
-        "--resume",
-        "--no-report",
-        "--list",
         "--nothing",
         "--export",
+        *FLAGS,
     ]
 )
 
@@ -165,21 +138,14 @@ def place(tmp_path_factory):
         patch.setattr(
             "scenarios.engine.runner.LocalExecutor", lambda work, **_: InProcessExecutor(work)
         )
-        assert (
-            run_command(
-                "scenarios.run", "short.toml", "--out", "whole", "--jobs", "1", "--no-report"
-            ).status
-            == 0
-        )
+        words = ("short.toml", "--out", "whole", "--jobs", "1", "--no-report")
+        assert run_command("scenarios.run", *words).status == 0
         yield place
 
 
 def files_in(place):
-    return sorted(
-        path.relative_to(place).as_posix()
-        for path in place.rglob("*")
-        if "run" not in path.relative_to(place).parts[:1]
-    )
+    paths = [path.relative_to(place) for path in place.rglob("*")]
+    return sorted(path.as_posix() for path in paths if path.parts[0] != "run")
 
 
 def ended(place, module, *arguments):
@@ -192,9 +158,8 @@ def ended(place, module, *arguments):
     assert found.status in (0, 1, 2), (arguments, found)
     assert "Traceback" not in found.errors
     if found.status == BAD_INPUT:
-        *_, last = (
-            found.errors.splitlines()
-        )  # One line, also where a name has a line separator of Unicode's.
+        # One line, also where a name has a line separator of Unicode's.
+        *_, last = found.errors.splitlines()
         assert last.startswith("error: "), (arguments, found)
     assert files_in(place) == before, arguments
     return found
@@ -209,20 +174,13 @@ def fresh(place):
 @settings(max_examples=100 * DEPTH, derandomize=DEPTH == 1)
 def test_any_configuration_is_a_study_or_refused_in_a_line(place, pairs):
     with bounded(), contextlib.suppress(InputError):
-        scenario = load_study(
-            "short.toml", [f"{key}={json.dumps(value, ensure_ascii=False)}" for key, value in pairs]
-        )
-        if (
-            isinstance(scenario, Scenario)
-            and scenario.fidelity == "kinematic"
-            and scenario.aircraft == "x8"
-        ):
+        words = [f"{key}={json.dumps(value, ensure_ascii=False)}" for key, value in pairs]
+        scenario = load_study("short.toml", words)
+        if isinstance(scenario, Scenario) and (scenario.fidelity, scenario.aircraft) == KINEMATIC:
             study_of(scenario, "short")
 
 
-@given(
-    st.one_of(st.binary(max_size=60), st.text(max_size=60).map(str.encode)), st.integers(0, 1000)
-)
+@given(st.binary(max_size=60) | st.text(max_size=60).map(str.encode), st.integers(0, 1000))
 @settings(max_examples=60 * DEPTH, derandomize=DEPTH == 1)
 def test_any_scenario_file_is_a_study_or_refused_in_a_line(place, junk, at):
     whole = (place / "short.toml").read_bytes()
@@ -244,7 +202,7 @@ def test_any_command_line_ends_with_a_documented_status(place, options, named):
     for option, value in options:
         if "\x00" in value:
             continue  # No program can be given that.
-        words += [option] if option in ("--resume", "--no-report", "--list") else [option, value]
+        words += [option] if option in FLAGS else [option, value]
     for module in ("scenarios.run", "reports.build"):
         ended(place, module, *words)
 
@@ -275,70 +233,43 @@ def table(run):
 
 
 RUN_FILES = [
-    "manifest.json",
-    "journal.sqlite",
-    "journal.sqlite",
-    "summary.csv",
-    "draws.csv",
+    "manifest.json", "journal.sqlite", "journal.sqlite", "summary.csv", "draws.csv",
     "flights/short_00001.parquet",
-]
+]  # fmt: skip
+
+DAMAGED = given(st.sampled_from(RUN_FILES), DAMAGES, st.integers(0, 10**6))
+FEW = settings(max_examples=10 * DEPTH, derandomize=DEPTH == 1)
 
 
-@given(st.sampled_from(RUN_FILES), DAMAGES, st.integers(0, 10**6))
-@settings(max_examples=10 * DEPTH, derandomize=DEPTH == 1)
+@DAMAGED
+@FEW
 def test_a_damaged_run_is_continued_to_the_same_rows_or_refused(place, name, how, at):
     run = fresh(place)
     damage(run / name, how, at)
-    found = ended(
-        place,
-        "scenarios.run",
-        "short.toml",
-        "--out",
-        "run",
-        "--resume",
-        "--jobs",
-        "1",
-        "--no-report",
-    )
+    words = ("short.toml", "--out", "run", "--resume", "--jobs", "1", "--no-report")
+    found = ended(place, "scenarios.run", *words)
     if found.status != BAD_INPUT:
         # Nothing is believed that does not add up.
         assert found.status == 0, found
         pd.testing.assert_frame_equal(table(run), table(place / "whole"), check_exact=True)
 
 
-@given(st.sampled_from(RUN_FILES), DAMAGES, st.integers(0, 10**6))
-@settings(max_examples=10 * DEPTH, derandomize=DEPTH == 1)
+@DAMAGED
+@FEW
 def test_a_flight_of_a_damaged_run_is_replayed_or_refused(place, name, how, at):
     original = fresh(place)
     damage(original / name, how, at)
     inside = original / "again"
-    found = ended(
-        place,
-        "scenarios.run",
-        "run/flights/short_00001",
-        "--out",
-        inside,
-        "--jobs",
-        "1",
-        "--no-report",
-    )
+    words = ("run/flights/short_00001", "--out", inside, "--jobs", "1", "--no-report")
+    found = ended(place, "scenarios.run", *words)
     if found.status == 0:
-        pd.testing.assert_frame_equal(
-            table(inside),
-            table(place / "whole").iloc[[1]].reset_index(drop=True),
-            check_exact=True,
-            check_dtype=False,
-        )
+        one = table(place / "whole").iloc[[1]].reset_index(drop=True)
+        pd.testing.assert_frame_equal(table(inside), one, check_exact=True, check_dtype=False)
 
 
-@given(st.sampled_from(RUN_FILES), DAMAGES, st.integers(0, 10**6))
-@settings(max_examples=10 * DEPTH, derandomize=DEPTH == 1)
+@DAMAGED
+@FEW
 def test_a_report_of_a_damaged_run_names_it_or_is_refused(place, name, how, at):
-    from reports.errors import ReportError
-    from reports.registry import content
-    from reports.run.files import damage_named
-    from reports.run.run_data import read_run
-
     run = fresh(place)
     damage(run / name, how, at)
     with bounded(), contextlib.suppress(ReportError):
@@ -352,9 +283,5 @@ def test_a_report_of_a_damaged_run_names_it_or_is_refused(place, name, how, at):
 
 def test_the_whole_run_is_as_it_was(place):
     assert Path("whole", "summary.csv").is_file()
-    assert (
-        ended(
-            place, "scenarios.run", "short.toml", "--out", "whole", "--resume", "--no-report"
-        ).status
-        == 0
-    )
+    words = ("short.toml", "--out", "whole", "--resume", "--no-report")
+    assert ended(place, "scenarios.run", *words).status == 0

@@ -17,43 +17,11 @@ from common.tables import (
     unit_factor,
 )
 
-PLAIN = [("0.5", "108.2", "543"), ("1.5", "110.9", "541.5"), ("2.5", "", "545")]
 
-
-def written(tmp_path, text, encoding="utf-8", name="table.csv"):
-    path = tmp_path / name
+def written(tmp_path, text, encoding="utf-8"):
+    path = tmp_path / "table.csv"
     path.write_bytes(text.encode(encoding))
     return path
-
-
-def rows(separator, decimal=".", head=("t", "so2", "co2"), values=PLAIN):
-    """Return a table of three columns and rows."""
-    lines = [head, *values]
-    return "".join(
-        separator.join(cell.replace(".", decimal) for cell in line) + "\n" for line in lines
-    )
-
-
-def same(table):
-    """Check that a table has the numbers of PLAIN."""
-    assert table.names == ["t", "so2", "co2"]
-    assert table.numbers("t") == pytest.approx([0.5, 1.5, 2.5])
-    assert table.numbers("so2") == pytest.approx([108.2, 110.9, np.nan], nan_ok=True)
-    assert table.numbers("co2") == pytest.approx([543.0, 541.5, 545.0])
-
-
-@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "cp1252"])
-@pytest.mark.parametrize(
-    ("separator", "decimal"), [(",", "."), (";", "."), (";", ","), ("\t", ","), ("|", ".")]
-)
-def test_separator_decimal_and_encoding_are_found(tmp_path, separator, decimal, encoding):
-    table = read_table(written(tmp_path, rows(separator, decimal), encoding))
-    same(table)
-    assert table.format.decimal == decimal
-    assert table.format.separator == separator
-
-
-# Times
 
 
 def seconds(tmp_path, cells, **given):
@@ -62,6 +30,54 @@ def seconds(tmp_path, cells, **given):
     return read_table(written(tmp_path, text), TableFormat(**given)).times("t", day=day)
 
 
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16", "utf-16-le", "cp1252"])
+@pytest.mark.parametrize(
+    ("separator", "decimal"), [(",", "."), (";", ","), ("\t", ","), ("|", ".")]
+)
+def test_separator_decimal_and_encoding_are_found(tmp_path, separator, decimal, encoding):
+    plain = "t,so2,co2\n0.5,108.2,543\n1.5,110.9,541.5\n2.5,,545\n"
+    text = plain.replace(",", separator).replace(".", decimal)
+    table = read_table(written(tmp_path, text, encoding))
+    assert (table.format.decimal, table.format.separator) == (decimal, separator)
+    assert table.names == ["t", "so2", "co2"]
+    assert table.numbers("t") == pytest.approx([0.5, 1.5, 2.5])
+    assert table.numbers("so2") == pytest.approx([108.2, 110.9, np.nan], nan_ok=True)
+    assert table.numbers("co2") == pytest.approx([543.0, 541.5, 545.0])
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"seperator": ";"}, "separator"),
+        ({"decimal": "x"}, "'.' or ','"),
+        ({"separator": ";;"}, "one mark"),
+        ({"separator": "1"}, "one mark"),
+        ({"separator": "\n"}, "a text of one line"),
+        # A word of pandas, with which it guesses the order of day and month.
+        ({"time_format": "mixed"}, "must have year, month and day"),
+        ({"time_unit": "h"}, "s, ms, us"),
+        ({"encoding": "klingon"}, "Python knows none"),
+        ({"time_format": 3}, "must be a text"),
+    ],
+)
+def test_a_format_of_no_use_is_refused(given, words):
+    with pytest.raises(TableError, match=words):
+        table_format(given)
+
+
+def test_units_are_converted_and_those_of_another_quantity_are_refused():
+    knot = 1852.0 / 3600.0
+    speeds = {"m s**-1": 1.0, "m s-1": 1.0, "meters/second": 1.0, "knots": knot, "km/h": 1.0 / 3.6}
+    for unit, factor in speeds.items():
+        assert unit_factor(unit, "m/s") == pytest.approx(factor, rel=1e-9)
+    assert unit_factor("%", "ppm") == pytest.approx(1e4, rel=1e-9)
+    assert unit_factor("ppm", "ppb") == pytest.approx(1e3, rel=1e-9)
+    for unit, words in (("foo", "no unit that is known"), ("m", "no unit of")):
+        with pytest.raises(TableError, match=words):
+            unit_factor(unit, "ppb", gas="so2")
+
+
+DOTS = "%d.%m.%Y %H:%M:%S.%f"
 NOON = 1_780_315_200.0
 """2026-06-01T12:00:00Z [s], by another program: date -d 2026-06-01T12:00:00Z +%s."""
 
@@ -75,10 +91,7 @@ NOON = 1_780_315_200.0
         (["1780315200", "1780315201.5"], {}),
         (["1780315200000", "1780315201500"], {}),
         (["1780315200000000", "1780315201500000"], {}),
-        (
-            ["01.06.2026 12:00:00.0", "01.06.2026 12:00:01.5"],
-            {"time_format": "%d.%m.%Y %H:%M:%S.%f"},
-        ),
+        (["01.06.2026 12:00:00.0", "01.06.2026 12:00:01.5"], {"time_format": DOTS}),
         (["12:00:00", "12:00:01.5"], {"day": date(2026, 6, 1)}),
     ],
 )
@@ -86,104 +99,6 @@ def test_times_are_read_in_utc(tmp_path, cells, given):
     found = seconds(tmp_path, cells, **given)
     assert found.dated
     assert found.seconds == pytest.approx([NOON, NOON + 1.5], abs=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("cells", "words"),
-    [
-        (["14.03.2026 10:15:00"] * 2, 'table.time_format = "%d.%m.%Y %H:%M:%S"'),
-        (["03/04/2026 10:15:00"] * 2, '"%d/%m/%Y %H:%M:%S", or table.time_format = "%m/%d/%Y'),
-        (["soon", "later"], "time 'soon' in column 't' cannot be read (row 2)"),
-        (["20260601120000", "20260601120001"], "without marks"),
-        (["115958", "115959", "120000", "120100"], "hours, minutes and seconds without marks"),
-    ],
-)
-def test_times_that_may_be_several_are_asked_for(tmp_path, cells, words):
-    with pytest.raises(TableError) as error:
-        seconds(tmp_path, cells)
-    assert words in str(error.value)
-    assert "\n" not in str(error.value)
-
-
-# Units
-
-
-@pytest.mark.parametrize(
-    ("unit", "to", "factor"),
-    [
-        ("m s**-1", "m/s", 1.0),
-        ("m s-1", "m/s", 1.0),
-        ("meters/second", "m/s", 1.0),
-        ("kn", "m/s", 1852.0 / 3600.0),
-        ("knots", "m/s", 1852.0 / 3600.0),
-        ("km/h", "m/s", 1.0 / 3.6),
-        ("%", "ppm", 1e4),
-        ("ppm", "ppb", 1e3),
-        ("ppb", "ppb", 1.0),
-    ],
-)
-def test_units_are_converted(unit, to, factor):
-    assert unit_factor(unit, to) == pytest.approx(factor, rel=1e-9)
-
-
-@pytest.mark.parametrize(("unit", "words"), [("foo", "no unit that is known"), ("m", "no unit of")])
-def test_what_is_no_unit_of_the_quantity_is_refused(unit, words):
-    with pytest.raises(TableError, match=words):
-        unit_factor(unit, "ppb", gas="so2")
-
-
-# What is refused
-
-
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("", "empty"),
-        ("t,x\n1,2,3\n", "line 2 has 3 values"),
-        ('t,x\n"1,2\n', "the quotation mark in line 2 is not closed"),
-        ("t,x\n\x00\x01,2\n", "not a table as text"),
-    ],
-)
-def test_what_is_no_table_is_refused_in_a_line(tmp_path, text, words):
-    with pytest.raises(TableError) as error:
-        read_table(written(tmp_path, text))
-    assert words in str(error.value)
-    assert "\n" not in str(error.value)
-
-
-@pytest.mark.parametrize(
-    ("cell", "words"), [("two", "'two' in row 3"), ("inf", "infinite in row 3")]
-)
-def test_a_cell_that_is_no_number_is_named_with_its_row(tmp_path, cell, words):
-    table = read_table(written(tmp_path, f"t,x\n1,2\n2,{cell}\n"))
-    with pytest.raises(TableError, match=words):
-        table.numbers("x")
-
-
-@pytest.mark.parametrize(
-    ("given", "words"),
-    [
-        ({"seperator": ";"}, "separator"),
-        ({"decimal": "x"}, "'.' or ','"),
-        ({"separator": ";;"}, "one mark"),
-        ({"separator": "1"}, "one mark"),
-        ({"separator": '"'}, "one mark"),
-        ({"separator": "\n"}, "a text of one line"),
-        ({"encoding": "utf8\0"}, "a text of one line"),
-        # Words of pandas, of which one guesses the order of day and month.
-        ({"time_format": "mixed"}, "must have year, month and day"),
-        ({"time_format": "%H:%M:%S"}, "must have year, month and day"),
-        ({"time_unit": "h"}, "s, ms, us"),
-        ({"encoding": "klingon"}, "Python knows none"),
-        ({"time_format": 3}, "must be a text"),
-    ],
-)
-def test_a_format_of_no_use_is_refused(given, words):
-    with pytest.raises(TableError, match=words):
-        table_format(given)
-
-
-# Jumps of a track
 
 
 def test_a_track_across_the_date_line_at_a_ships_speed_has_no_jump():
@@ -200,10 +115,8 @@ def test_a_jump_is_counted_and_measured_against_speed_and_error():
     time = np.array([0.0, 10.0, 20.0, 30.0])
     place = np.array([[0.0, 0.0], [np.nan, 0.0], [1300.0, 0.0], [1995.0, 0.0]])
     # 1,300 m in 20 s, and 695 m in 10 s: 65 and 69.5 m/s. Errors of 99 m explain all but a metre.
-    assert [(j.before, j.after) for j in find_jumps(time, place, speed_max=60.0, error=0.0)] == [
-        (0, 2),
-        (2, 3),
-    ]
+    jumps = find_jumps(time, place, speed_max=60.0, error=0.0)
+    assert [(jump.before, jump.after) for jump in jumps] == [(0, 2), (2, 3)]
     (jump,) = find_jumps(time, place, speed_max=60.0, error=99.0)
     assert (jump.before, jump.after, jump.distance, jump.seconds) == (0, 2, 1300.0, 20.0)
     assert find_jumps(time, place, speed_max=60.0, error=100.0) == []
@@ -259,6 +172,15 @@ HARD = [
         "zeros where a logger lost its power", b"t,x\n" + b"1,2.5\n" * 60 + b"\0" * 500,
         "line 62 has a letter that no text has",
     ),
+    ("no table", b"", "empty"),
+    ("a row that is too long", b"t,x\n1,2,3\n", "line 2 has 3 values"),
+    ("a quotation without an end", b't,x\n"1,2\n', "the quotation mark in line 2 is not closed"),
+    ("a letter of no text", b"t,x\n\x00\x01,2\n", "not a table as text"),
+    ("a number that is none", b"t,x\n1,2\n2,two\n", "'two' in row 3"),
+    ("an infinite number", b"t,x\n1,2\n2,inf\n", "infinite in row 3"),
+    ("times that may be several", b"t,x\n14.03.2026 10:15:00,1\n", 'table.time_format = "%d.%m.%Y %H:%M:%S"'),
+    ("times that are none", b"t,x\nsoon,1\n", "time 'soon' in column 't' cannot be read (row 2)"),
+    ("times without marks", b"t,x\n20260601120000,1\n20260601120001,1\n", "without marks"),
     ("a row without an end", b"t,x\n1," + b"9" * 200_000 + b"\n2,3.5\n", "200003 letters"),
     ("Python's own underscores", b"t,x\n1,1_000\n2,2\n", "'1_000' in row 2"),
     ("years in which nanoseconds end", b"t,x\n1677-01-01T00:00:00Z,1\n2500-01-01T00:00:00Z,2\n", {"t": [-9246096000.0, 16725225600.0]}),
@@ -268,8 +190,7 @@ HARD = [
 
 
 @pytest.mark.parametrize(
-    ("data", "expected", "given"),
-    [pytest.param(*(*case, {})[1:4], id=case[0]) for case in HARD],
+    ("data", "expected", "given"), [pytest.param(*(*case, {})[1:4], id=case[0]) for case in HARD]
 )
 def test_a_hard_file_is_read_right_or_refused_in_a_line(tmp_path, data, expected, given):
     path = tmp_path / "hard.csv"

@@ -60,39 +60,24 @@ def test_every_make_target_exists(page):
 def test_every_link_and_picture_exists(page):
     text = (ROOT / page).read_text("utf-8")
     places = [*re.findall(r"\]\(([^)#]+)[^)]*\)", text), *re.findall(r'src="([^"]+)"', text)]
-    assert [
-        place
-        for place in places
-        if not place.startswith("https://") and not (ROOT / place).exists()
-    ] == []
+    here = [place for place in places if not place.startswith("https://")]
+    assert [place for place in here if not (ROOT / place).exists()] == []
 
 
-@pytest.mark.parametrize("arguments", _commands("run"), ids=" ".join)
-def test_every_scenario_and_key_of_the_readme_is_taken(arguments):
-    """Reading a study refuses scenarios, keys and values that there are not, and keys that act
+def test_every_scenario_and_key_of_readme_and_documentation_is_taken():
+    """To read a study refuses scenarios, keys and values that there are not, and keys that act
     nowhere.
     """
-    overrides = [word for flag, word in pairwise(arguments) if flag == "--set"]
-    assert load_study(arguments[0], overrides).title
-
-
-def test_every_scenario_and_key_of_the_documentation_is_taken():
-    flown = [
-        arguments
-        for arguments in _commands("run", DOCS)
-        if arguments and not YOURS.search(" ".join(arguments))
-    ]
+    given = _commands("run", (*PAGES, *DOCS))
+    flown = [words for words in given if words and not YOURS.search(" ".join(words))]
     assert len(flown) > 20
-    for arguments in flown:
-        overrides = [word for flag, word in pairwise(arguments) if flag == "--set"]
-        assert load_study(arguments[0], overrides).title
+    for words in flown:
+        overrides = [word for flag, word in pairwise(words) if flag == "--set"]
+        assert load_study(words[0], overrides).title
 
 
 @pytest.mark.parametrize("word", sorted(commands()))
 def test_every_command_takes_the_options_that_are_given(word, monkeypatch, capsys):
-    """Of the commands that the pages show; what is asked for is their help, so that nothing is
-    flown.
-    """
     monkeypatch.setattr(sys, "argv", ["plume-flight", word, "--help"])
     with pytest.raises(SystemExit):
         run_command(commands(), "plume-flight")
@@ -100,8 +85,3 @@ def test_every_command_takes_the_options_that_are_given(word, monkeypatch, capsy
     for arguments in _commands(word, (*PAGES, *DOCS)):
         options = [argument for argument in arguments if argument.startswith("--")]
         assert [option for option in options if option not in shown] == []
-
-
-def test_continuous_integration_runs_what_the_readme_names():
-    ci = (ROOT / ".ci" / "run").read_text("utf-8")
-    assert re.findall(r"^make (\w+)$", ci, re.MULTILINE) == ["check", "test", "fast", "docs"]

@@ -83,13 +83,11 @@ def test_a_log_is_read_as_the_plain_one_of_the_same_flight(name, tmp_path):
     given, share, rounding = LOGS[name]
     plain = logged(tmp_path, "unix_seconds.csv", "").readings
     found = logged(tmp_path, name, NAMES + given)
-    np.testing.assert_allclose(
-        found.readings.time - found.readings.time[0], plain.time - plain.time[0]
-    )
-    np.testing.assert_allclose(
-        found.readings.values[:, 0], plain.values[:, 0], rtol=share + 1e-9, atol=rounding
-    )
-    np.testing.assert_allclose(found.readings.values[:, 1:], plain.values[:, 1:], rtol=1e-9)
+    read = found.readings
+    np.testing.assert_allclose(read.time - read.time[0], plain.time - plain.time[0])
+    so2, others = read.values[:, 0], read.values[:, 1:]
+    np.testing.assert_allclose(so2, plain.values[:, 0], rtol=share + 1e-9, atol=rounding)
+    np.testing.assert_allclose(others, plain.values[:, 1:], rtol=1e-9)
     assert found.about.first_position == pytest.approx((56.0978620, 11.2))
 
 

@@ -4,18 +4,25 @@ flies them.
 
 import tomllib
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
 from gnc.mission.mission import Mode
+from scenarios.engine.processes import InProcessExecutor
+from scenarios.engine.runner import fly_study
 from scenarios.engine.task import Task
 from scenarios.experiment.requests import Experiment
+from scenarios.flight.outcome import Outcome
+from scenarios.flight.record import FlightRecord
 from scenarios.flight_runner import FlightRunner
 from scenarios.planning.missions import plan_flight
 from scenarios.planning.spreads import PredictedSpreads
-from scenarios.scenario.files import OPERATIONAL, bases
+from scenarios.scenario.files import OPERATIONAL, bases, load_study
 from scenarios.scenario.overrides import merged
 from scenarios.scenario.scenario import Scenario
+from scenarios.studies.base import run_study
+from scenarios.studies.replay import Replay
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 from tests.run_tables import history_in
 
@@ -40,12 +47,29 @@ def plan(given, *, seed=1, setup=None, **spreads):
     )
 
 
-def work(**changes):
-    """Return the work on the one flight of a scenario."""
-    experiment = Experiment("trial", scenario(**changes))
-    return FlightRunner(
-        experiments=(experiment,), histories=1, setup=None, spreads=PredictedSpreads()
-    )
+def flight_of(given, name="trial", **task):
+    """Return the result of the first flight of a scenario, as a run has it."""
+    how = {"histories": 1, "setup": None, "spreads": PredictedSpreads()}
+    work = FlightRunner(experiments=(Experiment(name, given),), **how)
+    return work.run(Task(number=0, **task))
+
+
+def run_here(name, out, *overrides, **how):
+    """Fly a study in this process; return its summary."""
+    study = load_study(str(name) if isinstance(name, Path) else name, overrides)
+    given = {"executor_factory": InProcessExecutor, "overrides": overrides} | how
+    return run_study(study, Path(name).stem, out, **given)
+
+
+def replay_here(flight, out):
+    """Fly a flight of a run again in this process; return the summary."""
+    how = {"executor_factory": InProcessExecutor, "resume": False, "progress": lambda *_: None}
+    return fly_study(Replay(str(flight)), out, **how)
+
+
+def flown_study(name, *overrides, **task):
+    """Fly the first flight of a scenario file or document."""
+    return Flown.of(flight_of(load_study(name, overrides), **task))
 
 
 @dataclass(frozen=True)
@@ -56,12 +80,24 @@ class Flown:
     tables: dict
     history: object
 
+    @classmethod
+    def of(cls, result):
+        (row,) = result.tables["summary.csv"]
+        return cls(row=row, tables=result.tables, history=history_in(result))
+
 
 def fly(**changes):
     """Fly one flight as a run does."""
-    result = work(**changes).run(Task(number=0))
-    (row,) = result.tables["summary.csv"]
-    return Flown(row=row, tables=result.tables, history=history_in(result))
+    return Flown.of(flight_of(scenario(**changes)))
+
+
+def record(history, columns, outcome=Outcome.COMPLETED, *, settled_at=0.0):
+    """Return the record of a flight with a time history that is made up."""
+    return FlightRecord(
+        outcome=outcome, message="", mode="tracking", settled_at=settled_at, interventions=[],
+        columns=columns, history=history, every_step=history, saturation_fraction=0.0,
+        heading_rate_demand_max=0.6, heading_rate_command_max=0.5, guard_time=0.0,
+    )  # fmt: skip
 
 
 def modes(history):

@@ -37,14 +37,6 @@ class LaneShip(NamedTuple):
 def lane(seed, *, spacing=1500.0, each_way=5, apart=900.0, crossing=5, speed=7.0, duration=600.0):
     """Return ships of a lane to the north with the measured one, of one to the south beside it, and
     of some that cross both while the measured ship passes.
-
-    Parameters
-    ----------
-    seed : of what differs from lane to lane
-    spacing, apart : of ships in a row, and of the two rows [m]
-    each_way, crossing : number of ships on each side of the measured one, and of those that cross
-    speed : of ships in the lane [m/s]
-    duration : in which ships cross [s]
     """
     generator = np.random.default_rng(seed)
     ships = [LaneShip(MEASURED, 0.0, 0.0, speed, 0.0)]
@@ -61,19 +53,12 @@ def lane(seed, *, spacing=1500.0, each_way=5, apart=900.0, crossing=5, speed=7.0
         time = (i + 0.7) * duration / crossing
         course = float(generator.choice([70.0, 90.0, 110.0, 250.0, 270.0, 290.0]))
         fast = float(generator.uniform(6.0, 11.0))
-        # It crosses the measured ship's lane astern of her, beyond her plume or near it, or ahead.
+        # It crosses the measured ship's lane astern of it, beyond its plume or near it, or ahead.
         along = float(generator.choice([-900.0, -650.0, -500.0, 600.0, 900.0]))
         there = speed * time + along
         angle = math.radians(course)
-        ships.append(
-            LaneShip(
-                number,
-                there - fast * time * math.cos(angle),
-                -fast * time * math.sin(angle),
-                fast,
-                course,
-            )
-        )
+        place = there - fast * time * math.cos(angle), -fast * time * math.sin(angle)
+        ships.append(LaneShip(number, *place, fast, course))
     return ships
 
 
@@ -87,9 +72,8 @@ def file_of(ships, *, seed=0, begin=-120.0, end=900.0, interval=10.0, lost=0.1):
         wandering = WANDERING * generator.standard_normal(2)
         while time < end:
             kept = math.exp(-interval / WANDERING_TIME)
-            wandering = kept * wandering + WANDERING * math.sqrt(
-                1.0 - kept**2
-            ) * generator.standard_normal(2)
+            kick = WANDERING * math.sqrt(1.0 - kept**2) * generator.standard_normal(2)
+            wandering = kept * wandering + kick
             if generator.random() >= lost:
                 rows.append((time, _row(ship, time, wandering, frame, generator)))
             time += interval + float(generator.uniform(-0.5, 0.5))

@@ -22,27 +22,19 @@ def study_rows(flights, seed=20261121):
     level = generator.choice(["none", "moderate"], flights)
     clearance = 8.0 - 0.4 * wind - (level == "moderate") - generator.uniform(0.0, 1.0, flights)
     flight_ids = [f"study_{i:05d}" for i in range(flights)]
-    rows = pd.DataFrame(
-        {
-            "flight_id": flight_ids,
-            "trial": "study",
-            "outcome": "completed",
-            "mode_at_end": "tracking",
-            "keepout_radius_m": RADIUS,
-            "keepout_violations": 0,
-            "min_distance_m": RADIUS + clearance,
-            "crossing_interval_mean_s": PREDICTED
-            * (1.0 + 0.001 * generator.standard_normal(flights)),
-            "crossing_interval_predicted_s": PREDICTED,
-            "crossing_distance_min_m": RADIUS + clearance + 3.0,
-            "crossing_clearance_min_m": clearance + 3.0,
-            "tracking_error_rms_m": 0.1 + 0.05 * wind,
-            "settling_time_s": generator.uniform(80.0, 140.0, flights),
-        }
-    )
-    inputs = pd.DataFrame(
-        {"flight_id": flight_ids, "wind.speed_mps": wind, "turbulence.level": level}
-    )
+    interval = PREDICTED * (1.0 + 0.001 * generator.standard_normal(flights))
+    columns = {
+        "flight_id": flight_ids, "trial": "study", "outcome": "completed",
+        "mode_at_end": "tracking", "keepout_radius_m": RADIUS, "keepout_violations": 0,
+        "min_distance_m": RADIUS + clearance, "crossing_interval_mean_s": interval,
+        "crossing_interval_predicted_s": PREDICTED,
+        "crossing_distance_min_m": RADIUS + clearance + 3.0,
+        "crossing_clearance_min_m": clearance + 3.0, "tracking_error_rms_m": 0.1 + 0.05 * wind,
+        "settling_time_s": generator.uniform(80.0, 140.0, flights),
+    }  # fmt: skip
+    rows = pd.DataFrame(columns)
+    drawn = {"flight_id": flight_ids, "wind.speed_mps": wind, "turbulence.level": level}
+    inputs = pd.DataFrame(drawn)
     return rows, inputs
 
 

@@ -51,7 +51,6 @@ def is_read(document):
 
 
 def test_it_is_a_schema_of_draft_4(validator):
-    assert validator.schema["$schema"] == "http://json-schema.org/draft-04/schema#"
     Draft4Validator.check_schema(validator.schema)
     # Keywords of later drafts, which an editor with draft 4 would pass over in silence.
     later = ("$defs", "$ref", "const", "prefixItems", "discriminator", "format")
@@ -93,7 +92,6 @@ def test_what_the_loader_brings_into_form_is_accepted(text, validator):
         ("titel = 'A study'", ""),
         ("[wind]\nspeed_mps = 'fast'", "wind.speed_mps"),
         ("[wind]\nspeed_mps = true", "wind.speed_mps"),
-        ("[guidance]\nbank_deg = 'steep'", "guidance.bank_deg"),
         ("[keepout]\nshape = 'cube'", "keepout.shape"),
         ("[reports]\ninterval_s = [1.0, 2.0, 3.0]", "reports.interval_s"),
         ("[sweep]\nnu = 0.3", "sweep.nu"),

@@ -18,18 +18,12 @@ COLUMNS = ("number", "square", "reason")
 
 @dataclass(frozen=True, kw_only=True)
 class Squares:
-    """Squares the numbers of its tasks.
-
-    Attributes
-    ----------
-    marks : directory in which each task that is begun leaves a file
-    does : what a task does before, by its number
-    text : how long a text its row has
+    """Squares the numbers of its tasks; each task that is begun leaves a file in ``marks``, and may
+    first do something.
     """
 
     marks: Path
     does: Mapping[int, Callable[[], object]] = field(default_factory=dict)
-    text: int = 0
     model: Path | None = None
 
     def moved(self, _):
@@ -39,10 +33,8 @@ class Squares:
         (self.marks / f"{task.number}-{os.getpid()}-{uuid.uuid4().hex}").touch()
         if task.number in self.does:
             self.does[task.number]()
-        # A row that is taken down for a task that was flown for its file alone would be seen.
-        square = -1.0 if task.recorded else float(task.number**2)
-        row = {"number": task.number, "square": square, "text": "x" * self.text}
-        files = {f"files/{task.number}.txt": b"recorded" if task.recorded else b"flown"}
+        row = {"number": task.number, "square": float(task.number**2)}
+        files = {f"files/{task.number}.txt": b"flown"}
         return Result(task=task, tables={TABLE: [row]}, files=files)
 
     def lost(self, task, reason):
@@ -62,27 +54,13 @@ def workers(marks):
 
 
 class SquareStudy:
-    """Squares numbers in batches; then some of them again, to be recorded.
-
-    Parameters
-    ----------
-    work : what is done
-    batches : numbers of tasks
-    recorded : of the tasks that are to be recorded where they have not been
-    config_hash : of the study
-    """
+    """Squares eight numbers."""
 
     what = "squares"
+    planned, comparisons = 8, 0
 
-    def __init__(self, work, batches=(range(8),), recorded=(), config_hash="a"):
-        self._work, self._batches, self._recorded, self.config_hash = (
-            work,
-            batches,
-            recorded,
-            config_hash,
-        )
-        self.planned, self.comparisons = sum(map(len, batches)), 0
-        self.seen = []
+    def __init__(self, work, config_hash="a"):
+        self._work, self.config_hash = work, config_hash
 
     def initial_manifest(self):
         return {"config_hash": self.config_hash, "fingerprint": fingerprint()}
@@ -90,11 +68,8 @@ class SquareStudy:
     def work(self, _run):
         return self._work
 
-    def run(self, fly, _run, journal):
-        for batch in self._batches:
-            fly(Task(number=i) for i in batch)
-            self.seen.append(journal.done())
-        fly([Task(number=i, recorded=True) for i in self._recorded])
+    def run(self, fly, _run, _journal):
+        fly(Task(number=i) for i in range(self.planned))
 
     def postprocess(self, _run, _journal, progress):
         progress("finishing", self.planned, self.planned)

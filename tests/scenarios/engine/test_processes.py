@@ -22,10 +22,6 @@ LONG = 60.0
 """What nobody waits for [s]."""
 
 
-def tasks(count):
-    return [Task(number=i) for i in range(count)]
-
-
 def fly(work, numbers, *, jobs=2, limits=None):
     """Return the results of tasks, in their order, whoever was first."""
     with LocalExecutor(work, jobs=jobs, limits=limits or Limits()) as executor:
@@ -60,60 +56,41 @@ def assert_done(results, numbers):
     assert len(found) == len(results)
 
 
-@pytest.fixture(scope="module")
-def alone(tmp_path_factory):
-    """What one process makes of tasks."""
-    return fly(Squares(marks=tmp_path_factory.mktemp("alone")), range(6), jobs=1)
-
-
-@pytest.mark.parametrize("jobs", [2, 7])
-def test_every_task_is_done_once_with_the_same_result_whatever_the_number_of_processes(
-    alone, jobs, tmp_path
-):
-    # A few milliseconds each, so that none is through with all before another has begun.
-    work = Squares(
-        marks=tmp_path, does=dict.fromkeys(range(6), functools.partial(time.sleep, 0.005))
-    )
-    assert fly(work, range(6), jobs=jobs) == alone
-    assert [begun(tmp_path, number) for number in range(6)] == [1] * 6
-    # Not in this process, and no more of them than were asked for.
-    assert os.getpid() not in workers(tmp_path)
-    assert 1 <= len(workers(tmp_path)) <= min(jobs, 6)
-    assert not multiprocessing.active_children()
-
-
-def test_a_process_that_is_killed_costs_a_try_and_its_neighbour_nothing(tmp_path):
-    work = Squares(marks=tmp_path, does={3: functools.partial(once, tmp_path / "killed", killed)})
-    results = fly(work, range(6), jobs=1)
-    assert_done(results, range(6))
-    # The one that was queued behind it had not been begun.
-    assert [begun(tmp_path, number) for number in range(6)] == [1, 1, 1, 2, 1, 1]
-
-
-@pytest.mark.parametrize("jobs", [1, 2])
-def test_a_task_whose_processes_are_killed_is_lost_and_says_why(jobs, tmp_path):
-    results = fly(Squares(marks=tmp_path, does={3: killed}), range(8), jobs=jobs)
-    assert_lost(results[3], "the last one was ended by SIGKILL")
-    assert_done(results, {*range(8)} - {3})
-    assert [begun(tmp_path, number) for number in range(8)] == [1, 1, 1, MAX_ATTEMPTS, 1, 1, 1, 1]
-
-
-def test_an_error_that_work_lets_through_is_a_lost_process(tmp_path, capfd):
-    def fails():
-        raise RuntimeError("work is to make a row of this")
-
-    results = fly(Squares(marks=tmp_path, does={1: fails}), range(3), jobs=1)
-    assert_lost(results[1], "ended with status 1")
-    assert_done(results, [0, 2])
-    assert "work is to make a row of this" in capfd.readouterr().err
-
-
 def memory():
     """Return what this process has of what is limited [bytes]."""
     status = Path("/proc/self/status").read_text(encoding="utf-8")
     return 1024 * int(
         next(line.split()[1] for line in status.splitlines() if line.startswith("VmData"))
     )
+
+
+def test_every_task_is_done_once_with_the_same_result_for_any_number_of_processes(tmp_path):
+    # A few milliseconds each, so that none is through with all before another has begun.
+    pause = dict.fromkeys(range(6), functools.partial(time.sleep, 0.005))
+    found = []
+    for jobs in (1, 7):
+        (marks := tmp_path / str(jobs)).mkdir()
+        found.append(fly(Squares(marks=marks, does=pause), range(6), jobs=jobs))
+        assert [begun(marks, number) for number in range(6)] == [1] * 6
+        assert os.getpid() not in workers(marks)
+        assert 1 <= len(workers(marks)) <= min(jobs, 6)
+        assert not multiprocessing.active_children()
+    assert found[0] == found[1]
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_a_process_that_ends_costs_a_try_and_its_neighbours_nothing(jobs, tmp_path, capfd):
+    def fails():
+        raise RuntimeError("work is to make a row of this")
+
+    does = {1: functools.partial(once, tmp_path / "killed", killed), 3: killed, 6: fails}
+    results = fly(Squares(marks=tmp_path, does=does), range(8), jobs=jobs)
+    assert_lost(results[3], "the last one was ended by SIGKILL")
+    assert_lost(results[6], "ended with status 1")
+    assert_done(results, {*range(8)} - {3, 6})
+    assert "work is to make a row of this" in capfd.readouterr().err
+    tries = [1, 2, 1, MAX_ATTEMPTS, 1, 1, MAX_ATTEMPTS, 1]
+    assert [begun(tmp_path, number) for number in range(8)] == tries
 
 
 @pytest.mark.slow
@@ -131,10 +108,6 @@ def test_a_task_that_runs_out_of_memory_is_lost_and_says_why(tmp_path):
     assert_lost(results[2], f"ran out of memory; its limit is {limit / 2**20:.0f} MiB")
     assert_done(results, {*range(6)} - {2})
     assert begun(tmp_path, 2) == MAX_ATTEMPTS
-    # Where there is no limit there is no lack.
-    assert not fly(Squares(marks=tmp_path, does={2: functools.partial(bytearray, 2**28)}), [2])[
-        0
-    ].lost
 
 
 def test_an_interrupt_ends_processes_at_once(tmp_path):
@@ -144,7 +117,7 @@ def test_an_interrupt_ends_processes_at_once(tmp_path):
 
     def interrupted():
         with LocalExecutor(work, jobs=2, limits=Limits()) as executor:
-            for _ in executor.fly(tasks(9)):
+            for _ in executor.fly(Task(number=i) for i in range(9)):
                 raise KeyboardInterrupt
 
     began = time.monotonic()
@@ -167,22 +140,19 @@ class Slow(Squares):
         return result
 
 
-def command(marks, pause, later, told):
-    """Have tasks done for ever, tell when the fourth is done, and take no more results for some
-    time [s].
-    """
+def command(marks, pause, later, reports):
+    """Do tasks without end, tell when the fourth is done, then pause [s]."""
     with LocalExecutor(Slow(marks=marks, later=later), jobs=2, limits=Limits()) as executor:
         for result in executor.fly(Task(number=i) for i in itertools.count()):
             if result.task.number == 3:
-                told.send("flying")
+                reports.send("flying")
                 time.sleep(pause)
 
 
 @pytest.mark.parametrize(
     ("pause", "later"),
-    # Nobody would wait for the end of the long flight.
-    [(0.0, 0.0), (LONG, 0.0), (0.0, 10.0 * LONG)],
-    ids=["at work", "idle", "in a long flight"],
+    [(LONG, 0.0), (0.0, 10.0 * LONG)],
+    ids=["idle", "in a long flight"],
 )
 def test_processes_whose_parent_is_killed_end_by_themselves(pause, later, tmp_path):
     context = multiprocessing.get_context("fork")

@@ -15,26 +15,19 @@ from scenarios.scenario.scenario import Scenario
 
 def scenario(**changes):
     """Return a kinematic scenario of a vessel at 8 m/s."""
-    base = {
-        "title": "test",
-        "fidelity": "kinematic",
-        "vessel": {"speed_mps": 8.0},
-        "guidance": {"mission": "follow"},
-    }
-    return Scenario.model_validate(base | changes)
+    base = {"title": "test", "fidelity": "kinematic", "vessel": {"speed_mps": 8.0}}
+    return Scenario.model_validate(base | {"guidance": {"mission": "follow"}} | changes)
 
 
 def manoeuvring(at_s, **second):
-    """Return a scenario whose vessel turns at 10 m/s and 1 deg/s, 0.175 m/s2, and changes its speed
-    at 0.2 m/s2.
+    """Return a scenario whose vessel turns at 10 m/s and 1 deg/s, 0.175 m/s2, and brakes at 0.2
+    m/s2.
     """
     turn = {"at_s": 50.0, "turn_deg": 90.0, "turn_rate_deg_s": 1.0}
     braking = {"at_s": at_s, "speed_mps": 2.0, "acceleration_mps2": 0.2} | second
+    manoeuvres = [turn | braking] if at_s == turn["at_s"] else [turn, braking]
     return scenario(
-        vessel={
-            "speed_mps": 10.0,
-            "manoeuvres": [turn | braking] if at_s == turn["at_s"] else [turn, braking],
-        },
+        vessel={"speed_mps": 10.0, "manoeuvres": manoeuvres},
         following={"vessel_acceleration_mps2": 0.25},
         draws=[{"key": "wind.speed_mps", "uniform": [0.0, 1.0]}],
     )
@@ -48,10 +41,8 @@ def test_changes_of_speed_and_of_course_count_together():
     # Of a table of 0.05 s, in which the speed has fallen by 0.01 m/s, and of what is allowed for
     # rounding, 0.001.
     assert beyond_declared(manoeuvring(50.0), [0.0]) == pytest.approx(excess, abs=2e-3)
-    assert beyond_declared(manoeuvring(200.0, acceleration_mps2=0.25), [0.0]) == 0.0
-    assert beyond_declared(manoeuvring(200.0, acceleration_mps2=0.3), [0.0]) == pytest.approx(
-        0.2, abs=2e-3
-    )
+    faster = beyond_declared(manoeuvring(200.0, acceleration_mps2=0.3), [0.0])
+    assert faster == pytest.approx(0.2, abs=2e-3)
 
 
 def test_the_space_knows_choices_times_directions_and_noise():

@@ -16,25 +16,16 @@ AIRSPEED, THROUGH_AIR = 19.42, 9.0
 
 
 def flown(place, start_course, wind=(1e-9, 0.0), turned=0.0):
-    """Return where the vehicle is from the vessel, in the frame of the vessel's motion through the
-    air, shape (n, 2) [m].
-
-    Parameters
-    ----------
-    place : of the start, in that frame [m]
-    start_course : through the air, in that frame [deg]
-    wind : of the air over the sea, in that frame [m/s]
-    turned : course of the vessel through the air [rad]
+    """Return where the vehicle is from the vessel, shape (n, 2) [m], in the frame of the vessel's
+    motion through the air on a course [rad]; place [m] and course [deg] of the start and the wind
+    [m/s] are in that frame, too.
     """
     turn = np.array([[math.cos(turned), -math.sin(turned)], [math.sin(turned), math.cos(turned)]])
     wind_north, wind_east = turn @ wind
     over_ground = turn @ [THROUGH_AIR, 0.0] + [wind_north, wind_east]
     course = math.atan2(over_ground[1], over_ground[0])
-    from_bow = (
-        np.array([[math.cos(course), math.sin(course)], [-math.sin(course), math.cos(course)]])
-        @ turn
-        @ place
-    )
+    cos, sin = math.cos(course), math.sin(course)
+    from_bow = np.array([[cos, sin], [-sin, cos]]) @ turn @ place
     settings = {
         "vessel.course_deg": math.degrees(course) % 360.0,
         "wind.speed_mps": math.hypot(wind_north, wind_east),
@@ -65,18 +56,10 @@ def test_a_flight_is_the_same_in_a_wind_and_on_another_course(start):
 @pytest.mark.parametrize("start", STARTS)
 def test_left_and_right_are_alike(start):
     (ahead, right), course = STARTS[start]
-    both = [
-        fly(
-            "sweep_nu",
-            fidelity="kinematic",
-            nu=0.5,
-            **{
-                "start.place_m": [ahead, side * right],
-                "start.course_deg": side * course,
-                "flight.duration_max_s": 60.0,
-            },
-        ).history
-        for side in (1.0, -1.0)
-    ]
-    assert both[0]["north_m"].to_numpy() == pytest.approx(both[1]["north_m"].to_numpy(), abs=1e-6)
-    assert both[0]["east_m"].to_numpy() == pytest.approx(-both[1]["east_m"].to_numpy(), abs=1e-6)
+    both = []
+    for side in (1.0, -1.0):
+        keys = {"start.place_m": [ahead, side * right], "start.course_deg": side * course}
+        keys["flight.duration_max_s"] = 60.0
+        both.append(fly("sweep_nu", fidelity="kinematic", nu=0.5, **keys).history)
+    for name, sign in (("north_m", 1.0), ("east_m", -1.0)):
+        assert both[0][name].to_numpy() == pytest.approx(sign * both[1][name].to_numpy(), abs=1e-6)

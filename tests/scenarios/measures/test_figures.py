@@ -3,15 +3,17 @@
 import math
 
 import numpy as np
+import pandas as pd
 import pytest
 from flight_cases import plan as planned
-from flight_cases import scenario
+from flight_cases import record, scenario
 
 from gnc.mission.mission import Mode
-from scenarios.flight.outcome import Outcome
-from scenarios.flight.record import COLUMNS, FlightRecord
-from scenarios.measures.figures import flight_figures, rms
+from scenarios.flight.record import COLUMNS
+from scenarios.measures.figures import flight_figures
+from scenarios.measures.finding import finding_figures
 from scenarios.scenario.scenario import Scenario
+from scenarios.scenario.sections.flight import FlightConfig
 
 STEP = 0.1
 INTERVAL = 10.0
@@ -23,6 +25,14 @@ def plan():
     manoeuvre = {"at_s": 40.0, "turn_deg": 10.0, "turn_rate_deg_s": 1.0}
     vessel = {"speed_mps": 8.0, "manoeuvres": [manoeuvre]}
     return planned(scenario(vessel=vessel, following={"vessel_acceleration_mps2": 0.15}))
+
+
+def column(history, name):
+    return history[:, COLUMNS.index(name)]
+
+
+def figures(plan, history, **changes):
+    return flight_figures(plan, record(history, COLUMNS, **changes))
 
 
 def weave(plan, *, duration=100.0, distance=230.0, **columns):
@@ -55,31 +65,6 @@ def weave(plan, *, duration=100.0, distance=230.0, **columns):
     return history
 
 
-def record(history, settled_at=0.0):
-    return FlightRecord(
-        outcome=Outcome.COMPLETED,
-        message="",
-        mode="tracking",
-        settled_at=settled_at,
-        interventions=[],
-        columns=COLUMNS,
-        history=history,
-        every_step=history,
-        saturation_fraction=0.0,
-        heading_rate_demand_max=0.6,
-        heading_rate_command_max=0.5,
-        guard_time=0.0,
-    )
-
-
-def figures(plan, history, **changes):
-    return flight_figures(plan, record(history, **changes))
-
-
-def column(history, name):
-    return history[:, COLUMNS.index(name)]
-
-
 def test_crossings_are_counted_and_timed(plan):
     row, crossings = figures(plan, weave(plan))
     # At 5, 15, ..., 95 s; a cubic of a sine sampled at 10 Hz errs by 60 (0.031)^4/384 m.
@@ -104,29 +89,16 @@ def test_a_crossing_keeps_out_of_a_sphere_by_its_distance_and_of_a_cylinder_by_t
         )
 
 
-@pytest.fixture(scope="module")
-def loiter_plan():
-    """A flight on a loiter, whose halves differ."""
-    vessel = {"speed_mps": 8.0}
-    return planned(
-        Scenario.model_validate(
-            {
-                "title": "test",
-                "fidelity": "kinematic",
-                "vessel": vessel,
-                "reference": {"shape": "loiter"},
-            }
-        )
-    )
-
-
-def test_mean_distance_and_angle_of_crossings_that_alternate_are_over_whole_periods(loiter_plan):
-    # Near and far in turn: the distance from the vessel is a cosine of twice the period.
+def test_mean_distance_of_crossings_that_alternate_is_over_whole_periods():
+    # On a loiter, whose halves differ, near and far in turn: the distance from the vessel is a
+    # cosine of twice the period.
+    base = {"title": "test", "fidelity": "kinematic", "vessel": {"speed_mps": 8.0}}
+    plan = planned(Scenario.model_validate(base | {"reference": {"shape": "loiter"}}))
     time = np.arange(0.0, 60.05, STEP)
     far = 250.0 + 40.0 * np.sin(math.pi / INTERVAL * time)
     for duration, count in ((20.0, 2), (30.0, 3), (60.0, 6)):
         kept = time <= duration + 0.5 * STEP
-        row, _ = figures(loiter_plan, weave(loiter_plan, duration=duration, distance=far[kept]))
+        row, _ = figures(plan, weave(plan, duration=duration, distance=far[kept]))
         assert row["crossing_count"] == count
         # At 5, 15, 25 s: 290, 210, 290 m.
         assert row["crossing_distance_mean_m"] == pytest.approx(250.0, abs=0.01)
@@ -154,29 +126,18 @@ def test_an_axis_that_turns_is_crossed_where_it_is_by_then(plan):
 
 
 def test_a_keep_out_violation_is_counted_from_the_first_second_on(plan):
-    # 250 m off, and once, from 10 to 30 s, down to 190 m; settled only later.
+    # 250 m off, and from 10 to 30 s down to 190 m; it settles only later.
     time = np.arange(0.0, 100.05, STEP)
     phase = np.pi * np.clip((time - 10.0) / 20.0, 0.0, 1.0)
     distance, closing = 250.0 - 60.0 * np.sin(phase) ** 2, 60.0 * np.sin(2.0 * phase) * np.pi / 20.0
-    history = weave(
-        plan, distance=distance, velocity_north_mps=8.0 + closing, east_m=0.0, velocity_east_mps=0.0
-    )
-    row, _ = figures(plan, history, settled_at=50.0)
+    straight = {"velocity_north_mps": 8.0 + closing, "east_m": 0.0, "velocity_east_mps": 0.0}
+    row, _ = figures(plan, weave(plan, distance=distance, **straight), settled_at=50.0)
     assert row["keepout_violations"] == 1
     # Inside while 60 sin^2 exceeds 50 m; the cubic errs by h^4/384 of the fourth derivative, 2e-9
     # m.
-    assert row["keepout_time_s"] == pytest.approx(
-        20.0 * (1.0 - 2.0 * math.asin(math.sqrt(5.0 / 6.0)) / math.pi), abs=1e-6
-    )
+    inside = 20.0 * (1.0 - 2.0 * math.asin(math.sqrt(5.0 / 6.0)) / math.pi)
+    assert row["keepout_time_s"] == pytest.approx(inside, abs=1e-6)
     assert row["keepout_depth_m"] == pytest.approx(10.0, abs=1e-6)
-
-
-def test_height_counts_for_the_distance(plan):
-    history = weave(plan, distance=195.0, east_m=0.0, altitude_m=plan.altitude + 50.0)
-    # A sphere about the funnel's mouth: sqrt(195^2 + 50^2) = 201.3 m.
-    row, _ = figures(plan, history)
-    assert row["keepout_violations"] == 0
-    assert row["min_distance_m"] == pytest.approx(math.hypot(195.0, 50.0), abs=1e-6)
 
 
 def test_errors_are_measured_from_the_history(plan):
@@ -186,14 +147,8 @@ def test_errors_are_measured_from_the_history(plan):
     # 3 m short along the wake, towards and away from the vessel in turn; the vessel is seen 4 m
     # off, the wind 1 m/s.
     sign = np.where(np.arange(len(north)) % 2, 1.0, -1.0)
-    history = weave(
-        plan,
-        reference_north_m=north + 3.0 * sign,
-        vessel_seen_east_m=4.0 * half,
-        wind_north_mps=0.6,
-        wind_east_mps=0.8,
-    )
-    row, _ = figures(plan, history)
+    wrong = {"reference_north_m": north + 3.0 * sign, "vessel_seen_east_m": 4.0 * half}
+    row, _ = figures(plan, weave(plan, **wrong, wind_north_mps=0.6, wind_east_mps=0.8))
     assert row["tracking_error_rms_m"] == pytest.approx(3.0)
     assert row["tracking_error_max_m"] == pytest.approx(3.0)
     assert row["vessel_error_max_m"] == pytest.approx(4.0)
@@ -205,8 +160,7 @@ def test_errors_are_measured_from_the_history(plan):
 
 
 def test_the_guards_time_is_counted_and_its_losses_too(plan):
-    history = weave(plan)
-    guard = np.zeros(len(history))
+    guard = np.zeros(1001)
     guard[100:150], guard[120:125], guard[700:710] = 1.0, 2.0, 1.0
     row, _ = figures(plan, weave(plan, guard=guard), settled_at=50.0)
     assert row["guard_lost_s"] == pytest.approx(0.5)
@@ -221,7 +175,8 @@ def test_a_vehicle_that_leaves_for_good_is_no_longer_off_its_reference(plan, mod
     # 3 m off while it tracks, and 500 m while it leaves, which sinks and slows down meanwhile.
     off = np.where(left, 500.0, 3.0)
     columns = {
-        "mode": modes, "reference_north_m": column(history, "north_m") + off, "airspeed_command_mps": np.where(left, 12.0, 19.42),
+        "mode": modes, "reference_north_m": column(history, "north_m") + off,
+        "airspeed_command_mps": np.where(left, 12.0, 19.42),
         "altitude_command_m": np.where(left, -1000.0, plan.altitude),
     }  # fmt: skip
     row, crossings = figures(plan, weave(plan, **columns))
@@ -232,7 +187,65 @@ def test_a_vehicle_that_leaves_for_good_is_no_longer_off_its_reference(plan, mod
     assert (len(crossings), row["tracking_error_end_m"]) == (10, pytest.approx(500.0))
 
 
-def test_the_rms_of_a_sine_over_its_period_is_its_amplitude_over_the_root_of_two():
-    phase = 2.0 * np.pi * np.arange(64) / 64
-    # Exact for equally spaced samples, up to rounding.
-    assert math.isclose(rms(3.0 * np.sin(phase)), 3.0 / math.sqrt(2.0), rel_tol=1e-14)
+ORBIT = 40.0
+"""Time until the orbit is reached [s]."""
+
+NOISE = 0.5
+
+
+def history(*, first=100.0, above=6.0, believed=80.0, deviation=4.0, duration=300.0, altitude=70.0):
+    """Return a search that crosses the axis every interval, and detects the plume from ``first`` on
+    [s].
+    """
+    time = STEP * np.arange(round(duration / STEP) + 1)
+    across = 50.0 * np.sin(math.pi * time / INTERVAL)
+    inside = (np.abs(across) < 5.0) & (time > first - 1.0)
+    # Every second crossing misses the middle of the plume.
+    fraction = np.where(inside, np.where((time / INTERVAL).round() % 2 == 0, 0.9, 0.3), 0.0)
+    co2 = 420.0 + 100.0 * fraction
+    frame = {
+        "time_s": time,
+        "altitude_m": altitude,
+        "altitude_command_m": altitude,
+        "mode": np.where(time < ORBIT, Mode.APPROACH.number, Mode.SEARCHING.number).astype(float),
+        "plume_across_m": across,
+        "plume_above_m": above,
+        "plume_fraction": fraction,
+        "co2_ppm": co2,
+        "co2_background_ppm": 420.0,
+        "co2_reading_ppm": np.roll(co2, 10),
+    }
+    if believed is not None:
+        frame |= {
+            "axis_height_estimated_m": believed,
+            "axis_height_deviation_m": deviation,
+            "axis_measurable": 0.9,
+        }
+    return pd.DataFrame(frame)
+
+
+def finding(made, **limits):
+    return finding_figures(made, FlightConfig(**limits), noise=NOISE, stop_reason="")
+
+
+def test_the_time_to_find_counts_from_the_orbit_to_the_first_reading_of_the_plume():
+    row = finding(history())
+    assert row["orbit_at_s"] == ORBIT
+    # Detected from 99 s on, where the crossing at 100 s begins; the reading is a second late. A
+    # sample, and the width of the plume.
+    assert row["time_to_find_s"] == pytest.approx(100.0 - ORBIT + 0.8, abs=0.5)
+    assert row["found"]
+
+
+def test_a_reading_of_clean_air_is_no_plume_however_large():
+    made = history(first=1e9)
+    made.loc[1500:1520, "co2_reading_ppm"] += 50.0
+    assert finding(made)["found"] is False
+
+
+def test_the_height_is_judged_at_the_crossing_nearest_to_three_minutes():
+    row = finding(history())
+    # Truth: 70 m flown, 6 m above the axis.
+    assert row["axis_height_3min_m"] == 64.0
+    assert (row["axis_height_error_3min_m"], row["axis_height_deviation_3min_m"]) == (16.0, 4.0)
+    assert (row["axis_height_end_m"], row["axis_measurable_end"]) == (80.0, 0.9)

@@ -8,21 +8,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from flight_cases import plan as planned
-from flight_cases import scenario
+from flight_cases import record, scenario
 
 from common.premises import EXCEEDED, ratio_column, time_column
-from gnc.estimation.error_budget import (
-    Bias,
-    ErrorBudget,
-    Process,
-)
+from gnc.estimation.error_budget import Bias, ErrorBudget, Process
 from scenarios.flight.closed_loop import fly, release
 from scenarios.flight.guard_belief import GuardBelief
 from scenarios.flight.outcome import Outcome
-from scenarios.flight.record import COLUMNS, FlightRecord
+from scenarios.flight.record import COLUMNS
 from scenarios.measures.figures import flight_figures
 from scenarios.measures.premises import premise_figures
 from scenarios.vehicles.vehicle_setup import kinematic_setup
+from scenarios.world.faults import SATELLITES
 
 STEP = 0.1
 NAMES = (*COLUMNS, *GuardBelief.COLUMNS)
@@ -41,46 +38,23 @@ def with_budget(plan, **terms):
     return replace(plan, guidance=replace(plan.guidance, guard=guard))
 
 
-def record(values, outcome=Outcome.COMPLETED, *, duration=60.0):
-    """Return a record of straight flight north at 20 m/s in which nothing is wrong but for
-    ``values``.
-    """
-    time = np.arange(0.0, duration + 0.5 * STEP, STEP)
+def made(values, outcome=Outcome.COMPLETED):
+    """Return a record of straight flight north at 20 m/s with exact figures, but for ``values``."""
+    time = np.arange(0.0, 60.0 + 0.5 * STEP, STEP)
     straight = {
-        "time_s": time,
-        "north_m": 20.0 * time,
-        "velocity_north_mps": 20.0,
-        "altitude_m": 100.0,
-        "airspeed_mps": 20.0,
-        "vessel_north_m": VESSEL_NORTH,
-        "own_seen_north_m": 20.0 * time,
-        "own_seen_speed_mps": 20.0,
-        "disc_north_m": VESSEL_NORTH,
-        "speed_fastest_mps": 20.0,
-        "speed_slowest_mps": 20.0,
-        "command_change": 1.0,
-    }
+        "time_s": time, "north_m": 20.0 * time, "velocity_north_mps": 20.0, "altitude_m": 100.0,
+        "airspeed_mps": 20.0, "vessel_north_m": VESSEL_NORTH, "own_seen_north_m": 20.0 * time,
+        "own_seen_speed_mps": 20.0, "disc_north_m": VESSEL_NORTH, "speed_fastest_mps": 20.0,
+        "speed_slowest_mps": 20.0, "command_change": 1.0,
+    }  # fmt: skip
     history = np.zeros((len(time), len(NAMES)))
     for name, value in (straight | values).items():
         history[:, NAMES.index(name)] = value
-    return FlightRecord(
-        outcome=outcome,
-        message="",
-        mode="tracking",
-        settled_at=0.0,
-        interventions=[],
-        columns=NAMES,
-        history=history,
-        every_step=history,
-        saturation_fraction=0.0,
-        heading_rate_demand_max=0.6,
-        heading_rate_command_max=0.5,
-        guard_time=0.0,
-    )
+    return record(history, NAMES, outcome)
 
 
 def ratio(plan, values, term):
-    return premise_figures(plan, record(values))[ratio_column(term)]
+    return premise_figures(plan, made(values))[ratio_column(term)]
 
 
 def test_the_own_position_is_compared_with_k_standard_deviations_of_the_discs(plan):
@@ -89,14 +63,12 @@ def test_the_own_position_is_compared_with_k_standard_deviations_of_the_discs(pl
     assert ratio(budget, {"own_seen_east_m": 0.4 * k * 1.5}, "position") == pytest.approx(0.4)
 
 
-def turn(plan, *, towards_vessel=0.0, at=None, begins=10.0):
+def turn(plan, *, towards_vessel=0.0, begins=10.0):
     """Return a half turn at omega_max behind the lag of a vehicle, which jumps towards the vessel by
-    some metres in its course: where it flies across the direction of the vessel, unless ``at`` says
-    otherwise.
+    some metres where it flies across the direction of the vessel.
     """
-    guard = plan.guidance.guard
-    at = begins + 0.5 * math.pi / guard.heading_rate_max + guard.lag if at is None else at
     lag, rate = plan.guidance.guard.lag, plan.guidance.guard.heading_rate_max
+    at = begins + 0.5 * math.pi / rate + lag
     fine = STEP / 100.0
     time = np.arange(0.0, 60.0 + 0.5 * fine, fine)
     command = np.where((time >= begins - 0.5 * fine) & (time < begins + math.pi / rate), rate, 0.0)
@@ -112,17 +84,12 @@ def turn(plan, *, towards_vessel=0.0, at=None, begins=10.0):
     sampled = slice(None, None, 100)
     moved = north[sampled] + np.where(time[sampled] > at - 0.5 * STEP, towards_vessel, 0.0)
     return {
-        "north_m": moved,
-        "east_m": east[sampled],
-        "own_seen_north_m": moved,
-        "own_seen_east_m": east[sampled],
-        "velocity_north_mps": v_north[sampled],
-        "velocity_east_mps": v_east[sampled],
-        "own_seen_course_rad": course[sampled],
-        "heading_rate_rad_s": rates[sampled],
-        "course_commanded_rad": commanded[sampled],
+        "north_m": moved, "east_m": east[sampled], "own_seen_north_m": moved,
+        "own_seen_east_m": east[sampled], "velocity_north_mps": v_north[sampled],
+        "velocity_east_mps": v_east[sampled], "own_seen_course_rad": course[sampled],
+        "heading_rate_rad_s": rates[sampled], "course_commanded_rad": commanded[sampled],
         "guard": np.where(command[sampled] > 0.0, 1.0, 0.0),
-    }
+    }  # fmt: skip
 
 
 def test_a_turn_is_compared_with_its_response(plan):
@@ -169,24 +136,16 @@ def test_a_violation_is_explained_by_a_premise_or_is_the_error_of_the_theorem(pl
     inside |= {"altitude_m": plan.source_height, "reference_north_m": 0.0}
     inside |= {"vessel_velocity_north_mps": 20.0}
     exact = with_budget(plan)
-    row, _ = flight_figures(exact, record(inside))
+    row, _ = flight_figures(exact, made(inside))
     assert row["keepout_violations"] == 1
     assert row["outcome"] == Outcome.UNEXPLAINED_VIOLATION.value
-    row, _ = flight_figures(exact, record(inside | {"own_seen_east_m": 1.0}))
+    row, _ = flight_figures(exact, made(inside | {"own_seen_east_m": 1.0}))
     assert row["outcome"] == Outcome.COMPLETED.value
     # An error of the own place is one of the vessel in its disc, too.
     assert row[EXCEEDED] == "position, vessel"
     # An aircraft that is lost does not fly its commands.
-    row, _ = flight_figures(exact, record(inside, Outcome.AIRCRAFT_LOST))
+    row, _ = flight_figures(exact, made(inside, Outcome.AIRCRAFT_LOST))
     assert row["outcome"] == Outcome.AIRCRAFT_LOST.value
-
-
-OUTAGE = {
-    "fault": {"kind": "satellite_navigation", "at_s": (40.0, 40.0), "satellite_navigation_s": 60.0},
-    "sensors": {"airspeed_bias_mps": 1.0},
-    "flight": {"duration_max_s": 110.0, "crossings": 0},
-    "seed": 3,
-}
 
 
 def flown(setting, plan):
@@ -194,28 +153,21 @@ def flown(setting, plan):
 
 
 def test_a_flight_shows_by_name_that_dead_reckoning_drifted_more_than_declared():
-    setting = scenario(**OUTAGE)
+    setting = scenario(
+        fault={"kind": SATELLITES, "at_s": (40.0, 40.0), "satellite_navigation_s": 60.0},
+        sensors={"airspeed_bias_mps": 1.0},
+        flight={"duration_max_s": 110.0, "crossings": 0},
+        seed=3,
+    )
     honest = planned(setting)
     row = flown(setting, honest)
     assert row[EXCEEDED] == "none"
     assert 0.0 < row[ratio_column("drift")] <= 1.0
-    guard = honest.guidance.guard
-    drift = replace(
-        guard.errors.drift, rate=0.1 * row[ratio_column("drift")] * guard.errors.drift.rate
-    )
-    declared = replace(guard, errors=replace(guard.errors, drift=drift))
-    short = replace(honest, guidance=replace(honest.guidance, guard=declared))
+    errors = honest.guidance.guard.errors
+    drift = replace(errors.drift, rate=0.1 * row[ratio_column("drift")] * errors.drift.rate)
+    guard = replace(honest.guidance.guard, errors=replace(errors, drift=drift))
+    short = replace(honest, guidance=replace(honest.guidance, guard=guard))
     row = flown(setting, short)
     assert row[EXCEEDED] == "drift"
     assert row[ratio_column("drift")] > 1.0
     assert 40.0 < row[time_column("drift")] < 101.0
-
-
-def test_in_still_air_a_flight_that_knows_everything_has_next_to_no_ratios():
-    setting = scenario(flight={"duration_max_s": 60.0, "crossings": 0})
-    row = flown(setting, planned(setting))
-    assert row[EXCEEDED] == "none"
-    for term in ("position", "turning", "drift"):
-        assert math.isnan(row[ratio_column(term)])
-    response = row[ratio_column("response")]
-    assert math.isnan(response)

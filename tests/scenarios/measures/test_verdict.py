@@ -1,8 +1,9 @@
-"""The judge of a run: its counts, its criteria with the worst flights, and its exit status."""
+"""What a flight's row fails of its criteria, and the judge of a run."""
 
 import json
 import math
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -16,8 +17,72 @@ from common.verdict import (
     read_verdict,
 )
 from scenarios.flight.outcome import Outcome
+from scenarios.measures.criteria import failed_criteria
 from scenarios.measures.verdict import Judge, counts_of
 from scenarios.scenario.sections.flight import CriteriaConfig
+
+GOOD = {
+    "outcome": "completed", "message": "", "mode_at_end": "tracking", "fault": "none",
+    "fault_time_s": math.nan, "duration_s": 300.0, "settling_time_s": 80.0, "resume_periods": 1.5,
+    "tracking_error_end_m": 1.0, "keepout_violations": 0, "keepout_depth_m": 0.0,
+    "keepout_radius_m": 200.0, "crossing_clearance_min_m": 0.0, "tracking_error_rms_m": 1.5,
+    "airspeed_error_rms_mps": 0.3, "altitude_error_max_m": 1.5, "crossing_interval_mean_s": 10.0,
+    "crossing_interval_predicted_s": 10.0, "crossing_distance_mean_m": 215.0,
+    "heading_rate_command_max_rad_s": 0.5, "heading_rate_limit_rad_s": 0.5,
+    "heading_rate_demand_max_rad_s": 0.6,
+}  # fmt: skip
+"""A row at every limit of the criteria that there are unless a scenario says otherwise."""
+
+
+def failed(changed, **criteria):
+    return failed_criteria({**GOOD, **changed}, CriteriaConfig(**criteria))
+
+
+def test_a_flight_at_every_limit_has_met_them():
+    assert failed({}) == []
+
+
+DIVERGED = {"outcome": "diverged", "message": "it rolled over"}
+INCOMPLETE = {"outcome": "incomplete", "message": "flew 12 of 30 crossings"}
+FREE = {"settles": False}
+
+FAILED = [
+    ({"keepout_violations": 1, "keepout_depth_m": 10.0}, {}, "1 keep-out violation, the deepest"),
+    ({"outcome": "not_settled"}, {}, "did not complete"),
+    (DIVERGED, FREE, "it rolled over"),
+    (INCOMPLETE, FREE, "flew 12 of 30 crossings"),
+    ({"settling_time_s": math.nan}, {}, "did not settle"),
+    ({"crossing_clearance_min_m": -0.01}, {}, "crossed at 199.99 m"),
+    ({"tracking_error_rms_m": 1.51}, {}, "rms tracking error 1.51 m, above the limit of 1.5 m"),
+    ({"tracking_error_rms_m": math.nan}, {}, "tracking error"),
+    ({"airspeed_error_rms_mps": 0.31}, {}, "airspeed error"),
+    ({"altitude_error_max_m": 1.6}, {}, "altitude error"),
+    ({"tracking_error_end_m": 1.1}, {"tracking_error_end_m": 1.0}, "tracking error at the end"),
+    ({"crossing_interval_mean_s": 10.11}, {}, "mean crossing interval 10.110 s"),
+    ({"crossing_interval_mean_s": 12.0}, {"crossing_interval_error": 0.02}, "interval 12.000 s"),
+    (
+        {"crossing_interval_mean_s": 10.05},
+        {"crossing_interval_s": (9.0, 10.0)},
+        "outside 9 to 10 s",
+    ),
+    ({}, {"crossing_distance_m": (210.0, 214.0)}, "215.000 m outside 210 to 214 m"),
+    ({"heading_rate_command_max_rad_s": 0.5001}, {}, "commanded 0.5001 rad/s, above omega_max"),
+    ({"heading_rate_demand_max_rad_s": 0.51}, {"law_within_heading_rate_max": True}, "above omega"),
+    ({"heading_rate_demand_max_rad_s": 0.5}, {"law_beyond_heading_rate_max": True}, "within omega"),
+    ({"resume_periods": 2.1}, {"resumes_within_periods": 2.0}, "crossings resumed 2.10 periods"),
+    ({"mode_at_end": "outrun"}, {"modes_at_end": ("tracking", "holding off")}, "ended outrun"),
+    ({"time_to_find_s": 301.0}, {"time_to_find_s": 300.0}, "above the limit of 300 s"),
+    # A plume that was never detected has no time.
+    ({}, {"time_to_find_s": 300.0}, "time to find the plume nan s"),
+    ({"altitude_outside_s": 0.1}, {"within_altitudes": True}, "0.1 s outside"),
+]
+
+
+@pytest.mark.parametrize(("changed", "criteria", "words"), FAILED)
+def test_every_criterion_can_fail_and_says_so_in_a_short_sentence(changed, criteria, words):
+    (found,) = failed(changed, **criteria)
+    assert words in found
+
 
 NOT_FLOWN = ("infeasible", "trim_failed", "failed")
 """Outcomes of flights that may never have been flown."""
@@ -26,16 +91,19 @@ NOT_FLOWN = ("infeasible", "trim_failed", "failed")
 def row(number=0, outcome="completed", *, met=None, trial="t", flown=None, **figures):
     """Return a row of a flight beside a vessel, which stayed outside unless figures say otherwise."""
     measured = {
-        "duration_s": 1800.0, "keepout_violations": 0, "min_distance_m": 230.0, "keepout_shape": "sphere",
-        "settling_time_s": 80.0, "tracking_error_rms_m": 1.0, "airspeed_error_rms_mps": 0.1, "altitude_error_max_m": 0.5,
-        "crossing_interval_mean_s": 10.0, "crossing_interval_predicted_s": 10.0, "heading_rate_limit_rad_s": 0.5,
-        "heading_rate_demand_max_rad_s": 0.4, "heading_rate_command_max_rad_s": 0.4, "tracking_error_end_m": 1.0,
+        "duration_s": 1800.0, "keepout_violations": 0, "min_distance_m": 230.0,
+        "keepout_shape": "sphere", "settling_time_s": 80.0, "tracking_error_rms_m": 1.0,
+        "airspeed_error_rms_mps": 0.1, "altitude_error_max_m": 0.5,
+        "crossing_interval_mean_s": 10.0, "crossing_interval_predicted_s": 10.0,
+        "heading_rate_limit_rad_s": 0.5, "heading_rate_demand_max_rad_s": 0.4,
+        "heading_rate_command_max_rad_s": 0.4, "tracking_error_end_m": 1.0,
     }  # fmt: skip
     begun = outcome not in NOT_FLOWN if flown is None else flown
     return {
-        "flight_id": f"f{number}", "trial": trial, "outcome": outcome, "message": f"why {number}", "required": "criteria",
-        "keepout_radius_m": 200.0, "fault": "none", "fault_time_s": math.nan,
-        "criteria_met": outcome == "completed" if met is None else met, **(measured if begun else {}), **figures,
+        "flight_id": f"f{number}", "trial": trial, "outcome": outcome, "message": f"why {number}",
+        "required": "criteria", "keepout_radius_m": 200.0, "fault": "none",
+        "fault_time_s": math.nan, "criteria_met": outcome == "completed" if met is None else met,
+        **(measured if begun else {}), **figures,
     }  # fmt: skip
 
 
@@ -59,20 +127,10 @@ ROWS = [
 
 def test_each_flight_is_counted_once_by_how_it_kept_out():
     counts = judged(ROWS, planned=8).counts
-    assert (counts.planned, counts.done, counts.flown, counts.left, counts.not_flown) == (
-        8,
-        6,
-        5,
-        2,
-        1,
-    )
-    assert (counts.completed, counts.met, counts.lost, counts.diverged, counts.failed) == (
-        2,
-        1,
-        2,
-        1,
-        1,
-    )
+    begun = (counts.planned, counts.done, counts.flown, counts.left, counts.not_flown)
+    assert begun == (8, 6, 5, 2, 1)
+    ended = (counts.completed, counts.met, counts.lost, counts.diverged, counts.failed)
+    assert ended == (2, 1, 2, 1, 1)
     # The lost one and the failed one were outside to their end, and did not keep out.
     assert (counts.kept_out, counts.outside, counts.violated, counts.unknown) == (1, 2, 1, 2)
     assert (counts.keepout_violations, counts.no_area) == (2, 0)
@@ -107,6 +165,12 @@ def test_a_run_meets_its_requirement_only_where_every_flight_does(rows):
     if verdict.all_kept_out:
         assert counts.violated == counts.unknown == counts.lost == counts.failed == 0
     assert not verdict.once_interrupted(interrupted=True).all_kept_out
+
+
+def test_a_verdict_is_read_back_as_it_was_written(tmp_path):
+    text = json.dumps(judged(ROWS, planned=8).to_json(), allow_nan=False)
+    (tmp_path / "verdict.json").write_text(text, encoding="utf-8")
+    assert read_verdict(tmp_path / "verdict.json").to_json() == json.loads(text)
 
 
 def test_a_flight_kept_out_only_if_it_is_known_to_its_end_and_came_back():
@@ -179,11 +243,3 @@ def test_flights_of_different_limits_are_each_judged_by_their_own():
     # 1.4 m is worse for its limit than 2.9 m is.
     assert (found.worst.flight, found.worst.limit) == ("f1", 1.0)
     assert found.worst_of_all.flight == "f0"
-
-
-def test_a_verdict_is_read_back_as_it_was_written(tmp_path):
-    verdict = judged(ROWS, planned=8).once_interrupted(interrupted=True)
-    path = tmp_path / "verdict.json"
-    path.write_text(json.dumps(verdict.to_json(), allow_nan=False), encoding="utf-8")
-    assert read_verdict(path).to_json() == json.loads(path.read_text(encoding="utf-8"))
-    assert json.loads(path.read_text(encoding="utf-8"))["exit_status"] == INTERRUPTED

@@ -12,8 +12,6 @@ from scenarios.planning.limits import check_recorded, path_error_max
 from scenarios.scenario.files import load_study
 from scenarios.studies.checks import check_without_design
 
-RAM = ("fidelity=kinematic", "guidance.approach=false", "guidance.heading_rate_max_rad_s=6")
-
 
 def kinematic(*overrides):
     return load_study("sweep_nu", ["fidelity=kinematic", *overrides])
@@ -29,36 +27,27 @@ def flown(commands, *, speed, step, fine):
             turned = command * step * part / fine
             chord = np.array([math.sin(turned), 1.0 - math.cos(turned)]) / command
             cos, sin = math.cos(course[-part]), math.sin(course[-part])
-            place.append(
-                place[-part]
-                + speed
-                * np.array([cos * chord[0] - sin * chord[1], sin * chord[0] + cos * chord[1]])
-            )
+            turned_chord = np.array([[cos, -sin], [sin, cos]]) @ chord
+            place.append(place[-part] + speed * turned_chord)
             course.append(course[-part] + turned)
             time.append(time[-1] + step / fine)
-    return (
-        np.array(time),
-        np.array(place),
-        speed * np.column_stack([np.cos(course), np.sin(course)]),
-    )
+    velocity = speed * np.column_stack([np.cos(course), np.sin(course)])
+    return np.array(time), np.array(place), velocity
 
 
 @pytest.mark.parametrize(
     ("log_rate", "fastest"), [(10.0, 0.505), (5.0, 6.0), (10.0, 6.0), (20.0, 6.0), (20.0, 30.0)]
 )
 def test_no_turn_is_farther_from_its_cubic_than_the_bound(log_rate, fastest):
-    scenario, fine = (
-        kinematic(f"guidance.heading_rate_max_rad_s={fastest}", "flight.log_rate_hz=5"),
-        20,
-    )
+    scenario = kinematic(f"guidance.heading_rate_max_rad_s={fastest}", "flight.log_rate_hz=5")
+    fine = 20
     signs = np.random.default_rng(1).choice([-1.0, 1.0], size=400)
     time, position, velocity = flown(fastest * signs, speed=19.42, step=0.05, fine=fine)
     each = fine * round(20.0 / log_rate)
     points = bezier_points(time[::each], position[::each].T, velocity[::each].T)
     at = np.arange(each) / each
-    cubic = sum(
-        math.comb(3, i) * points[i][:, :, None] * at**i * (1.0 - at) ** (3 - i) for i in range(4)
-    )
+    weights = [math.comb(3, i) * at**i * (1.0 - at) ** (3 - i) for i in range(4)]
+    cubic = sum(points[i][:, :, None] * weights[i] for i in range(4))
     worst = np.hypot(*(cubic.reshape(2, -1) - position[:-1].T)).max()
     bound = path_error_max(scenario, log_rate)
     assert worst <= bound
@@ -77,30 +66,13 @@ def test_ordinary_flights_are_recorded_often_enough():
     )
 
 
-@pytest.mark.parametrize(
-    ("overrides", "words"),
-    [
-        (
-            ["flight.log_rate_hz=5"],
-            [
-                "log_rate_hz is 5 Hz",
-                "6 rad/s and 19.42 m/s",
-                "wrong by 0.29 m",
-                "0.05 m",
-            ],
-        ),
-        (
-            ["flight.log_rate_hz=20", "guidance.heading_rate_max_rad_s=60"],
-            ["wrong by 0.18 m", "guidance.rate_hz"],
-        ),
-    ],
-)
-def test_a_record_too_seldom_for_the_turns_is_refused_before_any_flight(overrides, words):
+def test_a_record_too_seldom_for_the_turns_is_refused_before_any_flight():
     # 3 of 4 flights that had kept 3 cm outside of r_min were violations by 4 cm in a record of 5
     # Hz.
-    scenario = load_study("sweep_nu", [*RAM, *overrides])
+    ram = kinematic(
+        "guidance.approach=false", "guidance.heading_rate_max_rad_s=6", "flight.log_rate_hz=5"
+    )
     with pytest.raises(InfeasibleError):
-        check_recorded(scenario)
-    with pytest.raises(InputError) as refused:
-        check_without_design(scenario)
-    assert all(word in str(refused.value) for word in words)
+        check_recorded(ram)
+    with pytest.raises(InputError, match=r"log_rate_hz is 5 Hz.* wrong by 0\.29 m"):
+        check_without_design(ram)

@@ -1,6 +1,4 @@
-"""Each search method, and all in turn, on problems with a known minimum that random sampling of the
-same budget misses.
-"""
+"""Search methods on problems with a known minimum that random sampling of the same budget misses."""
 
 import functools
 
@@ -9,6 +7,7 @@ import pytest
 
 from scenarios.search.method import (
     Coordinate,
+    Found,
     SearchSettings,
     Space,
     methods_named,
@@ -16,6 +15,7 @@ from scenarios.search.method import (
 )
 
 pytestmark = pytest.mark.slow
+
 
 METHODS = ("corners", "differential_evolution", "local", "cma")
 
@@ -40,13 +40,8 @@ def least(methods, space, problem, *, seed=1, turns=TURNS, population=POPULATION
         return np.array(found[len(found) - len(points) :])
 
     settings = SearchSettings(population=population)
-    search_in_turns(
-        methods_named(methods, space, settings, seed),
-        space,
-        attempt,
-        population=population,
-        turns=turns,
-    )
+    found_methods = methods_named(methods, space, settings, seed)
+    search_in_turns(found_methods, space, attempt, population=population, turns=turns)
     assert len(tried) <= turns * population
     return min(found), np.array(tried)
 
@@ -72,7 +67,7 @@ def corner(point):
     return 1.0 if (point[:5] < 0.95).any() else -float(point[:5].min())
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", [1])
 @pytest.mark.parametrize("method", ["differential_evolution", "local", "cma"])
 def test_a_method_that_learns_finds_the_centre_of_a_bowl_that_random_points_miss(method, seed):
     # 1,920 points: the share of the cube within 0.15 of the centre, by the volume of an ellipsoid,
@@ -81,7 +76,7 @@ def test_a_method_that_learns_finds_the_centre_of_a_bowl_that_random_points_miss
     assert least((method,), BOWL, bowl, seed=seed)[0] < 15.0
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_corner_sampling_finds_a_corner_that_random_points_miss(seed):
     # A random point is in the corner with a probability of 0.05^5 = 3e-7, one of these with about
     # 0.4^5 = 0.01.
@@ -90,15 +85,13 @@ def test_corner_sampling_finds_a_corner_that_random_points_miss(seed):
 
 
 def rare(point):
-    """Three coordinates that matter only with the last choice, and there are to be at a corner, at
-    one time.
-    """
+    """Matter only with the last choice: least at a corner of two, and where two times are one."""
     if point[0] < 2.0 / 3.0:
         return 50.0 + float(point[1])
     return 40.0 - 20.0 * float(point[1] + point[2]) + 200.0 * abs(float(point[3] - point[4]))
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_methods_in_turn_find_two_events_at_one_time_with_one_of_the_choices(seed):
     time = Coordinate(time_range=(0.0, 100.0))
     space = space_of(
@@ -135,21 +128,9 @@ def test_a_search_around_a_point_begins_at_the_worst_that_others_found(method):
     assert together < 1.0
 
 
-def test_what_lies_beyond_the_declared_ranges_is_avoided_by_all_that_propose_freely():
-    space = space_of(*[Coordinate()] * 4, beyond=lambda point: max(0.0, float(point.sum()) - 2.0))
-    for method in ("corners", "local"):
-        _, tried = least((method,), space, lambda point: -float(point.sum()), turns=10)
-        assert (tried.sum(axis=1) <= 2.0).all()
-        assert tried.sum(axis=1).max() > 1.9
-
-
 def test_corners_take_every_choice_equally_often_and_put_quantities_at_their_ends():
-    space = space_of(
-        Coordinate(choices=THIRDS),
-        Coordinate(),
-        Coordinate(circle=True),
-        Coordinate(time_range=(0.0, 9.0)),
-    )
+    endless = Coordinate(circle=True), Coordinate(time_range=(0.0, 9.0))
+    space = space_of(Coordinate(choices=THIRDS), Coordinate(), *endless)
     _, tried = least(("corners",), space, lambda _: 0.0, turns=15)
     values, counts = np.unique(tried[:, 0], return_counts=True)
     np.testing.assert_allclose(values, [1.0 / 6.0, 0.5, 5.0 / 6.0])
@@ -159,3 +140,54 @@ def test_corners_take_every_choice_equally_often_and_put_quantities_at_their_end
     # ends.
     assert ends[1] == pytest.approx(0.8, abs=0.06)
     assert ends[2:].tolist() == [0.0, 0.0]
+
+
+def test_what_lies_beyond_the_declared_ranges_is_avoided_by_all_that_propose_freely():
+    space = space_of(*[Coordinate()] * 4, beyond=lambda point: max(0.0, float(point.sum()) - 2.0))
+    for method in ("corners", "local"):
+        _, tried = least((method,), space, lambda point: -float(point.sum()), turns=10)
+        assert 1.9 < tried.sum(axis=1).max() <= 2.0
+
+
+HALVES = (0.0, 0.5, 1.0)
+
+
+def point(*values):
+    return np.array(values)
+
+
+def test_a_choice_differs_wholly_or_not_at_all_and_noise_never():
+    choice, noise = Coordinate(choices=HALVES), Coordinate(choices=HALVES, noise=True)
+    differences = [choice.difference(0.1, other) for other in (0.0, 0.49, 0.5, 1.0)]
+    assert differences == [0.0, 0.0, 1.0, 1.0]
+    assert noise.difference(0.0, 1.0) == 0.0
+    assert choice.values == (0.25, 0.75)
+    # A choice that has no weight is never taken.
+    assert Coordinate(choices=(0.0, 0.5, 0.5, 1.0)).values == (0.25, 0.75)
+
+
+def test_two_times_are_made_equal_within_both_ranges():
+    one, other = Coordinate(time_range=(0.0, 100.0)), Coordinate(time_range=(50.0, 250.0))
+    apart = Coordinate(time_range=(300.0, 400.0))
+    space = Space(coordinates=(one, Coordinate(), other, apart))
+    assert space.time_pairs == ((0, 2),)
+    generator = np.random.default_rng(1)
+    for _ in range(20):
+        moved = space.with_equal_times(point(0.9, 0.3, 0.9, 0.9), generator)
+        assert 100.0 * moved[0] == pytest.approx(50.0 + 200.0 * moved[2])
+        assert 50.0 <= 100.0 * moved[0] <= 100.0
+        assert moved[[1, 3]].tolist() == [0.3, 0.9]
+
+
+def test_the_worst_point_apart_from_those_that_were_used_is_one_unlike_them():
+    space = Space(coordinates=(Coordinate(), Coordinate()))
+    found = Found(space)
+    assert found.worst() is None
+    found.add(np.array([[0.1, 0.1], [0.9, 0.9], [0.12, 0.1]]), [1.0, 3.0, 2.0])
+    assert found.worst()[1] == 1.0
+    assert found.worst(apart_from=[point(0.1, 0.1)])[1] == 3.0
+    assert found.worst(apart_from=[point(0.1, 0.1), point(0.9, 0.9)]) is None
+    # What violates is known, and so is what is like it.
+    found.add(np.array([[0.9, 0.88]]), [-1.0])
+    assert found.worst(apart_from=[point(0.1, 0.1)]) is None
+    assert found.worst()[1] == 1.0

@@ -5,12 +5,9 @@ import shutil
 
 import pandas as pd
 import pytest
+from flight_cases import replay_here, run_here
 
-from scenarios.engine.processes import InProcessExecutor
-from scenarios.engine.runner import fly_study
 from scenarios.errors import InputError
-from scenarios.scenario.files import load_study
-from scenarios.studies.base import run_study
 from scenarios.studies.replay import Replay
 from tests.run_tables import manifest_of, write_manifest
 from tests.scenarios.short_trial import short_trial
@@ -27,55 +24,34 @@ def runs(tmp_path_factory):
     for name in ("one", "two"):
         (folder / f"{name}.toml").write_text(TRIAL, encoding="utf-8")
     trials = json.dumps([str(folder / "one.toml"), str(folder / "two.toml")])
-    (folder / "list.toml").write_text(
-        f'study = "trials"\ntitle = "two"\ntrials = {trials}\n', encoding="utf-8"
-    )
-    run_study(
-        load_study(str(folder / "list.toml")),
-        "list",
-        folder / "trials",
-        executor_factory=InProcessExecutor,
-    )
+    text = f'study = "trials"\ntitle = "two"\ntrials = {trials}\n'
+    (folder / "list.toml").write_text(text, encoding="utf-8")
+    run_here(folder / "list.toml", folder / "trials")
     sweep = [
         "fidelity=kinematic",
         "sweep.nu=[0.3, 0.5]",
         "comparison.nu=[0.5]",
         "flight.crossings=3",
     ]
-    run_study(
-        load_study("sweep_nu", sweep),
-        "sweep_nu",
-        folder / "sweep",
-        executor_factory=InProcessExecutor,
-    )
-    # Neither is needed any more.
+    run_here("sweep_nu", folder / "sweep", *sweep)
+    # The run has its scenarios.
     (folder / "two.toml").unlink()
     return folder
-
-
-def replay(name, out):
-    return fly_study(
-        Replay(str(name)),
-        out,
-        executor_factory=InProcessExecutor,
-        resume=False,
-        progress=lambda *_: None,
-    )
 
 
 @pytest.mark.parametrize(
     ("run", "flight_id", "table"),
     [
-        ("trials", "one_00000", "summary.csv"),
         ("trials", "two_00002", "summary.csv"),
-        ("sweep", "nu_0.50", "summary.csv"),
         ("sweep", "nu_0.50_no_preview", "comparison.csv"),
     ],
 )
 def test_a_flight_is_flown_again_identically_with_every_step_of_the_guidance(
     runs, tmp_path, run, flight_id, table
 ):
-    result = replay(runs / run / "flights" / flight_id, tmp_path / "again")
+    before = {path: path.stat().st_mtime_ns for path in (runs / run).rglob("*")}
+    result = replay_here(runs / run / "flights" / flight_id, tmp_path / "again")
+    assert {path: path.stat().st_mtime_ns for path in (runs / run).rglob("*")} == before
     assert result.all_met
     assert result.lines[-1].startswith("identical to the flight in")
     rows = pd.read_csv(runs / run / table).drop(columns="wall_time_s")
@@ -96,7 +72,7 @@ def test_a_flight_that_goes_another_way_is_reported_with_what_has_changed(runs, 
     manifest["trials"]["one"]["start"]["distance_m"] = [500.0, 520.0]
     manifest["fingerprint"]["numpy"] = "1.0"
     write_manifest(copy, manifest)
-    result = replay(copy / "flights" / "one_00000", tmp_path / "again")
+    result = replay_here(copy / "flights" / "one_00000", tmp_path / "again")
     assert not result.all_met
     assert "differs from the flight in" in result.lines[-1]
     assert "start_distance_m" in result.lines[-1]
@@ -104,35 +80,17 @@ def test_a_flight_that_goes_another_way_is_reported_with_what_has_changed(runs, 
 
 
 def test_what_cannot_be_flown_again_is_refused_in_one_line(runs, tmp_path):
-    with pytest.raises(
-        InputError, match=r"has no flight 'three_00000'; its summary\.csv lists them"
-    ):
-        Replay(str(runs / "trials" / "flights" / "three_00000"))
     copy = shutil.copytree(runs / "trials", tmp_path / "copy")
-    (copy / "journal.sqlite").unlink()
-    with pytest.raises(InputError, match=r"has no journal\.sqlite"):
-        Replay(str(copy / "flights" / "one_00000"))
-    shutil.copy(runs / "trials" / "journal.sqlite", copy)
+
+    def refused(words, flight="one_00000"):
+        with pytest.raises(InputError, match=words):
+            Replay(str(copy / "flights" / flight))
+
+    refused(r"has no flight 'three_00000'; its summary\.csv lists them", "three_00000")
     (copy / "manifest.json").write_text("{}", encoding="utf-8")
-    with pytest.raises(
-        InputError,
-        match=r"manifest\.json is not that of a run; give the directory of a complete run",
-    ):
-        Replay(str(copy / "flights" / "one_00000"))
+    refused(r"manifest\.json is not that of a run; give the directory of a complete run")
     (copy / "manifest.json").write_text("{", encoding="utf-8")
-    with pytest.raises(InputError, match=r"manifest\.json cannot be read"):
-        Replay(str(copy / "flights" / "one_00000"))
-
-
-def files_below(folder):
-    return {
-        path.relative_to(folder).as_posix(): path.stat().st_mtime_ns
-        for path in folder.rglob("*")
-        if path.is_file()
-    }
-
-
-def test_a_replay_writes_nothing_into_the_run_that_it_is_of(runs, tmp_path):
-    before = files_below(runs / "trials")
-    assert replay(runs / "trials" / "flights" / "one_00001", tmp_path / "again").all_met
-    assert files_below(runs / "trials") == before
+    refused(r"manifest\.json cannot be read")
+    (copy / "journal.sqlite").unlink()
+    (copy / "manifest.json").write_bytes((runs / "trials" / "manifest.json").read_bytes())
+    refused(r"has no journal\.sqlite")

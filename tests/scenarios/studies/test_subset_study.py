@@ -1,19 +1,19 @@
 """Monte Carlo by subset simulation from its file to its report, kinematic and short."""
 
+import contextlib
 import json
 import shutil
+import sqlite3
 
 import numpy as np
 import pandas as pd
 import pytest
+from flight_cases import replay_here, run_here
 
 from common.intervals import clopper_pearson
-from scenarios.engine.processes import InProcessExecutor
+from scenarios.engine.journal import Journal
 from scenarios.engine.runner import ExecutorFactory
-from scenarios.experiment.sampling import beyond_declared
-from scenarios.scenario.files import load_study
-from scenarios.studies.base import run_study, study_of
-from scenarios.studies.replay import Replay
+from scenarios.engine.task import Result
 
 pytestmark = pytest.mark.slow
 
@@ -66,21 +66,10 @@ def rare(tmp_path_factory):
     return path
 
 
-def run(rare, out, *, factory=InProcessExecutor, resume=False, progress=lambda *_: None):
-    return run_study(
-        load_study(str(rare)),
-        "short",
-        out,
-        executor_factory=factory,
-        resume=resume,
-        progress=progress,
-    )
-
-
 @pytest.fixture(scope="module")
 def whole(rare, tmp_path_factory):
     out = tmp_path_factory.mktemp("subset") / "run"
-    return run(rare, out, factory=ExecutorFactory(jobs=2)), out
+    return run_here(rare, out, executor_factory=ExecutorFactory(jobs=2)), out
 
 
 def statistics_of(out):
@@ -88,8 +77,7 @@ def statistics_of(out):
 
 
 def test_it_agrees_with_plain_sampling_where_both_can_see(rare, whole, tmp_path):
-    scenario = load_study(str(rare), ["method=plain", "flights=120", "sampling=random"])
-    run_study(scenario, "short", tmp_path / "plain", executor_factory=InProcessExecutor)
+    run_here(rare, tmp_path / "plain", "method=plain", "flights=120", "sampling=random")
     plain = statistics_of(tmp_path / "plain")["violation"]["measured"]
     # About 5 %: neither method may see nothing.
     assert 2 <= plain["events"] <= 16
@@ -103,96 +91,39 @@ def test_it_agrees_with_plain_sampling_where_both_can_see(rare, whole, tmp_path)
 
 def test_every_flight_has_a_row_and_every_level_its_figures(whole):
     result, out = whole
-    summary = pd.read_csv(out / "summary.csv")
-    found = statistics_of(out)
+    summary, found = pd.read_csv(out / "summary.csv"), statistics_of(out)
     levels = [level for simulation in found["simulations"] for level in simulation["levels"]]
-    assert (
-        len(summary)
-        == result.verdict.counts.done
-        == sum(level["flights"] for level in levels)
-        == result.verdict.counts.planned
-    )
+    counts = result.verdict.counts
+    assert len(summary) == counts.done == counts.planned == sum(of["flights"] for of in levels)
     assert list(summary["flight_id"]) == [f"short_{i:05d}" for i in range(len(summary))]
     assert found["violation"]["first_levels"]["flights"] == 150
     for simulation in found["simulations"]:
         first, *others = simulation["levels"]
-        assert first["below_m"] is None
-        assert first["moved"] == first["renewed"] == 0
+        assert (first["below_m"], first["moved"], first["renewed"]) == (None, 0, 0)
         for before, level in zip(simulation["levels"], others, strict=False):
             assert level["below_m"] == before["threshold_m"]
             assert 0 < level["accepted"] < level["moved"]
         product = np.prod([level["probability"] for level in simulation["levels"]])
         assert simulation["probability"] == pytest.approx(product, rel=1e-12)
-    assert {entry["key"] for entry in found["inputs"]} == {
-        "start.range_m",
-        "start.course_deg",
-        "start.aspect_deg",
-        "vessel.speed_mps",
-    }
     # Nothing enters from 350 m within 3 s, so the range decides.
+    assert len(found["inputs"]) == 4
     assert found["inputs"][0]["distance"] > found["noise_floor"]
     ranges = next(entry for entry in found["inputs"] if entry["key"] == "start.range_m")
     assert ranges["median_near"] < 280.0 < ranges["median"]
-    assert "probability of a keep-out violation in a flight" in result.lines[-1]
 
 
-TURNING = [
-    "subset.levels_max=1",
-    "vessel.manoeuvres=[{at_s=1.0, turn_deg=5.0, turn_rate_deg_s=5.0}, {at_s=1.5, turn_deg=5.0, turn_rate_deg_s=5.0}]",
-]
-
-
-def test_flights_are_those_of_the_plain_study_also_beyond_what_is_declared_of_the_vessel(
-    rare, tmp_path
-):
-    # At 5 deg/s, from 2.5 degrees on, the second turn begins before the end of the first; and 0.05
-    # s, a step, are allowed for.
-    draw = 'draws=[{key="vessel.manoeuvres.0.turn_deg", uniform=[0.5, 5.0]}, {key="start.range_m", uniform=[215.0, 350.0]}]'
-    scenario = load_study(str(rare), [*TURNING, draw])
-    # At 8 m/s and 5 deg/s it accelerates by 0.7 m/s2.
-    gentle = study_of(
-        load_study(str(rare), [*TURNING, draw, "following.vessel_acceleration_mps2=0.1"]), "short"
-    )
-    assert beyond_declared(gentle.trials["short"], [0.1, 0.5]) > 1.0
-    assert gentle._allowed(np.array([0.1, 0.5]))
-    result = run_study(scenario, "short", tmp_path / "run", executor_factory=InProcessExecutor)
-    rows = pd.read_csv(tmp_path / "run" / "summary.csv").merge(
-        pd.read_csv(tmp_path / "run" / "draws.csv"), on="flight_id"
-    )
-    overlap = rows["vessel.manoeuvres.0.turn_deg"] > 2.75
-    assert len(rows) == 150
-    assert set(rows["outcome"][overlap]) == {"infeasible"}
-    assert rows["min_distance_m"][~overlap].notna().all()
-    found = statistics_of(tmp_path / "run")
-    assert [simulation["levels"][0]["outside"] for simulation in found["simulations"]] == [0, 0, 0]
-    unknown = found["violation"]["first_levels_unknown"]
-    assert unknown == rows["min_distance_m"].isna().sum()
-    # Half of 150, within 4 standard deviations of 6.1.
-    assert 50 <= unknown <= 100
-    upper = found["violation"]["pessimistic"]["upper"]
-    assert any(
-        line.startswith(f"of 150 flights of the first levels {unknown} are of unknown end")
-        and f"at most {upper:.2g}" in line
-        for line in result.lines
-    )
-
-
-def test_the_same_seed_gives_the_same_rows_whatever_the_number_of_processes_and_where_it_was_interrupted(
+def test_the_same_seed_gives_the_same_rows_for_any_number_of_processes_and_where_it_was_interrupted(
     rare, whole, tmp_path
 ):
-    def interrupt(doing, done, _):
-        if done == 170:
-            raise KeyboardInterrupt
-
-    out = tmp_path / "run"
-    assert run(rare, out, progress=interrupt).verdict.interrupted
-    assert not (out / "statistics.json").exists()
-    run(rare, out, resume=True)
+    # As if the processes of the other run had been killed in its second level.
+    out = shutil.copytree(whole[1], tmp_path / "run")
+    (out / "statistics.json").unlink()
+    with contextlib.closing(sqlite3.connect(out / "journal.sqlite")) as journal, journal:
+        journal.execute("DELETE FROM results WHERE number >= 170")
+    run_here(rare, out, resume=True)
     for name in ("summary.csv", "draws.csv"):
-        one, other = (
-            pd.read_csv(of / name).drop(columns="wall_time_s", errors="ignore")
-            for of in (whole[1], out)
-        )
+        both = [pd.read_csv(of / name) for of in (whole[1], out)]
+        one, other = (table.drop(columns="wall_time_s", errors="ignore") for table in both)
         pd.testing.assert_frame_equal(one, other, check_exact=True)
     assert statistics_of(out) == statistics_of(whole[1])
 
@@ -201,36 +132,18 @@ def test_a_flight_of_a_late_level_is_replayed_to_the_last_bit_its_blended_noise_
     whole, tmp_path
 ):
     last = pd.read_csv(whole[1] / "summary.csv")["flight_id"].iloc[-1]
-    replay = Replay(str(whole[1] / "flights" / last))
-    from scenarios.engine.runner import fly_study
-
-    result = fly_study(
-        replay,
-        tmp_path / "replay",
-        executor_factory=InProcessExecutor,
-        resume=False,
-        progress=lambda *_: None,
-    )
+    result = replay_here(whole[1] / "flights" / last, tmp_path / "replay")
     assert result.all_met, result.lines
 
 
 def test_a_lost_flight_is_not_flown_again_once_others_depend_on_it(rare, whole, tmp_path):
-    import sqlite3
-
-    from scenarios.engine.journal import _checksum
-
-    out = shutil.copytree(whole[1], tmp_path / "copy")
-    with sqlite3.connect(out / "journal.sqlite") as database:
-        (fields,) = database.execute(
-            "SELECT number, point, items, lost, tables FROM results WHERE number = 3"
-        ).fetchall()
-        lost = (*fields[:3], 1, fields[4])
-        database.execute(
-            "UPDATE results SET lost = 1, checksum = ? WHERE number = 3", (_checksum(*lost),)
-        )
-    database.close()
-    flown = []
-    run(rare, out, resume=True, progress=lambda *p: flown.append(p))
+    out, reports = shutil.copytree(whole[1], tmp_path / "copy"), []
+    journal = Journal(out / "journal.sqlite")
+    names = ("summary.csv", "draws.csv", "crossings.csv", "interventions.csv")
+    tables = {name: list(journal.rows(name, first=3, below=4)) for name in names}
+    journal.add(Result(task=journal.task(3), tables=tables, lost=True))
+    journal.close()
+    run_here(rare, out, resume=True, progress=lambda *report: reports.append(report))
     done = len(pd.read_csv(out / "summary.csv"))
-    assert [p[1] for p in flown if p[0] == "flying"] == [done - 1]
+    assert [report[1] for report in reports if report[0] == "flying"] == [done - 1]
     assert statistics_of(out) == statistics_of(whole[1])

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -48,16 +49,6 @@ def test_an_hourly_table_is_timed_from_the_start_of_the_flight(table):
     assert first_time(table(HOURLY), KATTEGAT) == START
 
 
-def test_a_table_over_time_and_height_is_both(table):
-    rows = "".join(
-        f"2026-06-01T{10 + hour}:00:00Z,{height},{hour + height / 10},180\n"
-        for hour in (0, 1)
-        for height in (10, 100)
-    )
-    field = wind(table("time_utc,height_m,speed_mps,from_deg\n" + rows))
-    assert field.now(1800.0, 100.0) == pytest.approx((10.5, 0.0), abs=1e-12)
-
-
 @pytest.mark.parametrize(
     ("text", "changes", "words"),
     [
@@ -87,105 +78,89 @@ def test_a_table_of_no_use_is_refused_in_one_line(table, text, changes, words):
         assert word in str(refusal.value)
 
 
+def test_a_table_over_time_and_height_is_both(table):
+    lines = ["time_utc,height_m,speed_mps,from_deg"]
+    for hour in (0, 1):
+        times = f"2026-06-01T{10 + hour}:00:00Z"
+        lines += [f"{times},{height},{hour + height / 10},180" for height in (10, 100)]
+    field = wind(table("\n".join(lines)))
+    assert field.now(1800.0, 100.0) == pytest.approx((10.5, 0.0), abs=1e-12)
+
+
 @pytest.mark.slow
 def test_a_flight_in_a_wind_that_changes_knows_it_and_crosses_as_predicted(table):
     # From 4 m/s ahead to 8 m/s from abeam within 20 minutes.
     rows = "time_utc,speed_mps,from_deg\n2026-06-01T10:00:00Z,4.0,0\n2026-06-01T10:20:00Z,8.0,90\n"
-    flown = fly(
-        wind={"table": table(rows)},
-        flight={"crossings": 0, "duration_max_s": 900.0},
-        start={"distance_m": (400.0, 400.0)},
-    )
-    assert (flown.row["outcome"], flown.row["keepout_violations"]) == ("completed", 0), flown.row[
-        "message"
-    ]
-    assert (flown.row["wind_speed_mps"], flown.row["wind_from_deg"]) == pytest.approx(
-        (4.0, 0.0), abs=1e-9
-    )
-    assert flown.row["nu_max"] > flown.row["nu_min"] + 0.05
+    flight = {"crossings": 0, "duration_max_s": 900.0}
+    flown = fly(wind={"table": table(rows)}, flight=flight, start={"distance_m": (400.0, 400.0)})
+    row = flown.row
+    assert (row["outcome"], row["keepout_violations"]) == ("completed", 0), row["message"]
+    assert (row["wind_speed_mps"], row["wind_from_deg"]) == pytest.approx((4.0, 0.0), abs=1e-9)
+    assert row["nu_max"] > row["nu_min"] + 0.05
     # The wind changes by up to 9 m/s in 1200 s; the filter follows 20 s behind at most.
-    assert flown.row["wind_error_rms_mps"] < 0.15
-    assert flown.row["crossing_interval_mean_s"] == pytest.approx(
-        flown.row["crossing_interval_predicted_s"], rel=0.02
-    )
+    assert row["wind_error_rms_mps"] < 0.15
+    predicted = row["crossing_interval_predicted_s"]
+    assert row["crossing_interval_mean_s"] == pytest.approx(predicted, rel=0.02)
     # The plume turns with the wind: behind the vessel's motion north at 8 m/s through the air.
-    field = mean_wind(
-        given := scenario(wind={"table": table(rows)}, flight={"duration_max_s": 900.0}),
-        vessel_of(given),
-    )
+    given = scenario(wind={"table": table(rows)}, flight=flight)
+    field = mean_wind(given, vessel_of(given))
     for time in (10.0, 500.0, 890.0):
         north, east = field.now(time, 60.0)
         axis = flown.history["plume_axis_rad"].iloc[round(10 * time)]
-        assert math.remainder(axis - math.atan2(east, north - 8.0), math.tau) == pytest.approx(
-            0.0, abs=1e-4
-        )
+        off = math.remainder(axis - math.atan2(east, north - 8.0), math.tau)
+        assert off == pytest.approx(0.0, abs=1e-4)
 
 
-def test_netcdf_of_era5_is_interpolated_at_the_place(tmp_path):
+@pytest.fixture
+def netcdf(tmp_path):
+    """Return a function that writes winds on a grid of latitudes and longitudes at some hours."""
     xarray = pytest.importorskip("xarray", reason="xarray is an extra")
     pytest.importorskip("h5netcdf", reason="h5netcdf is an extra")
+
+    def written(hours, latitude, longitude, **winds):
+        times = np.array([f"2026-06-01T{hour}:00" for hour in hours], dtype="datetime64[ns]")
+        coords = {"valid_time": times, "latitude": latitude, "longitude": longitude}
+        data = {name: (tuple(coords), values) for name, values in winds.items()}
+        xarray.Dataset(data, coords=coords).to_netcdf(tmp_path / "era5.nc", engine="h5netcdf")
+        return str(tmp_path / "era5.nc")
+
+    return written
+
+
+def test_netcdf_of_era5_is_interpolated_at_the_place(netcdf, tmp_path):
     # As ERA5 has it: latitudes from the north, longitudes from 0 to 360, hours.
     latitude, longitude = np.array([58.0, 57.0]), np.array([11.0, 12.0])
-    hours = np.array(["2026-06-01T10:00", "2026-06-01T11:00"], dtype="datetime64[ns]")
     east = np.zeros((2, 2, 2)) + longitude - 11.0
     north = np.zeros((2, 2, 2)) + latitude[:, None] - 57.0
     north[1] += 1.0
-    dims = ("valid_time", "latitude", "longitude")
-    data = xarray.Dataset(
-        {
-            "u10": (dims, east),
-            "v10": (dims, north),
-            "u100": (dims, 2.0 * east),
-            "v100": (dims, 2.0 * north),
-        },
-        coords={"valid_time": hours, "latitude": latitude, "longitude": longitude},
-    )
-    data.to_netcdf(tmp_path / "era5.nc", engine="h5netcdf")
-    field = wind(str(tmp_path / "era5.nc"))
+    winds = {"u10": east, "v10": north, "u100": 2.0 * east, "v100": 2.0 * north}
+    path = netcdf((10, 11), latitude, longitude, **winds)
+    field = wind(path)
     # At 57.2 N, 11.3 E.
     assert field.now(0.0, 10.0) == pytest.approx((0.2, 0.3), abs=1e-6)
     assert field.now(3600.0, 100.0) == pytest.approx((2.4, 0.6), abs=1e-6)
-    for place, words in (
-        (replace(KATTEGAT, latitude=0.0), "latitudes go from 57 to 58 deg"),
-        (replace(KATTEGAT, latitude=math.nan), "place.latitude_deg"),
-    ):
-        with pytest.raises(InputError, match=words):
-            wind(str(tmp_path / "era5.nc"), place)
     (tmp_path / "no.nc").write_bytes(b"no")
-    with pytest.raises(InputError, match=r"no\.nc: cannot be read as netCDF"):
-        wind(str(tmp_path / "no.nc"))
-    data[["u10"]].to_netcdf(tmp_path / "half.nc", engine="h5netcdf")
-    with pytest.raises(InputError, match="needed are a time and u10 with v10"):
-        wind(str(tmp_path / "half.nc"))
-
-
-def with_longitudes(path, longitudes, at):
-    """Write an hour's wind on a grid: towards the east at one m/s per degree east of a longitude."""
-    xarray = pytest.importorskip("xarray", reason="xarray is an extra")
-    pytest.importorskip("h5netcdf", reason="h5netcdf is an extra")
-    east = np.broadcast_to((longitudes - at + 180.0) % 360.0 - 180.0, (1, 2, len(longitudes)))
-    dims, hours = (
-        ("valid_time", "latitude", "longitude"),
-        np.array(["2026-06-01T10:00"], dtype="datetime64[ns]"),
+    refused = (
+        (path, replace(KATTEGAT, latitude=0.0), "latitudes go from 57 to 58 deg"),
+        (path, replace(KATTEGAT, latitude=math.nan), "place.latitude_deg"),
+        (str(tmp_path / "no.nc"), KATTEGAT, r"no\.nc: cannot be read as netCDF"),
     )
-    data = xarray.Dataset(
-        {"u10": (dims, east), "v10": (dims, np.ones_like(east))},
-        coords={"valid_time": hours, "latitude": np.array([57.0, 58.0]), "longitude": longitudes},
-    )
-    data.to_netcdf(path, engine="h5netcdf")
-    return path
+    for file, place, words in refused:
+        with pytest.raises(InputError, match=words):
+            wind(file, place)
+    with pytest.raises(InputError, match="a time and u10 with v10"):
+        wind(netcdf((10, 11), latitude, longitude, u10=east))
 
 
 @pytest.mark.parametrize(
-    ("longitudes", "at"),
-    [
-        (np.arange(0.0, 360.0, 0.25), -0.1),
-        (np.arange(-180.0, 180.0, 0.25), 179.9),
-        (np.arange(350.0, 370.1, 0.25), 5.0),
-        (np.arange(-190.0, -169.9, 0.25), 175.0),
-        (np.arange(170.0, 190.1, 0.25), -175.0),
-    ],
+    ("first", "last", "at"),
+    [(0.0, 360.0, -0.1), (-180.0, 180.0, 179.9), (350.0, 370.1, 5.0), (-190.0, -169.9, 175.0)],
 )
-def test_netcdf_has_the_wind_of_a_longitude_however_its_grid_counts_it(longitudes, at, tmp_path):
-    found = read_netcdf(with_longitudes(tmp_path / "era5.nc", longitudes, at), 57.2, at)[2]
+def test_netcdf_has_the_wind_of_a_longitude_however_its_grid_counts_it(netcdf, first, last, at):
+    longitudes = np.arange(first, last, 0.25)
+    # Towards the east at one m/s per degree east of a longitude.
+    east = np.broadcast_to((longitudes - at + 180.0) % 360.0 - 180.0, (1, 2, len(longitudes)))
+    winds = {"u10": east, "v10": np.ones_like(east)}
+    path = netcdf((10,), np.array([57.0, 58.0]), longitudes, **winds)
+    found = read_netcdf(Path(path), 57.2, at)[2]
     assert found[0] == pytest.approx(np.array([[1.0, 0.0]]), abs=1e-9)
