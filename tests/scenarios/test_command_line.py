@@ -136,7 +136,7 @@ def run_apart(arguments, errors):
 )
 def test_an_interrupted_run_keeps_what_is_done_and_can_be_resumed(tmp_path, number, end):
     # Flights enough that some are left when the interrupt comes: each takes a tenth of a second.
-    (tmp_path / "short.toml").write_text(short_trial(flights=30, duration=120.0), "utf-8")
+    (tmp_path / "short.toml").write_text(short_trial(flights=90, duration=120.0), "utf-8")
     out, errors = tmp_path / "run", tmp_path / "errors"
     words = [tmp_path / "short.toml", "--jobs", "1", "--no-report", "--out", out]
     context = multiprocessing.get_context("fork")
@@ -154,8 +154,8 @@ def test_an_interrupted_run_keeps_what_is_done_and_can_be_resumed(tmp_path, numb
     said = errors.read_text(encoding="utf-8")
     assert "Traceback" not in said
     assert manifest_of(out)["state"] == "interrupted"
-    assert 1 <= (done := len(pd.read_csv(out / "summary.csv"))) < 30
-    assert f"{done} of 30 flights are done and kept, {30 - done} " in said
+    assert 1 <= (done := len(pd.read_csv(out / "summary.csv"))) < 90
+    assert f"{done} of 90 flights are done and kept, {90 - done} " in said
     assert "--resume" in said
 
 
