@@ -1,8 +1,10 @@
 """The fastest parameters whose command is bounded: docs/actuation_bounds.md."""
 
+import itertools
+
 import numpy as np
 import pytest
-from bounds_cases import LIMIT, fastest, largest_head_on, time_of
+from bounds_cases import LIMIT, fastest
 from gnc_cases import (
     HEADING_RATE_MAX,
     LOOK_AHEAD,
@@ -66,35 +68,25 @@ def test_the_fastest_keeps_its_limit_and_with_a_shorter_look_ahead_would_not_or_
 @pytest.mark.parametrize("reserve", [0.1, 0.6])
 def test_no_neighbour_of_the_fastest_is_faster_within_the_limit(reserve):
     found = fastest(reserve)
-    steps = (0.97, 0.99, 1.0, 1.01, 1.03)
-    faster = []
-    for a in steps:
-        for b in steps:
-            for c in steps:
-                neighbour = look_ahead(a * found.look_ahead.epsilon, b * found.look_ahead.radius)
-                steering_max = c * found.steering_max
-                # The closed form may lead the search astray by 0.1 % of the time: docs, "The
-                # fastest parameters within a limit".
-                if time_of(neighbour, steering_max) < found.convergence_time * (1.0 - 0.0015):
-                    faster.append((neighbour, steering_max))
-    assert len(faster) > 20
-    for neighbour, steering_max in faster:
-        least = largest_head_on(
-            neighbour,
-            speed=SPEED,
-            reference_heading_rate_max=(1.0 - reserve) * LIMIT,
-            gain=1.5,
-            steering_max=steering_max,
-        )
-        # Cheap first: what exceeds the limit head on exceeds it.
-        if least <= LIMIT:
-            states = {
-                "speed": SPEED,
-                "reference_heading_rate_max": (1.0 - reserve) * LIMIT,
-                "steering_max": steering_max,
-            }
+    task = {"speed": SPEED, "distance_from": 500.0, "distance_to": 5.0, "gain": 1.5}
+    faster = 0
+    for a, b, c in itertools.product((0.97, 1.0, 1.03), repeat=3):
+        neighbour = look_ahead(a * found.look_ahead.epsilon, b * found.look_ahead.radius)
+        steering_max = c * found.steering_max
+        time = convergence_time(neighbour, steering_max=steering_max, **task)
+        # The closed form may lead the search astray by 0.1 % of the time: docs, "The fastest
+        # parameters within a limit".
+        if time < found.convergence_time * (1.0 - 0.0015):
+            faster += 1
+            bound = heading_rate_bound(
+                neighbour,
+                speed=SPEED,
+                reference_heading_rate_max=(1.0 - reserve) * LIMIT,
+                steering_max=steering_max,
+            )
             # The bound may lie 1e-4 high.
-            assert heading_rate_bound(neighbour, **states) > LIMIT * (1.0 - 1e-4)
+            assert bound > LIMIT * (1.0 - 1e-4)
+    assert faster > 5
 
 
 def test_the_guidance_flies_its_preview_without_a_command_above_the_bound():
@@ -106,7 +98,7 @@ def test_the_guidance_flies_its_preview_without_a_command_above_the_bound():
         gain_per_s=found.gain,
         steering_max_rad_s=found.steering_max,
     )
-    for start in ((-400.0, 300.0, 3.0), (100.0, -50.0, -1.6), (0.0, 0.0, -1.5)):
+    for start in ((-400.0, 300.0, 3.0), (0.0, 0.0, -1.5)):
         # Not to be cut at omega_max: the law itself keeps it.
         guidance = make_guidance(
             make_reference(oscillation), law=law, lag=0.5, heading_rate_max=10.0

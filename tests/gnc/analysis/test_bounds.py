@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from bounds_cases import command, distances, largest_head_on, look_aheads, steering, turns
+from bounds_cases import distances, look_aheads, steering
 from gnc_cases import LOOK_AHEAD, SPEED, courses, examples
 from hypothesis import given
 from hypothesis import strategies as st
@@ -12,42 +12,42 @@ from hypothesis import strategies as st
 from gnc.analysis.bounds import factors, factors_at_most, heading_rate_bound
 from gnc.analysis.worst_case_search import heading_rates
 from gnc.errors import InfeasibleError
-from gnc.paper import delta_length, relative_state, relative_velocity
+from gnc.paper import cascade_law, relative_state, relative_velocity
+
+turns = st.floats(0.0, 1.0)
 
 
-@examples(200)
-@given(
-    parameters=look_aheads(),
-    distance=distances,
-    direction=courses,
-    course=courses,
-    turn=st.floats(-1.0, 1.0),
-    reference_speed=st.floats(5.0, 40.0),
-    speed=st.floats(5.0, 40.0),
-)
-def test_omega_rho_is_that_of_the_derivation_and_the_distance_cancels_in_its_weight(
-    parameters, distance, direction, course, turn, reference_speed, speed
+def command(
+    parameters, north, east, course, turn, gain, steering_max, *, reference_speed=SPEED, speed=SPEED
 ):
-    epsilon, radius = parameters
-    e = distance * np.array([math.cos(direction), math.sin(direction)])
-    delta = delta_length(parameters, distance**2)
-    z = e + np.array([delta, 0.0])
-    rho = float(np.hypot(*z))
-    n = np.array([-z[1], z[0]]) / rho
-    sin_r = n[0]
-    w = n + 2.0 * epsilon * sin_r * e
-    # docs, step 2. The terms that cancel are of size 2 epsilon d sin(phi_r), at most 2 epsilon
-    # d^2/delta < 2, and rho comes from a difference that leaves 1 - sigma > 0.01 of it: roundings
-    # grow a hundredfold, twice.
-    assert w @ w == pytest.approx(1.0 - 4.0 * epsilon * radius * sin_r**2, rel=0.0, abs=1e-10)
-    assert abs(sin_r) <= distance / delta * (1.0 + 1e-12)
-    closing = np.array([reference_speed - speed * math.cos(course), -speed * math.sin(course)])
-    derived = (w @ closing + delta * turn * z[0] / rho) / rho
-    state = relative_state(parameters, e[0], e[1], 0.0, course)
+    """Return the command by the functions that fly, for a reference that heads north."""
+    state = relative_state(parameters, north, east, 0.0, course)
     _, omega_rho = relative_velocity(parameters, state, reference_speed, speed, turn)
-    # Roundings of delta-dot relative to its terms, 2 epsilon d V, divided by rho > 0.01 delta and
-    # met by sin(phi_r) <= d/delta.
-    assert derived == pytest.approx(omega_rho, rel=1e-9, abs=1e-9)
+    return cascade_law(state.phi, omega_rho, gain, steering_max)
+
+
+def largest_head_on(parameters, *, speed, reference_heading_rate_max, gain, steering_max):
+    """Return the largest command of states head on to the reference, in closed form [rad/s].
+
+    No bound can be smaller. There d points against the reference's course, phi is -pi/2 for omega_r
+    > 0, and omega = (V + delta omega_r)/(delta - d) + h(pi/2), which is largest where lambda sigma
+    u^2 + u = (1 + lambda) sigma: u = d sqrt(epsilon/R), lambda = omega_r R/V.
+    """
+    sigma = 0.5 / math.sqrt(parameters.epsilon * parameters.radius)
+    ratio = reference_heading_rate_max * parameters.radius / speed
+    u = (
+        2.0
+        * sigma
+        * (1.0 + ratio)
+        / (1.0 + math.sqrt(1.0 + 4.0 * sigma**2 * ratio * (1.0 + ratio)))
+    )
+    omega_rho = (
+        speed
+        / parameters.radius
+        * (1.0 + ratio * (1.0 + u * u))
+        / ((1.0 - u) ** 2 + 2.0 * (1.0 - sigma) * u)
+    )
+    return min(gain * 0.5 * math.pi, steering_max) + omega_rho
 
 
 @examples(100)
@@ -192,19 +192,16 @@ def test_the_least_bound_is_a_command_that_is_met_and_no_larger_one_is_met_head_
 
 
 @pytest.mark.parametrize(
-    ("changes", "message"),
+    ("name", "value"),
     [
-        ({"speed": 0.0}, r"speed is 0 m/s; it must be finite and above 0"),
-        ({"speed": math.nan}, r"speed is nan m/s"),
-        (
-            {"reference_heading_rate_max": -0.1},
-            r"reference_heading_rate_max is -0.1 rad/s; it must be finite and at least 0",
-        ),
-        ({"reference_heading_rate_max": math.inf}, r"reference_heading_rate_max is inf rad/s"),
-        ({"steering_max": 0.0}, r"steering_max is 0 rad/s"),
+        ("speed", 0.0),
+        ("speed", math.nan),
+        ("reference_heading_rate_max", -0.1),
+        ("reference_heading_rate_max", math.inf),
+        ("steering_max", 0.0),
     ],
 )
-def test_bounds_of_what_cannot_be_are_refused(changes, message):
-    arguments = {"speed": SPEED, "reference_heading_rate_max": 0.3, "steering_max": 0.4} | changes
-    with pytest.raises(InfeasibleError, match=message):
-        heading_rate_bound(LOOK_AHEAD, **arguments)
+def test_bounds_of_what_cannot_be_are_refused(name, value):
+    arguments = {"speed": SPEED, "reference_heading_rate_max": 0.3, "steering_max": 0.4}
+    with pytest.raises(InfeasibleError, match=f"{name} is {value:g} "):
+        heading_rate_bound(LOOK_AHEAD, **(arguments | {name: value}))

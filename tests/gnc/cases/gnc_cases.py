@@ -19,11 +19,13 @@ from gnc.laws import CascadeLaw
 from gnc.mission.track import DirectParameters
 from gnc.paper import (
     design_oscillation,
+    half_widths,
     look_ahead,
     relative_state,
     relative_velocity,
     unicycle_rates,
 )
+from gnc.reference.moving_centre import CentreParameters
 from gnc.reference.oscillating import OscillatingReference
 from gnc.tracker import TrackingParameters
 from gnc.unicycle import unicycle_move
@@ -178,6 +180,26 @@ def paper_parameters(reference, *, vessel=(0.0, 0.0), guard=None, airspeed_gain=
 def make_guidance(reference, **how):
     """Return the paper's guidance; ``how`` same as in ``paper_parameters``."""
     return Guidance(paper_parameters(reference, **how))
+
+
+def centre_parameters(**changes):
+    """Return how the centre of oscillation astern of a vessel moves; it keeps 203 m."""
+    widths = [
+        half_widths(paper_oscillation(nu, roll_rate_max=math.radians(40.0)))
+        for nu in np.linspace(0.0, 0.97, 49)
+    ]
+    defaults = {
+        "distance_min": 203.0,
+        "speed_ratio_max": 0.97,
+        "along": tuple(along for along, _ in widths),
+        "across": tuple(across for _, across in widths),
+        "plume_heading": None,
+        "vessel_course": 0.0,
+        "apparent_wind_min": 1.0,
+        "speed": SPEED,
+        "heading_rate_max": 0.505,
+    }
+    return CentreParameters(**(defaults | changes))
 
 
 def motion(north, east, course, speed=SPEED, heading_rate=0.0):

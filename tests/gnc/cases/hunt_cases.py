@@ -108,8 +108,17 @@ def hunted(
     known=None,
     make=HeadingRateFilter,
 ):
-    """Return the hunt that a seed stands for: vessel, start and reports, which cease for a time
-    after 40 s.
+    """Fly a guarded vehicle that aims at a vessel against a hunter; return the hunt.
+
+    Parameters
+    ----------
+    seed : of vessel, start and reports, whose largest errors are in the direction that hides the
+        vessel
+    hunter : where the vessel accelerates to
+    lag, delay, time_step : of the vehicle and its guard
+    silence : for which reports cease after 40 s
+    known : makes the discs of the reachable set those that the guard knows
+    make : the guard
     """
     generator, duration = np.random.default_rng(seed), 100.0 + silence
     limits = replace(LIMITS, speed_max=speed_max)
@@ -126,48 +135,7 @@ def hunted(
     )
     guard = make(parameters_of(lag=lag, delay=delay, time_step=time_step))
     vessel = Vessel(0.0, 0.0, *velocity, limits)
-    return hunt(
-        guard,
-        start,
-        vessel,
-        hunter,
-        sent,
-        generator,
-        lag=lag,
-        delay=delay,
-        duration=duration,
-        known=known,
-        time_step=time_step,
-    )
-
-
-def hunt(
-    guard,
-    start,
-    vessel,
-    hunter,
-    sent,
-    generator,
-    *,
-    lag,
-    delay=0.0,
-    duration=120.0,
-    known=None,
-    time_step=0.05,
-):
-    """Fly a guarded vehicle that aims at the vessel against a hunter.
-
-    Parameters
-    ----------
-    guard : with its radius
-    start : north, east, course and heading rate of the vehicle
-    vessel, hunter : the vessel, and where it accelerates to
-    sent : times of its reports and of their arrival, in the order of arrival; the first at 0
-    generator : of the reports' errors, whose largest are in the direction that hides the vessel
-    lag, delay : of the vehicle
-    known : makes the discs of the reachable set those that the guard knows
-    """
-    state, reach, post = start, ReachableSet(vessel.limits), Mailbox()
+    state, reach, post = start, ReachableSet(limits), Mailbox()
     sent = sorted(sent)
     tubes = known(reach) if known else reach.tubes
     piece = FINE_PIECE if delay else PIECE

@@ -7,7 +7,6 @@ import pytest
 from scipy.signal import lfilter
 
 from gnc.estimation.error_budget import (
-    EXACT,
     Bias,
     ErrorBudget,
     Growth,
@@ -41,12 +40,6 @@ def test_integrals_of_a_process_are_those_of_simulated_ones(time):
     assert integral.std() == pytest.approx(GUSTS.integral(time), rel=0.035)
     assert (integral - expected).std() == pytest.approx(GUSTS.integral_from_known(time), rel=0.035)
     assert (values[:, -1] - values[:, 0]).std() == pytest.approx(GUSTS.change(time), rel=0.035)
-
-
-def test_a_short_integral_from_a_known_value_has_the_leading_term_of_its_series():
-    time = 0.05
-    leading = GUSTS.sigma * math.sqrt(2.0 * time**3 / (3.0 * GUSTS.correlation_time))
-    assert GUSTS.integral_from_known(time) == pytest.approx(leading, rel=0.01)
 
 
 def filtered(values, every):
@@ -97,12 +90,6 @@ def test_k_is_exceeded_as_often_as_stated():
     events = 1 + np.count_nonzero(np.diff(begins) > 10.0)
     # The rate is an upper bound, and some 150 events are counted.
     assert 0.4 * rate < events / hours < rate
-
-
-def test_what_is_known_exactly_has_no_error():
-    assert EXACT.velocity(0.0) == 0.0
-    assert EXACT.displacement().after(30.0) == 0.0
-    assert EXACT.wander(30.0) == 0.0
 
 
 TURNING = TurnDeviation(interval=1.0, sigmas=(0.0, 1.0, 2.0))

@@ -9,7 +9,6 @@ from gnc_cases import courses, examples
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import expm
-from scipy.stats import chi2
 from vessel_cases import LIMITS, Mailbox, Vessel, report_of
 
 from gnc.estimation.vessel import (
@@ -17,7 +16,6 @@ from gnc.estimation.vessel import (
     FilterParameters,
     ReachableSet,
     ReportedTarget,
-    SteadyTarget,
     VesselFilter,
     VesselReport,
     singer_noise,
@@ -58,10 +56,6 @@ def singer(time, *, sigma=SIGMA, memory=MEMORY):
 
 def packed(p):
     return p[0, 0], p[0, 1], p[0, 2], p[1, 1], p[1, 2], p[2, 2]
-
-
-def matrix(c):
-    return np.array([[c[0], c[1], c[2]], [c[1], c[3], c[4]], [c[2], c[4], c[5]]])
 
 
 @pytest.mark.parametrize("time", [0.01, 0.19, 0.21, 0.5, 2.0, 12.0, 60.0, 400.0])
@@ -121,35 +115,6 @@ def test_a_late_report_counts_for_when_it_was_true():
     looked.report(late)
     silent.report(late)
     assert looked.at(9.0) == silent.at(9.0)
-
-
-def test_it_knows_how_wrong_it_is_about_the_manoeuvres_that_it_reckons_with():
-    rng = np.random.default_rng(5)
-    flights, gaps = 150, rng.uniform(2.0, 10.0, 15)
-    models = [(transition, np.linalg.cholesky(noise)) for transition, noise in map(singer, gaps)]
-    normalised = []
-    for _ in range(flights):
-        # Both axes: place and velocity, and an acceleration of the process's own deviation.
-        truth = np.diag([100.0, 5.0, SIGMA]) @ rng.standard_normal((3, 2))
-        vessel = make()
-        time = 0.0
-
-        def report(truth, time, vessel=vessel):
-            noise = np.array([[POSITION], [VELOCITY]]) * rng.standard_normal((2, 2))
-            place, velocity = truth[:2] + noise
-            vessel.report(VesselReport(time, place[0], place[1], velocity[0], velocity[1]))
-
-        report(truth, time)
-        for gap, (transition, root) in zip(gaps, models, strict=True):
-            time += gap
-            truth = transition @ truth + root @ rng.standard_normal((3, 2))
-            report(truth, time)
-        error = np.array([vessel.north, vessel.east]).T - truth
-        normalised.append(np.sum(error * np.linalg.solve(matrix(vessel.covariance), error)))
-    # Six degrees of freedom a flight, independent flights; the limits hold for all but one set of
-    # seeds in 500.
-    low, high = chi2.ppf([0.001, 0.999], 6 * flights) / flights
-    assert low < np.mean(normalised) < high
 
 
 def beyond(disc, vessel, time):
@@ -246,22 +211,6 @@ def test_normal_errors_are_outside_of_a_disc_as_rarely_as_its_deviations_say():
     )
     # 222 expected, plus or minus 15; three times that.
     assert outside == pytest.approx(count * math.exp(-4.5), abs=45.0)
-
-
-def fields(target):
-    return target.north, target.east, target.velocity_north, target.velocity_east
-
-
-@pytest.mark.parametrize("planning", [True, False])
-def test_a_steady_target_goes_straight_on_from_the_origin_and_is_never_old(planning):
-    target = SteadyTarget(6.0, -2.5)
-    target.update(12.0, planning=planning)
-    assert fields(target) == (72.0, -30.0, 6.0, -2.5)
-    assert (target.acceleration_north, target.acceleration_east, target.age(12.0)) == (
-        0.0,
-        0.0,
-        0.0,
-    )
 
 
 def reported(*reports):

@@ -58,14 +58,6 @@ def test_a_vehicle_with_just_that_dead_time_and_lag_lacks_no_course(lag, delay):
         assert history.take_in(state[3]) == pytest.approx(0.0, abs=1e-12)
 
 
-def test_commands_under_way_do_not_count_twice():
-    # With a dead time of two steps only the first of three commands has acted, for one step.
-    history = begun(0.4, 2.0 * TIME_STEP)
-    append(history, [0.3, 0.4, 0.5], 0.0)
-    assert history.take_in(0.0) == pytest.approx(0.3 * TIME_STEP / 0.4, rel=1e-12)
-    assert list(history.under_way) == [0.4, 0.5]
-
-
 def test_a_constant_lack_is_forgotten():
     # A steady wrong trim keeps the vehicle from turning, and the commands end: exp(-t/(64 lag)).
     history = begun(0.4, 0.0)

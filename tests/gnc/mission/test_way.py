@@ -100,30 +100,6 @@ def test_the_relative_velocity_lies_along_the_way_to_the_target_where_that_is_cl
     assert to[0] * way[0] + to[1] * way[1] > 0.0
 
 
-@given(**geometry)
-@examples(100)
-def test_mirrored_geometry_gives_the_mirrored_course(
-    distance, bearing, target, course, speed, heading
-):
-    def found_on(side, nudge=0.0):
-        transit = Transit(TURN_RADIUS)
-        found = course_of(
-            transit,
-            polar(distance, side * bearing),
-            polar(TARGET_DISTANCE, side * (target + nudge)),
-            velocity=polar(speed, side * heading),
-            course=side * (course + nudge),
-        )
-        return transit.side, found
-
-    # Where both sides are as long, or the way is just clear, the first is taken, mirrored or not: a
-    # hair's breadth decides.
-    assume(len({found_on(1, nudge)[0] for nudge in (-1e-6, 0.0, 1e-6)}) == 1)
-    (one, found), (other, mirrored) = found_on(1), found_on(-1)
-    assert one == -other
-    assert math.remainder(found + mirrored, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-9)
-
-
 @pytest.mark.parametrize("bearing", [0.0, 0.7, 2.0, -1.3])
 @pytest.mark.parametrize("speed_ratio", [0.0, 0.5, 0.9])
 def test_following_it_leads_round_a_moving_disc_to_the_target_and_never_inside(

@@ -2,36 +2,18 @@ import math
 
 import numpy as np
 import pytest
-from gnc_cases import SPEED, paper_oscillation
+from gnc_cases import SPEED, centre_parameters, paper_oscillation
 
 from gnc.estimation.navigation import AirMotion
 from gnc.estimation.vessel import SteadyTarget
-from gnc.paper import PlumeAxis, distance_by_paper, half_widths
-from gnc.reference.moving_centre import CentreParameters, MovingCentre
+from gnc.paper import PlumeAxis, distance_by_paper
+from gnc.reference.moving_centre import MovingCentre
 
-RATIO_MAX = 0.97
-DISTANCE_MIN = 203.0
 TIME_STEP = 0.5
 
 
-def make(plume_heading=None, vessel_course=0.0):
-    widths = [
-        half_widths(paper_oscillation(nu, roll_rate_max=math.radians(40.0)))
-        for nu in np.linspace(0.0, RATIO_MAX, 49)
-    ]
-    return MovingCentre(
-        CentreParameters(
-            distance_min=DISTANCE_MIN,
-            speed_ratio_max=RATIO_MAX,
-            along=tuple(along for along, _ in widths),
-            across=tuple(across for _, across in widths),
-            plume_heading=plume_heading,
-            vessel_course=vessel_course,
-            apparent_wind_min=1.0,
-            speed=SPEED,
-            heading_rate_max=0.505,
-        )
-    )
+def make(plume_heading=None):
+    return MovingCentre(centre_parameters(plume_heading=plume_heading))
 
 
 def move(
@@ -51,11 +33,6 @@ def move(
     centre.move(time_step, own, vessel, additional_range=additional_range)
 
 
-def paper_distance(nu, heading=math.pi):
-    oscillation = paper_oscillation(nu, roll_rate_max=math.radians(40.0))
-    return distance_by_paper(oscillation, PlumeAxis(heading=heading), DISTANCE_MIN)
-
-
 @pytest.mark.parametrize("nu", [0.1, 0.5, 0.9])
 def test_behind_a_steady_vessel_it_is_where_equations_9_to_11_put_it(nu):
     centre = make()
@@ -64,7 +41,9 @@ def test_behind_a_steady_vessel_it_is_where_equations_9_to_11_put_it(nu):
     move(centre, velocity, time_step=0.0)
     # Half-widths from a table of 49 ratios, linear in between: second differences of the widths, up
     # to 0.03 m.
-    assert centre.distance == pytest.approx(paper_distance(nu), abs=0.05)
+    oscillation = paper_oscillation(nu, roll_rate_max=math.radians(40.0))
+    expected = distance_by_paper(oscillation, PlumeAxis(heading=math.pi), 203.0)
+    assert centre.distance == pytest.approx(expected, abs=0.05)
     assert (centre.x, centre.y) == pytest.approx(
         (-centre.distance * math.cos(course), -centre.distance * math.sin(course)), abs=1e-9
     )

@@ -12,7 +12,6 @@ from gnc.paper import (
     centre_of_oscillation,
     distance_by_paper,
     distance_exact,
-    half_widths,
     offset,
     reach,
 )
@@ -92,18 +91,6 @@ def test_the_papers_placement_keeps_the_orbit_outside(nu, heading, elevation, ra
         closest_approach(oscillation, axis, distance_by_paper(oscillation, axis, radius))
         >= radius - 1e-9
     )
-
-
-@pytest.mark.parametrize("elevation", [0.2, 0.6, 1.0])
-@pytest.mark.parametrize("nu", [0.1, 0.5, 0.9])
-def test_an_elevated_plume_abeam_is_placed_by_the_end_of_the_lobe(nu, elevation):
-    oscillation = paper_oscillation(nu)
-    _, d_y = half_widths(oscillation)
-    # |r_CO u + o| = r_min at the end of the lobe nearest the vessel, o = -d_y towards it, solved by
-    # hand.
-    expected = d_y * math.cos(elevation) + math.sqrt(200.0**2 - (d_y * math.sin(elevation)) ** 2)
-    axis = PlumeAxis(heading=0.5 * math.pi, elevation=elevation)
-    assert distance_exact(oscillation, axis, 200.0) == pytest.approx(expected, rel=0.0, abs=SEARCH)
 
 
 @pytest.mark.parametrize("elevation", [0.0, 0.4, -0.4])

@@ -136,19 +136,6 @@ def test_a_background_that_drifts_while_nothing_is_read_is_no_plume(unread: str)
         assert estimator.state is PlumeState.SEARCHING
 
 
-def test_a_pass_ahead_of_the_ship_says_nothing() -> None:
-    estimator = PlumeEstimator(PRIOR)
-    generator = np.random.default_rng(4)
-    before = estimator.cells.copy()
-    for i in range(600):
-        estimator.predict(0.1)
-        reading = 420.0 + generator.standard_normal() if i % 2 == 0 else math.nan
-        estimator.update(-150.0, 60.0 * math.cos(0.35 * 0.1 * i), 65.0, reading)
-    assert estimator.passes > 4
-    assert estimator.height == pytest.approx(PRIOR.height, abs=0.5)
-    assert np.abs(estimator.cells - before).max() < 0.1 * before.max()
-
-
 GRID = PlumeGrid(PRIOR)
 
 MIDDLE = len(GRID.sigma_z) // 2
