@@ -22,7 +22,8 @@ from guard_cases import (
 from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import minimize_scalar
 
-from gnc.guard.guard import HeadingRateFilter
+from gnc.estimation.vessel import Tube
+from gnc.guard.guard import GuardStatus, HeadingRateFilter
 from gnc.guard.turn import (
     TurnPoint,
     TurnPrediction,
@@ -106,6 +107,15 @@ def test_a_disc_that_grows_has_grown_by_the_dead_time_when_a_turn_begins(delay):
     found = guard.clearance(0.0, known_motion(state), (disc,), SPEED)
     flown = turn_by_hand(1.0, state, (0.0, 0.0), lag, delay, growth=growth)
     assert found == pytest.approx(flown, abs=0.05)
+
+
+@pytest.mark.parametrize("growth", [0.0, 5.0])
+def test_a_turn_that_begins_at_the_very_place_of_a_vessel_lacks_all_of_the_radius(growth):
+    guard = HeadingRateFilter(parameters_of())
+    own, disc = known_motion((30.0, -5.0, 0.7, 0.0)), Tube(0.0, 30.0, -5.0, 3.0, 1.0, 0.0, growth)
+    assert guard.clearance(0.0, own, (disc,), SPEED) == pytest.approx(-RADIUS, abs=1e-9)
+    assert abs(guard.limit(0.0, 0.0, own, (disc,), SPEED)) <= HEADING_RATE_MAX
+    assert guard.status is GuardStatus.LOST
 
 
 def test_the_closest_approach_between_two_points_is_that_of_the_cubic_through_them():
