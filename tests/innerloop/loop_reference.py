@@ -1,7 +1,6 @@
 """Loops opened in a block diagram by python-control, with the delay a rational function."""
 
 import control
-import numpy as np
 
 from innerloop.law import COMMANDS
 
@@ -57,9 +56,3 @@ def opened(aircraft, autopilot, delay, name):
         check_unused=False,
     )
     return -control.ss(loop)
-
-
-def closed_poles(loop, gain=1.0):
-    """Poles of a single loop closed with a gain, from its state equations: A - B K C/(1 + K D)."""
-    direct = 1.0 + gain * float(loop.D[0, 0])
-    return np.linalg.eigvals(loop.A - gain / direct * loop.B @ loop.C)

@@ -2,13 +2,11 @@
 
 import subprocess
 import sys
-import xml.etree.ElementTree as ET
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from aircraft.fdm import INTEGRATORS, START_ENGINES
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.jsbsim.script import columns, demonstration, write_script
 from innerloop.jsbsim.system import write_root
@@ -120,23 +118,3 @@ def test_a_stock_aircraft_is_flown_by_jsbsim_alone_as_from_python_but_for_its_en
     rate = demonstration(schedule.envelope, start)[0].value
     assert alone["autopilot/heading-rate-rad_sec"][300] == pytest.approx(rate, rel=0.05)
     assert alone["position/h-sl-meters"].max() > start.altitude + 0.4 * start.airspeed
-
-
-def test_a_stock_aircrafts_script_runs_its_engines_up_and_has_gear_and_fuel_as_in_flight(
-    designs, tmp_path
-):
-    schedule = designs("T37").design.schedule
-    script = write_script(schedule, write_root(schedule, tmp_path))
-    run = ET.parse(script).getroot().find("run")
-    events = [
-        {e.get("name"): float(e.get("value")) for e in event.findall("set")}
-        for event in run.findall("event")
-    ]
-    start, again, release = events[:3]
-    assert dict(START_ENGINES).items() <= start.items()
-    # Ten seconds of running up (RUN_UP_STEPS), for turbines are not cranked, then the settling time
-    # of 20 s.
-    assert float(run.get("start")) == pytest.approx(-30.0)
-    assert set(schedule.spec.configuration) <= set(start.items())
-    assert again == dict(schedule.spec.configuration)
-    assert [release[name] for name in INTEGRATORS] != [0.0] * 4
