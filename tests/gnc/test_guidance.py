@@ -26,15 +26,9 @@ from vessel_cases import LIMITS
 from gnc.airspeed import PaceHold, SpeedHold
 from gnc.estimation.error_budget import ErrorBudget, Growth
 from gnc.estimation.health import Fault, HealthParameters
-from gnc.estimation.navigation import (
-    EngineReadings,
-    NavigationParameters,
-)
+from gnc.estimation.navigation import EngineReadings, NavigationParameters
 from gnc.estimation.thrust import ThrustParameters
-from gnc.estimation.vessel import (
-    FilterParameters,
-    VesselReport,
-)
+from gnc.estimation.vessel import FilterParameters, VesselReport
 from gnc.guard.guard import GuardParameters, GuardStatus
 from gnc.guidance import Guidance, GuidanceParameters, ReportedVessel
 from gnc.laws import CascadeLaw, LineOfSightLaw, LyapunovLaw
@@ -175,9 +169,7 @@ def following(*, thrust=None):
         errors=ErrorBudget(drift=Growth(rate=1.0)),
         plan_interval=PLAN_INTERVAL,
         axis=PredictedPlume(
-            height=AxisHeight(source=60.0),
-            altitude=60.0,
-            climb=Climb(time=20.0, gradient=0.05),
+            height=AxisHeight(source=60.0), altitude=60.0, climb=Climb(time=20.0, gradient=0.05)
         ),
     )
     parameters = GuidanceParameters(

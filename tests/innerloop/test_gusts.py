@@ -12,13 +12,7 @@ import pytest
 from aircraft.state import course_rate
 from aircraft.weather import low_altitude_turbulence
 from common.physics import METRES_PER_FOOT
-from innerloop.gusts import (
-    GUSTS,
-    aircraft_in_gusts,
-    dryden_filters,
-    gust_loop,
-    velocity_by_polar,
-)
+from innerloop.gusts import GUSTS, aircraft_in_gusts, dryden_filters, gust_loop, velocity_by_polar
 from innerloop.schedule import LEVEL_GAINS
 from innerloop.synthesis import quasi_static
 

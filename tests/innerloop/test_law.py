@@ -27,14 +27,7 @@ MEASURED = {
     "heading_rate": HEADING_RATE,
     **{name: f"velocities/{name}-rad_sec" for name in "pqr"},
 }
-REMEMBERED = {
-    "elevator_integral": "autopilot/elevator-integral",
-    "throttle_integral": "autopilot/throttle-integral",
-    "bank_integral": "autopilot/bank-integral",
-    "rudder_integral": "autopilot/rudder-integral",
-    "model_rate": "autopilot/model-rate",
-    "model_acceleration": "autopilot/model-acceleration",
-}
+REMEMBERED = {name: f"autopilot/{name.replace('_', '-')}" for name in STATES}
 DIGITS = 2e-7
 """Tables and gains are written with nine digits; commands are of size 1, and sums of ten terms up
 to 10.
@@ -119,7 +112,7 @@ def with_flown_jerk(flown, commands, states):
     return commands | {"heading_rate_command": target}
 
 
-@pytest.mark.parametrize("computed", [0, 1, 20, 90])
+@pytest.mark.parametrize("computed", [0, 1, 30])
 def test_at_random_states_jsbsim_asks_for_the_controls_that_the_law_computes(flown, computed):
     schedule, law, aircraft = flown
     rng = np.random.default_rng(20 + computed)
@@ -161,21 +154,6 @@ def test_at_random_states_the_integrals_grow_as_the_law_says(flown):
         )
 
 
-def test_the_random_states_reach_every_part_of_the_law(flown):
-    schedule, _, _ = flown
-    rng = np.random.default_rng(2)
-    banks, commands = [], []
-    for _ in range(40):
-        command, measured, _ = held(flown, rng, 0)
-        banks.append(measured["roll"])
-        commands.append(command["airspeed_command"])
-    # Past the outermost gains on both sides and in every cell between the design airspeeds, or a
-    # wrong table edge would not show.
-    assert min(banks) < schedule.gain_banks[0]
-    assert max(banks) > schedule.gain_banks[-1]
-    assert set(np.searchsorted(schedule.airspeeds, commands)) == {1, 2, 3, 4}
-
-
 @pytest.mark.parametrize("name", NAMES)
 def test_in_every_equilibrium_the_law_asks_for_its_controls_and_its_integrals_stand_still(
     designs, name
@@ -189,13 +167,8 @@ def test_in_every_equilibrium_the_law_asks_for_its_controls_and_its_integrals_st
             rates, controls = law.evaluate(point, point, point)
             # The law damps all of the roll rate, and a nose-up turn has its own, -yaw rate times
             # sin(pitch): what aileron and rudder then lack, the integral of the heading rate adds.
-            by_roll_rate = dict(
-                zip(
-                    ("aileron", "rudder"),
-                    -gains.lateral[:, LATERAL.index("p")] * t.rates_body[0],
-                    strict=True,
-                )
-            )
+            lacks = -gains.lateral[:, LATERAL.index("p")] * t.rates_body[0]
+            by_roll_rate = dict(zip(("aileron", "rudder"), lacks, strict=True))
             # At its own nodes a table is exact, and every error is 0.
             for control_name, value in t.inputs.items():
                 assert controls[control_name] == pytest.approx(

@@ -1,7 +1,6 @@
 """Perturbed linear models against perturbed JSBSim models, and designs with too little margin."""
 
 import dataclasses
-import itertools
 import math
 import re
 import shutil
@@ -122,24 +121,6 @@ def test_a_fifth_of_effectiveness_is_a_fifth_of_what_every_control_does_in_the_e
     np.testing.assert_allclose(after.B, factor * before.B, rtol=1e-12)
     extras = [model.output_labels.index(name) for name in ("heading_rate", "climb_rate")]
     np.testing.assert_allclose(after.D[extras], factor * before.D[extras], rtol=1e-12, atol=1e-15)
-
-
-def test_points_between_lie_half_way_between_neighbours_along_airspeed_and_along_bank(x8_schedule):
-    points = operating_points(x8_schedule)
-    between = [p.trim for p in points if p.between]
-    v, bank = x8_schedule.airspeeds, x8_schedule.gain_banks
-    assert len(points) - len(between) == len(v) * len(bank)
-    assert len({(round(t.airspeed, 9), round(t.roll, 3)) for t in between}) == len(between) == 50
-    assert any(
-        t.airspeed == v[3] and t.roll == pytest.approx(0.5 * (bank[2] + bank[3]), abs=1e-3)
-        for t in between
-    )
-    # At every airspeed the largest bank that the autopilot commands, either way; the tables reach a
-    # tenth farther.
-    largest = [t for t in between if abs(t.roll) > bank[4] + 0.01]
-    assert sorted((t.airspeed, t.roll > 0.0) for t in largest) == sorted(
-        itertools.product(v, (False, True))
-    )
 
 
 def test_between_grid_points_interpolated_margins_are_those_of_the_aircraft_linearised_there(

@@ -2,21 +2,14 @@
 
 import itertools
 import math
-from dataclasses import astuple, replace
 
 import numpy as np
 import pytest
 from scipy.linalg import solve_continuous_are
 
 from aircraft.linearise import LinearModel
-from innerloop import synthesis
 from innerloop.schedule import GAIN_BANKS, LATERAL, LEVEL_GAINS, LONGITUDINAL
-from innerloop.synthesis import (
-    control_weights,
-    design_gains,
-    design_weights,
-    reachable_bandwidths,
-)
+from innerloop.synthesis import control_weights, reachable_bandwidths
 
 STATES = ["airspeed", "alpha", "beta", "p", "q", "r", "roll", "pitch", "altitude"]
 STATES += ["elevator_effect", "throttle_effect"]
@@ -88,87 +81,7 @@ def test_each_loop_is_as_fast_as_delay_authority_damping_and_lift_allow(loop, ch
     assert found == pytest.approx(expected, rel=1e-12)
 
 
-SCALES = {
-    "airspeed": 2.0,
-    "climb_rate": 2.0,
-    "altitude": 4.0,
-    "propeller_speed": 0.5,
-    "heading_rate": 0.5,
-    "p": 0.5,
-    "q": 0.5,
-    "r": 0.5,
-}
-"""A dynamically similar aircraft, four times as long: in the same gravity it flies twice as fast,
-and all takes twice the time.
-"""
-
-
-def similar(model):
-    """The linear model of the aircraft four times as long."""
-    state = np.array([SCALES.get(name, 1.0) for name in model.state_labels])
-    output = np.array([SCALES.get(name, 1.0) for name in model.output_labels])
-    return replace(
-        model,
-        A=0.5 * state[:, None] * model.A / state,
-        B=0.5 * state[:, None] * model.B,
-        C=output[:, None] * model.C / state,
-        D=output[:, None] * model.D,
-    )
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["x8", "aerosonde"])
-def test_a_dynamically_similar_aircraft_gets_the_similar_autopilot(monkeypatch, designs, name):
-    schedule = designs(name).design.schedule
-    models = [row[LEVEL_GAINS] for row in schedule.models]
-    bank, airspeed = schedule.envelope.bank, schedule.airspeeds[2]
-
-    def designed(models, airspeed, level):
-        bandwidths = reachable_bandwidths(models, bank)
-        weights = design_weights(bandwidths, airspeed)
-        return bandwidths, design_gains(
-            models[2], level, weights, control_weights(models[2], bandwidths, weights)
-        )
-
-    level = schedule.level(2)
-    bandwidths, gains = designed(models, airspeed, level)
-    # The autopilot's steps are the only time that is not the aircraft's own.
-    monkeypatch.setattr(synthesis, "loop_delay", lambda _: 2.0 * DELAY)
-    larger = replace(level, airspeed=2.0 * level.airspeed)
-    slower, scaled = designed([similar(model) for model in models], 2.0 * airspeed, larger)
-    assert astuple(slower) == pytest.approx([0.5 * s for s in astuple(bandwidths)])
-    # The same deflection for a deviation that is as large for the larger aircraft: gains are over
-    # the deviation's scale.
-    units = np.array(
-        [
-            SCALES[n] if n != "pitch" else 1.0
-            for n in ("airspeed", "climb_rate", "q", "pitch", "altitude")
-        ]
-    )
-    np.testing.assert_allclose(
-        scaled.longitudinal * units, gains.longitudinal, rtol=1e-5, atol=1e-9
-    )
-    np.testing.assert_allclose(
-        scaled.longitudinal_integral * 2.0 * np.array([2.0, 4.0]),
-        gains.longitudinal_integral,
-        rtol=1e-5,
-    )
-    np.testing.assert_allclose(
-        scaled.lateral * np.array([0.5, 0.5, 1.0, 1.0]), gains.lateral, rtol=1e-5, atol=1e-9
-    )
-    # Heading is an angle.
-    assert scaled.heading_integral == pytest.approx(gains.heading_integral, rel=1e-5)
-    assert 2.0 * scaled.sideslip_integral == pytest.approx(gains.sideslip_integral, rel=1e-5)
-    np.testing.assert_allclose(
-        0.5 * scaled.roll_rate_feedforward, gains.roll_rate_feedforward, rtol=1e-9
-    )
-    np.testing.assert_allclose(
-        0.25 * scaled.roll_acceleration_feedforward, gains.roll_acceleration_feedforward, rtol=1e-9
-    )
-
-
 NAMES = ("x8", "aerosonde", "T37")
-WITH_RUDDER = ("aerosonde", "T37")
 
 
 def grid_points(name):
@@ -247,42 +160,35 @@ def test_the_longitudinal_gains_are_those_of_a_servo_lqr(designs, name):
         )
 
 
-def test_without_a_rudder_the_lateral_gains_are_those_of_a_servo_lqr_on_the_aileron(x8_design):
-    schedule, w = x8_design.schedule, x8_design.schedule.weights
-    deviations = (0.0, w.roll_rate, 0.0, w.roll, w.heading_integral)
-    for i, j in grid_points("x8"):
-        found, model = schedule.gains[i][j], schedule.models[i][j]
-        plant = at_rest(model, ("beta", "p", "r", "roll"), ("aileron",), ("heading_rate",))
-        gain = servo_lqr(*plant, deviations, (allowed(x8_design, i).aileron,))[0]
-        # Sideslip is not measured and its gain left out. The integral goes to the bank command,
-        # which the roll gain turns into aileron. Riccati solvers agree to about 1e-7 here.
-        np.testing.assert_allclose(found.lateral[0], [*gain[1:4], 0.0], rtol=1e-5)
-        assert found.heading_integral * found.lateral[0, LATERAL.index("roll")] == pytest.approx(
-            -gain[4], rel=1e-5
-        )
-        # A rudder that is absent has no gains.
-        assert not found.lateral[1].any()
-        assert found.sideslip_integral == 0.0
-        assert (found.roll_rate_feedforward[1], found.roll_acceleration_feedforward[1]) == (0, 0)
-
-
-@pytest.mark.parametrize("name", WITH_RUDDER)
-def test_with_a_rudder_the_lateral_gains_are_those_of_a_servo_lqr_that_regulates_sideslip_too(
+@pytest.mark.parametrize("name", NAMES)
+def test_the_lateral_gains_are_those_of_a_servo_lqr_that_regulates_sideslip_with_a_rudder(
     designs, name
 ):
     design = designs(name).design
     schedule, w = design.schedule, design.schedule.weights
-    deviations = (w.sideslip, w.roll_rate, 0.0, w.roll, w.heading_integral, w.sideslip_integral)
+    deviations = [w.sideslip, w.roll_rate, 0.0, w.roll, w.heading_integral, w.sideslip_integral]
+    inputs, outputs = ("aileron", "rudder"), ("heading_rate", "beta")
+    if "rudder" not in schedule.controls:
+        # Sideslip is not measured then.
+        deviations, inputs, outputs = [0.0, *deviations[1:5]], inputs[:1], outputs[:1]
     for i, j in grid_points(name):
         found, model, controls = schedule.gains[i][j], schedule.models[i][j], allowed(design, i)
-        inputs, outputs = ("aileron", "rudder"), ("heading_rate", "beta")
         plant = at_rest(model, ("beta", "p", "r", "roll"), inputs, outputs)
-        gain = servo_lqr(*plant, deviations, (controls.aileron, controls.rudder))
+        weights = [getattr(controls, control) for control in inputs]
+        gain = servo_lqr(*plant, deviations, weights)
         scale = np.abs(gain).max(axis=1, keepdims=True)
         # The order of LATERAL: p, r, roll, beta. Riccati solvers agree to about 1e-7.
-        np.testing.assert_allclose(found.lateral / scale, gain[:, [1, 2, 3, 0]] / scale, atol=1e-5)
+        expected = (gain / scale)[:, [1, 2, 3, 0]]
+        expected[:, 3] *= len(inputs) > 1
+        np.testing.assert_allclose(found.lateral[: len(inputs)] / scale, expected, atol=1e-5)
+        # The integral goes to the bank command, which the roll gain turns into aileron.
         assert found.heading_integral * found.lateral[0, LATERAL.index("roll")] == pytest.approx(
             -gain[0, 4], rel=1e-5
         )
         # The law adds its integral of beta, where the design has that of -beta and a minus.
-        assert found.sideslip_integral == pytest.approx(gain[1, 5], rel=1e-5)
+        sideslip = gain[1, 5] if len(inputs) > 1 else 0.0
+        assert found.sideslip_integral == pytest.approx(sideslip, rel=1e-5)
+        if len(inputs) == 1:
+            # A rudder that is absent has no gains.
+            assert not found.lateral[1].any()
+            assert found.roll_rate_feedforward[1] == found.roll_acceleration_feedforward[1] == 0.0

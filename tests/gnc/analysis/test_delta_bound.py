@@ -7,14 +7,7 @@ import math
 import numpy as np
 import pytest
 from cascade_cases import LAW_30_FLIGHTS, cartesian_v_1_rate, fly_law_30, gains, rates_max
-from gnc_cases import (
-    LOOK_AHEAD,
-    SPEED,
-    courses,
-    examples,
-    relative,
-    tracking_starts,
-)
+from gnc_cases import LOOK_AHEAD, SPEED, courses, examples, relative, tracking_starts
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad

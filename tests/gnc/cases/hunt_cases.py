@@ -41,10 +41,8 @@ def ahead_of(vessel, north, east, silent):
 
 def braking(vessel, north, east, silent):
     """Brakes as soon as its reports cease, and stops."""
-    going = math.hypot(vessel.velocity_north, vessel.velocity_east)
-    return (
-        (-vessel.velocity_north, -vessel.velocity_east) if silent and going > 0.05 else (0.0, 0.0)
-    )
+    along = vessel.velocity_north, vessel.velocity_east
+    return (-along[0], -along[1]) if silent and math.hypot(*along) > 0.05 else (0.0, 0.0)
 
 
 def turning(vessel, north, east, silent):
@@ -70,12 +68,7 @@ def as_it_was_known(reach):
     """Return the discs of a guard that takes the vessel to be where its newest report says, and no
     more.
     """
-
-    def tubes(time):
-        newest = reach.tubes(time)[0]
-        return (Tube(*newest[:5]),)
-
-    return tubes
+    return lambda time: (Tube(*reach.tubes(time)[0][:5]),)
 
 
 class ForgetfulFilter:
@@ -105,45 +98,37 @@ def hunted(
     time_step=0.1,
     silence=0.0,
     speed_max=12.0,
-    known=None,
+    known=lambda reach: reach.tubes,
     make=HeadingRateFilter,
 ):
     """Fly a guarded vehicle that aims at a vessel against a hunter; return the hunt.
 
-    Parameters
-    ----------
-    seed : of vessel, start and reports, whose largest errors are in the direction that hides the
-        vessel
-    hunter : where the vessel accelerates to
-    lag, delay, time_step : of the vehicle and its guard
-    silence : for which reports cease after 40 s
-    known : makes the discs of the reachable set those that the guard knows
-    make : the guard
+    A seed stands for vessel, start and reports, whose largest errors are in the direction that
+    hides the vessel and which cease after 40 s. ``known`` makes the discs of the reachable set
+    those that the guard knows.
     """
     generator, duration = np.random.default_rng(seed), 100.0 + silence
     limits = replace(LIMITS, speed_max=speed_max)
     velocity = random_velocity(generator, float(generator.uniform(2.0, 0.9 * speed_max)))
     bearing, distance = generator.uniform(-math.pi, math.pi), generator.uniform(450.0, 700.0)
-    start = polar(distance, bearing, generator.uniform(-math.pi, math.pi))
-    sent = radio(
-        generator,
-        interval=(2.0, 10.0),
-        latency=3.0,
-        missing=0.2,
-        silences=[(40.0, 40.0 + silence)],
-        duration=duration,
+    state = polar(distance, bearing, generator.uniform(-math.pi, math.pi))
+    sent = sorted(
+        radio(
+            generator,
+            interval=(2.0, 10.0),
+            latency=3.0,
+            missing=0.2,
+            silences=[(40.0, 40.0 + silence)],
+            duration=duration,
+        )
     )
     guard = make(parameters_of(lag=lag, delay=delay, time_step=time_step))
     vessel = Vessel(0.0, 0.0, *velocity, limits)
-    state, reach, post = start, ReachableSet(limits), Mailbox()
-    sent = sorted(sent)
-    tubes = known(reach) if known else reach.tubes
+    reach, post = ReachableSet(limits), Mailbox()
+    tubes = known(reach)
     piece = FINE_PIECE if delay else PIECE
-    pieces, late = round(time_step / piece), round(delay / piece)
-    under_way = deque([start[3]] * late)
-    closest, intervened, lost, last_report = math.inf, 0, 0, -math.inf
-    discs = ()
-    each = round(PLAN_PERIOD / time_step)
+    under_way = deque([state[3]] * round(delay / piece))
+    closest, intervened, lost, last_report, discs = math.inf, 0, 0, -math.inf, ()
     for step in range(round(duration / time_step)):
         time = step * time_step
         away = math.atan2(vessel.east - state[1], vessel.north - state[0])
@@ -157,18 +142,17 @@ def hunted(
             last_report = time
         for report in post.deliver(time):
             reach.report(report)
-        if step % each == 0:
+        if step % round(PLAN_PERIOD / time_step) == 0:
             discs = tubes(time)
         own = known_motion(state)
         command = guard.limit(aim_at(discs[0], own, time), time, own, discs, SPEED)
         intervened += guard.status is not GuardStatus.FREE
         lost += guard.status is GuardStatus.LOST
         silent = not sent or sent[0][0] > time + 10.0 or time - last_report > 10.0
-        for _ in range(pieces):
+        for _ in range(round(time_step / piece)):
             under_way.append(command)
             state = moved(state, under_way.popleft(), lag, piece)
-            vessel.accelerate(
-                *(1e3 * part for part in hunter(vessel, state[0], state[1], silent)), piece
-            )
+            north, east = hunter(vessel, state[0], state[1], silent)
+            vessel.accelerate(1e3 * north, 1e3 * east, piece)
             closest = min(closest, math.hypot(state[0] - vessel.north, state[1] - vessel.east))
     return Hunt(closest, intervened, lost)

@@ -21,10 +21,7 @@ SPEED, HEADING_RATE_MAX, TIME_STEP, LAG = 19.42, 0.5, 0.05, 0.4
 def at_each_step(lag=LAG):
     """Return a monitor that checks at each step."""
     parameters = HealthParameters(
-        thrust=PARAMETERS,
-        heading_rate_max=0.2 / UNCONTROLLED,
-        lag=lag,
-        time_step=TIME_STEP,
+        thrust=PARAMETERS, heading_rate_max=0.2 / UNCONTROLLED, lag=lag, time_step=TIME_STEP
     )
     return HealthMonitor(parameters, check_interval=TIME_STEP)
 

@@ -126,42 +126,6 @@ def test_a_noisy_compass_makes_the_wind_wrong_by_no_more_than_that(measured):
     assert exceeded <= 20
 
 
-def settled_in_wind(*, airspeed=SPEED, heading_rate=0.1):
-    """Return the estimate after four minutes of a circle in a steady wind, and where the vehicle
-    then is.
-    """
-    own = make(crab_offsets=(0.0, 0.0, 0.0), wind_interval=10)
-    north = east = 0.0
-    for step in range(4802):
-        heading = 0.1 * step * TIME_STEP
-        velocity = SPEED * math.cos(heading) + WIND[0], SPEED * math.sin(heading) + WIND[1]
-        last = step == 4801  # between two measurements of the wind
-        fix, read = SatelliteFix(north, east, *velocity), airspeed if last else SPEED
-        own.update(SensorReadings(fix, read, heading, 0.0, heading_rate, 0.0))
-        place = north, east
-        north, east = north + TIME_STEP * velocity[0], east + TIME_STEP * velocity[1]
-    return own, place, math.remainder(heading, 2.0 * math.pi)
-
-
-def test_the_estimated_motion_is_that_through_the_mean_air():
-    own, place, heading = settled_in_wind()
-    # Exact sensors and a steady wind: what is left of the first guess, 10 m/s, after four minutes
-    # of circles; measured 2 mm/s.
-    assert (own.wind_north, own.wind_east) == pytest.approx(WIND, abs=0.01)
-    assert own.speed == pytest.approx(SPEED, abs=0.02)
-    assert own.course == pytest.approx(heading, abs=1e-3)
-    assert (own.ground_north, own.ground_east) == place
-    # The air mass has drifted by as much as its frame lies from that of the ground; over 240 s of a
-    # wind that was found soon.
-    assert (own.north + own.drift_north, own.east + own.drift_east) == pytest.approx(
-        place, abs=1e-9
-    )
-    assert (own.drift_north, own.drift_east) == pytest.approx(
-        (240.0 * WIND[0], 240.0 * WIND[1]), rel=0.1
-    )
-    assert own.air_ratio == pytest.approx(1.0, abs=1e-3)
-
-
 STEADY, INTERVAL = np.array([-6.0, 3.5]), 0.25
 AIRSPEED_SIGMA, COURSE_SIGMA, DRIFT = 0.5, 0.03, 0.02
 

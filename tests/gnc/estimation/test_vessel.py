@@ -232,13 +232,10 @@ def test_the_scatter_of_reports_is_left_out_of_the_acceleration():
     target.update(10.0, True)
     seen = target.vessel.at(10.0)
     size = math.hypot(seen.acceleration_north, seen.acceleration_east)
-    assert size > REPORTED_SCATTER
-    expected = [
-        (size - REPORTED_SCATTER) * part / size
-        for part in (seen.acceleration_north, seen.acceleration_east)
-    ]
+    left = 1.0 - REPORTED_SCATTER / size
+    assert left > 0.0
     assert (target.acceleration_north, target.acceleration_east) == pytest.approx(
-        expected, rel=1e-12
+        (left * seen.acceleration_north, left * seen.acceleration_east), rel=1e-12
     )
     # A tenth of that is scatter.
     steady = reported((0.0, 0.0, 0.0, 6.0, 2.0), (5.0, 30.0, 10.0, 6.05, 2.0))

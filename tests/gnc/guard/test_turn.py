@@ -134,13 +134,7 @@ def test_the_closest_approach_between_two_points_is_that_of_the_cubic_through_th
         allowed = 50.0 + np.array([0.0, generator.uniform(0.0, 3.0)])
         late, now = (TurnPoint(*ends[i], courses[i], allowed[i], SPEED) for i in (0, 1))
         found = closest_between_samples(
-            late,
-            late,
-            now,
-            disc_north=drift[0],
-            disc_east=drift[1],
-            duration=duration,
-            first=True,
+            late, late, now, disc_north=drift[0], disc_east=drift[1], duration=duration, first=True
         )
         path = CubicHermiteSpline([0.0, 1.0], ends, rates)
 

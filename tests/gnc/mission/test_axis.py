@@ -13,14 +13,7 @@ from gnc.estimation.navigation import AirMotion
 from gnc.estimation.plume.estimator import PlumeEstimator
 from gnc.estimation.plume.prior import Expectation
 from gnc.estimation.vessel import SteadyTarget
-from gnc.mission.axis import (
-    AxisHeight,
-    AxisInputs,
-    Climb,
-    HeightSearch,
-    SearchedPlume,
-    trail,
-)
+from gnc.mission.axis import AxisHeight, AxisInputs, Climb, HeightSearch, SearchedPlume, trail
 from gnc.mission.mission import Mode
 from gnc.reference.moving_centre import CentreParameters, MovingCentre
 
@@ -148,11 +141,7 @@ EXPECTED = Expectation(
     highest=117.0,
 )
 SEARCHED = SearchedPlume(
-    height=RISING,
-    altitude=60.0,
-    climb=CLIMB,
-    expected=EXPECTED,
-    climb_rate=0.08 * SPEED,
+    height=RISING, altitude=60.0, climb=CLIMB, expected=EXPECTED, climb_rate=0.08 * SPEED
 )
 CLEAN, PEAK, WIDTH = 420.0, 150.0, 12.0
 """CO2 of clean air, in the plume's centre [ppm], and its spread across and in height [m]: an
@@ -218,26 +207,3 @@ def test_a_plume_is_searched_for_found_and_followed(ladder):
     # To about its own spread: strength and height off the axis look alike.
     assert abs(axis.estimate.height - 75.0) < WIDTH
     assert axis.estimate.height_deviation < WIDTH
-
-
-def test_a_reading_counts_for_the_place_at_which_it_was_read():
-    both = []
-    for late in (False, True):
-        axis, around = SEARCHED.begin(), situation()
-        axis.flown = 60.0
-        axis.plan(0.0, around, tracking=True)
-        waiting = []
-        for i in range(300):
-            time = STEP * i
-            across = HALF_WIDTH * math.sin(math.pi * time / INTERVAL)
-            around.vessel.update(time, False)
-            around.own.ground_north, around.own.ground_east = around.vessel.north - 220.0, -across
-            waiting += [(time, noisy(time, reading(across, 60.0, 62.0)))] if i % 2 == 0 else []
-            due = not late or i % 5 == 4
-            axis.take_readings(time, waiting if due else [])
-            waiting = [] if due else waiting
-        both.append(axis.estimate)
-    # Half a second late makes no difference but that of a straight line between places a tenth of a
-    # second apart.
-    assert both[1].height == pytest.approx(both[0].height, abs=0.2)
-    assert both[1].offset == pytest.approx(both[0].offset, abs=0.5)

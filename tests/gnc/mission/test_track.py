@@ -2,23 +2,12 @@ import math
 
 import numpy as np
 import pytest
-from gnc_cases import (
-    HEADING_RATE_MAX,
-    SPEED,
-    TIME_STEP,
-    fly,
-    make_reference,
-    paper_oscillation,
-    paper_parameters,
-    tracking_parameters,
-)
+from gnc_cases import HEADING_RATE_MAX, SPEED, TIME_STEP, fly, paper_oscillation, paper_parameters
 
-from gnc.estimation.navigation import TrueNavigation
-from gnc.estimation.vessel import SteadyTarget
 from gnc.guard.guard import GuardParameters
 from gnc.guidance import Guidance
-from gnc.mission.mission import TRACK, Centre, Mode
-from gnc.mission.track import DirectParameters, DirectTracking, Joining
+from gnc.mission.mission import Centre
+from gnc.mission.track import DirectParameters, Joining
 from gnc.mission.way import ApproachParameters
 from gnc.paper import PlumeAxis, distance_by_paper
 from gnc.reference.oscillating import JoinedOrbit
@@ -43,12 +32,6 @@ APPROACH = ApproachParameters(
 PLAN_INTERVAL = 10
 
 
-@pytest.fixture
-def mission():
-    parameters = DirectParameters(reference=make_reference(paper_oscillation(0.5)))
-    return DirectTracking(parameters, tracking_parameters(), altitude=62.0)
-
-
 def guidance(*, joining=True, nu=NU):
     """Return the guidance of a flight behind a vessel that goes north from the origin, with a guard
     about it.
@@ -71,16 +54,6 @@ def settles(flight):
     outside = np.flatnonzero(flight.distance >= 5.0)
     last = outside[-1] + 1 if outside.size else 0
     return last * TIME_STEP if last < len(flight.distance) else math.inf
-
-
-def test_without_a_way_it_tracks_from_the_first_step_on_and_overrides_nothing(mission):
-    order = mission.plan(0.0, TrueNavigation(), SteadyTarget(0.0, 0.0), renew=True, guarding=False)
-    assert order.heading_rate is TRACK
-    assert (order.airspeed, order.altitude, order.mode) == (SPEED, 62.0, Mode.TRACKING)
-    centre, error, in_place = mission.orbit
-    assert (error, in_place) == (0.0, True)
-    # Its reference is placed beforehand: it knows no centre.
-    assert all(math.isnan(value) for value in centre)
 
 
 @pytest.mark.slow

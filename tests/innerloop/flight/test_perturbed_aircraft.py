@@ -2,13 +2,8 @@
 
 import pytest
 
-from aircraft.fdm import Fdm
-from aircraft.fleet.find import find_spec
 from aircraft.fleet.x8 import X8
-from aircraft.model import copy_model, perturb
-from aircraft.state import RigidBodyState
 from innerloop.flight.turn_reversal import REVERSAL_PERTURBATIONS, perturbed_aircraft
-from tests.aircraft.split_model import split_model
 
 
 @pytest.fixture(scope="module")
@@ -59,28 +54,3 @@ def test_what_a_deflection_does_is_as_modelled_times_the_factor(flown, case):
     assert rolled == pytest.approx(
         0.12019 * REVERSAL_PERTURBATIONS[case].effectiveness * aileron, rel=0.02
     )
-
-
-@pytest.mark.parametrize("case", REVERSAL_PERTURBATIONS)
-def test_sections_in_files_of_their_own_are_perturbed_as_those_of_the_model_file_are(
-    tmp_path, case
-):
-    # JSBSim's Cessna has what the X8 has not: fuel, a crew of point masses.
-    state = RigidBodyState(
-        altitude=300.0,
-        roll=0.1,
-        pitch=0.05,
-        velocity_body=(50.0, 0.5, 2.0),
-        rates_body=(0.1, 0.1, 0.1),
-    )
-    moved = []
-    for spec in (find_spec("c172p"), find_spec(str(split_model("c172p", tmp_path)))):
-        root = tmp_path / f"copy{len(moved)}"
-        perturb(copy_model(spec.files, root), REVERSAL_PERTURBATIONS[case])
-        fdm = Fdm(spec, root)
-        fdm.command({"elevator": -0.1, "aileron": 0.2, "rudder": 0.1, "throttle": 0.5})
-        fdm.hold(state, 240)
-        moved.append(
-            [fdm.read("inertia/weight-lbs"), *fdm.acceleration_body(), *fdm.angular_acceleration()]
-        )
-    assert moved[1] == moved[0]

@@ -2,27 +2,20 @@
 
 import functools
 import math
-from collections import deque
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from aircraft.fdm import TIME_STEP
 from aircraft.fleet.x8 import X8
-from common.physics import METRES_PER_FOOT
-from gnc.unicycle import lagged_move
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.responses import measure_lag
 from innerloop.flight.turn_reversal import (
     TurnReversalResponse,
-    _Flight,
     displacement,
     measure_turn_reversal,
     search_reversals,
 )
-from innerloop.jsbsim.system import HEADING_RATE
 
 pytestmark = pytest.mark.slow
 
@@ -122,46 +115,3 @@ def test_it_strays_several_times_as_far_from_a_response_or_a_slow_lag_that_is_no
     own = search().deviation
     assert search(fast).deviation > 3.0 * own
     assert search(slow_lag_times=2.0).deviation > 2.0 * own
-
-
-class Exact:
-    """A stand-in for the aircraft: a vehicle at 20 m/s with just a dead time and a lag."""
-
-    def __init__(self, response):
-        self.fdm, self._lag = self, response.lag
-        self._acting = deque([0.0] * round(response.delay / TIME_STEP))
-        self._command = self._rate = self._course = 0.0
-
-    def release(self, state, *, airspeed, altitude):
-        del state, airspeed, altitude
-
-    def node(self, name):
-        read = {"velocities/v-north-fps": lambda: 20.0 / METRES_PER_FOOT * math.cos(self._course)}
-        read["velocities/v-east-fps"] = lambda: 20.0 / METRES_PER_FOOT * math.sin(self._course)
-        read[HEADING_RATE] = lambda: self._rate
-        read["position/h-sl-ft"] = lambda: 100.0 / METRES_PER_FOOT
-        return SimpleNamespace(get_double_value=read[name])
-
-    def command_heading_rate(self, rate):
-        self._command = rate
-
-    def run(self):
-        self._acting.append(self._command)
-        _, _, self._course, self._rate = lagged_move(
-            0.0, 0.0, self._course, self._rate, 20.0, self._acting.popleft(), self._lag, TIME_STEP
-        )
-
-
-def test_a_vehicle_of_just_that_response_is_predicted(x8_schedule):
-    response = TurnReversalResponse(delay=0.5, lag=0.4)
-    flight = _Flight(Exact(response), x8_schedule.level(x8_schedule.middle), response, 0.9, 0.5)
-    for rate, duration in ((0.5, 4.0), (-0.5, 0.3), (0.2, 1.0), (-0.5, 0.6)):
-        flight.fly(rate, duration)
-    predicted, change = flight.predicted_turn(0.5, 5.0, 20.0)
-    flown = flight.fly(0.5, 5.0)
-    # Rates at the ends of steps of 1/120 s: half a step of turning at 1 rad/s, over 80 m.
-    np.testing.assert_allclose(predicted, flown, rtol=0.0, atol=0.35)
-    # By hand, from 0.5 rad/s: -0.5 + exp(-0.3/0.4), then 0.2 + (.. - 0.2) exp(-1/0.4), then -0.5 +
-    # (.. + 0.5) exp(-0.6/0.4) is -0.348 rad/s when the reversal acts, and half of 1 + 0.348/0.5 the
-    # change.
-    assert change == pytest.approx(0.848, abs=2e-3)

@@ -7,9 +7,7 @@ from innerloop_flights import TIME_STEP, fly
 
 from aircraft.fleet.x8 import X8
 from aircraft.spec import MODELS
-from innerloop.jsbsim.system import (
-    system_name,
-)
+from innerloop.jsbsim.system import system_name
 
 
 def test_the_written_model_differs_from_the_original_by_the_system_alone(x8_root):

@@ -1,29 +1,32 @@
 """Passes: where they end, and what their readings say of pulses."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 from exhaust_cases import SENSOR
 
-from gnc.estimation.plume.passes import (
-    PassReader,
-    Path,
-    SensorState,
-    SensorWatch,
-)
+from gnc.estimation.plume.passes import PassReader, Path, SensorState, SensorWatch
 from gnc.estimation.plume.prior import GasSensor
 
 _SPEED = 20.0
 
 
-def _path(readings: np.ndarray | None = None, *, duration: float = 9.0, seed: int = 0) -> Path:
-    """Return a straight way across at 20 m/s, the axis half way, and readings at 5 Hz."""
-    time = np.arange(0.0, duration + 0.5, 0.25)
-    across = _SPEED * (time - 0.5 * duration)
-    read_at = np.arange(0.5, duration, 0.2)
+def _path(
+    readings: Callable[[np.ndarray], np.ndarray] = np.zeros_like,
+    *,
+    begun: float = 0.0,
+    first: float = 0.5,
+    end: float = 9.0,
+    sign: float = 1.0,
+    seed: int = 0,
+) -> Path:
+    """Return a straight way across at 20 m/s, on the axis after 4.5 s, and readings at 5 Hz."""
+    time, read_at = np.arange(begun, end + 0.25, 0.25), np.arange(first, end, 0.2)
+    across = sign * _SPEED * (time - begun - 4.5)
     noise = SENSOR.noise * np.random.default_rng(seed).standard_normal(len(read_at))
-    values = 420.0 + noise + (0.0 if readings is None else readings)
+    values = 420.0 + noise + readings(read_at)
     return Path(time, np.full_like(time, 230.0), across, np.full_like(time, 60.0), read_at, values)
 
 
@@ -37,21 +40,20 @@ def _lagged(air: np.ndarray) -> np.ndarray:
     return lagged
 
 
-def _pulse(read_at: np.ndarray, strength: float, *, place: float, spread: float) -> np.ndarray:
-    """Return the readings of a Gaussian pulse on the way of ``_path``."""
-    fine = np.arange(0.0, 9.0, 1e-3)
-    air = strength * np.exp(-0.5 * ((_SPEED * (fine - 4.5) - place) / spread) ** 2)
-    return np.interp(read_at, fine, _lagged(air))
+def _pulse(strength: float, *, place: float, spread: float = 9.0) -> Callable:
+    """Return the readings of a Gaussian pulse on the first way of ``_path``, gone after it."""
+    fine = np.arange(0.0, 18.0, 1e-3)
+    across = _SPEED * (np.minimum(fine, 9.0) - 4.5)
+    air = np.where(fine < 9.0, strength * np.exp(-0.5 * ((across - place) / spread) ** 2), 0.0)
+    lagged = _lagged(air)
+    return lambda read_at: np.interp(read_at, fine, lagged)
 
 
 PLACES, SPREADS = np.linspace(-40.0, 40.0, 17), np.array([6.0, 9.0, 13.0])
 
 
 def test_a_pulse_is_found_where_and_as_strong_as_it_is() -> None:
-    clean = _path()
-    evidence = PassReader(SENSOR).read(
-        _path(_pulse(clean.read_at, 80.0, place=10.0, spread=9.0)), PLACES, SPREADS
-    )
+    evidence = PassReader(SENSOR).read(_path(_pulse(80.0, place=10.0)), PLACES, SPREADS)
     assert evidence is not None
     assert PLACES[evidence.at] == pytest.approx(10.0)
     gain = evidence.slope**2 / evidence.bend
@@ -64,50 +66,21 @@ def test_a_pulse_is_found_where_and_as_strong_as_it_is() -> None:
     assert 0.5 * 80.0 < evidence.peak < 0.8 * 80.0
 
 
-def test_clean_air_has_no_significant_pulse() -> None:
-    # Of 17 places and 3 spreads some fit the noise; above 5 one in a million would.
-    for seed in range(20):
-        evidence = PassReader(SENSOR).read(_path(seed=seed), PLACES, SPREADS)
-        assert evidence is not None
-        assert evidence.significance < 5.0
-        assert evidence.peak < 5.0 * SENSOR.noise
-
-
 @pytest.mark.parametrize("place", [0.0, 80.0])
 def test_clean_air_after_a_plume_is_clean_air(place: float) -> None:
     """Its background has not risen, and the rest of the plume in the sensor is no second plume."""
-    duration, tail = 9.0, SENSOR.time_constant
-    fine = np.arange(0.0, 2.0 * duration, 1e-3)
     # The plume is gone by the turn, at 90 m: the second pass meets nothing.
-    across = _SPEED * (np.minimum(fine, duration) - 0.5 * duration)
-    air = np.where(fine < duration, 300.0 * np.exp(-0.5 * ((across - place) / 9.0) ** 2), 0.0)
-    lagged = _lagged(air)
-
-    def path(begun: float, first: float, end: float, sign: float, seed: int) -> Path:
-        time = np.arange(begun, end + 0.25, 0.25)
-        read_at = np.arange(first, end, 0.2)
-        noise = SENSOR.noise * np.random.default_rng(seed).standard_normal(len(read_at))
-        way = sign * _SPEED * (time - begun - 0.5 * duration)
-        return Path(
-            time,
-            np.full_like(time, 230.0),
-            way,
-            np.full_like(time, 60.0),
-            read_at,
-            420.0 + noise + np.interp(read_at, fine, lagged),
-        )
-
-    places = np.linspace(-80.0, 80.0, 33)
+    tail, places = SENSOR.time_constant, np.linspace(-80.0, 80.0, 33)
+    pulse = _pulse(300.0, place=place)
     for seed in range(5):
         reader = PassReader(SENSOR)
-        there = reader.read(path(0.0, 0.5, duration + tail, 1.0, seed), places, SPREADS)
-        back = reader.read(
-            path(duration, duration + tail + 0.1, 2.0 * duration, -1.0, 100 + seed), places, SPREADS
-        )
+        there = reader.read(_path(pulse, end=9.0 + tail, seed=seed), places, SPREADS)
+        returning = _path(pulse, begun=9.0, first=9.1 + tail, end=18.0, sign=-1.0, seed=100 + seed)
+        back = reader.read(returning, places, SPREADS)
         assert there is not None
         assert there.significance > 100.0
         assert back is not None
-        # As of clean air; a tenth of what the tail is would be above it.
+        # As of clean air, where one in a million exceeds 5; a tenth of what the tail is would.
         assert back.significance < 5.0
         assert back.peak < 5.0 * SENSOR.noise
 
@@ -117,47 +90,43 @@ def test_clean_air_after_a_plume_is_clean_air(place: float) -> None:
 def test_the_background_at_the_end_of_a_pass_is_what_its_pulse_leaves(
     rate: float, strength: float
 ) -> None:
-    off = []
+    off, pulse = [], _pulse(strength, place=10.0)
     for seed in range(20):
-        reader, clean = PassReader(SENSOR), _path(seed=seed)
-        pulse = _pulse(clean.read_at, strength, place=10.0, spread=9.0)
-        reader.read(_path(pulse + rate * clean.read_at, seed=seed), PLACES, SPREADS)
-        off.append((reader.level - 420.0 - rate * clean.read_at[-1]) / reader.level_deviation)
+        reader = PassReader(SENSOR)
+        path = _path(lambda read_at: pulse(read_at) + rate * read_at, seed=seed)
+        reader.read(path, PLACES, SPREADS)
+        off.append((reader.level - 420.0 - rate * path.read_at[-1]) / reader.level_deviation)
     # A drift of twice what the data sheet allows as a deviation; the mean of 20 errors of unit
     # variance is 0.22 off at one sigma.
     assert abs(np.mean(off)) < 1.0
     assert np.sqrt(np.mean(np.square(off))) < 1.5
 
 
-def _sensor(noise: float = 1.0, resolution: float = 0.1) -> GasSensor:
-    return GasSensor(
-        interval=1.0,
-        delay=0.0,
-        time_constant=1.0,
-        noise=noise,
-        saturated=5000.0,
-        resolution=resolution,
+def _watch(noise: float = 1.0, resolution: float = 0.1) -> SensorWatch:
+    return SensorWatch(
+        GasSensor(
+            interval=1.0,
+            delay=0.0,
+            time_constant=1.0,
+            noise=noise,
+            saturated=5000.0,
+            resolution=resolution,
+        )
     )
 
 
-def _watch() -> SensorWatch:
-    return SensorWatch(_sensor())
-
-
-def test_ten_equal_readings_are_those_of_a_stuck_sensor() -> None:
+def test_a_sensor_that_is_stuck_silent_or_saturated_is_none_that_works() -> None:
     watch = _watch()
-    for _ in range(9):
-        watch.read(420.0)
-    assert watch.state is SensorState.WORKING
-    watch.read(420.0)
-    assert watch.state is SensorState.STUCK
-    watch.read(421.0)
-    assert watch.state is SensorState.WORKING
-
-
-def test_no_reading_for_five_intervals_is_silence() -> None:
-    watch = _watch()
-    watch.read(420.0)
+    # Ten equal readings, a reading at the end of the range, and none for five intervals.
+    for reading, state in (
+        *[(420.0, SensorState.WORKING)] * 9,
+        (420.0, SensorState.STUCK),
+        (421.0, SensorState.WORKING),
+        (5000.0, SensorState.SATURATED),
+        (4999.0, SensorState.WORKING),
+    ):
+        watch.read(reading)
+        assert watch.state is state
     watch.wait(4.9)
     assert watch.state is SensorState.WORKING
     watch.wait(0.2)
@@ -166,22 +135,14 @@ def test_no_reading_for_five_intervals_is_silence() -> None:
     assert watch.state is SensorState.WORKING
 
 
-def test_a_reading_at_the_end_of_the_range_is_saturated() -> None:
-    watch = _watch()
-    watch.read(5000.0)
-    assert watch.state is SensorState.SATURATED
-    watch.read(4999.0)
-    assert watch.state is SensorState.WORKING
-
-
-@pytest.mark.parametrize("noise", [0.2, 0.3, 0.5])
-def test_readings_that_are_coarser_than_their_noise_are_those_of_a_working_sensor(
-    noise: float,
+@pytest.mark.parametrize(("noise", "resolution"), [(1.0, 0.1), (0.2, 1.0), (0.3, 1.0), (0.5, 1.0)])
+def test_noise_is_that_of_a_working_sensor_also_if_readings_are_coarser(
+    noise: float, resolution: float
 ) -> None:
-    """Clean air at a multiple of the step, where readings of noise 0.3 are the same in 90 % of all
-    cases: 10 in a row are usual.
+    """Clean air at a multiple of the step, where rounded readings of noise 0.3 are the same in 90 %
+    of all cases: 10 in a row are usual.
     """
-    watch, generator = SensorWatch(_sensor(noise, 1.0)), np.random.default_rng(1)
-    for reading in np.round(420.0 + noise * generator.standard_normal(10_000)):
-        watch.read(float(reading))
+    watch, generator = _watch(noise, resolution), np.random.default_rng(1)
+    for reading in 420.0 + noise * generator.standard_normal(10_000):
+        watch.read(resolution * round(float(reading) / resolution))
         assert watch.state is SensorState.WORKING
