@@ -1,13 +1,18 @@
-"""Weights by hand for a simple aircraft, without lengths and times; gains by a second solver."""
+"""Weights by hand for a simple aircraft; gains by a second solver; the bank for a turn."""
 
 import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.linalg import solve_continuous_are
 
+from aircraft.fleet.x8 import X8
 from aircraft.linearise import LinearModel
+from aircraft.spec import AircraftError
+from common.physics import STANDARD_GRAVITY
+from innerloop.designer import linear_grid
 from innerloop.schedule import GAIN_BANKS, LATERAL, LEVEL_GAINS, LONGITUDINAL
 from innerloop.synthesis import control_weights, reachable_bandwidths
 
@@ -192,3 +197,18 @@ def test_the_lateral_gains_are_those_of_a_servo_lqr_that_regulates_sideslip_with
             # A rudder that is absent has no gains.
             assert not found.lateral[1].any()
             assert found.roll_rate_feedforward[1] == found.roll_acceleration_feedforward[1] == 0.0
+
+
+@pytest.mark.parametrize("index", range(5))
+def test_the_bank_for_a_turn_is_that_of_the_equilibrium_with_this_yaw_rate(x8_schedule, index):
+    airspeed = x8_schedule.airspeeds[index]
+    turns = np.array([airspeed * t.yaw_rate / STANDARD_GRAVITY for t in x8_schedule.trims[index]])
+    banks = x8_schedule.bank_for_turn(turns)[:, index]
+    # At the nodes: rounding.
+    np.testing.assert_allclose(banks, [t.roll for t in x8_schedule.trims[index]], atol=1e-12)
+
+
+def test_a_design_condition_that_cannot_be_flown_is_refused():
+    too_slow = replace(X8, envelope=replace(X8.envelope, airspeed_min=5.0))
+    with pytest.raises(AircraftError, match="5 m/s"):
+        linear_grid(too_slow, 100.0)

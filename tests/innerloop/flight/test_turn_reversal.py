@@ -1,4 +1,6 @@
-"""The response to a turn reversal, and the search for the one with the largest deviation."""
+"""The response to a turn reversal, the search for the one with the largest deviation, and the
+aircraft that are not as modelled.
+"""
 
 import functools
 import math
@@ -11,9 +13,11 @@ from aircraft.fleet.x8 import X8
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.responses import measure_lag
 from innerloop.flight.turn_reversal import (
+    REVERSAL_PERTURBATIONS,
     TurnReversalResponse,
     displacement,
     measure_turn_reversal,
+    perturbed_aircraft,
     search_reversals,
 )
 
@@ -115,3 +119,53 @@ def test_it_strays_several_times_as_far_from_a_response_or_a_slow_lag_that_is_no
     own = search().deviation
     assert search(fast).deviation > 3.0 * own
     assert search(slow_lag_times=2.0).deviation > 2.0 * own
+
+
+@pytest.fixture(scope="module")
+def perturbed(x8_root, x8_schedule):
+    """Return the X8 of each case, a tenth of a second into a turn."""
+    level = x8_schedule.level(x8_schedule.middle)
+    aircraft = {
+        name: perturbed_aircraft(X8, x8_root, by) for name, by in REVERSAL_PERTURBATIONS.items()
+    }
+    for each in aircraft.values():
+        each.release(level.state(), airspeed=level.airspeed, altitude=level.altitude)
+        each.command_heading_rate(0.3)
+        for _ in range(12):
+            each.run()
+    return aircraft
+
+
+def value(aircraft, name):
+    return aircraft.fdm.node(name).get_double_value()
+
+
+# Of the model file: 3.364 kg and 0.335, 0.140, 0.400 kg m^2; a kilogram weighs 2.2046226 lb, and 1
+# slug ft^2 is 1.3558179 kg m^2, but by 9e-5 in JSBSim.
+@pytest.mark.parametrize("case", REVERSAL_PERTURBATIONS)
+def test_mass_and_inertia_are_as_modelled_times_the_factor(perturbed, case):
+    by = REVERSAL_PERTURBATIONS[case]
+    assert value(perturbed[case], "inertia/weight-lbs") == pytest.approx(
+        3.364 * 2.2046226 * by.mass, rel=1e-6
+    )
+    for axis, moment in (("xx", 0.335), ("yy", 0.140), ("zz", 0.400)):
+        assert value(perturbed[case], f"inertia/i{axis}-slugs_ft2") == pytest.approx(
+            moment / 1.3558179 * by.inertia, rel=1e-4
+        )
+
+
+@pytest.mark.parametrize("case", REVERSAL_PERTURBATIONS)
+def test_what_a_deflection_does_is_as_modelled_times_the_factor(perturbed, case):
+    def of(name):
+        return value(perturbed[case], name)
+
+    # The model file's rolling moment: -0.0849 beta - 0.4042 p b/2V + 0.05552 r b/2V + 0.12019
+    # aileron.
+    turning = -0.4042 * of("velocities/p-aero-rad_sec") + 0.05552 * of("velocities/r-aero-rad_sec")
+    rolled = of("aero/coefficient/Cl") + 0.0849 * of("aero/beta-rad") - turning * of("aero/bi2vel")
+    aileron = of("fcs/aileron-pos-rad")
+    assert abs(aileron) > 1e-3
+    # Properties are of two neighbouring steps: a tenth of what a fifth of the effectiveness makes.
+    assert rolled == pytest.approx(
+        0.12019 * REVERSAL_PERTURBATIONS[case].effectiveness * aileron, rel=0.02
+    )
