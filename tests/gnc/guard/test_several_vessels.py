@@ -1,6 +1,7 @@
 """The guard beside several vessels at once: none of their areas is entered, whatever is demanded."""
 
 import math
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -97,10 +98,11 @@ def held(generator):
 
 
 def flown(ships, want, *, duration, blind=False):
-    """Return the least distance beyond any radius [m] and the guard's statuses; a ``blind`` guard
-    knows the measured vessel alone.
+    """Return the least distance beyond any radius [m], the guard's statuses, and how often it turned
+    away from several vessels at once; a ``blind`` guard knows the measured vessel alone.
     """
     guard, state = HeadingRateFilter(parameters_of(lag=0.4)), (0.0, 0.0, 0.0, 0.0)
+    guard.common_turns = Mock(wraps=guard.common_turns)
     closest, statuses, discs = math.inf, set(), ()
     for step in range(round(duration / TIME_STEP)):
         time, own = step * TIME_STEP, known_motion(state, speed=SPEED)
@@ -112,12 +114,12 @@ def flown(ships, want, *, duration, blind=False):
         for half in (1, 2):
             state = moved(state, command, 0.4, 0.5 * TIME_STEP)
             closest = min(closest, ships.clearance(time + 0.5 * half * TIME_STEP, state))
-    return closest, statuses
+    return closest, statuses, guard.common_turns.away.call_count
 
 
 @pytest.mark.parametrize("demand", ["aimed", "held"])
 def test_no_area_of_six_ships_is_entered_whatever_is_demanded(demand):
-    entered_blind = False
+    entered_blind, several = False, 0
     for seed in range(4):
 
         def fly(*, blind, seed=seed):
@@ -126,13 +128,15 @@ def test_no_area_of_six_ships_is_entered_whatever_is_demanded(demand):
             want = aimed(ships, generator) if demand == "aimed" else held(generator)
             return flown(ships, want, duration=90.0, blind=blind)
 
-        closest, statuses = fly(blind=False)
+        closest, statuses, often = fly(blind=False)
+        several += often
         # The resolution of the prediction, 4 cm, is on the safe side.
         assert closest >= 0.0
         assert GuardStatus.LOST not in statuses
         if demand == "aimed" and not entered_blind:
             entered_blind = fly(blind=True)[0] < 0.0
     assert entered_blind or demand == "held"
+    assert several
 
 
 def test_between_two_ships_that_close_in_the_way_out_is_along_the_gap():
@@ -140,9 +144,10 @@ def test_between_two_ships_that_close_in_the_way_out_is_along_the_gap():
     places = np.array([[0.0, -420.0], [0.0, 420.0]])
     velocities = np.array([[0.0, 3.0], [0.0, -3.0]])
     ships = Ships(places, velocities, np.array([200.0, 200.0]))
-    closest, statuses = flown(ships, lambda *_: HEADING_RATE_MAX, duration=100.0)
+    closest, statuses, several = flown(ships, lambda *_: HEADING_RATE_MAX, duration=100.0)
     assert closest >= 0.0
     assert GuardStatus.LOST not in statuses
+    assert several
 
 
 def test_ships_out_of_reach_change_no_command():
