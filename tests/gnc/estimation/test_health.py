@@ -15,7 +15,7 @@ from gnc.estimation.health import (
 )
 from gnc.estimation.navigation import EngineReadings, SensorReadings
 
-SPEED, HEADING_RATE_MAX, TIME_STEP, LAG = 19.42, 0.5, 0.05, 0.4
+TIME_STEP, LAG = 0.05, 0.4
 
 
 def at_each_step(lag=LAG):

@@ -2,13 +2,12 @@ import math
 
 import pytest
 from gnc_cases import LOOK_AHEAD, courses, examples, moved, relative, tracking_motion
-from hypothesis import example, given
+from hypothesis import given
 from hypothesis import strategies as st
 
 from gnc.errors import InfeasibleError
 from gnc.numeric import wrap
 from gnc.paper import (
-    delta_length,
     distance_squared,
     distance_squared_rate,
     look_ahead,
@@ -92,25 +91,6 @@ def test_relative_rates_are_those_of_the_cartesian_motion_also_at_unequal_speeds
     assert delta_rate == pytest.approx(numerical_delta, rel=0.0, abs=5e-6)
     assert rho_rate == pytest.approx(numerical_rho, rel=0.0, abs=1e-4)
     assert omega_rho == pytest.approx(numerical_omega, rel=0.0, abs=2e-5)
-
-
-@examples(500)
-@given(
-    epsilon=st.floats(1e-4, 1.0),
-    excess=st.floats(1.001, 100.0),
-    north=st.floats(-1e4, 1e4),
-    east=st.floats(-1e4, 1e4),
-    reference_course=courses,
-)
-@example(epsilon=0.005, excess=1.2, north=-100.0, east=0.0, reference_course=0.0)
-def test_z_never_gets_shorter_than_the_look_ahead_allows(
-    epsilon, excess, north, east, reference_course
-):
-    parameters = look_ahead(epsilon, excess / (4.0 * epsilon))
-    rho = relative_state(parameters, north, east, reference_course, 0.0).rho
-    shortest = parameters.radius - 1.0 / (4.0 * epsilon)
-    # Section IV.B: rho >= delta - d >= R - 1/(4 epsilon). Rounding of delta.
-    assert rho >= shortest - 1e-14 * delta_length(parameters, north**2 + east**2)
 
 
 def test_a_look_ahead_too_short_for_its_epsilon_or_that_does_not_grow_is_refused():

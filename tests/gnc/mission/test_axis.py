@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from exhaust_cases import PRIOR, SENSOR, MadePlume
+from gnc_cases import SPEED, centre_parameters
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -15,13 +16,10 @@ from gnc.estimation.plume.prior import Expectation
 from gnc.estimation.vessel import SteadyTarget
 from gnc.mission.axis import AxisHeight, AxisInputs, Climb, HeightSearch, SearchedPlume, trail
 from gnc.mission.mission import Mode
-from gnc.reference.moving_centre import CentreParameters, MovingCentre
+from gnc.reference.moving_centre import MovingCentre
 
-SPEED, PLAN_TIME = 19.42, 0.5
+PLAN_TIME = 0.5
 CLIMB = Climb(time=4.0, gradient=0.08)
-RISING = AxisHeight(
-    source=35.0, momentum_flux=124.0, buoyancy_flux=49.6, lowest=23.0, highest=117.0
-)
 
 
 def situation(*, wind=(0.0, 0.0), vessel=(8.0, 0.0)):
@@ -29,18 +27,7 @@ def situation(*, wind=(0.0, 0.0), vessel=(8.0, 0.0)):
     own = AirMotion(
         ground_north=-230.0, ground_east=0.0, course=0.0, wind_north=wind[0], wind_east=wind[1]
     )
-    parameters = CentreParameters(
-        distance_min=203.0,
-        speed_ratio_max=0.97,
-        along=(10.0,) * 3,
-        across=(20.0,) * 3,
-        plume_heading=None,
-        vessel_course=0.0,
-        apparent_wind_min=1.0,
-        speed=SPEED,
-        heading_rate_max=0.5,
-    )
-    centre = MovingCentre(parameters)
+    centre = MovingCentre(centre_parameters(along=(10.0,) * 3, across=(20.0,) * 3))
     target = SteadyTarget(*vessel)
     centre.move(PLAN_TIME, own, target, additional_range=0.0)
     return AxisInputs(own=own, vessel=target, centre=centre, speed=SPEED, plan_time=PLAN_TIME)
@@ -141,7 +128,11 @@ EXPECTED = Expectation(
     highest=117.0,
 )
 SEARCHED = SearchedPlume(
-    height=RISING, altitude=60.0, climb=CLIMB, expected=EXPECTED, climb_rate=0.08 * SPEED
+    height=replace(EXHAUST, lowest=23.0, highest=117.0),
+    altitude=60.0,
+    climb=CLIMB,
+    expected=EXPECTED,
+    climb_rate=0.08 * SPEED,
 )
 CLEAN, PEAK, WIDTH = 420.0, 150.0, 12.0
 """CO2 of clean air, in the plume's centre [ppm], and its spread across and in height [m]: an

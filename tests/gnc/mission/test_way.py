@@ -117,53 +117,56 @@ AXIS = math.pi
 VESSEL = SteadyTarget(0.0, 0.0)
 
 
-def vehicle(place, course=0.0, *, heading_rate=0.0):
+def vehicle(place, course=0.0):
     own = TrueNavigation()
-    own.update(motion(*place, course, SPEED, heading_rate))
+    own.update(motion(*place, course))
     return own
 
 
 class Way:
     """The approach of a vehicle at a place, to a vessel at rest at the origin."""
 
-    def __init__(self, place, course=0.0, *, lag=0.0, heading_rate=0.0):
-        self.own = vehicle(place, course, heading_rate=heading_rate)
-        self.approach = Approach(PARAMETERS, tracking_parameters(lag=lag), SPEED)
+    def __init__(self, place, course=0.0):
+        self.own = vehicle(place, course)
+        self.approach = Approach(PARAMETERS, tracking_parameters(), SPEED)
 
-    def command(self, last=0.0, *, additional_range=0.0, guarding=False):
+    def command(self, *, guarding=False):
         return self.approach.command(
-            self.own, VESSEL, *CENTRE, last, additional_range=additional_range, guarding=guarding
-        )
-
-    def should_track(self, centre=CENTRE, *, error=0.0, tracking=False, guarding=False):
-        return self.approach.should_track(
-            self.own, VESSEL, *centre, AXIS, error=error, tracking=tracking, guarding=guarding
+            self.own, VESSEL, *CENTRE, 0.0, additional_range=0.0, guarding=guarding
         )
 
 
 @pytest.mark.parametrize(
-    ("place", "from_afar", "once_tracking"),
+    ("north", "error", "from_afar", "once_tracking", "once_tracking_held"),
     [
         # 150 m from the centre, and 225 m once tracking.
-        ((-389.0, 0.0), True, True),
-        ((-391.0, 0.0), False, True),
-        ((-464.0, 0.0), False, True),
-        ((-466.0, 0.0), False, False),
+        (-389.0, 0.0, True, True, True),
+        (-391.0, 0.0, False, True, True),
+        (-464.0, 0.0, False, True, True),
+        (-466.0, 0.0, False, False, False),
+        # Held off by the guard, the reference is lost when it is three times 12 m away.
+        (-300.0, 35.0, True, True, True),
+        (-300.0, 37.0, True, True, False),
     ],
 )
-def test_tracking_begins_nearer_to_the_centre_than_it_ends(place, from_afar, once_tracking):
-    assert Way(place).should_track() is from_afar
-    assert Way(place).should_track(tracking=True) is once_tracking
+def test_tracking_begins_nearer_to_the_centre_than_it_ends_and_not_while_the_guard_acts(
+    north, error, from_afar, once_tracking, once_tracking_held
+):
+    def should_track(tracking, guarding):
+        return Way((north, 0.0)).approach.should_track(
+            vehicle((north, 0.0)),
+            VESSEL,
+            *CENTRE,
+            AXIS,
+            error=error,
+            tracking=tracking,
+            guarding=guarding,
+        )
 
-
-@pytest.mark.parametrize(("error", "tracked_on"), [(35.0, True), (37.0, False)])
-def test_the_guard_holds_off_who_joins_and_who_has_lost_the_reference(error, tracked_on):
-    place = (-300.0, 0.0)
-    assert Way(place).should_track(error=error)
-    assert not Way(place).should_track(error=error, guarding=True)
-    # Lost: three times 12 m away.
-    assert Way(place).should_track(error=error, tracking=True, guarding=True) is tracked_on
-    assert Way(place).should_track(error=error, tracking=True)
+    assert should_track(False, False) is from_afar
+    assert should_track(False, True) is False
+    assert should_track(True, False) is once_tracking
+    assert should_track(True, True) is once_tracking_held
 
 
 def held(found, duration):
