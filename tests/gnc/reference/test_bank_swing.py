@@ -8,14 +8,14 @@ import pytest
 from gnc_cases import SPEED, TIME_STEP, examples
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.integrate import quad, solve_ivp
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from common.physics import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
 from gnc.paper import PlumeAxis, distance_exact
 from gnc.reference.oscillating import JoinedOrbit
-from gnc.reference.shapes import BankSwing, CoursePath, Fastest, LoiterShape, fourier_coefficients
+from gnc.reference.shapes import BankSwing, Fastest, LoiterShape
 
 ROLL_RATE = math.radians(40.0)
 HEADING_RATE = STANDARD_GRAVITY / SPEED
@@ -100,34 +100,6 @@ def test_no_course_that_swings_evenly_to_both_sides_within_the_limits_is_slower_
     if eta < math.pi:
         # The trapezoidal rule over 1,600 pieces and more: 0.5 rad/s^2 (12 s/1600)^2/12 = 2e-6.
         assert mean >= COURSES.speed_ratio(eta) - 1e-5
-
-
-@pytest.mark.parametrize("eta", [0.1, 1.657, 2.85])
-def test_the_orbit_is_that_of_its_fourier_series_and_of_its_path(eta):
-    path = CoursePath(functools.partial(COURSES.course, eta))
-    assert path.mean == pytest.approx(COURSES.speed_ratio(eta), abs=1e-8)
-    for phase in (-2.0, 0.0, 0.4, 1.5, 3.0, 7.0):
-        along, _ = quad(
-            lambda at: math.cos(COURSES.course(eta, at)) - path.mean.real,
-            0.0,
-            phase,
-            limit=400,
-            epsabs=1e-10,
-        )
-        right, _ = quad(
-            lambda at: math.sin(COURSES.course(eta, at)), 0.0, phase, limit=400, epsabs=1e-10
-        )
-        # A cubic over pieces of 0.006 rad: 1e-7 by its docstring.
-        assert [float(x) for x in path.offset(phase)] == pytest.approx(
-            [along, right], rel=0.0, abs=3e-7
-        )
-        # Eight pairs of terms, whose size falls with the fourth power: below 5e-4 of an orbit of
-        # about 1.
-        assert COURSES.offset(eta, phase) == pytest.approx((along, right), rel=0.0, abs=5e-4)
-    # Parseval: the mean of |exp(i course)|^2 is 1.
-    assert float(
-        np.sum(np.abs(fourier_coefficients(functools.partial(COURSES.course, eta))) ** 2)
-    ) == pytest.approx(1.0, rel=1e-12)
 
 
 LIMITS = {
@@ -252,19 +224,6 @@ def test_its_course_goes_round_once_at_the_mean_velocity_of_the_vessel_within_th
     banks = np.arctan(rates * SPEED / STANDARD_GRAVITY)
     # Rounding.
     assert np.abs(np.diff(banks)).max() <= roll_rate * orbit.period / 2000 * (1.0 + 1e-6)
-
-
-@given(nu=ratios)
-@examples(30)
-def test_no_roll_rate_makes_it_faster_than_the_bound_for_paths_that_go_round(nu):
-    # docs/fastest_oscillation.md: 2 pi/omega_max of turning with a mean velocity of 0, and the rest
-    # on the vessel's course.
-    bound = math.pi / (HEADING_RATE * (1.0 - nu))
-    intervals = [
-        loiter(nu, roll_rate=rate).crossing_interval for rate in (math.inf, 4.0, ROLL_RATE)
-    ]
-    assert intervals[0] == pytest.approx(bound, rel=1e-12)
-    assert bound * (1.0 - 1e-12) <= intervals[1] <= intervals[2] * (1.0 + 1e-12)
 
 
 @pytest.mark.parametrize("nu", [0.0, 0.05, 0.25, 0.5])

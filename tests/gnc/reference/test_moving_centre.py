@@ -131,16 +131,6 @@ def demanded(centre, off=(0.0, 0.0)):
     return mean_motion(centre, *off, SPEED, HEADING_RATE_MAX)
 
 
-@pytest.mark.parametrize(("nu", "turn"), [(0.25, 0.004), (0.9, -0.01)])
-def test_an_orbit_in_its_place_moves_as_a_fast_centre_does(nu, turn):
-    centre = moved_centre(nu, turn)
-    course, ratio = demanded(centre)
-    assert course == pytest.approx(motion_course(centre), abs=1e-12)
-    assert ratio == pytest.approx(
-        math.hypot(centre.velocity_north, centre.velocity_east) / SPEED, rel=1e-12
-    )
-
-
 def test_a_slow_orbit_follows_a_fast_swing_and_little_of_a_slow_one():
     # Half a metre per second across at nu = 0.1 would turn the mean course by 14 degrees, and move
     # the orbit's centre by some 20 m.

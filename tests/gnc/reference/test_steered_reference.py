@@ -5,17 +5,13 @@ import pytest
 from gnc_cases import HEADING_RATE_MAX, SPEED, examples
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.special import j0
 
-from gnc.paper import design_oscillation, offset
 from gnc.reference.oscillating import JoinedOrbit
 from gnc.reference.reference import REFERENCE_SHAPES
-from gnc.reference.shapes import SinusoidSwing
 from gnc.reference.steered import SteeredReference
 
 TIME_STEP = 0.05
 ROLL_RATE_MAX = math.radians(40.0)
-SINUSOID = SinusoidSwing(HEADING_RATE_MAX, 9.80665 / SPEED * ROLL_RATE_MAX)
 
 shapes = pytest.mark.parametrize("shape", ["sinusoid", "fastest"])
 
@@ -132,16 +128,3 @@ def test_its_centre_is_the_mean_of_its_orbit(shape, nu, phase):
     # functions: 3e-6 of 100 m.
     end = np.array(reference.centre()) - steps * TIME_STEP * drift
     assert end == pytest.approx(centre, rel=0.0, abs=0.01)
-
-
-@pytest.mark.parametrize(("eta", "phase"), [(0.1, 0.3), (1.5211, 1.5), (2.4, -1.1)])
-def test_the_offset_is_the_series_of_equation_12(eta, phase):
-    oscillation = design_oscillation(
-        nu=float(j0(eta)), speed=SPEED, heading_rate_max=HEADING_RATE_MAX
-    )
-    along, right = offset(oscillation, phase / oscillation.omega_0)
-    unit = SPEED / oscillation.omega_0
-    found = SINUSOID.offset(eta, phase)
-    # What _ORDERS leaves out is below 1e-4 of the width, of order 1 in these units; the table is
-    # linear over 0.005 rad, 3e-6.
-    assert found == pytest.approx((float(along) / unit, float(right) / unit), rel=0.0, abs=2e-5)
