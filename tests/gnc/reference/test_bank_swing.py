@@ -238,9 +238,13 @@ def test_a_point_that_turns_so_flies_the_orbit_and_meets_the_plume_every_half_tu
         float(np.abs(part).max()) for part in orbit.offset(np.linspace(0.0, orbit.period, 20001))
     ]
     assert orbit.half_widths() == pytest.approx(widths, rel=0.0, abs=1e-4)
-    distance = distance_exact(orbit, PlumeAxis(heading=math.pi), 200.0)
-    many = orbit.offset(np.linspace(0.0, orbit.period, 20001))
-    assert np.hypot(many[0] - distance, many[1]).min() == pytest.approx(200.0, abs=1e-4)
+    along, right = orbit.offset(np.linspace(0.0, orbit.period, 20001))
+    # Its halves are not alike: a plume abeam shows whether the near one keeps off.
+    for heading in (math.pi, 0.5 * math.pi):
+        distance = distance_exact(orbit, PlumeAxis(heading=heading), 200.0)
+        ahead, abeam = distance * math.cos(heading), distance * math.sin(heading)
+        closest = np.hypot(ahead + along, abeam + right).min()
+        assert closest == pytest.approx(200.0, abs=1e-4)
 
 
 @pytest.mark.parametrize(("nu", "roll_rate"), [(0.54, ROLL_RATE), (0.499, math.inf)])
