@@ -187,6 +187,27 @@ def test_the_turn_to_either_side_is_that_flown_in_small_steps(side, lag):
         assert found == pytest.approx(flown, abs=1e-3 * TURN_RADIUS)
 
 
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_turn_that_begins_a_little_beyond_straight_away_does_not_lead_once_round(side):
+    prediction, closing = predictor(), (5.0, 0.0)
+
+    def beyond(angle):
+        return slack(prediction, side, relative_motion((260.0, 0.0, side * angle, 0.0), closing))
+
+    # Within what a turn that ends straight away goes beyond it: half a radian per second, for the
+    # lag and a step of held commands, is 0.15 rad. Once round, in 12.5 s, the disc comes 62 m nearer.
+    assert beyond(0.14) > beyond(0.0) - 1.0
+    assert beyond(0.17) < beyond(0.0) - 40.0
+
+
+@pytest.mark.parametrize(("closing", "ends"), [(SPEED - 1.0, True), (SPEED + 1.0, False)])
+def test_a_turn_away_from_a_disc_that_is_faster_has_no_end(closing, ends):
+    start = TurnStart(600.0, 0.0, 2.0, 0.0)
+    motion = relative_motion((600.0, 0.0, 2.0, 0.0), (closing, 0.0))
+    limits = {"change": 0.0, "time": 0.0, "floor": -math.inf}
+    assert predictor().turn_away(-1.0, start, motion, **limits).ends is ends
+
+
 def test_no_speed_between_the_fastest_and_the_slowest_comes_nearer_than_predicted():
     generator = np.random.default_rng(1)
     slow, fast = 0.95 * SPEED, 1.2 * SPEED
