@@ -597,12 +597,7 @@ class HeadingRateFilter:
     ) -> _Look | None:
         """Return None if a turn keeps off after the command, else the vessels that are near."""
         measured = Ship("", self._p.radius, vessels)
-        if not others:
-            self._common = None
-            self._left_out_until = -math.inf
-            return self._look_at(measured, command, time, own, fastest, slowest)
-        ships, far_for = self._to_keep_off(measured, others, time, own, fastest, slowest)
-        self._left_out_until = time + far_for
+        ships = self._to_keep_off(measured, others, time, own, fastest, slowest)
         if len(ships) == 1:
             self._common = None
             return self._look_at(ships[0], command, time, own, fastest, slowest)
@@ -619,11 +614,30 @@ class HeadingRateFilter:
     ) -> bool:
         """Return whether all vessels but the measured one stay left out of looks."""
         measured = Ship("", self._p.radius, vessels)
-        ships, far_for = self._to_keep_off(measured, others, time, own, fastest, slowest)
-        self._left_out_until = time + far_for
+        ships = self._to_keep_off(measured, others, time, own, fastest, slowest)
         return len(ships) == 1 and ships[0] is measured
 
     def _to_keep_off(
+        self,
+        measured: Ship,
+        others: Sequence[KnownVessel],
+        time: float,
+        own: AirMotion,
+        fastest: float,
+        slowest: float,
+    ) -> list[Ship]:
+        """Return the vessels that turns away have to keep off; the others need no look until
+        ``_left_out_until``.
+        """
+        if others:
+            ships, far_for = self._near_ships(measured, others, time, own, fastest, slowest)
+        else:
+            # One that appears is due for a look at once.
+            ships, far_for = [measured], -math.inf
+        self._left_out_until = time + far_for
+        return ships
+
+    def _near_ships(
         self,
         measured: Ship,
         others: Sequence[KnownVessel],

@@ -985,7 +985,8 @@ def closest_between_samples(
     outwards = (now.speed * math.cos(late.course) - disc_north) * x + (
         now.speed * math.sin(late.course) - disc_east
     ) * y
-    if outwards / math.hypot(x, y) <= (now.allowed - late.allowed) / duration:
+    # Multiplied by the distance, which is 0 where the vehicle is at the disc's centre.
+    if outwards <= math.hypot(x, y) * (now.allowed - late.allowed) / duration:
         return _least_slack_between(late, now, disc_north, disc_east, duration)
     if first:
         return math.hypot(x, y) - late.allowed

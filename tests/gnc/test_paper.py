@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gnc.paper import PlumeAxis, design_oscillation, distance_by_paper, distance_exact, reach
+from gnc.paper import PlumeAxis, design_oscillation, distance_exact
 
 ROOT = Path(__file__).parents[2]
 SCRIPT = ROOT / "docs" / "scripts" / "paper_sim_3.py"
@@ -47,7 +47,7 @@ def test_the_readme_shows_the_script_as_it_is():
     assert SCRIPT.read_text("utf-8") in shown
 
 
-@pytest.mark.parametrize("radius", [0.0, 0.3, 5.0, 200.0])
+@pytest.mark.parametrize("radius", [0.0, 5.0])
 def test_a_steep_plume_is_crossed_no_farther_off_than_where_all_of_its_plane_keeps_off(radius):
     # The orbit lies in a horizontal plane, r_CO sin(alpha_P) above the origin, and passes the CO.
     orbit, elevation = design_oscillation(nu=0.5, speed=19.42, heading_rate_max=0.503), 1.2
@@ -56,9 +56,3 @@ def test_a_steep_plume_is_crossed_no_farther_off_than_where_all_of_its_plane_kee
         distance = distance_exact(orbit, axis, radius)
         # The search for the worst point of the orbit stops within 1e-5 s of it, 2e-4 m of path.
         assert radius - 2e-4 <= distance <= radius / math.sin(elevation) + 2e-4
-
-
-def test_without_a_radius_to_keep_the_papers_rule_places_the_orbit_by_its_reach_alone():
-    orbit = design_oscillation(nu=0.5, speed=19.42, heading_rate_max=0.503)
-    axis = PlumeAxis(heading=2.0, elevation=0.3)
-    assert distance_by_paper(orbit, axis, 0.0) == reach(orbit, axis) * math.cos(0.3)

@@ -2,8 +2,11 @@
 
 import numpy as np
 
+from aircraft.state import EquatorFrame
+from common.physics import METRES_PER_FOOT
+
 TIME_STEP = 1.0 / 120.0
-METRES_PER_FOOT = 0.3048
+FRAME = EquatorFrame(100.0)
 
 CHANNELS = {
     "airspeed": ("velocities/vt-fps", METRES_PER_FOOT),
@@ -18,16 +21,20 @@ CHANNELS = {
     "throttle": ("fcs/throttle-cmd-norm", 1.0),
     "north_speed": ("velocities/v-north-fps", METRES_PER_FOOT),
     "east_speed": ("velocities/v-east-fps", METRES_PER_FOOT),
+    "north": ("position/lat-geod-rad", FRAME.north_scale),
+    "east": ("position/long-gc-rad", FRAME.east_scale),
 }
 """JSBSim property and SI value of its unit."""
 
 
-def fly(aircraft, start, duration, commands=()):
+def fly(aircraft, start, duration, commands=(), *, yaw=0.0, weather=None):
     """Release at an equilibrium and record every channel at every step, and the time [s].
 
     ``commands`` are (time [s], one of airspeed, altitude, heading_rate, value [SI]).
     """
-    aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
+    aircraft.release(
+        start.state(yaw=yaw), airspeed=start.airspeed, altitude=start.altitude, weather=weather
+    )
     nodes = [(aircraft.fdm.node(name), scale) for name, scale in CHANNELS.values()]
     due = {}
     for time, command, value in commands:
@@ -39,7 +46,7 @@ def fly(aircraft, start, duration, commands=()):
         for setter, value in due.get(i, ()):
             setter(value)
         log[i] = [node.get_double_value() * scale for node, scale in nodes]
-        aircraft.fdm.run()
+        aircraft.run()
     flight = dict(zip(CHANNELS, log.T, strict=True))
     flight["time"] = TIME_STEP * np.arange(len(log))
     return flight

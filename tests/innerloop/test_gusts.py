@@ -6,20 +6,13 @@ that is held where it is.
 
 import math
 
-import control
 import numpy as np
 import pytest
 
 from aircraft.state import course_rate
 from aircraft.weather import low_altitude_turbulence
 from common.physics import METRES_PER_FOOT
-from innerloop.gusts import (
-    GUSTS,
-    aircraft_in_gusts,
-    dryden_filters,
-    gust_loop,
-    velocity_by_polar,
-)
+from innerloop.gusts import GUSTS, aircraft_in_gusts, dryden_filters, gust_loop, velocity_by_polar
 from innerloop.schedule import LEVEL_GAINS
 from innerloop.synthesis import quasi_static
 
@@ -27,7 +20,6 @@ AIRSPEED, SPAN = 19.42, 2.1
 MIDDLE = 2
 STEEP = 4  # 45 degrees of bank
 WIND = 0.05  # m/s, small against 20 m/s, large against rounding
-KG_M2_PER_SLUG_FT2 = 1.3558179483314
 LIGHT = low_altitude_turbulence(60.0, 7.717)  # 15 knots at 20 ft
 
 
@@ -76,17 +68,6 @@ def test_a_filter_has_the_spectrum_of_the_standard(filters, name):
     # rounding alone.
     found = np.sum(np.abs(response) ** 2, axis=0) / math.pi
     assert found == pytest.approx([spectrum(name, w) for w in frequencies], rel=1e-9)
-
-
-@pytest.mark.parametrize("name", GUSTS)
-def test_the_covariance_of_the_filters_is_the_integral_of_the_spectrum(filters, name):
-    covariance = filters.C @ control.lyap(filters.A, filters.B @ filters.B.T) @ filters.C.T
-    frequencies = np.logspace(-7, 8, 40_000)
-    by_integral = np.trapezoid([spectrum(name, w) for w in frequencies], frequencies)
-    i = GUSTS.index(name)
-    # Trapezoids 0.09 % wide are good to 1e-7; beyond the ends lies 2/pi times frequency over
-    # corner, 7e-7 of the slowest.
-    assert covariance[i, i] == pytest.approx(by_integral, rel=3e-6)
 
 
 def in_gusts(schedule, bank_index):
@@ -143,34 +124,6 @@ def test_a_steady_wind_past_a_held_aircraft_does_in_jsbsim_what_the_linear_model
         assert np.all(
             np.abs(change - predicted[:, j]) < 1e-3 * sizes + 5e-3 * np.abs(predicted[:, j])
         ), GUSTS[j]
-
-
-def test_moments_by_rates_hardly_depend_on_bank(x8_schedule, x8_fdm):
-    trim = x8_schedule.gain_trim(MIDDLE, STEEP)
-    names = list(x8_schedule.models[MIDDLE][STEEP].state_labels)
-    rows = [names.index(name) for name in "pqr"]
-    steep, level = (
-        x8_schedule.models[MIDDLE][i].A[np.ix_(rows, rows)] for i in (STEEP, LEVEL_GAINS)
-    )
-    x8_fdm.place(trim.state())
-    xx, yy, zz, xz = (
-        x8_fdm.read(f"inertia/i{axes}-slugs_ft2") * KG_M2_PER_SLUG_FT2
-        for axes in ("xx", "yy", "zz", "xz")
-    )
-    # JSBSim's ixz is that of the matrix, its sign included.
-    inertia = np.array([[xx, 0.0, xz], [0.0, yy, 0.0], [xz, 0.0, zz]])
-    rates = np.array(trim.rates_body)
-    gyroscopic = -np.linalg.solve(inertia, cross(rates) @ inertia - cross(inertia @ rates))
-    # What is left in a steep turn is what the model takes from level flight. Measured 0.029 1/s, by
-    # the propeller and the larger angle of attack, of dampings of 3.9 to 24 1/s; the gyroscopic
-    # moments themselves are up to 0.26 1/s.
-    assert np.abs(steep - gyroscopic - level).max() < 0.04
-    assert np.abs(gyroscopic).max() > 0.2
-
-
-def cross(vector):
-    """The matrix that makes the cross product of a vector with another."""
-    return -np.cross(np.eye(3), vector).T
 
 
 def test_in_air_that_has_come_to_move_along_its_course_the_aircraft_is_as_much_faster(x8_schedule):

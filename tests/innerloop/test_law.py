@@ -13,7 +13,7 @@ import pytest
 from aircraft.state import RigidBodyState, body_velocity
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.jsbsim.system import HEADING_RATE, RESET, write_root
-from innerloop.law import STATES, ControlLaw, gain_vector, measurements, operating_point
+from innerloop.law import STATES, ControlLaw, measurements, operating_point
 from innerloop.schedule import LATERAL
 
 NAMES = ("x8", "aerosonde")
@@ -27,14 +27,7 @@ MEASURED = {
     "heading_rate": HEADING_RATE,
     **{name: f"velocities/{name}-rad_sec" for name in "pqr"},
 }
-REMEMBERED = {
-    "elevator_integral": "autopilot/elevator-integral",
-    "throttle_integral": "autopilot/throttle-integral",
-    "bank_integral": "autopilot/bank-integral",
-    "rudder_integral": "autopilot/rudder-integral",
-    "model_rate": "autopilot/model-rate",
-    "model_acceleration": "autopilot/model-acceleration",
-}
+REMEMBERED = {name: f"autopilot/{name.replace('_', '-')}" for name in STATES}
 DIGITS = 2e-7
 """Tables and gains are written with nine digits; commands are of size 1, and sums of ten terms up
 to 10.
@@ -119,7 +112,7 @@ def with_flown_jerk(flown, commands, states):
     return commands | {"heading_rate_command": target}
 
 
-@pytest.mark.parametrize("computed", [0, 1, 20, 90])
+@pytest.mark.parametrize("computed", [0, 1, 30])
 def test_at_random_states_jsbsim_asks_for_the_controls_that_the_law_computes(flown, computed):
     schedule, law, aircraft = flown
     rng = np.random.default_rng(20 + computed)
@@ -161,21 +154,6 @@ def test_at_random_states_the_integrals_grow_as_the_law_says(flown):
         )
 
 
-def test_the_random_states_reach_every_part_of_the_law(flown):
-    schedule, _, _ = flown
-    rng = np.random.default_rng(2)
-    banks, commands = [], []
-    for _ in range(40):
-        command, measured, _ = held(flown, rng, 0)
-        banks.append(measured["roll"])
-        commands.append(command["airspeed_command"])
-    # Past the outermost gains on both sides and in every cell between the design airspeeds, or a
-    # wrong table edge would not show.
-    assert min(banks) < schedule.gain_banks[0]
-    assert max(banks) > schedule.gain_banks[-1]
-    assert set(np.searchsorted(schedule.airspeeds, commands)) == {1, 2, 3, 4}
-
-
 @pytest.mark.parametrize("name", NAMES)
 def test_in_every_equilibrium_the_law_asks_for_its_controls_and_its_integrals_stand_still(
     designs, name
@@ -189,13 +167,8 @@ def test_in_every_equilibrium_the_law_asks_for_its_controls_and_its_integrals_st
             rates, controls = law.evaluate(point, point, point)
             # The law damps all of the roll rate, and a nose-up turn has its own, -yaw rate times
             # sin(pitch): what aileron and rudder then lack, the integral of the heading rate adds.
-            by_roll_rate = dict(
-                zip(
-                    ("aileron", "rudder"),
-                    -gains.lateral[:, LATERAL.index("p")] * t.rates_body[0],
-                    strict=True,
-                )
-            )
+            lacks = -gains.lateral[:, LATERAL.index("p")] * t.rates_body[0]
+            by_roll_rate = dict(zip(("aileron", "rudder"), lacks, strict=True))
             # At its own nodes a table is exact, and every error is 0.
             for control_name, value in t.inputs.items():
                 assert controls[control_name] == pytest.approx(
@@ -204,29 +177,3 @@ def test_in_every_equilibrium_the_law_asks_for_its_controls_and_its_integrals_st
             assert rates["bank_integral"] == 0.0
             assert max(abs(rates["elevator_integral"]), abs(rates["throttle_integral"])) == 0.0
             assert rates["model_acceleration"] == pytest.approx(0.0, abs=1e-12)
-
-
-def test_a_gain_that_is_a_thousandth_off_would_show(flown):
-    schedule, law, _ = flown
-    rng = np.random.default_rng(3)
-    # For every gain that is not 0 there is a state among these at which a thousandth of it
-    # moves a control by ten times what the comparison allows, or the growth of an integral.
-    largest = np.zeros(28)
-    for _ in range(40):
-        commands, measured, states = held(flown, rng, 10)
-        as_it_is = law.evaluate(commands, measured, states)
-        for k in range(28):
-            with pytest.MonkeyPatch.context() as patch:
-                gains = law.gains(measured["roll"], commands["airspeed_command"]).copy()
-                gains[k] *= 1.001
-                patch.setattr(law, "gains", lambda *_, gains=gains: gains)
-                changed = law.evaluate(commands, measured, states)
-            moved = (
-                abs(after[name] - value)
-                for now, after in zip(as_it_is, changed, strict=True)
-                for name, value in now.items()
-            )
-            largest[k] = max(largest[k], *moved)
-    used = np.abs(gain_vector(schedule.gains[2][2])) > 0.0
-    assert largest[used].min() > 10.0 * DIGITS
-    assert np.count_nonzero(used) >= 20

@@ -7,7 +7,6 @@ import pickle
 import shutil
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
 
 import aircraft
@@ -27,8 +26,16 @@ def another_process():
     store.program_hash.cache_clear()
 
 
-def design_as(monkeypatch, made):
-    """Have every design come out as ``made``; return a list of what was designed."""
+@pytest.fixture
+def requests(monkeypatch, tmp_path, designs):
+    """A list of what was designed, from an empty cache; each design is a short form of the X8's."""
+    found = designs("x8")
+    made = dataclasses.replace(
+        found,
+        design=dataclasses.replace(found.design, checks=found.design.checks[:8]),
+        record={name: found.record[name] for name in ("aircraft", "turn_reversal")},
+    )
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     requests = []
 
     def design(spec, altitude):
@@ -40,59 +47,20 @@ def design_as(monkeypatch, made):
     return requests
 
 
-@pytest.fixture
-def requests(monkeypatch, tmp_path, designs):
-    """A list of what was designed, from an empty cache; each design is a short form of the X8's."""
-    found = designs("x8")
-    made = dataclasses.replace(
-        found,
-        design=dataclasses.replace(found.design, checks=found.design.checks[:8]),
-        record={name: found.record[name] for name in ("aircraft", "turn_reversal")},
-    )
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    return design_as(monkeypatch, made)
-
-
-def remembered():
-    return sorted(cache_directory().glob(f"*{store.SUFFIX}"))
-
-
-def test_a_design_is_made_once_and_found_again_whole(requests, designs):
+def test_a_design_is_made_once_and_found_again_to_the_last_bit(requests, designs, monkeypatch):
     first = designed(X8)
     # As another process finds it, which has parsed nothing yet.
     store._entry.cache_clear()
     second = designed(X8)
     assert requests == [("x8", 100.0)]
     assert second is not first
-    # What is found is what was made, to the last bit: tables, gains, models, checks and record.
-    assert second.record == first.record
-    # All controls at once have margins that are nan.
-    assert repr(second.design.checks) == repr(first.design.checks)
-    assert second.design.bandwidths == first.design.bandwidths
-    one, two = first.design.schedule, second.design.schedule
-    # A stall of nan is not itself.
-    assert (repr(one.spec), one.weights, one.trims) == (repr(two.spec), two.weights, two.trims)
-    for mine, other in zip(sum(one.models, ()), sum(two.models, ()), strict=True):
-        for matrix in "ABCD":
-            np.testing.assert_array_equal(getattr(mine, matrix), getattr(other, matrix))
-        for labels in ("state_labels", "input_labels", "output_labels"):
-            assert list(getattr(mine, labels)) == list(getattr(other, labels))
-    for mine, other in zip(sum(one.gains, ()), sum(two.gains, ()), strict=True):
-        for field in dataclasses.fields(mine):
-            np.testing.assert_array_equal(getattr(mine, field.name), getattr(other, field.name))
-
-
-def test_a_design_that_is_used_is_the_one_that_was_made_to_the_last_bit(
-    requests, designs, monkeypatch
-):
+    # As text, which has every bit of every number.
+    assert as_text(second) == as_text(first)
+    # What was made may hold figures of numpy where Python's own come back.
     made = designs("x8")
-    design_as(monkeypatch, made)
-    used = designed(X8)
-    # As text, which has every bit of every number: what was made may hold figures of numpy where
-    # Python's own come back.
-    assert as_text(used) == as_text(made)
+    assert as_text(first.design.schedule) == as_text(made.design.schedule)
     for mine, other in zip(
-        sum(made.design.schedule.models, ()), sum(used.design.schedule.models, ()), strict=True
+        sum(made.design.schedule.models, ()), sum(second.design.schedule.models, ()), strict=True
     ):
         for matrix in "ABCD":
             # Also as it lies in memory, by which products are rounded.
@@ -104,7 +72,6 @@ def test_a_design_that_is_used_is_the_one_that_was_made_to_the_last_bit(
     [
         {"envelope": dataclasses.replace(X8.envelope, bank=math.radians(44.0))},
         {"configuration": (("propulsion/fuel_freeze", 1.0),)},
-        {"settle_time": 3.0},
         {"inputs": (dataclasses.replace(X8.inputs[0], upper=0.9), *X8.inputs[1:])},
         {"title": "Skywalker"},  # it is in the record
     ],
@@ -119,17 +86,14 @@ def test_the_same_model_elsewhere_on_disk_is_the_same_key_and_any_changed_file_o
     root = shutil.copytree(MODELS, tmp_path / "models")
     there = dataclasses.replace(X8, root=root)
     assert design_key(there, 100.0) == design_key(X8, 100.0)
-    numbers = {
-        "aircraft/x8/x8.xml": "0.75",
-        "engine/x8_motor.xml": ".",
-        "engine/x8_propeller.xml": "0.05",
-    }
-    for name, number in numbers.items():
+    for name, number in (
+        ("aircraft/x8/x8.xml", "0.75"),
+        ("engine/x8_motor.xml", "."),
+        ("engine/x8_propeller.xml", "0.05"),
+    ):
         before = design_key(there, 100.0)
         text = (root / name).read_text(encoding="utf-8")
-        changed = text.replace(number, f"{number}1", 1)
-        assert changed != text
-        (root / name).write_text(changed, encoding="utf-8")
+        (root / name).write_text(text.replace(number, f"{number}1", 1), encoding="utf-8")
         assert design_key(there, 100.0) != before, name
 
 
@@ -158,31 +122,21 @@ def hashed(text):
     "content",
     [
         b"",
-        b"garbage",
         b"\xff\xfe",
         pickle.dumps({"design": 1}),
-        *(
-            hashed(text)
-            for text in (
-                "",
-                "[]",
-                "{}x",
-                '{"made": 1}',
-                '{"made": {"design": []}}',
-                '{"other": 1}',
-                "[" * 100_000,
-            )
-        ),
+        hashed("{}x"),
+        hashed('{"made": {"design": []}}'),
+        hashed('{"other": 1}'),
+        hashed("[" * 100_000),
     ],
 )
 def test_a_file_that_holds_no_design_is_ignored_and_replaced(requests, content):
     designed(X8)
-    (file,) = remembered()
+    (file,) = cache_directory().glob(f"*{store.SUFFIX}")
     file.write_bytes(content)
-    assert designed(X8).record["aircraft"] == "x8"
-    assert len(requests) == 2
-    designed(X8)
-    assert len(requests) == 2
+    for _ in range(2):
+        assert designed(X8).record["aircraft"] == "x8"
+        assert len(requests) == 2
 
 
 def test_a_cache_that_cannot_be_written_is_done_without(requests, monkeypatch, tmp_path):

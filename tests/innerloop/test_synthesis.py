@@ -1,44 +1,29 @@
-"""Weights by hand for a simple aircraft, without lengths and times; gains by a second solver."""
+"""Weights by hand for a simple aircraft; gains by a second solver; the bank for a turn."""
 
 import itertools
 import math
-from dataclasses import astuple, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.linalg import solve_continuous_are
 
+from aircraft.fleet.x8 import X8
 from aircraft.linearise import LinearModel
-from innerloop import synthesis
+from aircraft.spec import AircraftError
+from common.physics import STANDARD_GRAVITY
+from innerloop.designer import linear_grid
 from innerloop.schedule import GAIN_BANKS, LATERAL, LEVEL_GAINS, LONGITUDINAL
-from innerloop.synthesis import (
-    control_weights,
-    design_gains,
-    design_weights,
-    reachable_bandwidths,
-)
+from innerloop.synthesis import control_weights, reachable_bandwidths
 
-STATES = [
-    "airspeed",
-    "alpha",
-    "beta",
-    "p",
-    "q",
-    "r",
-    "roll",
-    "pitch",
-    "altitude",
-    "elevator_effect",
-    "throttle_effect",
-]
+STATES = ["airspeed", "alpha", "beta", "p", "q", "r", "roll", "pitch", "altitude"]
+STATES += ["elevator_effect", "throttle_effect"]
 INPUTS = ["elevator", "aileron", "throttle", "rudder"]
 LAG, ENGINE_LAG = 0.04, 0.5  # s, of elevator and engine; aileron and rudder have none
 DELAY = 0.0125  # s, of the autopilot's steps
 
 
-def simple(
-    aileron=30.0, roll_damping=-4.0, elevator=-20.0, z_alpha=-3.0, rudder=5.0, yaw_stiffness=8.0
-):
+def simple(aileron=30.0, roll_damping=-4.0, elevator=-20.0, z_alpha=-3.0):
     """An aircraft with one number for each thing that the bandwidths depend on [1/s, 1/s^2]."""
     a, b = np.zeros((11, 11)), np.zeros((11, 4))
     entries = {
@@ -46,7 +31,7 @@ def simple(
         ("p", "p"): roll_damping,
         ("q", "q"): -5.0,
         ("r", "r"): -1.5,
-        ("r", "beta"): yaw_stiffness,
+        ("r", "beta"): 8.0,
         ("q", "elevator_effect"): elevator,
         ("airspeed", "throttle_effect"): 6.0,
         ("elevator_effect", "elevator_effect"): -1.0 / LAG,
@@ -56,7 +41,7 @@ def simple(
         a[STATES.index(row), STATES.index(column)] = value
     forcing = {
         ("p", "aileron"): aileron,
-        ("r", "rudder"): rudder,
+        ("r", "rudder"): 5.0,
         ("elevator_effect", "elevator"): 1.0 / LAG,
         ("throttle_effect", "throttle"): 1.0 / ENGINE_LAG,
     }
@@ -77,130 +62,31 @@ BANK = 0.6  # rad; half of it is the step that half the authority is to turn
 
 
 @pytest.mark.parametrize(
-    ("changes", "expected"),
+    ("loop", "changes", "expected"),
     [
         # A tenth of a radian and more of phase for delays: 0.18 rad over 12.5 ms without a servo.
-        ({"aileron": 1000.0}, 0.18 / DELAY),
+        ("lateral", {"aileron": 1000.0}, 0.18 / DELAY),
         # Authority: w^2 times 0.3 rad from half of 2 1/s^2.
-        ({"aileron": 2.0, "roll_damping": -0.1}, math.sqrt(0.5 * 2.0 / 0.3)),
+        ("lateral", {"aileron": 2.0, "roll_damping": -0.1}, math.sqrt(0.5 * 2.0 / 0.3)),
         # Roll damping: 0.42 w times 0.3 rad is as fast as half of 10 1/s^2 rolls against 20 1/s.
-        ({"aileron": 10.0, "roll_damping": -20.0}, 0.5 * 10.0 / 20.0 / (0.42 * 0.3)),
-    ],
-)
-def test_the_turn_is_as_fast_as_delay_authority_and_roll_damping_allow(changes, expected):
-    assert reachable_bandwidths([simple(**changes)], BANK).lateral == pytest.approx(
-        expected, rel=1e-12
-    )
-
-
-@pytest.mark.parametrize(
-    ("changes", "expected"),
-    [
-        ({"elevator": -1000.0, "z_alpha": -50.0}, 0.18 / (LAG + DELAY)),
+        ("lateral", {"aileron": 10.0, "roll_damping": -20.0}, 0.5 * 10.0 / 20.0 / (0.42 * 0.3)),
+        ("longitudinal", {"elevator": -1000.0, "z_alpha": -50.0}, 0.18 / (LAG + DELAY)),
         # Either sign of the elevator: 0.15 rad from half of 1 1/s^2.
-        ({"elevator": 1.0}, math.sqrt(0.5 * 1.0 / 0.15)),
-        ({"elevator": -1.0}, math.sqrt(0.5 * 1.0 / 0.15)),
+        ("longitudinal", {"elevator": 1.0}, math.sqrt(0.5 * 1.0 / 0.15)),
+        ("longitudinal", {"elevator": -1.0}, math.sqrt(0.5 * 1.0 / 0.15)),
         # Three quarters of what lift follows the angle of attack with.
-        ({"z_alpha": -1.2}, 0.75 * 1.2),
+        ("longitudinal", {"z_alpha": -1.2}, 0.75 * 1.2),
+        # Lift allows 2.25 rad/s, of which 0.27; the engine 0.3 over its lag.
+        ("airspeed", {}, 0.3 / (ENGINE_LAG + DELAY)),
+        ("airspeed", {"z_alpha": -1.2}, 0.27 * 0.9),
     ],
 )
-def test_altitude_is_as_fast_as_delay_authority_and_lift_allow(changes, expected):
-    assert reachable_bandwidths([simple(**changes)], BANK).longitudinal == pytest.approx(
-        expected, rel=1e-12
-    )
-
-
-def test_airspeed_is_as_fast_as_the_engine_and_slower_than_altitude():
-    # Lift allows 2.25 rad/s, of which 0.27; the engine 0.3 over its lag.
-    assert reachable_bandwidths([simple()], BANK).airspeed == pytest.approx(
-        0.3 / (ENGINE_LAG + DELAY), rel=1e-12
-    )
-    assert reachable_bandwidths([simple(z_alpha=-1.2)], BANK).airspeed == pytest.approx(
-        0.27 * 0.9, rel=1e-12
-    )
-
-
-SCALES = {
-    "airspeed": 2.0,
-    "climb_rate": 2.0,
-    "altitude": 4.0,
-    "propeller_speed": 0.5,
-    "heading_rate": 0.5,
-    "p": 0.5,
-    "q": 0.5,
-    "r": 0.5,
-}
-"""A dynamically similar aircraft, four times as long: in the same gravity it flies twice as fast,
-and all takes twice the time.
-"""
-
-
-def similar(model):
-    """The linear model of the aircraft four times as long."""
-    state = np.array([SCALES.get(name, 1.0) for name in model.state_labels])
-    output = np.array([SCALES.get(name, 1.0) for name in model.output_labels])
-    return replace(
-        model,
-        A=0.5 * state[:, None] * model.A / state,
-        B=0.5 * state[:, None] * model.B,
-        C=output[:, None] * model.C / state,
-        D=output[:, None] * model.D,
-    )
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["x8", "aerosonde"])
-def test_a_dynamically_similar_aircraft_gets_the_similar_autopilot(monkeypatch, designs, name):
-    schedule = designs(name).design.schedule
-    models = [row[LEVEL_GAINS] for row in schedule.models]
-    bank, airspeed = schedule.envelope.bank, schedule.airspeeds[2]
-
-    def designed(models, airspeed, level):
-        bandwidths = reachable_bandwidths(models, bank)
-        weights = design_weights(bandwidths, airspeed)
-        return bandwidths, design_gains(
-            models[2], level, weights, control_weights(models[2], bandwidths, weights)
-        )
-
-    level = schedule.level(2)
-    bandwidths, gains = designed(models, airspeed, level)
-    # The autopilot's steps are the only time that is not the aircraft's own.
-    monkeypatch.setattr(synthesis, "loop_delay", lambda _: 2.0 * DELAY)
-    larger = replace(level, airspeed=2.0 * level.airspeed)
-    slower, scaled = designed([similar(model) for model in models], 2.0 * airspeed, larger)
-    assert astuple(slower) == pytest.approx([0.5 * s for s in astuple(bandwidths)])
-    # The same deflection for a deviation that is as large for the larger aircraft: gains are over
-    # the deviation's scale.
-    units = np.array(
-        [
-            SCALES[n] if n != "pitch" else 1.0
-            for n in ("airspeed", "climb_rate", "q", "pitch", "altitude")
-        ]
-    )
-    np.testing.assert_allclose(
-        scaled.longitudinal * units, gains.longitudinal, rtol=1e-5, atol=1e-9
-    )
-    np.testing.assert_allclose(
-        scaled.longitudinal_integral * 2.0 * np.array([2.0, 4.0]),
-        gains.longitudinal_integral,
-        rtol=1e-5,
-    )
-    np.testing.assert_allclose(
-        scaled.lateral * np.array([0.5, 0.5, 1.0, 1.0]), gains.lateral, rtol=1e-5, atol=1e-9
-    )
-    # Heading is an angle.
-    assert scaled.heading_integral == pytest.approx(gains.heading_integral, rel=1e-5)
-    assert 2.0 * scaled.sideslip_integral == pytest.approx(gains.sideslip_integral, rel=1e-5)
-    np.testing.assert_allclose(
-        0.5 * scaled.roll_rate_feedforward, gains.roll_rate_feedforward, rtol=1e-9
-    )
-    np.testing.assert_allclose(
-        0.25 * scaled.roll_acceleration_feedforward, gains.roll_acceleration_feedforward, rtol=1e-9
-    )
+def test_each_loop_is_as_fast_as_delay_authority_damping_and_lift_allow(loop, changes, expected):
+    found = getattr(reachable_bandwidths([simple(**changes)], BANK), loop)
+    assert found == pytest.approx(expected, rel=1e-12)
 
 
 NAMES = ("x8", "aerosonde", "T37")
-WITH_RUDDER = ("aerosonde", "T37")
 
 
 def grid_points(name):
@@ -279,42 +165,50 @@ def test_the_longitudinal_gains_are_those_of_a_servo_lqr(designs, name):
         )
 
 
-def test_without_a_rudder_the_lateral_gains_are_those_of_a_servo_lqr_on_the_aileron(x8_design):
-    schedule, w = x8_design.schedule, x8_design.schedule.weights
-    deviations = (0.0, w.roll_rate, 0.0, w.roll, w.heading_integral)
-    for i, j in grid_points("x8"):
-        found, model = schedule.gains[i][j], schedule.models[i][j]
-        plant = at_rest(model, ("beta", "p", "r", "roll"), ("aileron",), ("heading_rate",))
-        gain = servo_lqr(*plant, deviations, (allowed(x8_design, i).aileron,))[0]
-        # Sideslip is not measured and its gain left out. The integral goes to the bank command,
-        # which the roll gain turns into aileron. Riccati solvers agree to about 1e-7 here.
-        np.testing.assert_allclose(found.lateral[0], [*gain[1:4], 0.0], rtol=1e-5)
-        assert found.heading_integral * found.lateral[0, LATERAL.index("roll")] == pytest.approx(
-            -gain[4], rel=1e-5
-        )
-        # A rudder that is absent has no gains.
-        assert not found.lateral[1].any()
-        assert found.sideslip_integral == 0.0
-        assert (found.roll_rate_feedforward[1], found.roll_acceleration_feedforward[1]) == (0, 0)
-
-
-@pytest.mark.parametrize("name", WITH_RUDDER)
-def test_with_a_rudder_the_lateral_gains_are_those_of_a_servo_lqr_that_regulates_sideslip_too(
+@pytest.mark.parametrize("name", NAMES)
+def test_the_lateral_gains_are_those_of_a_servo_lqr_that_regulates_sideslip_with_a_rudder(
     designs, name
 ):
     design = designs(name).design
     schedule, w = design.schedule, design.schedule.weights
-    deviations = (w.sideslip, w.roll_rate, 0.0, w.roll, w.heading_integral, w.sideslip_integral)
+    deviations = [w.sideslip, w.roll_rate, 0.0, w.roll, w.heading_integral, w.sideslip_integral]
+    inputs, outputs = ("aileron", "rudder"), ("heading_rate", "beta")
+    if "rudder" not in schedule.controls:
+        # Sideslip is not measured then.
+        deviations, inputs, outputs = [0.0, *deviations[1:5]], inputs[:1], outputs[:1]
     for i, j in grid_points(name):
         found, model, controls = schedule.gains[i][j], schedule.models[i][j], allowed(design, i)
-        inputs, outputs = ("aileron", "rudder"), ("heading_rate", "beta")
         plant = at_rest(model, ("beta", "p", "r", "roll"), inputs, outputs)
-        gain = servo_lqr(*plant, deviations, (controls.aileron, controls.rudder))
+        weights = [getattr(controls, control) for control in inputs]
+        gain = servo_lqr(*plant, deviations, weights)
         scale = np.abs(gain).max(axis=1, keepdims=True)
         # The order of LATERAL: p, r, roll, beta. Riccati solvers agree to about 1e-7.
-        np.testing.assert_allclose(found.lateral / scale, gain[:, [1, 2, 3, 0]] / scale, atol=1e-5)
+        expected = (gain / scale)[:, [1, 2, 3, 0]]
+        expected[:, 3] *= len(inputs) > 1
+        np.testing.assert_allclose(found.lateral[: len(inputs)] / scale, expected, atol=1e-5)
+        # The integral goes to the bank command, which the roll gain turns into aileron.
         assert found.heading_integral * found.lateral[0, LATERAL.index("roll")] == pytest.approx(
             -gain[0, 4], rel=1e-5
         )
         # The law adds its integral of beta, where the design has that of -beta and a minus.
-        assert found.sideslip_integral == pytest.approx(gain[1, 5], rel=1e-5)
+        sideslip = gain[1, 5] if len(inputs) > 1 else 0.0
+        assert found.sideslip_integral == pytest.approx(sideslip, rel=1e-5)
+        if len(inputs) == 1:
+            # A rudder that is absent has no gains.
+            assert not found.lateral[1].any()
+            assert found.roll_rate_feedforward[1] == found.roll_acceleration_feedforward[1] == 0.0
+
+
+@pytest.mark.parametrize("index", range(5))
+def test_the_bank_for_a_turn_is_that_of_the_equilibrium_with_this_yaw_rate(x8_schedule, index):
+    airspeed = x8_schedule.airspeeds[index]
+    turns = np.array([airspeed * t.yaw_rate / STANDARD_GRAVITY for t in x8_schedule.trims[index]])
+    banks = x8_schedule.bank_for_turn(turns)[:, index]
+    # At the nodes: rounding.
+    np.testing.assert_allclose(banks, [t.roll for t in x8_schedule.trims[index]], atol=1e-12)
+
+
+def test_a_design_condition_that_cannot_be_flown_is_refused():
+    too_slow = replace(X8, envelope=replace(X8.envelope, airspeed_min=5.0))
+    with pytest.raises(AircraftError, match="5 m/s"):
+        linear_grid(too_slow, 100.0)

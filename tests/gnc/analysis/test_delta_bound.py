@@ -7,14 +7,7 @@ import math
 import numpy as np
 import pytest
 from cascade_cases import LAW_30_FLIGHTS, cartesian_v_1_rate, fly_law_30, gains, rates_max
-from gnc_cases import (
-    LOOK_AHEAD,
-    SPEED,
-    courses,
-    examples,
-    relative,
-    tracking_starts,
-)
+from gnc_cases import LOOK_AHEAD, SPEED, courses, examples, relative, tracking_starts
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
@@ -63,15 +56,8 @@ def test_rho_reaches_its_largest_share_of_delta_right_behind_the_reference(
     # d/(epsilon d^2 + R) is largest at d = sqrt(R/epsilon), and rho = delta + d with the vehicle
     # right behind.
     d = math.sqrt(parameters.radius / epsilon)
-    behind = [
-        0.0,
-        0.0,
-        reference_course,
-        -d * math.cos(reference_course),
-        -d * math.sin(reference_course),
-        0.0,
-    ]
-    state = relative(behind, parameters)
+    place = -d * math.cos(reference_course), -d * math.sin(reference_course)
+    state = relative([0.0, 0.0, reference_course, *place, 0.0], parameters)
     assert state.rho / state.delta == pytest.approx(
         1.0 + 0.5 / math.sqrt(epsilon * parameters.radius), rel=1e-13
     )

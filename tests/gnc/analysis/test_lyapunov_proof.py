@@ -21,14 +21,7 @@ from hypothesis import strategies as st
 from lyapunov_cases import K_1, law_24
 from scipy.integrate import solve_ivp
 
-from gnc.paper import (
-    relative_velocity,
-    state_rates,
-    v_1_rate,
-    v_2,
-    v_2_rate,
-    v_2_second_rate,
-)
+from gnc.paper import relative_velocity, state_rates, v_1_rate, v_2, v_2_rate, v_2_second_rate
 
 offsets = st.floats(-300.0, 300.0)
 heading_rates = st.floats(-0.5, 0.5)

@@ -38,12 +38,8 @@ SWING, PERIOD = 60.0, 18.0
 
 @dataclass
 class MadePlume:
-    """A Gaussian plume whose centre is drawn anew for each pass, and its sensor.
-
-    Attributes
-    ----------
-    height, offset, peak : of the mean axis [m, m], and of its centre at the expected height [ppm]
-    seed : of meander and noise
+    """A Gaussian plume whose centre is drawn anew for each pass, and its sensor: height and offset
+    of the mean axis [m], and peak at the expected height [ppm].
     """
 
     height: float
@@ -68,27 +64,21 @@ class MadePlume:
         lagged, waiting = 0.0, [0.0] * late
         # A plume that rises less is narrower and stronger.
         narrower = spread_at(prior, self.height) / prior.sigma_z
+        meander = self.meander * np.array([prior.meander_y, prior.meander_z])
         for number, altitude in enumerate([*altitudes, altitudes[-1]]):
-            across_centre = (
-                self.offset + self.meander * prior.meander_y * generator.standard_normal()
-            )
-            height_centre = (
-                self.height + self.meander * prior.meander_z * generator.standard_normal()
-            )
+            middle, height = [self.offset, self.height] + meander * generator.standard_normal(2)
+            up = (altitude - height) / (narrower * prior.sigma_z)
             for i in range(round(0.5 * PERIOD / step)):
                 across = SWING * math.cos(math.pi * (number + i * step / (0.5 * PERIOD)))
-                square = ((across - across_centre) / (narrower * prior.sigma_y)) ** 2 + (
-                    (altitude - height_centre) / (narrower * prior.sigma_z)
-                ) ** 2
-                waiting.append(self.peak / narrower**2 * math.exp(-0.5 * square))
+                off = (across - middle) / (narrower * prior.sigma_y)
+                waiting.append(self.peak / narrower**2 * math.exp(-0.5 * (off**2 + up**2)))
                 lagged += (waiting.pop(0) - lagged) * -math.expm1(-step / sensor.time_constant)
                 estimator.predict(step)
-                read = (
-                    broken
-                    if broken is not None
-                    else 420.0 + lagged + sensor.noise * generator.standard_normal()
-                )
-                reading = read if i % every == 0 else math.nan
+                reading = 420.0 + lagged + sensor.noise * generator.standard_normal()
+                if i % every:
+                    reading = math.nan
+                elif broken is not None:
+                    reading = broken
                 estimator.update(prior.distance, -across if mirrored else across, altitude, reading)
 
 

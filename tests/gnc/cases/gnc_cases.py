@@ -6,7 +6,7 @@ The paper does not print V_r and omega_max; 19.42 m/s and 0.503 rad/s reproduce 
 import math
 import os
 from collections import deque
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from hypothesis import settings
@@ -19,18 +19,18 @@ from gnc.laws import CascadeLaw
 from gnc.mission.track import DirectParameters
 from gnc.paper import (
     design_oscillation,
+    half_widths,
     look_ahead,
     relative_state,
     relative_velocity,
     unicycle_rates,
 )
+from gnc.reference.moving_centre import CentreParameters
 from gnc.reference.oscillating import OscillatingReference
 from gnc.tracker import TrackingParameters
 from gnc.unicycle import unicycle_move
 
-SPEED = 19.42
-HEADING_RATE_MAX = 0.503
-TIME_STEP = 0.05
+SPEED, HEADING_RATE_MAX, TIME_STEP = 19.42, 0.503, 0.05
 LOOK_AHEAD = look_ahead(0.005, 60.0)
 
 courses = st.floats(-math.pi, math.pi)
@@ -39,8 +39,7 @@ DEPTH = int(os.environ.get("FUZZ_DEPTH", "1"))
 
 
 def examples(count):
-    """Settings of a property: no deadline, for time is not what is tested, and the same examples on
-    every machine.
+    """Settings of a property: the same examples on every machine.
 
     A quarter of ``count``, but twelve where there are as many: all of them, and more, with the
     environment variable FUZZ_DEPTH, as in tests/test_fuzz.py.
@@ -78,12 +77,8 @@ def tracking_motion(steer, reference_heading_rate, *, reference_speed=SPEED, spe
     """
 
     def rates(time, state):
-        return np.array(
-            [
-                *unicycle_rates(reference_speed, state[2], reference_heading_rate(time)),
-                *unicycle_rates(speed, state[5], steer(state, time)),
-            ]
-        )
+        of_reference = unicycle_rates(reference_speed, state[2], reference_heading_rate(time))
+        return np.array([*of_reference, *unicycle_rates(speed, state[5], steer(state, time))])
 
     return rates
 
@@ -104,12 +99,11 @@ def relative(state, parameters=LOOK_AHEAD):
 
 
 @st.composite
-def tracking_starts(draw, *, phi_max=math.pi, reach=300.0):
-    """The reference at the origin, the vehicle up to ``reach`` [m] about it, phi no more than
-    ``phi_max`` [rad] to either side.
+def tracking_starts(draw, *, phi_max=math.pi):
+    """The reference at the origin, the vehicle up to 300 m about it, phi no more than ``phi_max``
+    [rad] to either side.
     """
-    north = draw(st.floats(-reach, reach))
-    east = draw(st.floats(-reach, reach))
+    north, east = draw(st.floats(-300.0, 300.0)), draw(st.floats(-300.0, 300.0))
     reference_course = draw(courses)
     z_course = -relative([0.0, 0.0, reference_course, north, east, 0.0]).phi
     return [0.0, 0.0, reference_course, north, east, z_course + draw(st.floats(-phi_max, phi_max))]
@@ -119,24 +113,16 @@ def delta_steering(law, reference_heading_rate, parameters=LOOK_AHEAD):
     """Return ``steer`` for a law of the relative state and omega_rho."""
 
     def steer(state, time):
-        there = relative(state, parameters)
-        _, omega_rho = relative_velocity(
-            parameters, there, SPEED, SPEED, reference_heading_rate(time)
-        )
-        return law(there, omega_rho)
+        there, omega_r = relative(state, parameters), reference_heading_rate(time)
+        return law(there, relative_velocity(parameters, there, SPEED, SPEED, omega_r)[1])
 
     return steer
 
 
 def tracking_parameters(**changes):
     """Return how the paper's vehicle tracks; it answers at once."""
-    defaults = {
-        "law": CascadeLaw(),
-        "heading_rate_max": HEADING_RATE_MAX,
-        "time_step": TIME_STEP,
-        "lag": 0.0,
-    }
-    return TrackingParameters(**(defaults | changes))
+    defaults = {"law": CascadeLaw(), "heading_rate_max": HEADING_RATE_MAX, "lag": 0.0}
+    return TrackingParameters(**(defaults | {"time_step": TIME_STEP} | changes))
 
 
 def make_reference(
@@ -152,11 +138,9 @@ def make_reference(
     )
 
 
-def paper_parameters(reference, *, vessel=(0.0, 0.0), guard=None, airspeed_gain=0.0, **tracking):
+def paper_parameters(mission, *, vessel=(0.0, 0.0), guard=None, airspeed_gain=0.0, **tracking):
     """Return the guidance of the paper's flights: beside a vessel that is known exactly, at a
     velocity [m/s], in still air.
-
-    A reference by itself is tracked from the first step on; ``DirectParameters`` may say otherwise.
     """
     return GuidanceParameters(
         speed=SPEED,
@@ -168,16 +152,28 @@ def paper_parameters(reference, *, vessel=(0.0, 0.0), guard=None, airspeed_gain=
         navigation=None,
         vessel=vessel,
         guard=guard,
-        mission=reference
-        if isinstance(reference, DirectParameters)
-        else DirectParameters(reference=reference),
+        mission=mission,
         health=None,
     )
 
 
 def make_guidance(reference, **how):
-    """Return the paper's guidance; ``how`` same as in ``paper_parameters``."""
-    return Guidance(paper_parameters(reference, **how))
+    """Return the paper's guidance, which tracks a reference from the first step on; ``how`` same as
+    in ``paper_parameters``.
+    """
+    return Guidance(paper_parameters(DirectParameters(reference=reference), **how))
+
+
+def centre_parameters(**changes):
+    """Return how the centre of oscillation astern of a vessel moves; it keeps 203 m."""
+    widths = [
+        half_widths(paper_oscillation(nu, roll_rate_max=math.radians(40.0)))
+        for nu in np.linspace(0.0, 0.97, 49)
+    ]
+    along, across = zip(*widths, strict=True)
+    defaults = {"distance_min": 203.0, "speed_ratio_max": 0.97, "along": along, "across": across}
+    defaults |= {"plume_heading": None, "vessel_course": 0.0, "apparent_wind_min": 1.0}
+    return CentreParameters(**(defaults | {"speed": SPEED, "heading_rate_max": 0.505} | changes))
 
 
 def motion(north, east, course, speed=SPEED, heading_rate=0.0):
@@ -187,14 +183,11 @@ def motion(north, east, course, speed=SPEED, heading_rate=0.0):
     )
 
 
-@dataclass(frozen=True, slots=True)
-class KinematicFlight:
-    """Histories, one entry per guidance step: position, commanded heading rate, distances to the
-    reference and to the vessel, and whether the guard acted.
+class KinematicFlight(NamedTuple):
+    """Histories, one entry per guidance step: commanded heading rate, distances to the reference
+    and to the vessel, and whether the guard acted.
     """
 
-    north: np.ndarray
-    east: np.ndarray
     command: np.ndarray
     distance: np.ndarray
     to_vessel: np.ndarray
@@ -204,17 +197,14 @@ class KinematicFlight:
 def fly(guidance, start, *, duration, delay=0.0):
     """Fly a unicycle that answers the guidance's heading rate exactly, ``delay`` seconds late."""
     north, east, course = start
-    pending = deque([0.0] * round(delay / TIME_STEP))
-    rate = 0.0
-    rows = []
+    pending, rate, rows = deque([0.0] * round(delay / TIME_STEP)), 0.0, []
     for step in range(round(duration / TIME_STEP)):
         reference, target = guidance.mission.tracker.reference, guidance.target
         distance = math.hypot(reference.north - north, reference.east - east)
         guidance.step(step * TIME_STEP, motion(north, east, course, SPEED, rate))
-        command = guidance.heading_rate_command
         to_vessel = math.hypot(north - target.north, east - target.east)
-        rows.append((north, east, command, distance, to_vessel, guidance.guarding))
-        pending.append(command)
+        rows.append((guidance.heading_rate_command, distance, to_vessel, guidance.guarding))
+        pending.append(guidance.heading_rate_command)
         rate = pending.popleft()
         north, east, course = unicycle_move(north, east, course, SPEED, rate, TIME_STEP)
     return KinematicFlight(*np.array(rows).T)

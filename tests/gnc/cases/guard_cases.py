@@ -28,32 +28,16 @@ commands = st.floats(-HEADING_RATE_MAX, HEADING_RATE_MAX)
 distances = st.floats(0.0, 700.0)
 
 
-def errors_of(*, speed_error=0.0, deviation=0.0, drift_rate=0.0, failed_part=0.0, slowest=math.inf):
-    """Return an error budget [m/s, m, m/s, m, m/s]."""
-    return ErrorBudget(
+def parameters_of(*, speed_error=0.0, deviation=0.0, drift_rate=0.0, slowest=math.inf, **changes):
+    """Return the parameters of a guard of 200 m for a vehicle with a lag of 0.4 s."""
+    errors = ErrorBudget(
         own_velocity=Bias(size=speed_error),
         response=Bias(size=deviation),
-        failed_part=Bias(size=failed_part),
         drift=Growth(rate=drift_rate),
         slowest=slowest,
     )
-
-
-def parameters_of(**changes):
-    """Return the parameters of a guard of 200 m for a vehicle with a lag of 0.4 s.
-
-    Those of ``errors_of`` are its error budget.
-    """
-    stated = {name for name in changes if name in errors_of.__kwdefaults__}
-    if stated:
-        changes["errors"] = errors_of(**{name: changes.pop(name) for name in stated})
-    defaults = {
-        "radius": RADIUS,
-        "heading_rate_max": HEADING_RATE_MAX,
-        "lag": 0.4,
-        "time_step": TIME_STEP,
-    }
-    return GuardParameters(**(defaults | changes))
+    defaults = {"radius": RADIUS, "heading_rate_max": HEADING_RATE_MAX, "lag": 0.4}
+    return GuardParameters(**(defaults | {"time_step": TIME_STEP, "errors": errors} | changes))
 
 
 class State(NamedTuple):
@@ -89,11 +73,12 @@ def relative_motion(state, velocity=(0.0, 0.0), **changes):
         "acceleration": 0.0,
         "pending_rate": 0.0,
     }
+    disc_north, disc_east = velocity
     return RelativeMotion(
         x=x,
         y=y,
-        disc_north=velocity[0],
-        disc_east=velocity[1],
+        disc_north=disc_north,
+        disc_east=disc_east,
         course=course,
         heading_rate=heading_rate,
         **(defaults | changes),
@@ -116,14 +101,7 @@ class DiscGuard:
         return self.filter.status
 
     def limit(
-        self,
-        command,
-        state,
-        velocity=(0.0, 0.0),
-        *,
-        speed=SPEED,
-        slowest=math.inf,
-        disc_radius=0.0,
+        self, command, state, velocity=(0.0, 0.0), *, speed=SPEED, slowest=math.inf, disc_radius=0.0
     ):
         own, discs = self._encounter(state, velocity, speed, disc_radius)
         answer = self.filter.limit(command, self._time, own, discs, speed, slowest)
@@ -132,9 +110,9 @@ class DiscGuard:
         self._east += TIME_STEP * velocity[1]
         return answer
 
-    def allows(self, command, state, velocity=(0.0, 0.0), *, speed=SPEED, slowest=math.inf):
-        own, discs = self._encounter(state, velocity, speed)
-        return self.filter.allows(command, self._time, own, discs, speed, slowest)
+    def allows(self, command, state, velocity=(0.0, 0.0)):
+        own, discs = self._encounter(state, velocity, SPEED)
+        return self.filter.allows(command, self._time, own, discs, SPEED)
 
     def clearance(self, state, velocity=(0.0, 0.0), *, speed=SPEED):
         own, discs = self._encounter(state, velocity, speed)
@@ -159,22 +137,12 @@ def moved(state, command, lag, duration, speed=SPEED):
     return (*unicycle_move(north, east, course, speed, command, duration), command)
 
 
-class Steady:
-    """A disc at constant velocity, which it reports."""
-
-    def __init__(self, velocity=(0.0, 0.0)):
-        self.velocity = self.reported = velocity
-
-    def step(self, x, y, duration):
-        pass
-
-
 class Hunter:
-    """A disc that turns and speeds up towards the vehicle as hard as it may, and reports its
-    velocity with a constant error.
+    """A disc that turns and speeds up towards the vehicle as hard as it may, by default not at all,
+    and reports its velocity with a constant error.
     """
 
-    def __init__(self, velocity, *, acceleration, speed_max, error):
+    def __init__(self, velocity, *, acceleration=0.0, speed_max=math.inf, error=(0.0, 0.0)):
         self.velocity, self._error = velocity, error
         self._acceleration, self._speed_max = acceleration, speed_max
 
@@ -192,24 +160,21 @@ class Hunter:
             self.velocity = tuple(faster)
 
 
-def fly_guarded(guard, start, want, disc, *, lag, delay=0.0, duration=45.0, speed=SPEED):
+def fly_guarded(guard, start, want, disc, *, lag, delay=0.0, duration=45.0):
     """Return the closest approach to the disc's centre [m], and the guard's status at each step."""
     x, y, course, heading_rate = start
     under_way = deque([heading_rate] * round(delay / TIME_STEP))
     closest, statuses = math.hypot(x, y), []
     pieces = 2
     for step in range(round(duration / TIME_STEP)):
-        command = guard.limit(
-            want(step, x, y, course), (x, y, course, heading_rate), disc.reported, speed=speed
-        )
+        demanded = want(step, x, y, course)
+        command = guard.limit(demanded, (x, y, course, heading_rate), disc.reported)
         statuses.append(guard.status)
         under_way.append(command)
         acting = under_way.popleft()
         for _ in range(pieces):
             piece = TIME_STEP / pieces
-            x, y, course, heading_rate = moved(
-                (x, y, course, heading_rate), acting, lag, piece, speed
-            )
+            x, y, course, heading_rate = moved((x, y, course, heading_rate), acting, lag, piece)
             x, y = x - disc.velocity[0] * piece, y - disc.velocity[1] * piece
             disc.step(x, y, piece)
             closest = min(closest, math.hypot(x, y))
@@ -221,11 +186,11 @@ def aim_at_the_centre(_, x, y, course, heading_rate_max=HEADING_RATE_MAX):
     return min(max(1.5 * error, -heading_rate_max), heading_rate_max)
 
 
-def held_at_random(generator, heading_rate_max=HEADING_RATE_MAX):
+def held_at_random(generator):
     """Full turns and anything between, each for up to four seconds."""
     values = []
     while len(values) < 1300:
-        turn = generator.choice([-1.0, 1.0, generator.uniform(-1.0, 1.0)]) * heading_rate_max
+        turn = generator.choice([-1.0, 1.0, generator.uniform(-1.0, 1.0)]) * HEADING_RATE_MAX
         values += [float(turn)] * int(generator.integers(1, 80))
     return lambda step, *_: values[step]
 
@@ -238,5 +203,4 @@ def random_start(generator, nearest=260.0):
 
 
 def random_velocity(generator, speed):
-    course = generator.uniform(-math.pi, math.pi)
-    return speed * math.cos(course), speed * math.sin(course)
+    return polar(speed, generator.uniform(-math.pi, math.pi), 0.0)[:2]

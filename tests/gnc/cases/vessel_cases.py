@@ -33,35 +33,27 @@ class Vessel:
         """Move on under a demanded acceleration [m/s^2], of which it does what its limits leave,
         exactly.
         """
-        share = min(1.0, self.limits.acceleration / max(math.hypot(north, east), 1e-300))
-        faster = (
-            self.velocity_north + share * north * duration,
-            self.velocity_east + share * east * duration,
-        )
-        if math.hypot(*faster) > self.limits.speed_max:
+        limits, before = self.limits, complex(self.velocity_north, self.velocity_east)
+        share = min(1.0, limits.acceleration / max(math.hypot(north, east), 1e-300))
+        after = before + share * complex(north, east) * duration
+        if abs(after) > limits.speed_max:
             # To the largest speed in that direction, if that is within its acceleration; else it
             # goes straight on.
-            cut = self.limits.speed_max / math.hypot(*faster) * (1.0 - 1e-12)
-            faster = (cut * faster[0], cut * faster[1])
-            gained = math.hypot(faster[0] - self.velocity_north, faster[1] - self.velocity_east)
-            if gained > self.limits.acceleration * duration:
-                faster = (self.velocity_north, self.velocity_east)
-        self.north += 0.5 * (self.velocity_north + faster[0]) * duration
-        self.east += 0.5 * (self.velocity_east + faster[1]) * duration
-        self.velocity_north, self.velocity_east = faster
+            after *= limits.speed_max / abs(after) * (1.0 - 1e-12)
+            if abs(after - before) > limits.acceleration * duration:
+                after = before
+        self.north += 0.5 * (before.real + after.real) * duration
+        self.east += 0.5 * (before.imag + after.imag) * duration
+        self.velocity_north, self.velocity_east = after.real, after.imag
 
 
 def report_of(vessel, time, *, split=0.0, place=0.0, drift=0.0):
     """Return a report whose errors are the largest that are allowed for.
 
     Errors of place and velocity within (e_p/sigma_p)^2 + (e_v/sigma_v)^2 <= k^2 add up to no more
-    than k hypot(sigma_p, sigma_v s) after s seconds (Cauchy and Schwarz).
-
-    Parameters
-    ----------
-    vessel, time : whose, and when [s]
-    split : angle between all of the error in place, 0, and all of it in velocity, pi/2 [rad]
-    place, drift : direction of either [rad]
+    than k hypot(sigma_p, sigma_v s) after s seconds (Cauchy and Schwarz). ``split`` is the angle
+    between all of the error in place, 0, and all of it in velocity, pi/2 [rad]; place and drift are
+    the direction of either [rad].
     """
     limits = vessel.limits
     error = limits.deviations * limits.position_sigma * math.cos(split)

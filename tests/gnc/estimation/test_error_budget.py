@@ -7,7 +7,6 @@ import pytest
 from scipy.signal import lfilter
 
 from gnc.estimation.error_budget import (
-    EXACT,
     Bias,
     ErrorBudget,
     Growth,
@@ -41,12 +40,6 @@ def test_integrals_of_a_process_are_those_of_simulated_ones(time):
     assert integral.std() == pytest.approx(GUSTS.integral(time), rel=0.035)
     assert (integral - expected).std() == pytest.approx(GUSTS.integral_from_known(time), rel=0.035)
     assert (values[:, -1] - values[:, 0]).std() == pytest.approx(GUSTS.change(time), rel=0.035)
-
-
-def test_a_short_integral_from_a_known_value_has_the_leading_term_of_its_series():
-    time = 0.05
-    leading = GUSTS.sigma * math.sqrt(2.0 * time**3 / (3.0 * GUSTS.correlation_time))
-    assert GUSTS.integral_from_known(time) == pytest.approx(leading, rel=0.01)
 
 
 def filtered(values, every):
@@ -99,12 +92,7 @@ def test_k_is_exceeded_as_often_as_stated():
     assert 0.4 * rate < events / hours < rate
 
 
-def test_what_is_known_exactly_has_no_error():
-    assert EXACT.velocity(0.0) == 0.0
-    assert EXACT.displacement().after(30.0) == 0.0
-    assert EXACT.wander(30.0) == 0.0
-
-
+DRIFT = Growth(rate=1.0)
 TURNING = TurnDeviation(interval=1.0, sigmas=(0.0, 1.0, 2.0))
 
 
@@ -118,7 +106,7 @@ def settled_wind():
 
 def test_a_loss_of_satellites_costs_nothing_where_it_is_not_declared():
     steady = ErrorBudget(turbulence=GUSTS, turning=TURNING).displacement(wind=settled_wind())
-    losing = ErrorBudget(turbulence=GUSTS, turning=TURNING, drift=Growth(rate=1.0))
+    losing = ErrorBudget(turbulence=GUSTS, turning=TURNING, drift=DRIFT)
     assert steady.after(6.0) < losing.displacement(wind=settled_wind()).after(6.0)
     # What was allowed for before the loss is enough after it.
     for age in (0.1, 1.0, 5.0):
@@ -126,19 +114,37 @@ def test_a_loss_of_satellites_costs_nothing_where_it_is_not_declared():
         assert after <= losing.displacement(wind=settled_wind()).after(6.0)
 
 
+def test_what_is_known_anew_counts_from_then_on():
+    wind, losing = settled_wind(), ErrorBudget(turbulence=GUSTS, turning=TURNING, drift=DRIFT)
+    displacement = losing.displacement(wind=wind)
+    displacement.after(6.0)
+    displacement.renew(20.0, wind)
+    # Dead reckoning for 26 s in all.
+    sigma = math.hypot(TURNING.at(6.0), losing.drift_sigma(26.0, wind.sigma))
+    assert displacement.after(6.0) == pytest.approx(losing.k * sigma, rel=1e-12)
+
+
+def test_a_wind_that_is_known_exactly_moves_a_turn_by_what_its_filter_takes_in_of_the_gusts():
+    wind = WindErrorByGusts(GUSTS)
+    wind.gain = 0.02
+    # By at most g t/2 times the integral of the gusts.
+    found = ErrorBudget(turbulence=GUSTS).turn_sigma(10.0, wind)
+    assert found == pytest.approx(0.5 * 0.02 * 10.0 * GUSTS.integral(10.0), rel=1e-9)
+
+
 @pytest.mark.parametrize("lost", [0.0, 20.0])
 def test_displacement_grows_with_time(lost):
-    budget = ErrorBudget(turbulence=GUSTS, turning=TURNING, drift=Growth(rate=1.0))
+    budget = ErrorBudget(turbulence=GUSTS, turning=TURNING, drift=DRIFT)
     displacement = budget.displacement(lost=lost, wind=settled_wind())
     found = [displacement.after(time) for time in np.arange(0.0, 60.0, 0.5)]
     assert np.all(np.diff(found) >= 0.0)
 
 
 def test_velocities_that_last_add_up():
-    budget = ErrorBudget(
-        own_velocity=Bias(size=0.5), gusts=Bias(size=4.0), wind_change=Bias(size=0.25)
-    )
+    sizes = {"own_velocity": 0.5, "gusts": 4.0, "wind_change": 0.25}
+    budget = ErrorBudget(drift=DRIFT, **{name: Bias(size=size) for name, size in sizes.items()})
     assert budget.velocity(0.0) == 4.75
+    assert budget.velocity(0.0, lost=1.0) == 5.75
 
 
 def test_the_parts_of_a_turn_name_what_takes_the_room():

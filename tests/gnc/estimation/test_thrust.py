@@ -9,11 +9,7 @@ import pytest
 from thrust_cases import AIRSPEED, MODEL, PARAMETERS, SPOOL_TIME, accelerations
 
 from gnc.estimation.navigation import EngineReadings
-from gnc.estimation.thrust import (
-    ThrustMonitor,
-    height_for,
-    time_between_false_alarms,
-)
+from gnc.estimation.thrust import ThrustMonitor, height_for, time_between_false_alarms
 
 INTERVAL = 0.2
 

@@ -9,7 +9,6 @@ from gnc_cases import courses, examples
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import expm
-from scipy.stats import chi2
 from vessel_cases import LIMITS, Mailbox, Vessel, report_of
 
 from gnc.estimation.vessel import (
@@ -17,139 +16,83 @@ from gnc.estimation.vessel import (
     FilterParameters,
     ReachableSet,
     ReportedTarget,
-    SteadyTarget,
     VesselFilter,
     VesselReport,
     singer_noise,
     tube,
 )
 
-TIME_STEP = 0.05
 STEP = 0.5
 ROUNDING = 1e-9
 """Of places of a few kilometres [m]."""
 
-SIGMA, MEMORY = 0.02, 40.0
-POSITION, VELOCITY = 5.0, 0.15
+SIGMA, MEMORY, POSITION, VELOCITY = 0.02, 40.0, 5.0, 0.15
+FILTER = FilterParameters(
+    position_sigma=POSITION, velocity_sigma=VELOCITY, acceleration=SIGMA, memory=MEMORY
+)
 FIRST = VesselReport(0.0, 100.0, -40.0, 5.0, 2.0)
 
 
-def make(**changes):
-    sigmas = {
-        "position_sigma": POSITION,
-        "velocity_sigma": VELOCITY,
-        "acceleration": SIGMA,
-        "memory": MEMORY,
-    }
-    return VesselFilter(FilterParameters(**(sigmas | changes)))
-
-
-def singer(time, *, sigma=SIGMA, memory=MEMORY):
+def singer(time):
     """Return transition and process noise of Singer's model by Van Loan's matrix exponential (IEEE
     Trans. AC 23:395, 1978).
     """
-    a = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0 / memory]])
-    spectral = np.zeros((3, 3))
-    spectral[2, 2] = 2.0 * sigma**2 / memory
+    a = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0 / MEMORY]])
+    spectral = np.diag([0.0, 0.0, 2.0 * SIGMA**2 / MEMORY])
     e = expm(np.block([[-a, spectral], [np.zeros((3, 3)), a.T]]) * time)
     transition = e[3:, 3:].T
     return transition, transition @ e[:3, 3:]
 
 
-def packed(p):
-    return p[0, 0], p[0, 1], p[0, 2], p[1, 1], p[1, 2], p[2, 2]
-
-
-def matrix(c):
-    return np.array([[c[0], c[1], c[2]], [c[1], c[3], c[4]], [c[2], c[4], c[5]]])
-
-
-@pytest.mark.parametrize("time", [0.01, 0.19, 0.21, 0.5, 2.0, 12.0, 60.0, 400.0])
+@pytest.mark.parametrize("time", [0.01, 0.19, 0.21, 2.0, 60.0, 400.0])
 def test_its_process_noise_is_singers(time):
     # Below 0.2 s the leading terms alone are taken, true to 0.5 % by their comment; above, six
     # digits of the closed forms cancel at worst, of sixteen.
     tolerance = 5e-3 if time < 0.005 * MEMORY else 1e-3
-    assert singer_noise(SIGMA**2, MEMORY, time) == pytest.approx(
-        packed(singer(time)[1]), rel=tolerance
-    )
+    expected = singer(time)[1][np.triu_indices(3)]
+    assert singer_noise(SIGMA**2, MEMORY, time) == pytest.approx(expected, rel=tolerance)
 
 
 def test_it_is_a_plain_matrix_kalman_filter():
-    rng = np.random.default_rng(3)
-    vessel = make()
+    rng, vessel, time = np.random.default_rng(3), VesselFilter(FILTER), 0.0
     vessel.report(FIRST)
-    states = np.array(
-        [[FIRST.north, FIRST.velocity_north, 0.0], [FIRST.east, FIRST.velocity_east, 0.0]]
-    ).T
+    # North and east as complex numbers.
+    states = np.array([FIRST.north + 1j * FIRST.east, 5.0 + 2.0j, 0.0])
     p = np.diag([POSITION**2, VELOCITY**2, SIGMA**2])
     h, r = np.eye(2, 3), np.diag([POSITION**2, VELOCITY**2])
-    time = 0.0
     for gap in rng.uniform(2.0, 10.0, 40):
         time += gap
-        report = VesselReport(time, *(rng.standard_normal(4) * 100.0))
-        vessel.report(report)
+        north, east, v_north, v_east = rng.standard_normal(4) * 100.0
+        vessel.report(VesselReport(time, north, east, v_north, v_east))
         transition, noise = singer(gap)
         states, p = transition @ states, transition @ p @ transition.T + noise
         gain = p @ h.T @ np.linalg.inv(h @ p @ h.T + r)
-        measured = np.array(
-            [[report.north, report.east], [report.velocity_north, report.velocity_east]]
-        )
+        measured = np.array([north + 1j * east, v_north + 1j * v_east])
         states, p = states + gain @ (measured - h @ states), (np.eye(3) - gain @ h) @ p
         motion = vessel.at(time + 3.0)
         ahead, more = singer(3.0)
-        expected = ahead @ states
+        place, velocity, acceleration = ahead @ states
+        found = (
+            complex(motion.north, motion.east),
+            complex(motion.velocity_north, motion.velocity_east),
+            complex(motion.acceleration_north, motion.acceleration_east),
+        )
         # Rounding of some hundred metres in 40 updates, and the closed forms of the noise as above.
-        assert (motion.north, motion.velocity_north, motion.acceleration_north) == pytest.approx(
-            expected[:, 0], rel=1e-6, abs=1e-6
-        )
-        assert (motion.east, motion.velocity_east, motion.acceleration_east) == pytest.approx(
-            expected[:, 1], rel=1e-6, abs=1e-6
-        )
-        assert motion.sigma == pytest.approx(
-            math.sqrt((ahead @ p @ ahead.T + more)[0, 0]), rel=1e-6
-        )
+        assert found == pytest.approx((place, velocity, acceleration), rel=1e-6, abs=1e-6)
+        sigma = math.sqrt((ahead @ p @ ahead.T + more)[0, 0])
+        assert motion.sigma == pytest.approx(sigma, rel=1e-6)
 
 
 def test_a_late_report_counts_for_when_it_was_true():
     # What matters is the time in the report, not when it is handed over: here after a look at a
     # later time.
-    looked, silent = make(), make()
-    for vessel in (looked, silent):
-        vessel.report(FIRST)
+    looked, silent = VesselFilter(FILTER), VesselFilter(FILTER)
+    looked.report(FIRST)
     looked.at(9.0)
-    late = VesselReport(7.0, 135.0, -26.0, 5.0, 2.0)
-    looked.report(late)
-    silent.report(late)
+    silent.report(FIRST)
+    for vessel in (looked, silent):
+        vessel.report(VesselReport(7.0, 135.0, -26.0, 5.0, 2.0))
     assert looked.at(9.0) == silent.at(9.0)
-
-
-def test_it_knows_how_wrong_it_is_about_the_manoeuvres_that_it_reckons_with():
-    rng = np.random.default_rng(5)
-    flights, gaps = 150, rng.uniform(2.0, 10.0, 15)
-    models = [(transition, np.linalg.cholesky(noise)) for transition, noise in map(singer, gaps)]
-    normalised = []
-    for _ in range(flights):
-        # Both axes: place and velocity, and an acceleration of the process's own deviation.
-        truth = np.diag([100.0, 5.0, SIGMA]) @ rng.standard_normal((3, 2))
-        vessel = make()
-        time = 0.0
-
-        def report(truth, time, vessel=vessel):
-            noise = np.array([[POSITION], [VELOCITY]]) * rng.standard_normal((2, 2))
-            place, velocity = truth[:2] + noise
-            vessel.report(VesselReport(time, place[0], place[1], velocity[0], velocity[1]))
-
-        report(truth, time)
-        for gap, (transition, root) in zip(gaps, models, strict=True):
-            time += gap
-            truth = transition @ truth + root @ rng.standard_normal((3, 2))
-            report(truth, time)
-        error = np.array([vessel.north, vessel.east]).T - truth
-        normalised.append(np.sum(error * np.linalg.solve(matrix(vessel.covariance), error)))
-    # Six degrees of freedom a flight, independent flights; the limits hold for all but one set of
-    # seeds in 500.
-    low, high = chi2.ppf([0.001, 0.999], 6 * flights) / flights
-    assert low < np.mean(normalised) < high
 
 
 def beyond(disc, vessel, time):
@@ -159,14 +102,10 @@ def beyond(disc, vessel, time):
     return math.hypot(vessel.north - north, vessel.east - east) - disc.reach(since)
 
 
-@st.composite
-def errors(draw):
-    """An error on the limit of what is allowed for, anywhere on it."""
-    return {
-        "split": draw(st.floats(0.0, math.pi / 2.0)),
-        "place": draw(courses),
-        "drift": draw(courses),
-    }
+errors = st.fixed_dictionaries(
+    {"split": st.floats(0.0, math.pi / 2.0), "place": courses, "drift": courses}
+)
+"""Errors on the limit of what is allowed for, anywhere on it."""
 
 
 @st.composite
@@ -183,7 +122,7 @@ def manoeuvres(draw):
     manoeuvre=manoeuvres(),
     velocity=st.tuples(courses, st.floats(0.0, LIMITS.speed_max)),
     reported=st.lists(
-        st.tuples(st.booleans(), st.floats(0.0, 25.0), errors()), min_size=1, max_size=40
+        st.tuples(st.booleans(), st.floats(0.0, 25.0), errors), min_size=1, max_size=40
     ),
     speed_max=st.sampled_from([LIMITS.speed_max, math.inf]),
 )
@@ -248,27 +187,8 @@ def test_normal_errors_are_outside_of_a_disc_as_rarely_as_its_deviations_say():
     assert outside == pytest.approx(count * math.exp(-4.5), abs=45.0)
 
 
-def fields(target):
-    return target.north, target.east, target.velocity_north, target.velocity_east
-
-
-@pytest.mark.parametrize("planning", [True, False])
-def test_a_steady_target_goes_straight_on_from_the_origin_and_is_never_old(planning):
-    target = SteadyTarget(6.0, -2.5)
-    target.update(12.0, planning=planning)
-    assert fields(target) == (72.0, -30.0, 6.0, -2.5)
-    assert (target.acceleration_north, target.acceleration_east, target.age(12.0)) == (
-        0.0,
-        0.0,
-        0.0,
-    )
-
-
 def reported(*reports):
-    known = VesselFilter(
-        FilterParameters(position_sigma=5.0, velocity_sigma=0.15, acceleration=0.02, memory=40.0)
-    )
-    target = ReportedTarget(known, ReachableSet(LIMITS), TIME_STEP)
+    target = ReportedTarget(VesselFilter(FILTER), ReachableSet(LIMITS), 0.05)
     for report in reports:
         target.report(VesselReport(*report))
     return target
@@ -283,13 +203,10 @@ def test_the_scatter_of_reports_is_left_out_of_the_acceleration():
     target.update(10.0, True)
     seen = target.vessel.at(10.0)
     size = math.hypot(seen.acceleration_north, seen.acceleration_east)
-    assert size > REPORTED_SCATTER
-    expected = [
-        (size - REPORTED_SCATTER) * part / size
-        for part in (seen.acceleration_north, seen.acceleration_east)
-    ]
+    left = 1.0 - REPORTED_SCATTER / size
+    assert left > 0.0
     assert (target.acceleration_north, target.acceleration_east) == pytest.approx(
-        expected, rel=1e-12
+        (left * seen.acceleration_north, left * seen.acceleration_east), rel=1e-12
     )
     # A tenth of that is scatter.
     steady = reported((0.0, 0.0, 0.0, 6.0, 2.0), (5.0, 30.0, 10.0, 6.05, 2.0))

@@ -30,13 +30,8 @@ from gnc.guard.turn import TurnAway
 SPEED = 20.0
 
 
-# Within a step --------------------------------------------------------------------------------
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("rate_hz", "heading_rate_max"), [(5.0, 0.49), (5.0, 0.58), (8.0, 0.58), (10.0, 0.85)]
-)
+@pytest.mark.parametrize(("rate_hz", "heading_rate_max"), [(5.0, 0.49), (5.0, 0.58), (10.0, 0.85)])
 def test_no_path_leads_in_within_a_wide_step(rate_hz, heading_rate_max):
     generator = np.random.default_rng(3)
     radius, step, nearest, intervened = 10.0, 1.0 / rate_hz, math.inf, 0
@@ -67,12 +62,8 @@ RATE, LAG, DELAY = 0.49, 0.26, 4 * TIME_STEP
 """Largest heading rate [rad/s], lag and dead time [s] of the vehicle of the next tests."""
 
 
-def filter_of(*, radius, deviation):
-    return HeadingRateFilter(
-        parameters_of(
-            radius=radius, heading_rate_max=RATE, lag=LAG, delay=DELAY, deviation=deviation
-        )
-    )
+def filter_of(**changes):
+    return HeadingRateFilter(parameters_of(heading_rate_max=RATE, lag=LAG, delay=DELAY, **changes))
 
 
 @pytest.mark.slow
@@ -105,9 +96,6 @@ def test_a_command_that_passes_leaves_a_turn_with_the_deviation_that_its_change_
     assert intervened > 0
     # To the resolution of the prediction.
     assert least >= -0.01
-
-
-# Commands that need no look -------------------------------------------------------------------
 
 
 @LAGS
@@ -205,12 +193,12 @@ def test_skipped_commands_leave_the_turn_that_was_found(deviation, radius, closi
     assert least >= -0.01
 
 
-def budget_after_a_look(*, free_time=1.05, free_course=0.21, side=1.0):
+def budget_after_a_look(side=1.0):
     """Return what a look leaves for omega_max 0.5 rad/s and steps of 0.1 s, at 0.5 rad/s into the
-    turn: commands of 0.25 to 0.5 rad/s into the turn, at 19 to 21 m/s.
+    turn: commands of 0.25 to 0.5 rad/s into the turn.
     """
     budget = SkipBudget(0.5, 0.1)
-    turn = TurnAway(slack=1.0, free_time=free_time, free_course=free_course, change=0.5)
+    turn = TurnAway(slack=1.0, free_time=1.05, free_course=0.21, change=0.5)
     budget.reset(
         turn, side, command=0.5 * side, recent=(0.5 * side, 0.5 * side), slowest=19.0, fastest=21.0
     )
@@ -234,15 +222,8 @@ def test_commands_are_skipped_until_time_or_course_is_used_up(side):
     assert skips(budget, 0.25 * side) == 6
     assert budget.course_left == pytest.approx(0.06)
     assert budget.may_skip(0.5 * side, 20.0, 20.0)
-    # Other commands and airspeeds than the counted ones are looked at.
-    for command, fastest, slowest in (
-        (0.24, 20.0, 20.0),
-        (0.51, 20.0, 20.0),
-        (0.5, 21.1, 20.0),
-        (0.5, 20.0, 18.9),
-        (math.nan, 20.0, 20.0),
-    ):
-        assert not budget_after_a_look(side=side).may_skip(command * side, fastest, slowest)
+    for command in (0.24, 0.51, math.nan):
+        assert not budget_after_a_look(side=side).may_skip(command * side, 20.0, 20.0)
 
 
 def test_what_is_flown_in_place_of_a_skipped_command_is_charged():
@@ -254,16 +235,6 @@ def test_what_is_flown_in_place_of_a_skipped_command_is_charged():
     assert (budget.steps, budget.course_left) == (9, pytest.approx(0.21 - 0.2 * 0.1))
     budget.charge(0.5, 0.2)
     assert budget.steps == 0
-
-
-def test_a_faster_vehicle_is_looked_at_though_a_slower_one_need_not_be():
-    # Head on, 60 m before a turn is needed; half as fast again it is needed sooner.
-    state = (-300.0, 0.0, 0.0, 0.0)
-    guard = DiscGuard()
-    guard.limit(0.0, state)
-    steps = guard.filter.budget.steps
-    assert guard.allows(0.0, state, speed=1.5 * PAPER_SPEED)
-    assert 0 < guard.filter.budget.steps < steps
 
 
 @pytest.mark.parametrize("speed", [PAPER_SPEED, 1.5 * PAPER_SPEED])

@@ -3,7 +3,7 @@
 import copy
 import math
 from collections import deque
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -25,10 +25,8 @@ from guard_cases import (
     TURN_RADIUS,
     DiscGuard,
     Hunter,
-    Steady,
     aim_at_the_centre,
     commands,
-    distances,
     fly_guarded,
     held_at_random,
     known_motion,
@@ -51,9 +49,6 @@ from gnc.unicycle import lagged_move
 FREE, INTERVENING, LOST = GuardStatus.FREE, GuardStatus.INTERVENING, GuardStatus.LOST
 
 
-# Keeping out ----------------------------------------------------------------------------------
-
-
 @pytest.mark.slow
 @LAGS
 @pytest.mark.parametrize("nu", [0.0, 0.5, 0.9])
@@ -66,7 +61,7 @@ def test_no_commands_lead_in(lag, delay, nu):
         if guard.clearance(start, velocity) < 0.0:
             continue
         want = aim_at_the_centre if i % 2 else held_at_random(generator)
-        closest, statuses = fly_guarded(guard, start, want, Steady(velocity), lag=lag, delay=delay)
+        closest, statuses = fly_guarded(guard, start, want, Hunter(velocity), lag=lag, delay=delay)
         # The theorem of docs/keepout_guard.md; the guard's resolution, 0.04 m, is on the safe side.
         assert closest >= RADIUS
         assert LOST not in statuses
@@ -97,12 +92,9 @@ def test_a_disc_that_hunts_the_vehicle_within_its_bounds_does_not_reach_it(
 
 def test_a_guard_that_does_not_know_the_hunters_acceleration_is_caught():
     # A pursuit at 1 m/s2 that is taken for a disc at constant velocity.
-    disc = Hunter((0.0, 0.0), acceleration=1.0, speed_max=0.9 * SPEED, error=(0.0, 0.0))
+    disc = Hunter((0.0, 0.0), acceleration=1.0, speed_max=0.9 * SPEED)
     start = (-400.0, 0.0, 0.0, 0.0)
     assert fly_guarded(DiscGuard(), start, aim_at_the_centre, disc, lag=0.4)[0] < RADIUS - 0.5
-
-
-# What passes, and what is flown instead -------------------------------------------------------
 
 
 @examples(200)
@@ -137,25 +129,6 @@ def test_commands_away_from_a_disc_abeam_pass(side, clear, command):
 
 
 @LAGS
-@examples(150)
-@given(
-    bearing=courses,
-    distance=distances,
-    course=courses,
-    command=commands,
-    turn=commands,
-    nu=st.floats(0.0, 0.95),
-)
-def test_a_command_within_omega_max_stays_within(
-    lag, delay, bearing, distance, course, command, turn, nu
-):
-    state = polar(distance, bearing, course, turn)
-    answer = DiscGuard(lag=lag, delay=delay).limit(command, state, (nu * SPEED, 0.0))
-    # A mixture of two commands rounds.
-    assert abs(answer) <= HEADING_RATE_MAX * (1.0 + 1e-15)
-
-
-@LAGS
 def test_mirrored_situations_get_mirrored_commands(lag, delay):
     generator = np.random.default_rng(3)
     changed = 0
@@ -169,6 +142,8 @@ def test_mirrored_situations_get_mirrored_commands(lag, delay):
         one, other = DiscGuard(lag=lag, delay=delay), DiscGuard(lag=lag, delay=delay)
         answer = one.limit(command, (x, y, course, turn), (north, east))
         mirrored = other.limit(-command, (x, -y, -course, -turn), (north, -east))
+        # A mixture of two commands rounds.
+        assert abs(answer) <= HEADING_RATE_MAX * (1.0 + 1e-15)
         assert mirrored == pytest.approx(-answer, abs=1e-12)
         assert one.status == other.status
         changed += answer != command
@@ -230,7 +205,7 @@ def test_as_much_of_a_turn_away_is_mixed_in_as_is_needed_and_no_more(lag, delay)
     assert mixed > 20
 
 
-@pytest.mark.parametrize("nu", [0.0, 0.3, 0.6, 0.9])
+@pytest.mark.parametrize("nu", [0.0, 0.6, 0.9])
 def test_it_leaves_the_settled_orbit_alone_and_would_not_with_a_larger_radius(nu):
     # The paper's rule places the orbit 1.3 to 9.7 m off where 1 m is required; the guard keeps
     # 0.75 m (tracking_flight.py).
@@ -244,23 +219,6 @@ def test_it_leaves_the_settled_orbit_alone_and_would_not_with_a_larger_radius(nu
         assert fly(guidance, start, duration=120.0).guarded.any() == intervenes
 
 
-# No turn away keeps off -----------------------------------------------------------------------
-
-
-def test_a_start_without_a_way_out_has_negative_clearance():
-    head_on = (-220.0, 0.0, 0.0, 0.0)
-    # 20 m off the radius, and a turn takes 38.6 m.
-    assert DiscGuard().clearance(head_on) < -10.0
-    # Without lag: the circle beside a disc at rest is sqrt(220^2 + r^2) - r from its centre.
-    without_lag = math.hypot(220.0, TURN_RADIUS) - TURN_RADIUS - RADIUS
-    assert DiscGuard(lag=0.0).clearance(head_on) == pytest.approx(
-        without_lag, abs=1e-3 * TURN_RADIUS
-    )
-    # Heading away it is the distance.
-    away = (0.0, 230.0, 0.5 * math.pi, 0.0)
-    assert DiscGuard().clearance(away) == pytest.approx(30.0, abs=1e-9)
-
-
 def test_without_a_way_out_it_reports_lost_and_flies_the_better_turn():
     # Head on, 20 m off; 5 m to the left of the line to the centre, so that left is nearer out.
     start = (-220.0, -5.0, 0.0, 0.0)
@@ -269,7 +227,7 @@ def test_without_a_way_out_it_reports_lost_and_flies_the_better_turn():
     assert guard.status is LOST
     best = DiscGuard().clearance(start)
     closest, statuses = fly_guarded(
-        DiscGuard(), start, aim_at_the_centre, Steady(), lag=0.4, duration=30.0
+        DiscGuard(), start, aim_at_the_centre, Hunter((0.0, 0.0)), lag=0.4, duration=30.0
     )
     # Held commands, and the resolution of the prediction.
     assert closest - RADIUS == pytest.approx(best, abs=0.05)
@@ -326,9 +284,6 @@ def test_a_vehicle_whose_turn_leads_beyond_straight_away_turns_back(side):
     assert guard.status is LOST
 
 
-# Asking first, and the clearance --------------------------------------------------------------
-
-
 @LAGS
 def test_it_allows_exactly_what_limit_lets_pass_and_asking_changes_nothing(lag, delay):
     velocity, answers = (0.3 * SPEED, 0.0), []
@@ -346,26 +301,6 @@ def test_it_allows_exactly_what_limit_lets_pass_and_asking_changes_nothing(lag, 
         x, y, course, heading_rate = moved(state, under_way.popleft(), lag, TIME_STEP)
         state = (x - velocity[0] * TIME_STEP, y - velocity[1] * TIME_STEP, course, heading_rate)
     assert 50 < sum(answers) < 550
-
-
-def nearest_head_on():
-    """Return the least distance [m] at which a vehicle may fly on straight at the disc."""
-    return next(
-        distance
-        for distance in np.arange(205.0, 400.0)
-        if DiscGuard().allows(0.0, (-distance, 0.0, 0.0, 0.0))
-    )
-
-
-def test_it_allows_nothing_after_which_a_slower_vehicle_could_not_turn_away():
-    # Heading off from a disc that closes in at 0.8 of its speed: 12 m are left over, and at three
-    # quarters of its speed 7 m lack.
-    state, velocity = (-215.0, 0.0, math.radians(120.0), 0.0), (-0.8 * SPEED, 0.0)
-    for slowest, allowed in ((math.inf, True), (SPEED - 0.4, True), (0.75 * SPEED, False)):
-        guard = DiscGuard()
-        assert guard.allows(0.0, state, velocity, slowest=slowest) == allowed
-        assert (guard.limit(0.0, state, velocity, slowest=slowest) == 0.0) == allowed
-        assert (guard.status is FREE) == allowed
 
 
 def bisected(holds):
@@ -412,16 +347,8 @@ def test_of_two_discs_the_one_that_reaches_less_far_counts_however_old_its_repor
     # that grows by 8 m/s. Another one of just that growth is 10 m larger.
     now, acceleration = 40.0, 0.2
     old = AT_REST._replace(acceleration=acceleration)
-    larger = Tube(
-        now,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.5 * acceleration * now**2 + 10.0,
-        acceleration * now,
-        acceleration,
-    )
+    grown = 0.5 * acceleration * now**2
+    larger = Tube(now, 0.0, 0.0, 0.0, 0.0, grown + 10.0, acceleration * now, acceleration)
     discs = (old, larger) if first == 0 else (larger, old)
 
     def passes(distance, discs):
@@ -455,9 +382,6 @@ def test_wind_acts_like_a_vessel_that_moves_against_it_in_still_air():
     assert changed > 3
 
 
-# The pace -------------------------------------------------------------------------------------
-
-
 def fields_of(guarded):
     """Return what is flown, whether the pace is held, and the status."""
     return guarded.heading_rate, guarded.pace, guarded.pace_held, guarded.status
@@ -469,12 +393,17 @@ def guard_with_pace(**parameters):
     return KeepoutGuard(parameters_of(**parameters), speeds)
 
 
+def nearest_head_on():
+    """Return the least distance [m] at which a vehicle may fly on straight at the disc."""
+    return bisected(lambda distance: DiscGuard().allows(0.0, (-distance, 0.0, 0.0, 0.0)))
+
+
 FAR = known_motion((-1500.0, 0.0, 0.0, 0.0), speed=SPEED)
 
 
 def test_a_faster_pace_is_flown_only_where_the_faster_vehicle_can_turn_away_too():
     # Slowing down on the way costs 5 % of the difference between the turn radii: 0.1 m.
-    near = known_motion((-nearest_head_on() - 0.2, 0.0, 0.0, 0.0), speed=SPEED)
+    near = known_motion((-nearest_head_on() - 0.3, 0.0, 0.0, 0.0), speed=SPEED)
     for pace in (SPEED, SPEED - 1.0):
         guarded = guard_with_pace().filter(Demand(0.0, 0.0, pace), near, (AT_REST,))
         assert fields_of(guarded) == (0.0, pace, False, FREE)
@@ -512,7 +441,8 @@ def test_v_r_is_flown_while_the_guard_acts_and_for_a_quarter_of_a_turn_after():
 
 def test_measured_airspeeds_beyond_the_commanded_ones_count():
     head_on = (-nearest_head_on(), 0.0, 0.0, 0.0)
-    # Heading off from a disc that closes in, as above.
+    # Heading off from a disc that closes in at 0.8 of its speed: 12 m are left over, and at three
+    # quarters of its speed 7 m lack.
     overtaken = (-215.0, 0.0, math.radians(120.0), 0.0)
     closing = Tube(0.0, 0.0, 0.0, -0.8 * SPEED, 0.0)
     for state, disc, speed, free in (
@@ -526,8 +456,6 @@ def test_measured_airspeeds_beyond_the_commanded_ones_count():
         assert (guarded.status is FREE) == free
 
 
-# A vehicle without thrust ---------------------------------------------------------------------
-
 FALL, SLOWEST = 1.25, 14.2
 """Without thrust the X8's airspeed falls by 1.25 m/s2 in a turn at 45 degrees, to 14.2 m/s until
 that is detected."""
@@ -535,11 +463,11 @@ that is detected."""
 
 def fly_without_thrust(fails, closing, slowest):
     """Return the closest approach [m] to a disc that closes in, of a vehicle that is steered at it,
-    and the guard's statuses.
+    and the guard's statuses, until the fall of its airspeed and a turn away are over.
     """
     guard = DiscGuard(slowest=slowest)
     state, x, closest, statuses, speed = (0.0, 3.0, 0.0, 0.0), -600.0, math.inf, [], SPEED
-    for step in range(round(45.0 / TIME_STEP)):
+    for step in range(round((fails + 18.0) / TIME_STEP)):
         north, *rest = state
         command = aim_at_the_centre(step, x, *rest[:2])
         command = guard.limit(command, (x, *rest), (-closing, 0.0), slowest=speed)
@@ -552,47 +480,25 @@ def fly_without_thrust(fails, closing, slowest):
     return closest, statuses
 
 
-def failures(closing):
-    """Return times [s] at which thrust may fail.
-
-    Both close in by 340 m until the guard acts; the fall takes 4.2 s, a turn away 6 s.
-    """
-    until = 340.0 / (SPEED + closing)
-    return [until + after for after in (-6.0, -4.0, -2.0, -1.0, 0.0, 1.0, 2.0)]
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("closing", [5.0, 13.0])
 def test_a_vehicle_that_slows_down_to_the_slowest_keeps_out_whenever_it_begins_to(closing):
-    for fails in failures(closing):
-        closest, statuses = fly_without_thrust(fails, closing, SLOWEST)
+    # Both close in by 340 m until the guard acts; the fall takes 4.2 s, a turn away 6 s.
+    until = 340.0 / (SPEED + closing)
+    for after in (-4.0, -2.0, -1.0, 0.0, 1.0, 2.0):
+        closest, statuses = fly_without_thrust(until + after, closing, SLOWEST)
         assert closest >= RADIUS
         assert LOST not in statuses
 
 
 @pytest.mark.slow
 def test_a_guard_that_takes_a_vehicle_without_thrust_to_keep_its_airspeed_lets_it_in():
-    closest = [fly_without_thrust(fails, 13.0, math.inf)[0] for fails in failures(13.0)]
+    until = 340.0 / (SPEED + 13.0)
+    closest = [fly_without_thrust(until + after, 13.0, math.inf)[0] for after in (-1.0, 0.0)]
     assert min(closest) < RADIUS
 
 
-def test_the_clearance_takes_the_slowest_airspeed_into_account():
-    # Astern of a disc that comes on the vehicle flies away from it: the slower, the nearer.
-    own, vessel = known_motion((300.0, 0.0, 1.0, 0.0)), Tube(0.0, 0.0, 0.0, 13.0, 0.0)
-    unknown, fast, slow = (
-        HeadingRateFilter(parameters_of(slowest=slowest)).clearance(0.0, own, (vessel,), SPEED)
-        for slowest in (math.inf, SPEED, SLOWEST)
-    )
-    assert unknown == fast
-    # Until it heads straight away, at 14.2 m/s where it was 19.4, it loses 5.2 m in each second.
-    assert 2.0 < fast - slow < 5.2 * math.pi / 2.0 / HEADING_RATE_MAX
-
-
-# Gusts that begin at once ---------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Gust:
+class Gust(NamedTuple):
     """Air that moves at once, from a time to a time [s], at a speed [m/s] in a direction [rad]."""
 
     speed: float
@@ -600,25 +506,15 @@ class Gust:
     begins: float
     ends: float
 
-    def at(self, time: float) -> tuple[float, float]:
-        """Return the velocity of the air, north and east [m/s]."""
-        speed = self.speed if self.begins <= time < self.ends else 0.0
-        return speed * math.cos(self.direction), speed * math.sin(self.direction)
-
 
 @pytest.mark.parametrize(
     ("gust", "vessel", "bearing", "distance", "course", "weave"),
     [
         (Gust(4.0, -2.0506, 6.18, 35.2), 13.0, 0.0236, 383.3, 0.404, 0.9),
         (Gust(5.0, -0.6857, 4.264, 17.5), 12.0, 1.1370, 358.7, -2.534, 0.0),
+        # One that slows the turn, and one from the other side.
         (Gust(7.0, -2.2802, 5.355, 19.42), 10.65, 0.1498, 375.4, -2.387, 0.0),
         (Gust(7.0, 2.5628, 2.865, 17.21), 10.83, -0.098, 369.14, -2.882, 0.0),
-    ],
-    ids=[
-        "beside a fast vessel",
-        "beside a slower one",
-        "a gust that slows the turn",
-        "one from the other side",
     ],
 )
 def test_a_gust_as_strong_as_declared_does_not_lead_in(
@@ -635,7 +531,8 @@ def test_a_gust_as_strong_as_declared_does_not_lead_in(
     nearest, intervened = math.inf, 0
     for step in range(1200):
         time = step * TIME_STEP
-        north, east = gust.at(time)
+        blows = gust.speed if gust.begins <= time < gust.ends else 0.0
+        north, east = blows * math.cos(gust.direction), blows * math.sin(gust.direction)
         over_north, over_east = SPEED * math.cos(heading) + north, SPEED * math.sin(heading) + east
         speed = math.hypot(over_north, over_east)
         flown = math.atan2(over_east, over_north)

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from exhaust_cases import PRIOR, SENSOR, MadePlume
+from gnc_cases import SPEED, centre_parameters
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -13,22 +14,12 @@ from gnc.estimation.navigation import AirMotion
 from gnc.estimation.plume.estimator import PlumeEstimator
 from gnc.estimation.plume.prior import Expectation
 from gnc.estimation.vessel import SteadyTarget
-from gnc.mission.axis import (
-    AxisHeight,
-    AxisInputs,
-    Climb,
-    HeightSearch,
-    SearchedPlume,
-    trail,
-)
+from gnc.mission.axis import AxisHeight, AxisInputs, Climb, HeightSearch, SearchedPlume, trail
 from gnc.mission.mission import Mode
-from gnc.reference.moving_centre import CentreParameters, MovingCentre
+from gnc.reference.moving_centre import MovingCentre
 
-SPEED, PLAN_TIME = 19.42, 0.5
+PLAN_TIME = 0.5
 CLIMB = Climb(time=4.0, gradient=0.08)
-RISING = AxisHeight(
-    source=35.0, momentum_flux=124.0, buoyancy_flux=49.6, lowest=23.0, highest=117.0
-)
 
 
 def situation(*, wind=(0.0, 0.0), vessel=(8.0, 0.0)):
@@ -36,18 +27,7 @@ def situation(*, wind=(0.0, 0.0), vessel=(8.0, 0.0)):
     own = AirMotion(
         ground_north=-230.0, ground_east=0.0, course=0.0, wind_north=wind[0], wind_east=wind[1]
     )
-    parameters = CentreParameters(
-        distance_min=203.0,
-        speed_ratio_max=0.97,
-        along=(10.0,) * 3,
-        across=(20.0,) * 3,
-        plume_heading=None,
-        vessel_course=0.0,
-        apparent_wind_min=1.0,
-        speed=SPEED,
-        heading_rate_max=0.5,
-    )
-    centre = MovingCentre(parameters)
+    centre = MovingCentre(centre_parameters(along=(10.0,) * 3, across=(20.0,) * 3))
     target = SteadyTarget(*vessel)
     centre.move(PLAN_TIME, own, target, additional_range=0.0)
     return AxisInputs(own=own, vessel=target, centre=centre, speed=SPEED, plan_time=PLAN_TIME)
@@ -148,7 +128,7 @@ EXPECTED = Expectation(
     highest=117.0,
 )
 SEARCHED = SearchedPlume(
-    height=RISING,
+    height=replace(EXHAUST, lowest=23.0, highest=117.0),
     altitude=60.0,
     climb=CLIMB,
     expected=EXPECTED,
@@ -218,26 +198,3 @@ def test_a_plume_is_searched_for_found_and_followed(ladder):
     # To about its own spread: strength and height off the axis look alike.
     assert abs(axis.estimate.height - 75.0) < WIDTH
     assert axis.estimate.height_deviation < WIDTH
-
-
-def test_a_reading_counts_for_the_place_at_which_it_was_read():
-    both = []
-    for late in (False, True):
-        axis, around = SEARCHED.begin(), situation()
-        axis.flown = 60.0
-        axis.plan(0.0, around, tracking=True)
-        waiting = []
-        for i in range(300):
-            time = STEP * i
-            across = HALF_WIDTH * math.sin(math.pi * time / INTERVAL)
-            around.vessel.update(time, False)
-            around.own.ground_north, around.own.ground_east = around.vessel.north - 220.0, -across
-            waiting += [(time, noisy(time, reading(across, 60.0, 62.0)))] if i % 2 == 0 else []
-            due = not late or i % 5 == 4
-            axis.take_readings(time, waiting if due else [])
-            waiting = [] if due else waiting
-        both.append(axis.estimate)
-    # Half a second late makes no difference but that of a straight line between places a tenth of a
-    # second apart.
-    assert both[1].height == pytest.approx(both[0].height, abs=0.2)
-    assert both[1].offset == pytest.approx(both[0].offset, abs=0.5)

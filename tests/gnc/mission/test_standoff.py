@@ -1,4 +1,3 @@
-import itertools
 import math
 
 import pytest
@@ -83,28 +82,9 @@ def test_the_papers_law_circles_a_moving_vessel_at_the_radius():
     assert max(abs(distance - RADIUS) for distance in flight.distances[-1000:]) < 0.2
 
 
-def test_a_circle_rises_to_the_height_of_the_plume_at_its_radius():
-    rising = AxisHeight(source=35.0, momentum_flux=124.0, buoyancy_flux=49.6)
-    own, target, circling = TrueNavigation(), SteadyTarget(10.0, 0.0), mission(CascadeLaw(), rising)
-    own.update((-RADIUS, 0.0, SPEED, 0.0, 0.0))
-    target.update(0.0, True)
-    heights = [35.0]
-    for step in range(round(200.0 / (10 * TIME_STEP))):
-        order = circling.plan(10 * TIME_STEP * step, own, target, renew=True, guarding=False)
-        heights.append(order.altitude)
-    # No steeper than the gradient, from the height at the start.
-    assert heights[1] - heights[0] <= 0.05 * SPEED * 10 * TIME_STEP
-    # Ten time constants: what is left is below 0.01 m of the 13 m.
-    assert heights[-1] == pytest.approx(rising.at(RADIUS, 10.0), abs=0.01)
-    assert all(later >= earlier for earlier, later in itertools.pairwise(heights))
-
-
 @pytest.mark.parametrize(
     ("fault", "mode", "speed"),
-    [
-        (Fault.THRUST_LOST, Mode.GLIDING, 14.9),
-        (Fault.ACTUATOR_STUCK, Mode.TERMINATING, SPEED),
-    ],
+    [(Fault.THRUST_LOST, Mode.GLIDING, 14.9), (Fault.ACTUATOR_STUCK, Mode.TERMINATING, SPEED)],
 )
 def test_a_vehicle_with_a_fault_flies_straight_out_and_sinks(fault, mode, speed):
     own, target, circling = TrueNavigation(), SteadyTarget(0.0, 0.0), mission(CascadeLaw())

@@ -14,7 +14,6 @@ from gnc.paper import (
     distance_exact,
     half_widths,
     offset,
-    reach,
 )
 
 ratios = st.floats(0.0, 0.98)
@@ -28,23 +27,12 @@ SEARCH = 1e-6
 
 
 def closest_approach(oscillation, axis, distance):
-    """Return the smallest three-dimensional distance [m] between a dense orbit about the CO and the
-    plume's origin.
-
-    The orbit has 20,000 points, of which those are left out that lie too far from the closest of
-    2000 to be any closer.
+    """Return the smallest three-dimensional distance [m] between an orbit of 10,000 points about
+    the CO and the plume's origin.
     """
     ahead, right, above = centre_of_oscillation(distance, axis)
-
-    def distances(times):
-        along, across = offset(oscillation, times)
-        return np.sqrt((ahead + along) ** 2 + (right + across) ** 2 + above**2)
-
-    coarse = np.linspace(0.0, oscillation.period, 2001)
-    found = distances(coarse)
-    # The orbit is no faster than V_r and V_UAV together, which here is below 40 m/s.
-    near = coarse[found <= found.min() + 40.0 * coarse[1]]
-    return float(np.min(distances(near[:, np.newaxis] + np.linspace(-0.5, 0.5, 11) * coarse[1])))
+    along, across = offset(oscillation, np.linspace(0.0, oscillation.period, 10_001))
+    return float(np.sqrt((ahead + along) ** 2 + (right + across) ** 2 + above**2).min())
 
 
 @examples(50)
@@ -55,10 +43,10 @@ def test_the_exact_placement_touches_the_keep_out_sphere_and_no_more(
     oscillation, axis = paper_oscillation(nu), PlumeAxis(heading=heading, elevation=elevation)
     closest = closest_approach(oscillation, axis, distance_exact(oscillation, axis, radius))
     assert closest >= radius - SEARCH
-    # Samples are at most 19.42 m/s * 30 s/20,000 = 0.029 m apart, so one is within 0.015 m of the
+    # Samples are at most 19.42 m/s * 30 s/10,000 = 0.058 m apart, so one is within 0.03 m of the
     # closest point. Off it, distance grows by (1/r_min + 1/39 m)/2 of the square of that, 39 m
-    # being the tightest turn, V_r/omega_max: at r_min = 20 m, 8e-6 m.
-    assert closest <= radius + 1e-5
+    # being the tightest turn, V_r/omega_max: at r_min = 20 m, 3.4e-5 m.
+    assert closest <= radius + 4e-5
 
 
 @examples(60)
@@ -67,7 +55,7 @@ def test_no_closer_placement_keeps_the_orbit_outside(nu, heading, elevation, rad
     oscillation, axis = paper_oscillation(nu), PlumeAxis(heading=heading, elevation=elevation)
     distance = distance_exact(oscillation, axis, radius) - closer
     # Towards the worst point goes a share of 0.01 m: the cosine between axis and line of sight
-    # there, no less than 0.14 in 12,000 random cases of these ranges. The samples' 1e-5 m, see
+    # there, no less than 0.14 in 12,000 random cases of these ranges. The samples' 4e-5 m, see
     # before, is nothing to that.
     assert closest_approach(oscillation, axis, distance) < radius - 5e-4
 
@@ -87,42 +75,27 @@ def test_the_exact_placement_is_never_farther_than_the_papers(nu, heading, eleva
 @given(nu=ratios, heading=headings, elevation=elevations, radius=radii)
 def test_the_papers_placement_keeps_the_orbit_outside(nu, heading, elevation, radius):
     oscillation, axis = paper_oscillation(nu), PlumeAxis(heading=heading, elevation=elevation)
+    distance = distance_by_paper(oscillation, axis, radius)
     # Equation (10) keeps the three-dimensional distance. Rounding of 1 km.
-    assert (
-        closest_approach(oscillation, axis, distance_by_paper(oscillation, axis, radius))
-        >= radius - 1e-9
-    )
+    assert closest_approach(oscillation, axis, distance) >= radius - 1e-9
 
 
-@pytest.mark.parametrize("elevation", [0.2, 0.6, 1.0])
-@pytest.mark.parametrize("nu", [0.1, 0.5, 0.9])
-def test_an_elevated_plume_abeam_is_placed_by_the_end_of_the_lobe(nu, elevation):
-    oscillation = paper_oscillation(nu)
-    _, d_y = half_widths(oscillation)
-    # |r_CO u + o| = r_min at the end of the lobe nearest the vessel, o = -d_y towards it, solved by
-    # hand.
-    expected = d_y * math.cos(elevation) + math.sqrt(200.0**2 - (d_y * math.sin(elevation)) ** 2)
-    axis = PlumeAxis(heading=0.5 * math.pi, elevation=elevation)
-    assert distance_exact(oscillation, axis, 200.0) == pytest.approx(expected, rel=0.0, abs=SEARCH)
-
-
-@pytest.mark.parametrize("elevation", [0.0, 0.4, -0.4])
-def test_the_papers_placement_adds_the_reach_seen_along_the_plume(elevation):
-    oscillation, axis = paper_oscillation(0.5), PlumeAxis(heading=2.0, elevation=elevation)
-    # Equation (10). Rounding.
-    expected = 200.0 + reach(oscillation, axis) * math.cos(elevation)
+def test_the_papers_placement_adds_the_reach_seen_along_the_plume():
+    oscillation, axis = paper_oscillation(0.5), PlumeAxis(heading=2.0, elevation=-0.4)
+    along, across = half_widths(oscillation)
+    # Equations (10) and (11). Rounding.
+    reach = along + (across - along) * math.sin(2.0)
+    expected = 200.0 + reach * math.cos(0.4)
     assert distance_by_paper(oscillation, axis, 200.0) == pytest.approx(expected, rel=1e-14)
 
 
 @pytest.mark.parametrize(
     ("heading_deg", "elevation_deg", "expected"),
     [
-        # Equation (9): ahead, to starboard, astern, and up at the sine of 30 degrees.
+        # Equation (9): ahead, to starboard, and up at the sine of 30 degrees.
         (0.0, 0.0, (100.0, 0.0, 0.0)),
         (90.0, 0.0, (0.0, 100.0, 0.0)),
-        (180.0, 0.0, (-100.0, 0.0, 0.0)),
         (180.0, 30.0, (-100.0 * math.sqrt(0.75), 0.0, 50.0)),
-        (-90.0, 30.0, (0.0, -100.0 * math.sqrt(0.75), 50.0)),
     ],
 )
 def test_the_centre_lies_on_the_plumes_axis(heading_deg, elevation_deg, expected):
@@ -131,22 +104,12 @@ def test_the_centre_lies_on_the_plumes_axis(heading_deg, elevation_deg, expected
     assert centre_of_oscillation(100.0, axis) == pytest.approx(expected, abs=1e-13)
 
 
-@pytest.mark.parametrize("radius", [-1.0, math.nan, math.inf])
 @pytest.mark.parametrize("rule", [distance_exact, distance_by_paper])
-def test_an_impossible_keep_out_radius_is_refused(rule, radius):
-    with pytest.raises(
-        InfeasibleError, match=r"keep-out radius is .* m; it must be finite and at least 0"
-    ) as refusal:
-        rule(paper_oscillation(0.5), PlumeAxis(heading=math.pi), radius)
-    assert f"is {radius:g} m" in str(refusal.value)
-
-
-@pytest.mark.parametrize("elevation", [0.5 * math.pi, -0.5 * math.pi, 2.0, math.nan])
-@pytest.mark.parametrize("rule", [distance_exact, distance_by_paper])
-def test_a_vertical_plume_is_refused(rule, elevation):
-    with pytest.raises(
-        InfeasibleError,
-        match=r"plume elevation is .*within -pi/2 and pi/2: a vertical plume cannot be crossed",
-    ) as refusal:
-        rule(paper_oscillation(0.5), PlumeAxis(heading=math.pi, elevation=elevation), 200.0)
-    assert f"is {elevation:g} rad" in str(refusal.value)
+def test_an_impossible_keep_out_radius_and_a_vertical_plume_are_refused(rule):
+    for radius in (-1.0, math.nan, math.inf):
+        with pytest.raises(InfeasibleError, match=f"keep-out radius is {radius:g} m"):
+            rule(paper_oscillation(0.5), PlumeAxis(heading=math.pi), radius)
+    for elevation in (0.5 * math.pi, -0.5 * math.pi, math.nan):
+        axis = PlumeAxis(heading=math.pi, elevation=elevation)
+        with pytest.raises(InfeasibleError, match=f"plume elevation is {elevation:g} rad"):
+            rule(paper_oscillation(0.5), axis, 200.0)

@@ -1,28 +1,25 @@
-"""The response to a turn reversal, and the search for the one with the largest deviation."""
+"""The response to a turn reversal, the search for the one with the largest deviation, and the
+aircraft that are not as modelled.
+"""
 
 import functools
 import math
-from collections import deque
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from aircraft.fdm import TIME_STEP
 from aircraft.fleet.x8 import X8
-from common.physics import METRES_PER_FOOT
-from gnc.unicycle import lagged_move
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.responses import measure_lag
 from innerloop.flight.turn_reversal import (
+    REVERSAL_PERTURBATIONS,
     TurnReversalResponse,
-    _Flight,
     displacement,
     measure_turn_reversal,
+    perturbed_aircraft,
     search_reversals,
 )
-from innerloop.jsbsim.system import HEADING_RATE
 
 pytestmark = pytest.mark.slow
 
@@ -124,44 +121,51 @@ def test_it_strays_several_times_as_far_from_a_response_or_a_slow_lag_that_is_no
     assert search(slow_lag_times=2.0).deviation > 2.0 * own
 
 
-class Exact:
-    """A stand-in for the aircraft: a vehicle at 20 m/s with just a dead time and a lag."""
+@pytest.fixture(scope="module")
+def perturbed(x8_root, x8_schedule):
+    """Return the X8 of each case, a tenth of a second into a turn."""
+    level = x8_schedule.level(x8_schedule.middle)
+    aircraft = {
+        name: perturbed_aircraft(X8, x8_root, by) for name, by in REVERSAL_PERTURBATIONS.items()
+    }
+    for each in aircraft.values():
+        each.release(level.state(), airspeed=level.airspeed, altitude=level.altitude)
+        each.command_heading_rate(0.3)
+        for _ in range(12):
+            each.run()
+    return aircraft
 
-    def __init__(self, response):
-        self.fdm, self._lag = self, response.lag
-        self._acting = deque([0.0] * round(response.delay / TIME_STEP))
-        self._command = self._rate = self._course = 0.0
 
-    def release(self, state, *, airspeed, altitude):
-        del state, airspeed, altitude
+def value(aircraft, name):
+    return aircraft.fdm.node(name).get_double_value()
 
-    def node(self, name):
-        read = {"velocities/v-north-fps": lambda: 20.0 / METRES_PER_FOOT * math.cos(self._course)}
-        read["velocities/v-east-fps"] = lambda: 20.0 / METRES_PER_FOOT * math.sin(self._course)
-        read[HEADING_RATE] = lambda: self._rate
-        read["position/h-sl-ft"] = lambda: 100.0 / METRES_PER_FOOT
-        return SimpleNamespace(get_double_value=read[name])
 
-    def command_heading_rate(self, rate):
-        self._command = rate
-
-    def run(self):
-        self._acting.append(self._command)
-        _, _, self._course, self._rate = lagged_move(
-            0.0, 0.0, self._course, self._rate, 20.0, self._acting.popleft(), self._lag, TIME_STEP
+# Of the model file: 3.364 kg and 0.335, 0.140, 0.400 kg m^2; a kilogram weighs 2.2046226 lb, and 1
+# slug ft^2 is 1.3558179 kg m^2, but by 9e-5 in JSBSim.
+@pytest.mark.parametrize("case", REVERSAL_PERTURBATIONS)
+def test_mass_and_inertia_are_as_modelled_times_the_factor(perturbed, case):
+    by = REVERSAL_PERTURBATIONS[case]
+    assert value(perturbed[case], "inertia/weight-lbs") == pytest.approx(
+        3.364 * 2.2046226 * by.mass, rel=1e-6
+    )
+    for axis, moment in (("xx", 0.335), ("yy", 0.140), ("zz", 0.400)):
+        assert value(perturbed[case], f"inertia/i{axis}-slugs_ft2") == pytest.approx(
+            moment / 1.3558179 * by.inertia, rel=1e-4
         )
 
 
-def test_a_vehicle_of_just_that_response_is_predicted(x8_schedule):
-    response = TurnReversalResponse(delay=0.5, lag=0.4)
-    flight = _Flight(Exact(response), x8_schedule.level(x8_schedule.middle), response, 0.9, 0.5)
-    for rate, duration in ((0.5, 4.0), (-0.5, 0.3), (0.2, 1.0), (-0.5, 0.6)):
-        flight.fly(rate, duration)
-    predicted, change = flight.predicted_turn(0.5, 5.0, 20.0)
-    flown = flight.fly(0.5, 5.0)
-    # Rates at the ends of steps of 1/120 s: half a step of turning at 1 rad/s, over 80 m.
-    np.testing.assert_allclose(predicted, flown, rtol=0.0, atol=0.35)
-    # By hand, from 0.5 rad/s: -0.5 + exp(-0.3/0.4), then 0.2 + (.. - 0.2) exp(-1/0.4), then -0.5 +
-    # (.. + 0.5) exp(-0.6/0.4) is -0.348 rad/s when the reversal acts, and half of 1 + 0.348/0.5 the
-    # change.
-    assert change == pytest.approx(0.848, abs=2e-3)
+@pytest.mark.parametrize("case", REVERSAL_PERTURBATIONS)
+def test_what_a_deflection_does_is_as_modelled_times_the_factor(perturbed, case):
+    def of(name):
+        return value(perturbed[case], name)
+
+    # The model file's rolling moment: -0.0849 beta - 0.4042 p b/2V + 0.05552 r b/2V + 0.12019
+    # aileron.
+    turning = -0.4042 * of("velocities/p-aero-rad_sec") + 0.05552 * of("velocities/r-aero-rad_sec")
+    rolled = of("aero/coefficient/Cl") + 0.0849 * of("aero/beta-rad") - turning * of("aero/bi2vel")
+    aileron = of("fcs/aileron-pos-rad")
+    assert abs(aileron) > 1e-3
+    # Properties are of two neighbouring steps: a tenth of what a fifth of the effectiveness makes.
+    assert rolled == pytest.approx(
+        0.12019 * REVERSAL_PERTURBATIONS[case].effectiveness * aileron, rel=0.02
+    )
