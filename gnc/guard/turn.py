@@ -710,8 +710,10 @@ class FollowedTurn:
             east = speed * sin - motion.disc_east
             square = north * north + east * east
             inwards = -(place.x * north + place.y * east)
-            nearest_at = min(max(0.0, inwards / square if square > 0.0 else 0.0), duration)
-            for time in (nearest_at, self._later(nearest_at, duration, square)):
+            nearest_at = inwards / square if square > 0.0 else 0.0
+            across = abs(place.x * east - place.y * north)
+            least_at = self._later(nearest_at, across, square, duration)
+            for time in (min(max(0.0, nearest_at), duration), least_at):
                 distance = math.hypot(place.x + north * time, place.y + east * time)
                 slack = min(slack, distance - path.allowed_after(time))
             x, y = place.x + north * duration, place.y + east * duration
@@ -727,20 +729,27 @@ class FollowedTurn:
         slack -= self._rollout
         return StraightOn(slack, slack / (self._lever() + self._on_leg), ends)
 
-    def _later(self, nearest_at: float, duration: float, square: float) -> float:
+    def _later(self, nearest_at: float, across: float, square: float, duration: float) -> float:
         """Return the time at which slack is least, since the disc grows after its closest approach
         [s].
 
         With the distance m at the closest approach and the relative speed w, slack sqrt(m^2 + w^2
         t^2) - g t is least at t = g m / (w sqrt(w^2 - g^2)).
+
+        Parameters
+        ----------
+        nearest_at : time of the closest approach; below 0 where the vehicle recedes already [s]
+        across : m w [m^2/s]
+        square : w^2 [m^2/s^2]
+        duration : after which the straight way ends [s]
         """
-        motion, place = self._motion, self.path.place
-        growth = motion.growth + motion.acceleration * nearest_at
+        motion = self._motion
+        growth = motion.growth + motion.acceleration * max(0.0, nearest_at)
         room = square - growth * growth
         if room <= 0.0:
             return duration
-        distance = math.hypot(place.x, place.y)
-        return min(nearest_at + growth * distance / math.sqrt(square * room), duration)
+        later = nearest_at + growth * across / (square * math.sqrt(room))
+        return min(max(0.0, later), duration)
 
     def _lever(self) -> float:
         """Return the lever of commands before the turn on the present place of the vehicle [s]."""

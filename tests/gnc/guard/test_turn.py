@@ -187,6 +187,25 @@ def test_the_turn_to_either_side_is_that_flown_in_small_steps(side, lag):
         assert found == pytest.approx(flown, abs=1e-3 * TURN_RADIUS)
 
 
+def test_straight_on_after_a_turn_the_least_slack_is_where_growth_has_caught_up_with_the_way_out():
+    generator, lag, duration = np.random.default_rng(15), 0.25, 20.0
+    for _ in range(20):
+        start = random_start(generator)
+        velocity, growth = random_velocity(generator, 0.4 * SPEED), generator.uniform(0.0, 8.0)
+        motion = relative_motion(start, velocity, growth=growth)
+        turn = predictor(lag=lag).followed(1.0, TurnStart(*start), motion, change=0.0, time=0.0)
+        turn.turn_to(generator.uniform(0.2, 3.0), -math.inf)
+        place, times = turn.path.place, np.linspace(0.0, duration, 20_001)
+        x = place.x + (SPEED * math.cos(place.course) - velocity[0]) * times
+        y = place.y + (SPEED * math.sin(place.course) - velocity[1]) * times
+        kept = np.hypot(x, y) - turn.path.allowed_after(0.0) - growth * times
+        # Less what a turn that ends deviates from one that ends at once: lag and a held step.
+        rollout = SPEED * HEADING_RATE_MAX * lag * (lag + TIME_STEP)
+        found = turn.straight_on(duration, 0.0).slack
+        # Times a millisecond apart, near a minimum.
+        assert found == pytest.approx(kept.min() - rollout, abs=1e-4)
+
+
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_a_turn_that_begins_a_little_beyond_straight_away_does_not_lead_once_round(side):
     prediction, closing = predictor(), (5.0, 0.0)
