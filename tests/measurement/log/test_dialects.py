@@ -51,12 +51,14 @@ def is_the_flight(found, expected):
 @pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "latin-1"])
 def test_a_european_log_is_read(table, expected, tmp_path, encoding):
     table["Zeit"] = table["Zeit"].dt.tz_convert("Europe/Berlin").map(pd.Timestamp.isoformat)
-    table["Länge"] = 11.2
-    found = read(table, tmp_path, encoding=encoding, sep=";", decimal=",")
+    # From 0 to 360: 91 degrees west.
+    table["Breite"], table["Länge"] = 27.5, 269.0
+    places = "" if encoding == "utf-16" else 'latitude = "Breite"\nlongitude = "Länge"\n'
+    found = read(table, tmp_path, places, encoding=encoding, sep=";", decimal=",")
     is_the_flight(found, expected)
     # 10:15 in Berlin in winter.
     assert found.about.first_utc == START.to_pydatetime()
-    assert "semicolons, decimal comma" in found.about.table
+    assert found.about.first_position == ((27.5, -91.0) if places else None)
 
 
 def test_masses_of_sulphur_dioxide_are_read_as_such(table, expected, tmp_path):
@@ -126,9 +128,3 @@ def test_a_leap_second_is_left_out_and_said(table, tmp_path, expected):
     found = read(table, tmp_path)
     assert len(found.readings.time) == len(expected.readings.time) - 1
     assert "leap seconds left out: 1" in found.about.table
-
-
-def test_longitudes_from_0_to_360_are_places_as_those_from_minus_180(table, tmp_path):
-    table["lat"], table["lon"] = 27.5, 269.0
-    found = read(table, tmp_path, 'latitude = "lat"\nlongitude = "lon"\n')
-    assert found.about.first_position == (27.5, -91.0)
