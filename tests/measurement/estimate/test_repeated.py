@@ -119,9 +119,6 @@ def test_a_verdict_stays_and_a_refused_look_costs_nothing():
     guard = watched.guard
     assert watched.look(0.0, noise=0.01, total=0.01, admitted=True) == "above"
     assert (watched.looks, watched.guard) == (1, guard)
-
-
-def test_a_reading_far_below_zero_is_no_proof_of_a_clean_fuel():
     # Four standard uncertainties below the limit, but of a sensor that reads nonsense.
     watched = RepeatedVerdict(LIMIT)
     assert watched.look(-1.1, noise=0.3, total=0.31, admitted=True, last=True) == "open"
