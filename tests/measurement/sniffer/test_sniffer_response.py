@@ -6,9 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from crossings import BACKGROUND, crossings, plain_sniffer, read, sniffer_of
+from crossings import BACKGROUND, crossings, read, sniffer_of
 
-from measurement.errors import MeasurementError
 from measurement.gases import GASES
 from measurement.sniffer.channel import Channel
 from measurement.sniffer.lag import lag, time_constants
@@ -116,15 +115,3 @@ def test_readings_in_parts_are_those_in_one(rate_hz, step):
     assert np.array_equal(np.concatenate([part.values for part in found]), whole.values)
     assert np.array_equal(np.concatenate([part.time for part in found]), whole.time)
     np.testing.assert_allclose(whole.time, np.arange(len(whole)) / rate_hz, rtol=1e-15)
-
-
-def test_readings_come_as_soon_as_their_time_does():
-    sniffer = Sniffer(plain_sniffer(), generator=np.random.default_rng(0), time_step=0.5)
-    assert len(sniffer.advance(np.tile(BACKGROUND, (1, 1)))) == 1
-    assert len(sniffer.advance(np.tile(BACKGROUND, (1, 1)))) == 0
-    assert sniffer.advance(np.tile(BACKGROUND, (1, 1))).time.tolist() == [1.0]
-
-
-def test_air_that_is_recorded_too_seldom_is_refused():
-    with pytest.raises(MeasurementError, match=r"time step is 2 s; .* record the air more often"):
-        Sniffer(plain_sniffer(), generator=np.random.default_rng(0), time_step=2.0)
