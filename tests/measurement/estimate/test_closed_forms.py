@@ -12,13 +12,10 @@ from measurement.estimate.fit import fit_record
 from measurement.estimate.passes import find_passes
 from measurement.estimate.record import checked_record
 from measurement.gases import fsc_factor
-from measurement.sniffer.lag import lag
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import sensor_preset
 
 pytestmark = pytest.mark.slow
-
-TAU = 20.0 / math.log(10.0)
 
 
 @pytest.mark.parametrize("method", ["regression", "areas"])
@@ -40,35 +37,6 @@ def test_regression_of_unequal_responses_is_unbiased_where_samples_are_dense(sec
     spec = plain_sniffer(rate_hz=20.0, second_pole=second_pole)
     found = estimate(read(spec, crossings(0.25, step=0.05, duration=120.0), step=0.05), spec)
     assert found.fsc_percent == pytest.approx(0.25, rel=1e-3)
-
-
-def test_the_sniffer_makes_the_overlap_that_the_closed_form_says():
-    # Puffs of two steps of 1 ms every 9.5 s, in the periodic state: width and sampling count for
-    # less than 1e-4 of 0.45.
-    step, count = 1e-3, 9500
-    puffs = np.zeros(12 * count)
-    puffs[1::count] = 1.0
-    reading = lag(puffs, step, TAU)[-count:]
-    area = np.trapezoid(reading - reading[-1], dx=step) / step
-    # The periodic response to puffs every P is e^(-t/tau)/(1 - e^-q)/tau, q = P/tau: over its
-    # trough it has 1 - q/(e^q - 1).
-    q = 9.5 / TAU
-    assert area == pytest.approx(1.0 - q / math.expm1(q), abs=5e-4)
-    # The figure of the specification, given to two digits.
-    assert area == pytest.approx(0.45, abs=0.005)
-
-
-def test_a_window_after_a_puff_holds_what_the_closed_form_says():
-    # (1 - e^(-T/tau_S)) / (1 - e^(-T/tau_C)) for a known background: a lag's area after a puff of
-    # one step.
-    step, window, taus = 1e-3, 15.0, (20.0 / math.log(10.0), 4.0 / math.log(10.0))
-    puff = np.zeros(15_002)
-    puff[1] = 1.0
-    areas = [np.trapezoid(lag(puff, step, tau), dx=step) for tau in taus]
-    # The puff is a triangle about the window's start: its centre is that of a puff at once, its
-    # width counts with (step/tau)^2.
-    expected = (1.0 - math.exp(-window / taus[0])) / (1.0 - math.exp(-window / taus[1]))
-    assert areas[0] / areas[1] == pytest.approx(expected, rel=1e-6)
 
 
 @pytest.mark.parametrize(("gas", "name"), [("so2", "t90_s"), ("so2", "delay_s"), ("co2", "t90_s")])

@@ -51,13 +51,6 @@ def test_where_the_background_explains_all_that_is_known_there_is_no_result():
     assert found.quality == "C"
 
 
-def test_a_correction_that_comes_after_the_end_of_the_record_leaves_no_result():
-    spec = with_no(310.0, cross={"no": 0.01})
-    found = estimate(read(spec, crossings(0.25, **AIR)), spec)
-    assert math.isnan(found.fsc_percent)
-    assert found.quality == "C"
-
-
 def test_a_gas_that_corrects_nothing_takes_no_samples_away():
     spec = with_no(60.0)
     readings = read(spec, crossings(0.25, **AIR))

@@ -124,8 +124,5 @@ def test_a_log_of_no_date_is_compared_with_all_places_of_the_ship(table, logged,
     )
     with pytest.raises(MeasurementError, match="with latitude and longitude exchanged"):
         read(exchanged, logged, ship)
-
-
-def test_a_log_without_places_cannot_be_compared(table, logged, ship):
     with pytest.raises(MeasurementError, match="no latitude and longitude to compare with MMSI"):
         read(table.drop(columns=["latitude_deg"]), logged, ship)
