@@ -25,7 +25,7 @@ from measurement.estimate.estimator import Figure, figures_of, measure_ratio
 from measurement.estimate.quality import quality_class
 from measurement.estimate.result import Figures, Method, Quality, plain
 from measurement.estimate.signals import make_signals, signals_table
-from measurement.estimate.verdict import REJECTED, Side, interval, judged, probability
+from measurement.estimate.verdict import REJECTED, Verdict, interval, judged, probability
 from measurement.gases import GASES
 from measurement.sniffer.channel import Channel
 from measurement.sniffer.lag import Array
@@ -82,19 +82,6 @@ class GasReadings:
 
 
 @dataclass(frozen=True, kw_only=True)
-class GasVerdict:
-    """Verdict on the limit of a gas, in the unit of its figure; same as ``verdict.Verdict``."""
-
-    limit: float
-    verdict: Side
-    probability_above: float
-    above_from: float
-    below_to: float
-    false_alarm: float
-    miss: float
-
-
-@dataclass(frozen=True, kw_only=True)
 class GasEstimate:
     """A figure of a gas with its uncertainty; NaN where it is unknown.
 
@@ -137,7 +124,7 @@ class GasEstimate:
     carbon: float
     quality: Quality
     quality_reasons: tuple[str, ...]
-    verdict: GasVerdict | None
+    verdict: Verdict | None
     no_verdict: str
     stage: Limit | None
     rated_rpm: float
@@ -344,7 +331,9 @@ def estimate_gas(
         carbon=carbon,
         quality=quality,
         quality_reasons=reasons,
-        verdict=None if limit is None else _verdict(limit, value, total, quality),
+        verdict=None
+        if limit is None
+        else judged(limit.at_load_g_kwh, value, total, admitted=quality != REJECTED),
         no_verdict=no_verdict,
         stage=limit,
         rated_rpm=math.nan if engine is None or engine.rated_rpm is None else engine.rated_rpm,
@@ -395,19 +384,6 @@ def _scaled(figure: Figure, factor: float) -> Figure:
 def _with_error(figure: Figure, name: str, relative: float) -> Figure:
     """Return a figure with one more error, which is relative to the figure."""
     return replace(figure, common={**figure.common, name: relative * abs(figure.value)})
-
-
-def _verdict(limit: Limit, value: float, total: float, quality: Quality) -> GasVerdict:
-    found = judged(limit.at_load_g_kwh, value, total, admitted=quality != REJECTED)
-    return GasVerdict(
-        limit=found.limit_percent,
-        verdict=found.verdict,
-        probability_above=found.probability_above,
-        above_from=found.above_from_percent,
-        below_to=found.below_to_percent,
-        false_alarm=found.false_alarm,
-        miss=found.miss,
-    )
 
 
 # Texts, the same on consoles and in reports
