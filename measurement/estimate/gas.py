@@ -10,7 +10,6 @@ uncertainty.
 """
 
 import math
-import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any
@@ -77,8 +76,8 @@ class GasReadings:
     own_column: bool = True
 
     def words(self, text: str) -> str:
-        """Return a sentence about SO2, reworded for this gas."""
-        return about_gas(text, self.species)
+        """Return a sentence of the estimate with this gas in the place of SO2."""
+        return text.replace(SLOT.upper(), self.species.title)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -166,13 +165,6 @@ class GasEstimate:
         return self.common.get("load", 0.0) ** 2 / self.total**2 if self.total > 0.0 else 0.0
 
 
-def about_gas(text: str, species: Species) -> str:
-    """Return a sentence about SO2, reworded for another gas and its unit."""
-    text = re.sub(r"\bSO2\b|\bso2\b(?= =)", species.title, text)
-    unit = species.unit if species.step == 1.0 else f"{species.step:g} x {species.unit}"
-    return re.sub(r"\bppb\b", unit, text) if species.unit != "ppb" else text
-
-
 def placed(
     species: Species,
     channel: Channel,
@@ -200,7 +192,7 @@ def placed(
     return GasReadings(
         species=species,
         readings=Readings(readings.time, values),
-        instrument=replace(instrument, channels=channels),
+        instrument=replace(instrument, channels=channels, compared=species),
         remarks=remarks,
     )
 
@@ -277,7 +269,7 @@ def estimate_gas(
     try:
         measured = measure_ratio(gas.readings, gas.instrument, method)
     except MeasurementError as error:
-        raise MeasurementError(f"{species.title}: {gas.words(str(error))}") from None
+        raise MeasurementError(f"{species.title}: {error}") from None
     carbon = species.carbon if carbon is None else carbon
     factor = species.factor(carbon, air) * species.step
     figure = measured.figure(species, factor)

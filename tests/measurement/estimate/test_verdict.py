@@ -138,6 +138,9 @@ def test_the_rates_of_a_rule_are_those_of_repeated_readings(name):
     assert rates[0] == pytest.approx(decisions[0].false_alarm, abs=0.024)
     assert 1.0 - rates[1] == pytest.approx(decisions[0].miss, abs=0.024)
     assert decisions[0].missed_percent == 2.0 * rule.limit_percent
+    # A rule without a threshold has the guard band of 5 %.
+    if rule.suspect_percent is None:
+        assert decisions[0].false_alarm == pytest.approx(0.05)
     # A record without a verdict has no decision.
     assert decide(rule, 0.4, 0.02, admitted=False).suspect is None
     nothing = decide(rule, math.nan, math.nan, admitted=True)
