@@ -93,15 +93,6 @@ def test_of_20000_flights_at_the_limit_no_more_than_stated_are_ever_called_wrong
     assert np.mean(np.any(alone[:, 1:] & alone[:, :-1], axis=1)) > 0.1
 
 
-def test_fuels_far_from_the_limit_have_their_verdict_at_the_first_looks():
-    noise, total = uncertainties("electrochemical")
-    found = estimates(np.random.default_rng(2), 0.3, "electrochemical", 2000)
-    crossed = (found - LIMIT) / total >= guards(noise, total)
-    assert np.all(crossed.any(axis=1))
-    # 3.4 standard uncertainties at the first look, against a guard band of 2.5.
-    assert np.mean(LOOKS_S[crossed.argmax(axis=1)]) < 45.0
-
-
 def test_looks_that_add_nothing_and_looks_of_less_information_do_not_add_errors():
     # 60 looks at one estimate, whose uncertainty goes up and down: it is called above where it is
     # beyond the narrowest of the guard bands.

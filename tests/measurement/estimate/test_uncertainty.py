@@ -102,16 +102,6 @@ def test_one_pass_is_as_good_as_a_matched_filter_can_be():
     assert least < found.noise * dose < 1.35 * least
 
 
-def test_regression_halves_the_noise_of_areas():
-    # 0.3 to 0.65 of the areas' noise (section 4.3); passes 75 s apart, as areas need them.
-    spec = plain_sniffer(so2_noise=2.5, co2_noise=1.0)
-    readings = read(spec, crossings(0.1, interval=75.0, duration=450.0))
-    by_regression, by_areas = (
-        estimate(readings, spec, method=method) for method in ("regression", "areas")
-    )
-    assert 0.3 < by_regression.noise_percent / by_areas.noise_percent < 0.7
-
-
 def test_noise_falls_with_the_root_of_passes_and_common_errors_do_not():
     readings, spec = flight("electrochemical", 0.1, 3, duration=320.0)
     short = estimate(Readings(readings.time[:81], readings.values[:81]), spec)

@@ -7,19 +7,6 @@ from measurement.errors import MeasurementError
 from measurement.log.config import read_config
 from measurement.log.read import read_flight
 
-WHOLE = """instrument = "electrochemical"
-[flight]
-vessel = "Nordlys"
-imo = 9074729
-mmsi = 219000000
-date = 2026-06-01T12:00:00+02:00
-place = "Kattegat, east of Anholt"
-operator = "Agency"
-"""
-"""9074729 is the IMO number by which the check digit is commonly explained: 9 7 + 0 6 + 7 5 + 4 4 +
-7 3 + 2 2 = 139.
-"""
-
 
 @pytest.fixture
 def config(tmp_path):
@@ -62,6 +49,7 @@ def config(tmp_path):
         ("flight.vesel = 'A'", "[flight] has the key 'vesel'; did you mean 'vessel'?"),
         ("flight.vessel = 3", "flight.vessel is 3"),
         ('flight.place = "a\\nb"', "flight.place is 'a\\nb'"),
+        # 9074729 has the check digit 9: 9 7 + 0 6 + 7 5 + 4 4 + 7 3 + 2 2 = 139.
         ("flight.imo = 9074728", "flight.imo is 9074728"),
         ("flight.imo = 907472", "flight.imo is 907472"),
         ('flight.imo = "9074729"', "'9074729'; give seven digits"),
@@ -100,17 +88,6 @@ def test_mistakes_are_refused_in_one_line_that_names_the_value(config, text, quo
     assert quoted in line
     assert line.count("own.toml") == 1
     assert "\n" not in line
-
-
-def test_a_configuration_names_ship_place_operator_and_the_time_of_the_first_reading(
-    logged, config
-):
-    found = read_flight(logged, config(WHOLE)).about.record()
-    # The log has 301 readings, a second apart; 12:00 two hours east of Greenwich is 10:00 UTC.
-    assert found["first_utc"] == "2026-06-01T10:00:00Z"
-    assert found["last_utc"] == "2026-06-01T10:05:00Z"
-    assert found["utc_from"] == "configuration"
-    assert (found["details"]["vessel"], found["details"]["imo"]) == ("Nordlys", 9074729)
 
 
 @pytest.mark.parametrize(

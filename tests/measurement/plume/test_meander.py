@@ -33,18 +33,6 @@ def test_the_process_has_the_covariance_that_it_should():
     assert np.mean(values**4) == pytest.approx(3.0, abs=0.2)
 
 
-def test_the_process_is_smooth_between_its_steps():
-    process = Meander(2000.0, SCALE, np.random.default_rng(1))
-    place = np.linspace(0.0, 1999.0, 200001)
-    slope = np.diff(process.at(place)) / np.diff(place)
-    # No corner: from one centimetre to the next the slope changes by what white noise of its
-    # stationary strength gives; it has a standard deviation of 1/L = 0.022 and changes by 4
-    # noise^(1/2) at most, of which a corner would be a hundred times as much.
-    assert np.abs(np.diff(slope)).max() < 5e-4
-    # Stationary slope: variance 1/L^2 (about 22 independent stretches).
-    assert np.std(slope) == pytest.approx(2.0 / SCALE, rel=0.4)
-
-
 @pytest.mark.parametrize(("name", "scale"), [("across", 2.5 * HEIGHT), ("up", 0.5 * HEIGHT)])
 def test_successive_crossings_are_correlated_as_the_integral_scale_says(name, scale):
     wind, interval, until = 3.0, 9.5, 60000.0

@@ -84,17 +84,3 @@ def test_every_nearest_parcel_is_found_once():
         times = np.sort(found.emitted[found.place == i])
         # To the grid's step.
         np.testing.assert_allclose(times, lowest, atol=0.06)
-
-
-def test_smoke_of_a_course_that_jumps_still_has_a_nearest_parcel_everywhere():
-    # A track of two legs with a corner of 60 degrees, given as three points.
-    track = (
-        np.array([-200.0, 0.0, 100.0]),
-        np.array([-1600.0, 0.0, 400.0]),
-        np.array([0.0, 0.0, 692.8]),
-    )
-    of = plume_behind(track, **SETTINGS)
-    north, east, up = of.axis(90.0, np.linspace(0.5, 200.0, 400))
-    sample = of.sample(np.full(400, 90.0), north, east, up)
-    assert np.isfinite(sample.age).all()
-    assert (sample.dilution > 0.0).all()

@@ -3,6 +3,7 @@ parts.
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -98,15 +99,12 @@ def test_a_delay_moves_the_response_also_by_parts_of_a_step():
 
 @pytest.mark.parametrize(("rate_hz", "step"), [(1.0, 0.1), (3.0, 0.1), (5.0, 0.03), (0.7, 0.11)])
 def test_readings_in_parts_are_those_in_one(rate_hz, step):
-    spec = sensor_preset("electrochemical")
-    spec = type(spec)(name="x", title="x", rate_hz=rate_hz, channels=spec.channels)
+    spec = replace(sensor_preset("electrochemical"), rate_hz=rate_hz)
     air = crossings(0.1, duration=60.0, step=step)
     pressure = np.linspace(-1.0, 1.0, len(air))
     whole = Sniffer(spec, generator=np.random.default_rng(1), time_step=step).advance(air, pressure)
-    parts, cuts = (
-        Sniffer(spec, generator=np.random.default_rng(1), time_step=step),
-        np.random.default_rng(2),
-    )
+    parts = Sniffer(spec, generator=np.random.default_rng(1), time_step=step)
+    cuts = np.random.default_rng(2)
     found, at = [], 0
     while at < len(air):
         length = int(cuts.integers(0, 25))
