@@ -77,8 +77,8 @@ def test_the_exhaust_of_the_worked_example():
     assert temperature(emission) == pytest.approx(523.15, abs=1.0)
     assert emission.buoyancy_flux == pytest.approx(49.6, rel=0.01)
     assert emission.momentum_flux == pytest.approx(124.0, rel=0.015)
-    # At 12 m/s the ship needs these 10 MW; power is the cube of speed, and not below dead slow. NOx is
-    # in proportion to it.
+    # At 12 m/s the ship needs these 10 MW; power is the cube of speed, and not below dead slow. NOx
+    # is in proportion to it.
     speeds = (12.0, CONTAINER.speed_max, 0.5 * CONTAINER.speed_max, 0.0)
     found = [emission_of(CONTAINER, fuel_preset("mgo"), speed=speed) for speed in speeds]
     at_12, full, half, rest = (sum(of.rates[2:]) for of in found)

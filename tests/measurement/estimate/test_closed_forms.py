@@ -21,8 +21,8 @@ pytestmark = pytest.mark.slow
 @pytest.mark.parametrize("method", ["regression", "areas"])
 @pytest.mark.parametrize("t90", [1.0, 5.0, 20.0])
 def test_equal_responses_read_the_ratio_of_the_air_by_both_methods(method, t90):
-    # Equal channels are the same filter of the same air: their ratio is that of the air, and what is
-    # not corrected adds 0.2322 sum k_j Q_j/Q_CO2: 20.7 and 2.3 ppb/ppm of NO and NO2.
+    # Equal channels are the same filter of the same air: their ratio is that of the air, and what
+    # is not corrected adds 0.2322 sum k_j Q_j/Q_CO2: 20.7 and 2.3 ppb/ppm of NO and NO2.
     other = {"cross": {"no": 0.015, "no2": -0.16}} if t90 == 5.0 else {}
     added = fsc_factor() * (0.015 * 20.7 - 0.16 * 2.3) if other else 0.0
     readings = read(plain_sniffer(t90, t90, **other), crossings(0.25))

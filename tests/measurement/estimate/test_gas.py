@@ -99,8 +99,12 @@ def test_sentences_name_the_gas_and_its_unit(measured):
     gas = placed(SPECIES["bc"], channel, np.full(len(readings.time), 3.0), readings, spec)
     found = estimate_gas(gas, air=AIR)
     assert found.quality == "C"
-    assert "black carbon reads the same throughout" in " ".join(found.quality_reasons)
-    assert "SO2" not in " ".join(found.quality_reasons)
+    reasons = " ".join(found.quality_reasons)
+    assert "black carbon reads the same throughout, and its noise is" in reasons
+    assert "ng/m3" in reasons
+    assert "[scale] of bc = 1000.0" in reasons
+    assert "SO2" not in reasons
+    assert "ppb" not in reasons
     beyond = placed(SPECIES["ch4"], channel, np.full(len(readings.time), 2e6), readings, spec)
     with pytest.raises(MeasurementError, match=r"CH4: CH4 reaches 2e\+06 ppb"):
         estimate_gas(beyond, air=AIR)
@@ -116,7 +120,8 @@ def test_a_slip_that_no_fuel_has_is_no_result():
 
 @pytest.mark.parametrize(("kind", "logs"), [("nox", 20), ("ch4", 8), ("pn", 8), ("bc", 8)])
 def test_intervals_hold_the_emissions_of_simulated_logs(kind, logs):
-    # Docs: 100 logs each, of up to 360 s. Here as many as show intervals that are too narrow at 1 in 1,000.
+    # Docs: 100 logs each, of up to 360 s. Here as many as show intervals that are too narrow at 1
+    # in 1,000.
     table = run(kind, range(logs), seed=7, longest_s=180.0)
     given = table[table["quality"] != "C"]
     held = int(((given["low"] <= given["truth"]) & (given["truth"] <= given["high"])).sum())

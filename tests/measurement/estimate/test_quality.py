@@ -149,8 +149,8 @@ def in_steps(readings, gas, step):
 
 def test_co2_in_steps_larger_than_its_noise_has_no_lower_content():
     # Rounding to 20 ppm is noise of 5.8 ppm: taken for the 1 ppm that are stated, it lowers the
-    # content by 0.006 in the mean. Where within a step the background lies shifts that of one flight
-    # by up to 0.03, as it reads the same throughout; so the flights are spread over a step.
+    # content by 0.006 in the mean. Where within a step the background lies shifts that of one
+    # flight by up to 0.03, as it reads the same throughout; so the flights are spread over a step.
     spec, flights, differences = plain_sniffer(so2_noise=2.5, co2_noise=1.0), 12, []
     for seed in range(flights):
         exact = read(spec, crossings(0.25, peak=240.0, seed=seed), seed=seed)
@@ -202,8 +202,8 @@ def test_passes_that_are_read_too_seldom_have_no_verdict():
     [
         (1, lambda column: np.minimum(column, 480.0), "CO2 reads 480 ppm, and never more, "),
         (0, lambda column: np.minimum(column, 20.0), "SO2 reads 20 ppb, and never more, "),
-        # Clean air reads 0 and no less, which is too much in the mean: in weak plumes 0.124 was read
-        # for 0.15 %.
+        # Clean air reads 0 and no less, which is too much in the mean: in weak plumes 0.124 was
+        # read for 0.15 %.
         (
             0,
             lambda column: np.maximum(column - np.quantile(column, 0.3), 0.0),

@@ -67,7 +67,8 @@ def test_two_looks_share_the_error_rate_as_their_correlation_has_it():
     spent = rate * 0.4**3
     assert first == pytest.approx(norm.isf(spent), abs=1e-6)
     watched.look(LIMIT, noise=noise[1], total=total[1], admitted=True, last=True)
-    # What is called by neither of two looks, whose correlation is u_2/u_1 (scipy's bivariate normal).
+    # What is called by neither of two looks, whose correlation is u_2/u_1 (scipy's bivariate
+    # normal).
     pair = multivariate_normal(cov=[[1.0, 0.6], [0.6, 1.0]])
     assert pair.cdf([first, watched.guard]) == pytest.approx(1.0 - rate, abs=1e-5)
 

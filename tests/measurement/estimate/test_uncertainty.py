@@ -58,8 +58,8 @@ def test_the_stated_noise_of_the_regression_is_its_scatter(spec):
 
     slopes, stated = repeated(spec, air, estimator)
     assert np.std(slopes) == pytest.approx(np.sqrt(np.mean(stated**2)), rel=0.18)
-    # The slope takes 1 of 70 degrees of freedom; a drift has next to none, and noise of CO2 has fewer
-    # after the lag of SO2.
+    # The slope takes 1 of 70 degrees of freedom; a drift has next to none, and noise of CO2 has
+    # fewer after the lag of SO2.
     drifts = spec.known("so2").random_walk > 0.0
     tolerance = 0.2 if drifts else 0.1 if of_co2_alone else 0.05
     assert np.mean(misfits) == pytest.approx(1.0, abs=tolerance)
@@ -150,8 +150,8 @@ def test_response_and_delay_are_found_where_they_are_not_given():
 
 def test_response_and_delay_are_found_without_bias_where_other_gases_correct_so2():
     # NO2 between samples has less noise than on them, 0.64 of its square halfway. Left out of
-    # account, that drew flights to 18.0 s and 0.13 s in the mean, and their fuels to 0.187 %; each t90
-    # is known to 1 s, each delay to 0.04 s.
+    # account, that drew flights to 18.0 s and 0.13 s in the mean, and their fuels to 0.187 %; each
+    # t90 is known to 1 s, each delay to 0.04 s.
     spec = sensor_preset("electrochemical")
     for gas in GASES:
         cross = dict.fromkeys(spec.known(gas).cross_sd, 0.0)
@@ -247,9 +247,9 @@ def test_a_response_that_is_found_is_as_uncertain_as_that_of_co2_makes_it(co2_t9
 
 
 def test_noise_of_co2_does_not_raise_a_strong_so2_in_a_slow_cell():
-    # Where passes are short for the cell, a longer t90 makes them lower nearly as less sulphur does.
-    # Noise of CO2 in the columns of t90 and delay made these logs read 11 to 39 % too much. They
-    # scatter by 3 %, so that the mean of six is within 4 % with a probability above 99.8 %.
+    # Where passes are short for the cell, a longer t90 makes them lower nearly as less sulphur
+    # does. Noise of CO2 in the columns of t90 and delay made these logs read 11 to 39 % too much.
+    # They scatter by 3 %, so that the mean of six is within 4 % with a probability above 99.8 %.
     spec = sensor_preset("electrochemical")
     found = []
     for seed in range(6):
