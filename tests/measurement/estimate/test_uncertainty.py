@@ -219,7 +219,9 @@ def test_a_response_that_is_not_given_is_not_taken_for_a_fast_one_where_so2_is_n
     # Noise of 25 ppb, as much as passes raise SO2; a t90 of 0 would smooth it most, and read a
     # quarter of the content.
     readings = read(
-        plain_sniffer(so2_noise=25.0, co2_noise=1.0), crossings(0.25, seed=seed), seed=seed
+        plain_sniffer(so2_noise=25.0, co2_noise=1.0),
+        crossings(0.25, duration=300.0, seed=seed),
+        seed=seed,
     )
     readings.values[:, 2:] = np.nan
     spec = sensor_of({"channels": {"so2": {"cross": {}}, "co2": {}}}, "own")
