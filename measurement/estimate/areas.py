@@ -45,6 +45,7 @@ class Areas:
     separate : ratio of the areas of separate passes, computed from the share that is left of each
         gas [ppb/ppm]
     interval_s : between passes, median; NaN for one pass [s]
+    gas : in the place of SO2, in words
     """
 
     ratio: float
@@ -52,6 +53,7 @@ class Areas:
     share: float
     separate: float
     interval_s: float
+    gas: str
 
     def truncation_reason(self, t90_s: float) -> str:
         """Return why areas hold too little of the SO2, given its t90 [s].
@@ -61,12 +63,12 @@ class Areas:
         share = f"{100.0 * self.share:.0f} %"
         if math.isnan(self.interval_s):
             return (
-                f"the record ends before an SO2 channel with a t90 of {t90_s:g} s has read the"
-                f" pass: about {share} of its area of SO2 is there; use the regression"
+                f"the record ends before an {self.gas} channel with a t90 of {t90_s:g} s has read"
+                f" the pass: about {share} of its area of {self.gas} is there; use the regression"
             )
         return (
-            f"passes every {self.interval_s:.1f} s overlap in an SO2 channel with a t90 of"
-            f" {t90_s:g} s: about {share} of an area of SO2 remains; use the regression"
+            f"passes every {self.interval_s:.1f} s overlap in an {self.gas} channel with a t90 of"
+            f" {t90_s:g} s: about {share} of an area of {self.gas} remains; use the regression"
         )
 
 
@@ -101,6 +103,7 @@ def area_ratio(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) 
         share=remaining["so2"],
         separate=separate,
         interval_s=interval,
+        gas=instrument.name_of("so2"),
     )
 
 

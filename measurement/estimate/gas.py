@@ -10,7 +10,6 @@ uncertainty.
 """
 
 import math
-import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any
@@ -25,7 +24,7 @@ from measurement.estimate.estimator import Figure, figures_of, measure_ratio
 from measurement.estimate.quality import quality_class
 from measurement.estimate.result import Figures, Method, Quality, plain
 from measurement.estimate.signals import make_signals, signals_table
-from measurement.estimate.verdict import REJECTED, Side, interval, judged, probability
+from measurement.estimate.verdict import REJECTED, Verdict, interval, judged, probability
 from measurement.gases import GASES
 from measurement.sniffer.channel import Channel
 from measurement.sniffer.lag import Array
@@ -77,21 +76,8 @@ class GasReadings:
     own_column: bool = True
 
     def words(self, text: str) -> str:
-        """Return a sentence about SO2, reworded for this gas."""
-        return about_gas(text, self.species)
-
-
-@dataclass(frozen=True, kw_only=True)
-class GasVerdict:
-    """Verdict on the limit of a gas, in the unit of its figure; same as ``verdict.Verdict``."""
-
-    limit: float
-    verdict: Side
-    probability_above: float
-    above_from: float
-    below_to: float
-    false_alarm: float
-    miss: float
+        """Return a sentence of the estimate with this gas in the place of SO2."""
+        return text.replace(SLOT.upper(), self.species.title)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -137,7 +123,7 @@ class GasEstimate:
     carbon: float
     quality: Quality
     quality_reasons: tuple[str, ...]
-    verdict: GasVerdict | None
+    verdict: Verdict | None
     no_verdict: str
     stage: Limit | None
     rated_rpm: float
@@ -179,13 +165,6 @@ class GasEstimate:
         return self.common.get("load", 0.0) ** 2 / self.total**2 if self.total > 0.0 else 0.0
 
 
-def about_gas(text: str, species: Species) -> str:
-    """Return a sentence about SO2, reworded for another gas and its unit."""
-    text = re.sub(r"\bSO2\b|\bso2\b(?= =)", species.title, text)
-    unit = species.unit if species.step == 1.0 else f"{species.step:g} x {species.unit}"
-    return re.sub(r"\bppb\b", unit, text) if species.unit != "ppb" else text
-
-
 def placed(
     species: Species,
     channel: Channel,
@@ -213,7 +192,7 @@ def placed(
     return GasReadings(
         species=species,
         readings=Readings(readings.time, values),
-        instrument=replace(instrument, channels=channels),
+        instrument=replace(instrument, channels=channels, compared=species),
         remarks=remarks,
     )
 
@@ -290,7 +269,7 @@ def estimate_gas(
     try:
         measured = measure_ratio(gas.readings, gas.instrument, method)
     except MeasurementError as error:
-        raise MeasurementError(f"{species.title}: {gas.words(str(error))}") from None
+        raise MeasurementError(f"{species.title}: {error}") from None
     carbon = species.carbon if carbon is None else carbon
     factor = species.factor(carbon, air) * species.step
     figure = measured.figure(species, factor)
@@ -344,7 +323,9 @@ def estimate_gas(
         carbon=carbon,
         quality=quality,
         quality_reasons=reasons,
-        verdict=None if limit is None else _verdict(limit, value, total, quality),
+        verdict=None
+        if limit is None
+        else judged(limit.at_load_g_kwh, value, total, admitted=quality != REJECTED),
         no_verdict=no_verdict,
         stage=limit,
         rated_rpm=math.nan if engine is None or engine.rated_rpm is None else engine.rated_rpm,
@@ -395,19 +376,6 @@ def _scaled(figure: Figure, factor: float) -> Figure:
 def _with_error(figure: Figure, name: str, relative: float) -> Figure:
     """Return a figure with one more error, which is relative to the figure."""
     return replace(figure, common={**figure.common, name: relative * abs(figure.value)})
-
-
-def _verdict(limit: Limit, value: float, total: float, quality: Quality) -> GasVerdict:
-    found = judged(limit.at_load_g_kwh, value, total, admitted=quality != REJECTED)
-    return GasVerdict(
-        limit=found.limit_percent,
-        verdict=found.verdict,
-        probability_above=found.probability_above,
-        above_from=found.above_from_percent,
-        below_to=found.below_to_percent,
-        false_alarm=found.false_alarm,
-        miss=found.miss,
-    )
 
 
 # Texts, the same on consoles and in reports

@@ -8,11 +8,12 @@ import numpy as np
 
 from measurement.estimate.quality import STRANGE_SIGMA
 from measurement.estimate.record import Record, shown_scatter, shown_step, stated_noise
-from measurement.gases import GASES, UNITS
+from measurement.gases import GASES
 from measurement.sniffer.channel import Channel
 from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
+from measurement.species import SLOT
 
 _CUT_LEAST, _CUT_OVER, _CUT_STEPS = 8, 3.0, 5
 """Criterion of readings that are cut off: least number at an end, its ratio to the number in the
@@ -73,30 +74,31 @@ def implausibilities(record: Record, readings: Readings, instrument: SnifferSpec
     so2, co2 = instrument.known("so2"), instrument.known("co2")
     problems = []
     for gas in record.gases:
-        problems += _cut_off(readings, instrument.known(gas))
-    problems += _stuck(readings, co2)
+        problems += _cut_off(readings, instrument, gas)
+    problems += _stuck(readings, instrument, "co2")
     problems += _spikes(record, readings, co2)
     responds_to = (
         gas for gas in record.gases if so2.cross.get(gas, 0.0) or so2.cross_sd.get(gas, 0.0)
     )
     for gas in ("so2", *responds_to):
-        channel = instrument.known(gas)
-        problems += _stuck(readings, channel) or _quiet(record.scatter[gas], channel)
+        problems += _stuck(readings, instrument, gas) or _quiet(
+            record.scatter[gas], instrument, gas
+        )
     return problems or _exchanged(record, instrument)
 
 
-def _cut_off(readings: Readings, channel: Channel) -> list[str]:
+def _cut_off(readings: Readings, instrument: SnifferSpec, gas: str) -> list[str]:
     """Return the problem of readings that are cut off at the largest or the least value.
 
     Saturation at the end of the stated range is a problem of the record, and not repeated here.
     """
-    column = readings.values[:, GASES.index(channel.gas)]
+    channel, column = instrument.known(gas), readings.values[:, GASES.index(gas)]
     known, step = column[np.isfinite(column)], shown_step(column)
     if not step:
         return []
     most, least = float(known.max()), float(known.min())
     noise = stated_noise(channel, [known[known > least]], step)
-    name, unit = channel.gas.upper(), UNITS[channel.gas]
+    name, unit = instrument.name_of(gas), instrument.unit_of(gas)
     saturated = most >= channel.range_high - 0.5 * channel.resolution
     times = 0 if saturated else _heap((most - known) / step)
     if times:
@@ -147,21 +149,23 @@ def _spikes(record: Record, readings: Readings, channel: Channel) -> list[str]:
     ]
 
 
-def _quiet(scatter: float, channel: Channel) -> list[str]:
-    """Return the problem of a gas whose readings scatter less [ppb] than its sensor can."""
+def _quiet(scatter: float, instrument: SnifferSpec, gas: str) -> list[str]:
+    """Return the problem of a gas whose readings scatter less than its sensor can."""
+    channel, unit = instrument.known(gas), instrument.unit_of(gas)
     stated = not math.isnan(channel.noise)
     noise = channel.noise if stated else _NOISE_USUAL
     if scatter >= _QUIET_SHARE * noise or channel.resolution > noise:
         return []
     found = "reads the same throughout"
     if scatter > 0.0:
-        found = f"scatters by {scatter:.2g} ppb from reading to reading"
-    expected = f"its noise is {noise:g} ppb"
+        found = f"scatters by {scatter:.2g} {unit} from reading to reading"
+    expected = f"its noise is {noise:g} {unit}"
     if not stated:
-        expected = f"the noise of such sensors is about {noise:g} ppb"
+        expected = f"the noise of such sensors is about {noise:g} {unit}"
+    key = instrument.compared.name if gas == SLOT else gas
     return [
-        f"{channel.gas.upper()} {found}, and {expected}: it is in another unit (of ppm, give a"
-        f" [scale] of {channel.gas} = 1000.0), or its sensor is dead"
+        f"{instrument.name_of(gas)} {found}, and {expected}: it is in another unit (of ppm, give a"
+        f" [scale] of {key} = 1000.0), or its sensor is dead"
     ]
 
 
@@ -188,14 +192,14 @@ def _exchanged(record: Record, instrument: SnifferSpec) -> list[str]:
 # Stuck sensors: they read the same for longer than their noise and resolution allow
 
 
-def _stuck(readings: Readings, channel: Channel) -> list[str]:
+def _stuck(readings: Readings, instrument: SnifferSpec, gas: str) -> list[str]:
     """Return the problem of a gas whose sensor is stuck for a part of the record.
 
     The stated noise is used in full only where another gas rises meanwhile. Otherwise even a tenth
     of it has to be too much, and readings of 0 do not count, as a sensor may cut off lower ones.
     ``_quiet`` checks a gas whose reading never changes.
     """
-    column = readings.values[:, GASES.index(channel.gas)]
+    channel, column = instrument.known(gas), readings.values[:, GASES.index(gas)]
     known = np.flatnonzero(np.isfinite(column))
     time, values = readings.time[known], column[known]
     # A sensor that works for a part of the record may rarely move by a single step.
@@ -212,12 +216,12 @@ def _stuck(readings: Readings, channel: Channel) -> list[str]:
     most = _STUCK_SHARE_MOST * float(time[-1] - time[0])
     if not runs or (max(lengths) <= channel.t90_s and sum(lengths) <= most):
         return []
-    longest, unit = runs[int(np.argmax(lengths))], UNITS[channel.gas]
+    longest, unit = runs[int(np.argmax(lengths))], instrument.unit_of(gas)
     within = f" within {step:.3g} {unit}" if np.ptp(values[longest]) > 0.0 else ""
     times = f", and {len(runs) - 1} more time{'s' * (len(runs) > 2)}" if runs[1:] else ""
     noise = "noise" if math.isnan(channel.noise) else f"noise of {channel.noise:g} {unit}"
     return [
-        f"{channel.gas.upper()} reads the same{within} for {max(lengths):.0f} s from"
+        f"{instrument.name_of(gas)} reads the same{within} for {max(lengths):.0f} s from"
         f" {time[longest[0]] - readings.time[0]:.0f} s on{times}, which its {noise} does not allow:"
         " its sensor, or its logger, was stuck"
     ]

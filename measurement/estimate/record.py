@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from measurement.errors import MeasurementError
-from measurement.gases import EXPECTED_PPB_PER_PPM, GASES, UNITS
+from measurement.gases import EXPECTED_PPB_PER_PPM, GASES
 from measurement.sniffer.channel import Channel
 from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings
@@ -130,11 +130,11 @@ def checked_record(readings: Readings, instrument: SnifferSpec) -> Record:
     step = _checked_step(time, values)
     columns = _measured(values, instrument)
     for gas, column in columns.items():
-        check_units(instrument.known(gas), column)
+        check_units(instrument, gas, column)
     complete = np.flatnonzero(np.isfinite(list(columns.values())).all(axis=0))
     segments = [rows for rows in split_at_gaps(time, complete, step) if len(rows) >= SHORTEST]
     if not segments:
-        raise MeasurementError(_no_segment(columns))
+        raise MeasurementError(_no_segment(columns, instrument))
     grids = [_grid(time[rows], step) for rows in segments]
     parts = []
     for grid, rows in zip(grids, segments, strict=True):
@@ -188,8 +188,8 @@ def _measured(values: Array, instrument: SnifferSpec) -> dict[str, Array]:
     for gas in ("co2", "so2"):
         if gas not in columns:
             raise MeasurementError(
-                f"the record has no {gas.upper()} readings, or '{instrument.name}' no such channel;"
-                " an estimate needs CO2 and SO2: add them"
+                f"the record has no {instrument.name_of(gas)} readings, or '{instrument.name}' no"
+                f" such channel; an estimate needs CO2 and {instrument.name_of('so2')}: add them"
             )
     return columns
 
@@ -215,13 +215,13 @@ def _grid(time: Array, step: float) -> Array:
     return time if even else grid
 
 
-def _no_segment(columns: Mapping[str, Array]) -> str:
+def _no_segment(columns: Mapping[str, Array], instrument: SnifferSpec) -> str:
     """Return the error of a record that has no segment with readings of all gases."""
-    *names, last = (gas.upper() for gas in columns)
+    *names, last = (instrument.name_of(gas) for gas in columns)
     fewest = min(columns, key=lambda gas: int(np.isfinite(columns[gas]).sum()))
     remedy = ""
     if fewest not in ("so2", "co2"):
-        remedy = f", or leave out the column of {fewest.upper()}, which has fewest"
+        remedy = f", or leave out the column of {instrument.name_of(fewest)}, which has fewest"
     return (
         f"no {SHORTEST} samples in a row have all of {', '.join(names)} and {last};"
         f" give a record with fewer gaps{remedy}"
@@ -247,16 +247,15 @@ def check_increasing(time: Array, *, rows: npt.NDArray[np.int_] | None = None) -
     )
 
 
-def check_units(channel: Channel, values: Array) -> None:
-    """Check that readings of a channel can be in the unit of its gas, shape (m,).
+def check_units(instrument: SnifferSpec, gas: str, values: Array) -> None:
+    """Check that readings of a gas can be in its unit, shape (m,).
 
     Raises
     ------
     MeasurementError : CO2 has no background, or the readings are larger than any gas has
     """
-    gas = channel.gas
     known = values[np.isfinite(values)]
-    middle = float(np.median(known)) / channel.gain
+    middle = float(np.median(known)) / instrument.known(gas).gain
     least, most = float(known.min()), float(known.max())
     if gas == "co2" and not CO2_LEAST <= middle <= CO2_MOST:
         raise MeasurementError(
@@ -265,9 +264,10 @@ def check_units(channel: Channel, values: Array) -> None:
         )
     if gas != "co2" and max(most, -least) > _OTHER_MOST:
         largest = most if most > -least else least
+        unit = instrument.unit_of(gas)
         raise MeasurementError(
-            f"{gas.upper()} reaches {largest:g} ppb; at most {_OTHER_MOST:g} ppb of either sign"
-            " can be: check its unit and its marks for missing readings"
+            f"{instrument.name_of(gas)} reaches {largest:g} {unit}; at most {_OTHER_MOST:g} {unit}"
+            " of either sign can be: check its unit and its marks for missing readings"
         )
 
 
@@ -346,7 +346,7 @@ def _problems(
     problems = []
     for gas, column in columns.items():
         channel = instrument.known(gas)
-        name, unit = gas.upper(), UNITS[gas]
+        name, unit = instrument.name_of(gas), instrument.unit_of(gas)
         missing = float(np.mean(~np.isfinite(column)))
         if missing > _MISSING_MAX:
             problems.append(

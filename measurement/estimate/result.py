@@ -125,7 +125,7 @@ class FscEstimate:
         names = [name for name in vars(self) if name not in ("instrument", "signals")]
         values = {name: getattr(self, name) for name in names}
         values["figures"] = asdict(self.figures)
-        values["verdicts"] = [asdict(verdict) for verdict in self.verdicts]
+        values["verdicts"] = [verdict.percent_record() for verdict in self.verdicts]
         values["passes"] = [asdict(found) for found in self.passes]
         values["excluded"] = [asdict(found) for found in self.excluded]
         return {name: plain(value) for name, value in values.items()}

@@ -11,7 +11,7 @@ without any prior knowledge except that the content is not negative (ISO 11929-1
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, fields
 from typing import Any, Literal, TypeVar
 
 from scipy.special import log_ndtr, ndtr, ndtri, ndtri_exp
@@ -54,26 +54,49 @@ _COUNTED = {
 
 @dataclass(frozen=True, kw_only=True)
 class Verdict:
-    """Verdict on a limit.
+    """Verdict on the limit of a figure, in the unit of the figure: % m/m for a sulphur content.
 
     Attributes
     ----------
-    limit_percent : [% m/m]
+    limit : limit of the figure
     verdict : "above", "below" or "open"
-    probability_above : that the fuel's sulphur content is above the limit, given the reading and
-        that it is not negative
-    above_from_percent, below_to_percent : estimates beyond which the verdict is "above" and "below"
-        with this standard uncertainty [% m/m]
-    false_alarm, miss : shares of fuels at the limit that one look calls above and below [-]
+    probability_above : that the figure is above the limit, given the reading and that it is not
+        negative
+    above_from, below_to : estimates beyond which the verdict is "above" and "below" with this
+        standard uncertainty
+    false_alarm, miss : shares of ships at the limit that one look calls above and below [-]
     """
 
-    limit_percent: float
+    limit: float
     verdict: Side
     probability_above: float
-    above_from_percent: float = math.nan
-    below_to_percent: float = math.nan
+    above_from: float = math.nan
+    below_to: float = math.nan
     false_alarm: float = math.nan
     miss: float = math.nan
+
+    @property
+    def limit_percent(self) -> float:
+        """Limit of a sulphur content [% m/m]."""
+        return self.limit
+
+    @property
+    def above_from_percent(self) -> float:
+        """Sulphur content from which the verdict is "above" [% m/m]."""
+        return self.above_from
+
+    @property
+    def below_to_percent(self) -> float:
+        """Sulphur content up to which the verdict is "below" [% m/m]."""
+        return self.below_to
+
+    def percent_record(self) -> dict[str, Any]:
+        """Return the verdict on a sulphur content for JSON, with the unit in its names."""
+        in_percent = ("limit", "above_from", "below_to")
+        return {
+            f"{name}_percent" if name in in_percent else name: value
+            for name, value in asdict(self).items()
+        }
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,9 +127,14 @@ _Recorded = TypeVar("_Recorded", Verdict, Decision)
 
 
 def from_record(kind: type[_Recorded], record: Mapping[str, Any]) -> _Recorded:
-    """Return a verdict or a decision from its record in JSON, where NaN is None."""
+    """Return a verdict on a sulphur content, or a decision, from its record in JSON, where NaN is
+    None.
+    """
+    names = {field.name for field in fields(kind)}
     values: dict[str, Any] = {
-        name: math.nan if value is None and name != "suspect" else value
+        name if name in names else name.removesuffix("_percent"): (
+            math.nan if value is None and name != "suspect" else value
+        )
         for name, value in record.items()
     }
     return kind(**values)
@@ -134,14 +162,14 @@ def judged(limit: float, fsc: float, deviation: float, *, admitted: bool) -> Ver
         elif probability < 1.0 - CONFIDENCE:
             verdict = BELOW
     if not deviation > 0.0 or not math.isfinite(deviation):
-        return Verdict(limit_percent=limit, verdict=verdict, probability_above=probability)
+        return Verdict(limit=limit, verdict=verdict, probability_above=probability)
     below = _below_to(limit, deviation)
     return Verdict(
-        limit_percent=limit,
+        limit=limit,
         verdict=verdict,
         probability_above=probability,
-        above_from_percent=limit + GUARD * deviation,
-        below_to_percent=below,
+        above_from=limit + GUARD * deviation,
+        below_to=below,
         false_alarm=float(ndtr(-GUARD)),
         miss=float(ndtr((below - limit) / deviation)),
     )

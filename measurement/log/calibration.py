@@ -241,101 +241,184 @@ def _factor(unit: str, gas: str, name: str) -> float:
     return unit_factor(unit or unit_in(name), _UNITS[gas], gas=gas)
 
 
+@dataclass(frozen=True)
+class _Steps:
+    """Readings of a channel beside what was supplied in steps.
+
+    Attributes
+    ----------
+    time, reading : where both are known, shape (n,)
+    span, first : largest supply, and that at first [unit]
+    begins, sizes : of each step of the supply, shape (k,) [s, unit]
+    """
+
+    time: Array
+    reading: Array
+    span: float
+    first: float
+    begins: Array
+    sizes: Array
+
+    @property
+    def period(self) -> float:
+        """Median time between readings [s]."""
+        return float(np.median(np.diff(self.time)))
+
+    def columns(self, properties: Array) -> Array:
+        """Return the columns of gain, its drift, offset and its drift in (1), shape (n, 4).
+
+        Parameters
+        ----------
+        properties : logarithm of the time constant [s], and delay [s]
+        """
+        constant, delay = math.exp(float(properties[0])), float(properties[1])
+        since = self.time[:, np.newaxis] - self.begins - delay
+        risen = -np.expm1(-np.maximum(since, 0.0) / constant)
+        x = self.first + (self.sizes * risen).sum(axis=1)
+        hours = (self.time - 0.5 * (self.time[0] + self.time[-1])) / _HOUR
+        return np.stack([x, hours * x, np.ones_like(self.time), hours], axis=1)
+
+    def coefficients(self, design: Array) -> Array:
+        """Return the coefficients of columns that fit the readings best."""
+        return np.asarray(np.linalg.lstsq(design, self.reading, rcond=None)[0], dtype=np.float64)
+
+    def residuals(self, properties: Array) -> Array:
+        """Return what (1) leaves of the readings, shape (n,)."""
+        design = self.columns(properties)
+        return np.asarray(self.reading - design @ self.coefficients(design))
+
+    def derivatives(self, properties: Array, linear: Array) -> Array:
+        """Return the changes of (1) with the logarithm of its time constant, and with its delay."""
+        found = []
+        for i, step in enumerate((1e-3, 1e-2)):
+            moved = np.array(properties, dtype=np.float64)
+            moved[i] += step
+            found.append((self.columns(moved) - self.columns(properties)) @ linear / step)
+        return np.stack(found, axis=1)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Errors:
+    """Standard deviations of the parameters of (1), in the order of its columns."""
+
+    gain: float
+    gain_drift: float
+    offset: float
+    offset_drift: float
+    log_constant: float
+    delay: float
+
+
 def _channel(
     gas: str, time: Array, reading: Array, supplied: Array, span_sd: float
 ) -> CalibratedChannel:
     """Return the result for a channel: the fit of (1)."""
+    name, unit = gas.upper(), _UNITS[gas]
+    steps = _steps(name, time, reading, supplied)
+    properties = _fitted_response(steps)
+    design = steps.columns(properties)
+    linear = steps.coefficients(design)
+    left = steps.reading - design @ linear
+    noise = shown_scatter([steps.reading], shown_step(steps.reading))
+    whole = np.hstack([design, steps.derivatives(properties, linear)])
+    errors = _errors(whole, left, noise)
+    slow = _slow_part(left, noise, max(1, round(_BLOCK_S / steps.period))) / steps.span
+    gain, gain_drift, offset, offset_drift = (float(value) for value in linear)
+    t90 = math.log(10.0) * math.exp(float(properties[0]))
+    return CalibratedChannel(
+        unit=unit,
+        span=steps.span,
+        gain=gain,
+        gain_sd=math.hypot(errors.gain, span_sd * abs(gain), slow),
+        offset=offset,
+        offset_sd=errors.offset,
+        gain_drift=gain_drift,
+        gain_drift_sd=errors.gain_drift,
+        offset_drift=offset_drift,
+        offset_drift_sd=errors.offset_drift,
+        t90_s=t90,
+        t90_sd_s=t90 * errors.log_constant,
+        delay_s=float(properties[1]),
+        delay_sd_s=errors.delay,
+        noise=noise,
+        misfit=math.sqrt(float(np.mean(left**2))) / noise if noise > 0.0 else 1.0,
+        slow=slow,
+        problems=tuple(_leaks(name, gain, slow)),
+        remarks=tuple(_drifts(name, unit, gain_drift, offset_drift, errors)),
+    )
+
+
+def _steps(name: str, time: Array, reading: Array, supplied: Array) -> _Steps:
+    """Return the known readings of a gas, and the steps of its supply.
+
+    Raises
+    ------
+    MeasurementError : there are too few of either
+    """
+    known = np.isfinite(reading) & np.isfinite(supplied)
+    t, given = time[known], supplied[known]
+    changes = np.flatnonzero(np.diff(given)) + 1
+    if known.sum() < _FEWEST or len(changes) < 2:
+        raise MeasurementError(
+            f"{name} has {int(known.sum())} readings and {len(changes)} steps of what was supplied;"
+            f" it needs {_FEWEST} and 2, as zero, span, zero"
+        )
+    return _Steps(
+        time=t,
+        reading=reading[known],
+        span=max(0.0, float(given.max())),
+        first=float(given[0]),
+        begins=t[changes],
+        sizes=np.diff(given)[changes - 1],
+    )
+
+
+def _fitted_response(steps: _Steps) -> Array:
+    """Return the logarithm of the time constant [s] and the delay [s] that fit best, shape (2,)."""
     from scipy.optimize import least_squares
 
-    name, unit = gas.upper(), _UNITS[gas]
-    known = np.isfinite(reading) & np.isfinite(supplied)
-    span = float(supplied[known].max(initial=0.0))
-    steps = int(np.count_nonzero(np.diff(supplied[known])))
-    if known.sum() < _FEWEST or steps < 2:
-        raise MeasurementError(
-            f"{name} has {int(known.sum())} readings and {steps} steps of what was supplied; it"
-            f" needs {_FEWEST} and 2, as zero, span, zero"
-        )
-    t, y, changes = time[known], reading[known], np.flatnonzero(np.diff(supplied[known])) + 1
-    begins, sizes = t[changes], np.diff(supplied[known])[changes - 1]
-    first = float(supplied[known][0])
-    hours = (t - 0.5 * (t[0] + t[-1])) / _HOUR
-
-    def columns(properties: Array) -> Array:
-        constant, delay = math.exp(float(properties[0])), float(properties[1])
-        since = t[:, np.newaxis] - begins - delay
-        x = first + (sizes * -np.expm1(-np.maximum(since, 0.0) / constant)).sum(axis=1)
-        return np.stack([x, hours * x, np.ones_like(t), hours], axis=1)
-
-    def residuals(properties: Array) -> Array:
-        design = columns(properties)
-        return np.asarray(y - design @ np.linalg.lstsq(design, y, rcond=None)[0])
-
-    step = float(np.median(np.diff(t)))
-    starts = [(math.log(c), d) for c in (0.5, 2.0, 8.0, 25.0) for d in (0.5 * step, 2.0, 8.0)]
-    start = min(starts, key=lambda of: float(np.sum(residuals(np.array(of)) ** 2)))
+    period = steps.period
+    starts = [(math.log(c), d) for c in (0.5, 2.0, 8.0, 25.0) for d in (0.5 * period, 2.0, 8.0)]
+    start = min(starts, key=lambda of: float(np.sum(steps.residuals(np.array(of)) ** 2)))
     fit = least_squares(
-        residuals,
+        steps.residuals,
         start,
-        bounds=([math.log(0.05 * step), 0.0], [math.log(120.0), 60.0]),
+        bounds=([math.log(0.05 * period), 0.0], [math.log(120.0), 60.0]),
         x_scale=[0.1, 0.2],
         diff_step=[1e-4, 1e-4],
     )
-    design = columns(fit.x)
-    linear = np.asarray(np.linalg.lstsq(design, y, rcond=None)[0], dtype=np.float64)
-    left = y - design @ linear
-    noise = shown_scatter([y], shown_step(y))
-    misfit = math.sqrt(float(np.mean(left**2))) / noise if noise > 0.0 else 1.0
-    slow = _slow_part(left, noise, max(1, round(_BLOCK_S / step))) / span
-    whole = np.hstack([design, _derivatives(columns, fit.x, linear)])
-    free = max(1, len(t) - whole.shape[1])
+    return np.asarray(fit.x, dtype=np.float64)
+
+
+def _errors(derivatives: Array, left: Array, noise: float) -> _Errors:
+    """Return the standard deviations of the parameters of (1).
+
+    Parameters
+    ----------
+    derivatives : of (1) by its parameters, shape (n, 6)
+    left : residuals, shape (n,)
+    noise : standard deviation of a reading
+    """
+    free = max(1, derivatives.shape[0] - derivatives.shape[1])
     variance = max(float(left @ left) / free, noise**2)
-    covariance = variance * np.linalg.pinv(whole.T @ whole, hermitian=True)
-    gain, gain_drift, offset, offset_drift = (float(value) for value in linear)
+    covariance = variance * np.linalg.pinv(derivatives.T @ derivatives, hermitian=True)
     deviations = np.sqrt(np.maximum(np.diagonal(covariance), 0.0))
-    gain_sd, gain_drift_sd, offset_sd, offset_drift_sd, log_constant_sd, delay_sd = (
-        float(value) for value in deviations
-    )
-    t90 = math.log(10.0) * math.exp(float(fit.x[0]))
-    drifts = [
+    names = ("gain", "gain_drift", "offset", "offset_drift", "log_constant", "delay")
+    return _Errors(**dict(zip(names, deviations.tolist(), strict=True)))
+
+
+def _drifts(
+    name: str, unit: str, gain_drift: float, offset_drift: float, errors: _Errors
+) -> list[str]:
+    """Return remarks on drifts that are shown."""
+    return [
         f"{what} of {name} drifts by {value:+.3g} {per} per hour"
         for what, value, sd, per in (
-            ("the gain", gain_drift, gain_drift_sd, "of 1"),
-            ("the zero", offset_drift, offset_drift_sd, unit),
+            ("the gain", gain_drift, errors.gain_drift, "of 1"),
+            ("the zero", offset_drift, errors.offset_drift, unit),
         )
         if abs(value) > _SIGNIFICANT * sd
     ]
-    return CalibratedChannel(
-        unit=unit,
-        span=span,
-        gain=gain,
-        gain_sd=math.hypot(gain_sd, span_sd * abs(gain), slow),
-        offset=offset,
-        offset_sd=offset_sd,
-        gain_drift=gain_drift,
-        gain_drift_sd=gain_drift_sd,
-        offset_drift=offset_drift,
-        offset_drift_sd=offset_drift_sd,
-        t90_s=t90,
-        t90_sd_s=t90 * log_constant_sd,
-        delay_s=float(fit.x[1]),
-        delay_sd_s=delay_sd,
-        noise=noise,
-        misfit=misfit,
-        slow=slow,
-        problems=tuple(_leaks(name, gain, slow)),
-        remarks=tuple(drifts),
-    )
-
-
-def _derivatives(columns: Any, properties: Array, linear: Array) -> Array:
-    """Return the changes of (1) with the logarithm of its time constant, and with its delay."""
-    found = []
-    for i, step in enumerate((1e-3, 1e-2)):
-        moved = np.array(properties, dtype=np.float64)
-        moved[i] += step
-        found.append((columns(moved) - columns(properties)) @ linear / step)
-    return np.stack(found, axis=1)
 
 
 def _slow_part(left: Array, noise: float, block: int) -> float:

@@ -23,7 +23,7 @@ from typing import Any
 from common.files import write_whole
 from common.provenance import provenance
 from measurement.errors import MeasurementError
-from measurement.estimate.gas import SCREENING, GasEstimate, GasVerdict
+from measurement.estimate.gas import SCREENING, GasEstimate
 from measurement.estimate.result import FscEstimate, plain
 from measurement.estimate.verdict import Verdict
 from measurement.gases import MASS_PERCENT, limit_words
@@ -178,9 +178,7 @@ def _sulphur(found: FscEstimate) -> dict[str, Any]:
         "reasons": list(found.quality_reasons),
         "verdicts": [
             _verdict_entry(
-                verdict.limit_percent,
-                f"sulphur in the fuel, limit of {limit_words(verdict.limit_percent)}",
-                verdict,
+                f"sulphur in the fuel, limit of {limit_words(verdict.limit_percent)}", verdict
             )
             for verdict in found.verdicts
         ],
@@ -197,7 +195,7 @@ def _figure(found: GasEstimate) -> dict[str, Any]:
             f"MARPOL Annex VI, regulation 13, stage {found.stage.stage};"
             f" {found.stage.cycle_g_kwh:.2f} g/kWh over the test cycle"
         )
-        verdicts.append(_verdict_entry(found.verdict.limit, rule, found.verdict))
+        verdicts.append(_verdict_entry(rule, found.verdict))
     return {
         "gas": found.gas,
         "figure": found.figure,
@@ -217,10 +215,10 @@ def _figure(found: GasEstimate) -> dict[str, Any]:
     }
 
 
-def _verdict_entry(limit: float, rule: str, found: Verdict | GasVerdict) -> dict[str, Any]:
+def _verdict_entry(rule: str, found: Verdict) -> dict[str, Any]:
     """Return a verdict on a limit by a rule."""
     return {
-        "limit": limit,
+        "limit": found.limit,
         "rule": rule,
         "verdict": found.verdict,
         "probability_above": found.probability_above,

@@ -231,13 +231,10 @@ def _gases(
             )
         channel = config.channels.get(gas) or channel_of(gas)
         found = placed(species, channel, column, logged, config.instrument, remarks=remarks)
-        try:
-            slot = replace(config, instrument=found.instrument)
-            _check_range(found.readings.values, rows, slot)
-            values, found = found.readings.values, _new_gas(found)
-            _check_negative(values, rows, found.readings, slot)
-        except MeasurementError as error:
-            raise MeasurementError(found.words(str(error))) from None
+        slot = replace(config, instrument=found.instrument)
+        _check_range(found.readings.values, rows, slot)
+        values, found = found.readings.values, _new_gas(found)
+        _check_negative(values, rows, found.readings, slot)
         yield found
 
 
@@ -456,13 +453,13 @@ def _check_range(values: Array, rows: Rows, config: LogConfig) -> None:
         channel, column = config.instrument.known(gas), values[:, GASES.index(gas)]
         if gas == "co2" and np.isfinite(column).any():
             # In another unit, or without its background, the whole column is wrong.
-            check_units(channel, column)
+            check_units(config.instrument, gas, column)
         beyond = np.flatnonzero(column > channel.range_high + channel.resolution)
         if beyond.size:
-            unit = UNITS[gas]
+            name, unit = config.instrument.name_of(gas), config.instrument.unit_of(gas)
             more = f", and {beyond.size - 1} more" if beyond.size > 1 else ""
             raise MeasurementError(
-                f"{gas.upper()} is {column[beyond[0]]:g} {unit} in row {rows[beyond[0]]}{more}; its"
+                f"{name} is {column[beyond[0]]:g} {unit} in row {rows[beyond[0]]}{more}; its"
                 f" sensor reads {channel.range_high:g} {unit} at most (range_high): leave such a"
                 " cell empty, or correct the column's unit ([scale]) or the range"
             )
@@ -477,11 +474,12 @@ def _check_negative(values: Array, rows: Rows, readings: Readings, config: LogCo
         lowest = lowest_reading(gas, readings.values, config.instrument)
         low = np.flatnonzero(column < lowest)
         if low.size:
-            least, unit = float(column[low[0]]), UNITS[gas]
+            name, unit = config.instrument.name_of(gas), config.instrument.unit_of(gas)
+            least = float(column[low[0]])
             more = f", and {low.size - 1} more are as low" if low.size > 1 else ""
             air = "air, " if gas == "co2" else ""
             raise MeasurementError(
-                f"{gas.upper()} is {least:g} {unit} in row {rows[low[0]]}{more}; {air}noise, zero"
+                f"{name} is {least:g} {unit} in row {rows[low[0]]}{more}; {air}noise, zero"
                 f" and other gases explain {lowest:.0f} {unit} at least: where it stands for a"
                 " missing reading, or is of a calibration from which the sensor has not recovered,"
                 " leave it empty or name it in the configuration, as in missing = [-9999];"

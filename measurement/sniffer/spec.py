@@ -12,8 +12,9 @@ import numpy as np
 
 from common.text import did_you_mean
 from measurement.errors import MeasurementError, check_keys, check_range, number
-from measurement.gases import GASES
+from measurement.gases import GASES, UNITS
 from measurement.sniffer.channel import Channel
+from measurement.species import SLOT, SPECIES, Species
 
 UNTITLED_SNIFFER = "own sniffer"
 """Name of a sniffer from an inline table without a title."""
@@ -85,6 +86,7 @@ class SnifferSpec:
     rate_hz : readings per second [1/s]
     channels : one per gas at most; SO2 and CO2 are needed for an estimate, not for reading
     source : where the figures come from
+    compared : what its channel of SO2 reads; another gas may take that place for an estimate
     """
 
     name: str
@@ -92,6 +94,7 @@ class SnifferSpec:
     rate_hz: float
     channels: tuple[Channel, ...]
     source: str = ""
+    compared: Species = SPECIES[SLOT]
 
     def __post_init__(self) -> None:
         check_range(f"rate of '{self.name}'", self.rate_hz, 0.01, 1000.0, " Hz")
@@ -118,6 +121,17 @@ class SnifferSpec:
                 f"'{self.name}' has no {gas.upper()} channel; it has {', '.join(self.gases)}"
             )
         return channel
+
+    def name_of(self, gas: str) -> str:
+        """Return the name of the gas that a channel reads, in words."""
+        return self.compared.title if gas == SLOT else gas.upper()
+
+    def unit_of(self, gas: str) -> str:
+        """Return the unit of a channel's readings."""
+        if gas != SLOT:
+            return UNITS[gas]
+        step, unit = self.compared.step, self.compared.unit
+        return unit if step == 1.0 else f"{step:g} x {unit}"
 
     @property
     def gases(self) -> tuple[str, ...]:

@@ -36,7 +36,7 @@ def plain_sniffer(so2_t90=20.0, co2_t90=4.0, *, so2_noise=0.0, co2_noise=0.0, ra
 def crossings(
     fsc_percent,
     *,
-    duration=300.0,
+    duration=150.0,
     step=0.1,
     interval=9.5,
     width=0.6,
@@ -64,7 +64,7 @@ def read(instrument, air, *, seed=0, step=0.1):
     return Sniffer(instrument, generator=np.random.default_rng(seed), time_step=step).advance(air)
 
 
-def flight(preset, fsc_percent, seed, *, duration=300.0):
+def flight(preset, fsc_percent, seed, *, duration=150.0):
     """Return readings of an instrument drawn from a preset, and the preset."""
     spec, generator = sensor_preset(preset), np.random.default_rng(seed)
     air = crossings(fsc_percent, duration=duration, seed=seed + 1000)

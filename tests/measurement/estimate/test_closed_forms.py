@@ -12,23 +12,22 @@ from measurement.estimate.fit import fit_record
 from measurement.estimate.passes import find_passes
 from measurement.estimate.record import checked_record
 from measurement.gases import fsc_factor
-from measurement.sniffer.lag import lag
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import sensor_preset
 
 pytestmark = pytest.mark.slow
 
-TAU = 20.0 / math.log(10.0)
-
 
 @pytest.mark.parametrize("method", ["regression", "areas"])
-@pytest.mark.parametrize("t90", [1.0, 20.0])
-def test_equal_responses_are_unbiased_by_both_methods(method, t90):
-    # Equal channels are the same filter of the same air: their ratio is that of the air, whatever
-    # the plume does.
-    spec = plain_sniffer(t90, t90)
-    found = estimate(read(spec, crossings(0.25)), spec, method=method)
-    assert found.fsc_percent == pytest.approx(0.25, rel=1e-6)
+@pytest.mark.parametrize("t90", [1.0, 5.0, 20.0])
+def test_equal_responses_read_the_ratio_of_the_air_by_both_methods(method, t90):
+    # Equal channels are the same filter of the same air: their ratio is that of the air, and what
+    # is not corrected adds 0.2322 sum k_j Q_j/Q_CO2: 20.7 and 2.3 ppb/ppm of NO and NO2.
+    other = {"cross": {"no": 0.015, "no2": -0.16}} if t90 == 5.0 else {}
+    added = fsc_factor() * (0.015 * 20.7 - 0.16 * 2.3) if other else 0.0
+    readings = read(plain_sniffer(t90, t90, **other), crossings(0.25))
+    found = estimate(readings, plain_sniffer(t90, t90), method=method)
+    assert found.fsc_percent == pytest.approx(0.25 + added, rel=1e-6)
 
 
 @pytest.mark.parametrize("second_pole", [0.0, 0.5])
@@ -38,59 +37,6 @@ def test_regression_of_unequal_responses_is_unbiased_where_samples_are_dense(sec
     spec = plain_sniffer(rate_hz=20.0, second_pole=second_pole)
     found = estimate(read(spec, crossings(0.25, step=0.05, duration=120.0), step=0.05), spec)
     assert found.fsc_percent == pytest.approx(0.25, rel=1e-3)
-
-
-def test_the_sniffer_makes_the_overlap_that_the_closed_form_says():
-    # Puffs of two steps of 1 ms every 9.5 s, in the periodic state: width and sampling count for
-    # less than 1e-4 of 0.45.
-    step, count = 1e-3, 9500
-    puffs = np.zeros(12 * count)
-    puffs[1::count] = 1.0
-    reading = lag(puffs, step, TAU)[-count:]
-    area = np.trapezoid(reading - reading[-1], dx=step) / step
-    # The periodic response to puffs every P is e^(-t/tau)/(1 - e^-q)/tau, q = P/tau: over its
-    # trough it has 1 - q/(e^q - 1).
-    q = 9.5 / TAU
-    assert area == pytest.approx(1.0 - q / math.expm1(q), abs=5e-4)
-    # The figure of the specification, given to two digits.
-    assert area == pytest.approx(0.45, abs=0.005)
-
-
-def test_a_window_after_a_puff_holds_what_the_closed_form_says():
-    # (1 - e^(-T/tau_S)) / (1 - e^(-T/tau_C)) for a known background: a lag's area after a puff of
-    # one step.
-    step, window, taus = 1e-3, 15.0, (20.0 / math.log(10.0), 4.0 / math.log(10.0))
-    puff = np.zeros(15_002)
-    puff[1] = 1.0
-    areas = [np.trapezoid(lag(puff, step, tau), dx=step) for tau in taus]
-    # The puff is a triangle about the window's start: its centre is that of a puff at once, its
-    # width counts with (step/tau)^2.
-    expected = (1.0 - math.exp(-window / taus[0])) / (1.0 - math.exp(-window / taus[1]))
-    assert areas[0] / areas[1] == pytest.approx(expected, rel=1e-6)
-
-
-@pytest.mark.parametrize("method", ["regression", "areas"])
-def test_other_gases_add_what_the_closed_form_says(method):
-    # + 0.2322 sum k_j Q_j/Q_CO2: 20.7 and 2.3 ppb/ppm of NO and NO2, not corrected and with equal
-    # responses.
-    actual = plain_sniffer(5.0, 5.0, cross={"no": 0.015, "no2": -0.16})
-    readings = read(actual, crossings(0.25))
-    found = estimate(readings, plain_sniffer(5.0, 5.0), method=method)
-    assert found.fsc_percent - 0.25 == pytest.approx(
-        fsc_factor() * (0.015 * 20.7 - 0.16 * 2.3), abs=1e-6
-    )
-
-
-def test_other_gases_are_corrected_where_they_are_measured():
-    spec = plain_sniffer(20.0, 4.0, rate_hz=10.0, cross={"no": 0.015, "no2": -1.6})
-    no, no2 = (
-        type(spec.known("so2"))(gas=gas, t90_s=t90, noise=0.0)
-        for gas, t90 in (("no", 30.0), ("no2", 10.0))
-    )
-    spec = type(spec)(name="x", title="x", rate_hz=10.0, channels=(*spec.channels, no, no2))
-    found = estimate(read(spec, crossings(0.25)), spec)
-    # Sampling of the CO2 channel at 10 Hz: (step/tau)^2/12 = 3e-4.
-    assert found.fsc_percent == pytest.approx(0.25, rel=2e-3)
 
 
 @pytest.mark.parametrize(("gas", "name"), [("so2", "t90_s"), ("so2", "delay_s"), ("co2", "t90_s")])
@@ -113,14 +59,25 @@ def test_areas_of_overlapping_passes_read_what_is_predicted():
     # The issue asks for 10 %; 1.9 % were measured. Sums of exponentials with the dose of each pass,
     # against areas without noise.
     spec = plain_sniffer(20.0, 4.0)
-    for seed in range(3):
-        record = checked_record(read(spec, crossings(0.25, seed=seed)), spec)
+    for seed in range(2):
+        readings = read(spec, crossings(0.25, seed=seed))
+        record = checked_record(readings, spec)
         found = area_ratio(
             record, spec, find_passes(record, changed(spec, "co2", noise=1.0).known("co2"))
         )
         assert found.share == pytest.approx(fsc_factor() * found.ratio / 0.25, rel=0.03)
         assert fsc_factor() * found.separate == pytest.approx(0.25, rel=0.03)
         assert 0.2 < found.share < 0.5
+    # What areas would read more of separate passes, which have no bias 2.8 t90 apart (section 0,
+    # item 3): less than 1.5 %.
+    crossed = estimate(readings, spec, method="areas")
+    assert crossed.fsc_percent + crossed.overlap_percent == pytest.approx(0.25, rel=0.03)
+    assert crossed.quality == "C"
+    assert "overlap in an SO2 channel with a t90 of 20 s" in crossed.quality_reasons[0]
+    apart = read(spec, crossings(0.25, interval=75.0, duration=450.0))
+    separate = estimate(apart, spec, method="areas")
+    assert separate.fsc_percent == pytest.approx(0.25, rel=0.015)
+    assert separate.quality != "C"
 
 
 @pytest.mark.parametrize(("preset", "duration"), [("laser", 60.0), ("fast", 180.0)])
@@ -128,7 +85,7 @@ def test_areas_of_separate_passes_are_whole_wherever_between_two_samples_they_co
     preset, duration
 ):
     spec = sensor_preset(preset)
-    for phase in np.linspace(0.0, 1.0 / spec.rate_hz, 5):
+    for phase in np.linspace(0.0, 1.0 / spec.rate_hz, 4):
         air = crossings(
             0.2, duration=duration, step=0.02, interval=60.0, meander=0.0, first=30.0 + phase
         )
@@ -138,8 +95,7 @@ def test_areas_of_separate_passes_are_whole_wherever_between_two_samples_they_co
         assert found.share == pytest.approx(1.0, abs=0.01)
 
 
-@pytest.mark.parametrize("interval", [9.5, 75.0])
-def test_areas_and_doses_do_not_depend_on_the_gains(interval):
+def test_areas_and_doses_do_not_depend_on_the_gains():
     results = []
     for so2, co2 in ((1.0, 1.0), (1.3, 1.0), (0.8, 1.0), (1.0, 1.5)):
         spec = changed(
@@ -148,36 +104,9 @@ def test_areas_and_doses_do_not_depend_on_the_gains(interval):
             gain=co2,
         )
         # A reading's noise is that of its sensor, and counts for less where the gain is larger.
-        found = estimate(read(spec, crossings(0.25, interval=interval)), spec, method="areas")
+        found = estimate(read(spec, crossings(0.25, interval=75.0)), spec, method="areas")
         results.append((found.fsc_percent, found.overlap_percent, found.figures.dose_ppm_s))
     assert np.array(results[1:]) == pytest.approx(np.array(3 * [results[0]]), rel=0.02, abs=0.001)
-
-
-def test_the_overlap_is_what_areas_would_read_more_of_separate_passes():
-    spec = sensor_preset("fast")
-    for seed in range(2):
-        readings = read(spec, crossings(0.2, duration=200.0, seed=seed + 50), seed=seed)
-        record = checked_record(readings, spec)
-        areas = area_ratio(record, spec, find_passes(record, spec.known("co2")))
-        found = estimate(readings, spec, method="areas")
-        assert found.fsc_percent + found.overlap_percent == pytest.approx(
-            fsc_factor() * areas.separate, rel=1e-6
-        )
-        # SO2 answers more slowly than CO2, and overlaps more.
-        assert 0.0 < found.overlap_percent < 0.01 * found.fsc_percent
-
-
-def test_areas_of_separate_passes_are_unbiased():
-    # 2.8 t90 between passes for -1 % (section 0, item 3).
-    spec = plain_sniffer(20.0, 4.0)
-    found = estimate(
-        read(spec, crossings(0.25, interval=75.0, duration=450.0)), spec, method="areas"
-    )
-    assert found.fsc_percent == pytest.approx(0.25, rel=0.015)
-    assert found.quality != "C"
-    crossed = estimate(read(spec, crossings(0.25)), spec, method="areas")
-    assert crossed.quality == "C"
-    assert "overlap in an SO2 channel with a t90 of 20 s" in crossed.quality_reasons[0]
 
 
 @pytest.mark.parametrize("estimated", [False, True], ids=["stated", "estimated"])
@@ -212,8 +141,8 @@ def test_an_uneven_record_is_the_same_wherever_its_times_begin():
     readings = read(spec, crossings(0.25, interval=30.0, meander=0.0, width=2.0), seed=2)
     # A row each second, of which a fifth is half a second late. Since 1970 they passed for even
     # ones.
-    rows = 10 * np.arange(300)
-    rows[1:-1] += 5 * (np.random.default_rng(3).random(298) < 0.2)
+    rows = 10 * np.arange(150)
+    rows[1:-1] += 5 * (np.random.default_rng(3).random(148) < 0.2)
     found, other = (
         estimate(Readings(readings.time[rows] + origin, readings.values[rows]), spec)
         for origin in (0.0, 1.78e9)
@@ -226,7 +155,7 @@ def test_an_uneven_record_is_the_same_wherever_its_times_begin():
 def test_results_cached_with_a_record_are_those_of_a_new_record():
     # Passes so far from each other that a window is as long as the slowest response asks for.
     spec = sensor_preset("electrochemical")
-    readings = read(spec, crossings(0.3, interval=75.0))
+    readings = read(spec, crossings(0.3, duration=120.0, interval=75.0))
     so2, co2 = spec.known("so2"), spec.known("co2")
     instruments = [
         spec,
@@ -239,7 +168,7 @@ def test_results_cached_with_a_record_are_those_of_a_new_record():
     ]
     cached = checked_record(readings, spec)
     passes = find_passes(cached, co2)
-    for instrument in [*instruments, *instruments]:
+    for instrument in [*instruments, spec]:
         new = checked_record(readings, spec)
         # To the last bit.
         assert area_ratio(cached, instrument, passes) == area_ratio(new, instrument, passes)

@@ -16,7 +16,6 @@ from measurement.sniffer.sniffer import Readings
 
 pytestmark = pytest.mark.slow
 
-AIR = {"interval": 30.0, "meander": 0.0, "width": 2.0}
 NOT_STATED = {"t90_sd": math.inf, "delay_sd_s": math.inf}
 
 
@@ -24,20 +23,6 @@ def late(fsc, delay, duration):
     """Return a sniffer whose SO2 comes so late [s], and the air of passes every 12 s."""
     spec = plain_sniffer(3.0, 2.0, so2_noise=1.0, co2_noise=0.5, delay_s=delay)
     return spec, crossings(fsc, duration=duration, interval=12.0, meander=0.3, width=1.0, first=4.0)
-
-
-def parts(readings, period, kept):
-    inside = readings.time % period < kept
-    return Readings(readings.time[inside], readings.values[inside])
-
-
-def with_no(delay, **so2):
-    """Return a sniffer whose NO channel is so much later than the others [s]."""
-    return sniffer_of(
-        Channel(gas="so2", t90_s=15.0, noise=1.0, **so2),
-        Channel(gas="co2", t90_s=3.0, noise=0.5),
-        Channel(gas="no", t90_s=5.0, noise=5.0, delay_s=delay),
-    )
 
 
 def test_where_the_background_explains_all_that_is_known_there_is_no_result():
@@ -50,37 +35,27 @@ def test_where_the_background_explains_all_that_is_known_there_is_no_result():
     readings = read(
         spec, crossings(0.25, duration=600.0, interval=34.0, meander=0.0, width=2.0), seed=1
     )
-    found = estimate(parts(readings, 34.0, 31.5), spec)
+    inside = readings.time % 34.0 < 31.5
+    found = estimate(Readings(readings.time[inside], readings.values[inside]), spec)
     assert math.isnan(found.fsc_percent)
     assert found.quality == "C"
 
 
-def test_a_beginning_that_is_shorter_than_the_delay_has_an_estimate_or_none():
-    spec, air = late(0.25, 9.0, 60.0)
-    readings, unknown = read(spec, air, seed=2), changed(spec, "so2", **NOT_STATED)
-    assert len(over_time(readings, unknown, elapsed_s=(8, 9, 10, 11, 12, 14, 16, 20, 30))) == 9
-
-
-def test_a_correction_that_comes_after_the_end_of_the_record_leaves_no_result():
-    spec = with_no(310.0, cross={"no": 0.01})
-    found = estimate(read(spec, crossings(0.25, **AIR)), spec)
-    assert math.isnan(found.fsc_percent)
-    assert found.quality == "C"
-
-
-def test_a_gas_that_corrects_nothing_takes_no_samples_away():
-    spec = with_no(60.0)
-    readings = read(spec, crossings(0.25, **AIR))
-    assert make_signals(checked_record(readings, spec), spec).known.all()
-    corrected = with_no(60.0, cross={"no": 0.01})
-    known = make_signals(checked_record(readings, corrected), corrected).known
-    assert np.count_nonzero(known == 0.0) == 60
-
-
-def test_of_passes_that_not_all_channels_read_the_others_are_compared():
-    spec = with_no(60.0, cross={"no": 0.01})
-    found = estimate(read(spec, crossings(0.25, **AIR)), spec)
+def test_a_gas_that_comes_later_takes_samples_away_only_where_it_corrects_so2():
+    plain, corrected = (
+        sniffer_of(
+            Channel(gas="so2", t90_s=15.0, noise=1.0, cross=cross),
+            Channel(gas="co2", t90_s=3.0, noise=0.5),
+            Channel(gas="no", t90_s=5.0, noise=5.0, delay_s=60.0),
+        )
+        for cross in ({}, {"no": 0.01})
+    )
+    air = crossings(0.25, duration=300.0, interval=30.0, meander=0.0, width=2.0)
+    record = checked_record(read(plain, air), plain)
+    assert make_signals(record, plain).known.all()
+    assert np.count_nonzero(make_signals(record, corrected).known == 0.0) == 60
     # Ten passes, of which two are before NO has its first or after the last reading that it is for.
+    found = estimate(read(corrected, air), corrected)
     assert len(found.pass_percent) == len(found.pass_deviation_percent) >= 6
     assert np.array(found.pass_percent) == pytest.approx(0.25, rel=0.1)
     assert not math.isnan(found.agreement)
@@ -101,9 +76,8 @@ def test_without_a_stated_delay_no_fuel_is_below_a_limit_before_its_so2_can_have
 ):
     spec, air = late(fsc, delay, 90.0)
     readings, unknown = read(spec, air), changed(spec, "so2", **NOT_STATED)
-    assert (
-        over_time(readings, unknown, elapsed_s=(15, 20, 25, 90))["verdict_0.1"].tolist() == verdicts
-    )
+    table = over_time(readings, unknown, elapsed_s=(15, 20, 25, 90))
+    assert table["verdict_0.1"].tolist() == verdicts
 
 
 def test_so2_that_may_have_come_in_a_gap_is_waited_for():

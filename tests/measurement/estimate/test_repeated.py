@@ -67,7 +67,8 @@ def test_two_looks_share_the_error_rate_as_their_correlation_has_it():
     spent = rate * 0.4**3
     assert first == pytest.approx(norm.isf(spent), abs=1e-6)
     watched.look(LIMIT, noise=noise[1], total=total[1], admitted=True, last=True)
-    # What is called by neither of two looks, whose correlation is u_2/u_1 (scipy's bivariate normal).
+    # What is called by neither of two looks, whose correlation is u_2/u_1 (scipy's bivariate
+    # normal).
     pair = multivariate_normal(cov=[[1.0, 0.6], [0.6, 1.0]])
     assert pair.cdf([first, watched.guard]) == pytest.approx(1.0 - rate, abs=1e-5)
 
@@ -93,15 +94,6 @@ def test_of_20000_flights_at_the_limit_no_more_than_stated_are_ever_called_wrong
     assert np.mean(np.any(alone[:, 1:] & alone[:, :-1], axis=1)) > 0.1
 
 
-def test_fuels_far_from_the_limit_have_their_verdict_at_the_first_looks():
-    noise, total = uncertainties("electrochemical")
-    found = estimates(np.random.default_rng(2), 0.3, "electrochemical", 2000)
-    crossed = (found - LIMIT) / total >= guards(noise, total)
-    assert np.all(crossed.any(axis=1))
-    # 3.4 standard uncertainties at the first look, against a guard band of 2.5.
-    assert np.mean(LOOKS_S[crossed.argmax(axis=1)]) < 45.0
-
-
 def test_looks_that_add_nothing_and_looks_of_less_information_do_not_add_errors():
     # 60 looks at one estimate, whose uncertainty goes up and down: it is called above where it is
     # beyond the narrowest of the guard bands.
@@ -119,9 +111,6 @@ def test_a_verdict_stays_and_a_refused_look_costs_nothing():
     guard = watched.guard
     assert watched.look(0.0, noise=0.01, total=0.01, admitted=True) == "above"
     assert (watched.looks, watched.guard) == (1, guard)
-
-
-def test_a_reading_far_below_zero_is_no_proof_of_a_clean_fuel():
     # Four standard uncertainties below the limit, but of a sensor that reads nonsense.
     watched = RepeatedVerdict(LIMIT)
     assert watched.look(-1.1, noise=0.3, total=0.31, admitted=True, last=True) == "open"

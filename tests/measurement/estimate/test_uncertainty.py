@@ -21,8 +21,8 @@ from measurement.sniffer.spec import sensor_of, sensor_preset
 
 pytestmark = pytest.mark.slow
 
-REPEATS = 80
-"""They give a standard deviation to 8 %; twice that is the tolerance, and the seeds are always the
+REPEATS = 60
+"""They give a standard deviation to 9 %; twice that is the tolerance, and the seeds are always the
 same.
 """
 
@@ -39,15 +39,17 @@ def repeated(spec, air, estimator):
 @pytest.mark.parametrize(
     "spec",
     [
-        plain_sniffer(so2_noise=2.5, co2_noise=8.0),
+        plain_sniffer(co2_noise=4.0),
         plain_sniffer(so2_noise=1.0, random_walk=1.0),
         plain_sniffer(4.0, 20.0, so2_noise=2.5, co2_noise=1.0),
         plain_sniffer(second_pole=0.5, so2_noise=2.5),
     ],
-    ids=["noise in both", "drift", "CO2 slower", "two poles"],
+    ids=["CO2 alone", "drift", "CO2 slower", "two poles"],
 )
 def test_the_stated_noise_of_the_regression_is_its_scatter(spec):
-    air, misfits = crossings(0.25, duration=120.0, step=1.0, width=1.5), []
+    of_co2_alone = spec.known("so2").noise == 0.0
+    peak = 60.0 if of_co2_alone else 200.0
+    air, misfits = crossings(0.25, duration=80.0, step=1.0, width=1.5, peak=peak), []
 
     def estimator(record):
         found = fit_record(record, spec)
@@ -55,27 +57,25 @@ def test_the_stated_noise_of_the_regression_is_its_scatter(spec):
         return found.slope, found.noise
 
     slopes, stated = repeated(spec, air, estimator)
-    assert np.std(slopes) == pytest.approx(np.sqrt(np.mean(stated**2)), rel=0.16)
-    # The slope takes 1 of 110 degrees of freedom; a drift has next to none.
+    assert np.std(slopes) == pytest.approx(np.sqrt(np.mean(stated**2)), rel=0.18)
+    # The slope takes 1 of 70 degrees of freedom; a drift has next to none, and noise of CO2 has
+    # fewer after the lag of SO2.
     drifts = spec.known("so2").random_walk > 0.0
-    assert np.mean(misfits) == pytest.approx(1.0, abs=0.2 if drifts else 0.05)
-
-
-def test_noise_in_co2_does_not_attenuate_the_slope():
-    air = crossings(0.25, duration=120.0, step=1.0, width=1.5, peak=60.0)
-    exact, spec = plain_sniffer(), plain_sniffer(co2_noise=4.0)
-    clean = fit_record(checked_record(read(exact, air, step=1.0), exact), exact).slope
-    slopes, _ = repeated(spec, air, lambda record: (fit_record(record, spec).slope, 0.0))
-    signals = make_signals(checked_record(read(spec, air, step=1.0), spec), spec)
-    co2, _ = signals.excess
-    noise_energy = signals.noise("co2") ** 2 * signals.noise_energy("co2")
-    attenuation = noise_energy / (float(co2 @ co2) - noise_energy)
-    error = np.std(slopes) / math.sqrt(REPEATS)
-    # A quotient of noisy sums keeps a bias of second order, its relative variance; a regression
-    # would be attenuated by the noise's share of the CO2 energy, several times as much.
-    tolerance = 4.0 * error + np.var(slopes) / clean
-    assert abs(np.mean(slopes) - clean) < tolerance
-    assert attenuation * clean > 2.0 * tolerance
+    tolerance = 0.2 if drifts else 0.1 if of_co2_alone else 0.05
+    assert np.mean(misfits) == pytest.approx(1.0, abs=tolerance)
+    # Noise in CO2 does not attenuate the slope, as it would that of a regression: by the noise's
+    # share of the CO2 energy. A quotient of noisy sums keeps a bias of second order, its relative
+    # variance.
+    if of_co2_alone:
+        exact = plain_sniffer()
+        clean = fit_record(checked_record(read(exact, air, step=1.0), exact), exact).slope
+        signals = make_signals(checked_record(read(spec, air, step=1.0), spec), spec)
+        co2, _ = signals.excess
+        noise_energy = signals.noise("co2") ** 2 * signals.noise_energy("co2")
+        attenuation = noise_energy / (float(co2 @ co2) - noise_energy)
+        tolerance = 4.0 * np.std(slopes) / math.sqrt(REPEATS) + np.var(slopes) / clean
+        assert abs(np.mean(slopes) - clean) < tolerance
+        assert attenuation * clean > 2.0 * tolerance
 
 
 def test_the_stated_noise_of_areas_is_its_scatter():
@@ -102,32 +102,23 @@ def test_one_pass_is_as_good_as_a_matched_filter_can_be():
     assert least < found.noise * dose < 1.35 * least
 
 
-def test_regression_halves_the_noise_of_areas():
-    # 0.3 to 0.65 of the areas' noise (section 4.3); passes 75 s apart, as areas need them.
-    spec = plain_sniffer(so2_noise=2.5, co2_noise=1.0)
-    readings = read(spec, crossings(0.1, interval=75.0, duration=450.0))
-    by_regression, by_areas = (
-        estimate(readings, spec, method=method) for method in ("regression", "areas")
-    )
-    assert 0.3 < by_regression.noise_percent / by_areas.noise_percent < 0.7
-
-
 def test_noise_falls_with_the_root_of_passes_and_common_errors_do_not():
-    readings, spec = flight("electrochemical", 0.1, 3, duration=480.0)
-    short = estimate(Readings(readings.time[:121], readings.values[:121]), spec)
+    readings, spec = flight("electrochemical", 0.1, 3, duration=320.0)
+    short = estimate(Readings(readings.time[:81], readings.values[:81]), spec)
     long = estimate(readings, spec)
     assert long.noise_percent / short.noise_percent == pytest.approx(0.5, abs=0.12)
-    for name in ("no2", "calibration"):
-        assert long.common_percent[name] == pytest.approx(short.common_percent[name], rel=0.35), (
-            name
-        )
+    long_errors, short_errors = long.common_percent, short.common_percent
+    assert long_errors["no2"] == pytest.approx(short_errors["no2"], rel=0.35)
+    # Nearly a share of the content, by 3 % of the gain of SO2 and 2 % of CO2.
+    for found in (long, short):
+        assert found.common_percent["calibration"] > 0.03 * found.fsc_percent
 
 
 def test_stated_intervals_cover_and_are_as_narrow_as_asked():
     # 91 to 98 % are asked of 200 flights and more; of 40, 34 are fewer than 1 in 100 times fewer by
     # chance where 95 % is true.
     largest = 0.03
-    flights = [flight("electrochemical", 0.1, seed, duration=120.0) for seed in range(40)]
+    flights = [flight("electrochemical", 0.1, seed, duration=100.0) for seed in range(40)]
     found = [estimate(readings, spec) for readings, spec in flights]
     assert sum(e.low_percent <= 0.1 <= e.high_percent for e in found) >= 34
     assert np.std([e.fsc_percent for e in found]) < largest
@@ -143,6 +134,11 @@ def test_response_and_delay_are_found_where_they_are_not_given():
     actual = plain_sniffer(23.0, 4.0, so2_noise=2.5, co2_noise=1.0, delay_s=3.0)
     readings = read(actual, crossings(0.5))
     unknown = changed(actual, "so2", t90_s=8.0, t90_sd=math.inf, delay_s=0.0, delay_sd_s=math.inf)
+    # A delay before CO2, too.
+    early = changed(plain_sniffer(so2_noise=1.0, co2_noise=1.0), "co2", delay_s=2.5)
+    before = estimate(read(early, crossings(0.5)), changed(early, "so2", delay_sd_s=math.inf))
+    assert before.delay_sd_s < 0.1
+    assert before.delay_s == pytest.approx(-2.5, abs=0.15)
     found = estimate(readings, unknown)
     assert found.so2_t90_s == pytest.approx(23.0, abs=3.0 * found.so2_t90_sd_s)
     # Sampling at 1 Hz adds to the noise: 0.1 s.
@@ -154,37 +150,21 @@ def test_response_and_delay_are_found_where_they_are_not_given():
 
 def test_response_and_delay_are_found_without_bias_where_other_gases_correct_so2():
     # NO2 between samples has less noise than on them, 0.64 of its square halfway. Left out of
-    # account, that drew flights to 18.0 s and 0.13 s in the mean, and their fuels to 0.187 %; each t90
-    # is known to 1 s, each delay to 0.04 s.
+    # account, that drew flights to 18.0 s and 0.13 s in the mean, and their fuels to 0.187 %; each
+    # t90 is known to 1 s, each delay to 0.04 s.
     spec = sensor_preset("electrochemical")
     for gas in GASES:
         cross = dict.fromkeys(spec.known(gas).cross_sd, 0.0)
-        spec = changed(
-            spec,
-            gas,
-            t90_sd=0.0,
-            delay_sd_s=0.0,
-            gain_sd=0.0,
-            zero_sd=0.0,
-            random_walk=0.0,
-            cross_sd=cross,
-        )
+        exact = dict.fromkeys(("t90_sd", "delay_sd_s", "gain_sd", "zero_sd", "random_walk"), 0.0)
+        spec = changed(spec, gas, cross_sd=cross, **exact)
     unknown = changed(spec, "so2", t90_sd=math.inf, delay_sd_s=math.inf)
     found = [
-        estimate(read(spec, crossings(0.2, seed=seed + 9999), seed=seed), unknown)
+        estimate(read(spec, crossings(0.2, duration=300.0, seed=seed + 9999), seed=seed), unknown)
         for seed in range(6)
     ]
     assert np.mean([each.so2_t90_s for each in found]) == pytest.approx(20.0, abs=1.2)
     assert np.mean([each.delay_s for each in found]) == pytest.approx(0.0, abs=0.07)
     assert np.mean([each.fsc_percent for each in found]) == pytest.approx(0.2, abs=0.007)
-
-
-def test_a_delay_before_co2_is_found_too():
-    actual = changed(plain_sniffer(20.0, 4.0, so2_noise=1.0, co2_noise=1.0), "co2", delay_s=2.5)
-    unknown = changed(actual, "so2", delay_sd_s=math.inf)
-    found = estimate(read(actual, crossings(0.5)), unknown)
-    assert found.delay_sd_s < 0.1
-    assert found.delay_s == pytest.approx(-2.5, abs=0.15)
 
 
 def test_readings_that_are_far_apart_have_an_interval_that_holds_what_lies_between():
@@ -198,11 +178,14 @@ def test_readings_that_are_far_apart_have_an_interval_that_holds_what_lies_betwe
         assert found.low_percent < 0.2 < found.high_percent
 
 
+def without_nox(readings):
+    return Readings(readings.time, np.where(np.arange(4) < 2, readings.values, np.nan))
+
+
 def test_gases_that_are_not_measured_widen_the_interval():
-    spec = sensor_preset("electrochemical")
     readings, _ = flight("electrochemical", 0.5, 5)
-    blind = Readings(readings.time, np.where(np.arange(4) < 2, readings.values, np.nan))
-    seen, unseen = estimate(readings, spec), estimate(blind, spec)
+    spec = sensor_preset("electrochemical")
+    seen, unseen = estimate(readings, spec), estimate(without_nox(readings), spec)
     # 0.015 of 18 +- 7.5 ppb/ppm, and 0.16 of 2 +- 1.2 with +-0.032: gases.EXPECTED_PPB_PER_PPM.
     assert unseen.common_percent["no"] == pytest.approx(
         fsc_factor() * math.hypot(0.015 * 7.5, 0.0015 * 19.5), rel=0.01
@@ -211,23 +194,24 @@ def test_gases_that_are_not_measured_widen_the_interval():
     assert unseen.low_percent < 0.5 < unseen.high_percent
 
 
-@pytest.mark.parametrize(("emitted", "wider"), [(1.5, True), (0.25, False)])
-def test_without_a_stated_response_nox_shows_only_how_much_of_it_there_is(emitted, wider):
+def test_without_a_stated_response_nox_shows_only_how_much_of_it_there_is():
     # The response is 0 with a standard deviation of 0.02: readings of NO correct nothing, and what
     # they may have done is in proportion to them. 1.5 times the 20.7 ppb/ppm of this ship are more
     # than 18 +- 7.5, which are taken where NO is not measured, and a quarter of them is less.
     spec = sensor_preset("unspecified")
     readings, _ = flight("electrochemical", 0.5, 5)
-    measured = Readings(readings.time, readings.values * np.array([1.0, 1.0, emitted, emitted]))
-    blind = Readings(readings.time, np.where(np.arange(4) < 2, readings.values, np.nan))
-    seen, unseen = estimate(measured, spec), estimate(blind, spec)
-    assert seen.fsc_percent == pytest.approx(unseen.fsc_percent, rel=1e-3)
-    # The gain, response and noise of the NO cell are not those that are assumed: 20 %.
-    assert seen.common_percent["no"] == pytest.approx(fsc_factor() * 0.02 * 20.7 * emitted, rel=0.2)
+    unseen = estimate(without_nox(readings), spec)
     assert unseen.common_percent["no"] == pytest.approx(
         fsc_factor() * 0.02 * math.hypot(18.0, 7.5), rel=0.01
     )
-    assert (seen.total_percent > unseen.total_percent) == wider
+    for emitted in (1.5, 0.25):
+        values = readings.values * np.array([1.0, 1.0, emitted, emitted])
+        seen = estimate(Readings(readings.time, values), spec)
+        assert seen.fsc_percent == pytest.approx(unseen.fsc_percent, rel=1e-3)
+        # The gain, response and noise of the NO cell are not those that are assumed: 20 %.
+        expected = fsc_factor() * 0.02 * 20.7 * emitted
+        assert seen.common_percent["no"] == pytest.approx(expected, rel=0.2)
+        assert (seen.total_percent > unseen.total_percent) == (emitted > 1.0)
 
 
 @pytest.mark.parametrize("seed", [0, 7])
@@ -235,7 +219,9 @@ def test_a_response_that_is_not_given_is_not_taken_for_a_fast_one_where_so2_is_n
     # Noise of 25 ppb, as much as passes raise SO2; a t90 of 0 would smooth it most, and read a
     # quarter of the content.
     readings = read(
-        plain_sniffer(so2_noise=25.0, co2_noise=1.0), crossings(0.25, seed=seed), seed=seed
+        plain_sniffer(so2_noise=25.0, co2_noise=1.0),
+        crossings(0.25, duration=300.0, seed=seed),
+        seed=seed,
     )
     readings.values[:, 2:] = np.nan
     spec = sensor_of({"channels": {"so2": {"cross": {}}, "co2": {}}}, "own")
@@ -263,9 +249,9 @@ def test_a_response_that_is_found_is_as_uncertain_as_that_of_co2_makes_it(co2_t9
 
 
 def test_noise_of_co2_does_not_raise_a_strong_so2_in_a_slow_cell():
-    # Where passes are short for the cell, a longer t90 makes them lower nearly as less sulphur does.
-    # Noise of CO2 in the columns of t90 and delay made these logs read 11 to 39 % too much. They
-    # scatter by 3 %, so that the mean of six is within 4 % with a probability above 99.8 %.
+    # Where passes are short for the cell, a longer t90 makes them lower nearly as less sulphur
+    # does. Noise of CO2 in the columns of t90 and delay made these logs read 11 to 39 % too much.
+    # They scatter by 3 %, so that the mean of six is within 4 % with a probability above 99.8 %.
     spec = sensor_preset("electrochemical")
     found = []
     for seed in range(6):

@@ -5,7 +5,6 @@ import pandas as pd
 import pytest
 
 from measurement.errors import MeasurementError
-from measurement.gases import GASES
 from measurement.log.config import read_config
 from measurement.log.read import read_flight
 
@@ -43,20 +42,22 @@ def read(table, tmp_path, config="", encoding="utf-8", **how):
 
 
 def is_the_flight(found, expected):
-    np.testing.assert_allclose(found.readings.time - found.readings.time[0],
-                               expected.readings.time - expected.readings.time[0], atol=1e-6)  # fmt: skip
-    np.testing.assert_allclose(found.readings.values, expected.readings.values, rtol=1e-9)
+    time, values = expected.readings.time, expected.readings.values
+    np.testing.assert_allclose(found.readings.time - found.readings.time[0], time, atol=1e-6)
+    np.testing.assert_allclose(found.readings.values, values, rtol=1e-9)
 
 
 @pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "latin-1"])
 def test_a_european_log_is_read(table, expected, tmp_path, encoding):
     table["Zeit"] = table["Zeit"].dt.tz_convert("Europe/Berlin").map(pd.Timestamp.isoformat)
-    table["Länge"] = 11.2
-    found = read(table, tmp_path, encoding=encoding, sep=";", decimal=",")
+    # From 0 to 360: 91 degrees west.
+    table["Breite"], table["Länge"] = 27.5, 269.0
+    places = "" if encoding == "utf-16" else 'latitude = "Breite"\nlongitude = "Länge"\n'
+    found = read(table, tmp_path, places, encoding=encoding, sep=";", decimal=",")
     is_the_flight(found, expected)
     # 10:15 in Berlin in winter.
     assert found.about.first_utc == START.to_pydatetime()
-    assert "semicolons, decimal comma" in found.about.table
+    assert found.about.first_position == ((27.5, -91.0) if places else None)
 
 
 def test_masses_of_sulphur_dioxide_are_read_as_such(table, expected, tmp_path):
@@ -72,63 +73,53 @@ def test_masses_of_sulphur_dioxide_are_read_as_such(table, expected, tmp_path):
     )
 
 
-@pytest.mark.parametrize("factor", [1, 1000, 1_000_000])
-def test_seconds_since_1970_are_compared_with_the_date_of_the_flight(
-    table, expected, tmp_path, factor
+def seconds(factor):
+    return lambda times: [f"{factor * time.timestamp():.0f}" for time in times]
+
+
+@pytest.mark.parametrize(
+    ("begin", "written"),
+    [
+        (START, seconds(1)),
+        (START, seconds(1000)),
+        (START, seconds(1_000_000)),
+        # Over midnight.
+        (pd.Timestamp("2026-03-14T23:58:00Z"), lambda times: times.strftime("%H:%M:%S")),
+    ],
+    ids=["s", "ms", "us", "time of day"],
+)
+def test_seconds_since_1970_and_times_of_day_are_those_of_the_date_of_the_flight(
+    table, expected, tmp_path, begin, written
 ):
-    seconds = START.timestamp() + expected.readings.time
-    table["Zeit"] = [f"{factor * value:.0f}" for value in seconds]
+    times = begin + pd.to_timedelta(expected.readings.time, unit="s")
+    table["Zeit"] = written(times)
     found = read(table, tmp_path, "[flight]\ndate = 2026-03-14\n")
     is_the_flight(found, expected)
-    assert found.about.first_utc == START.to_pydatetime()
-    with pytest.raises(MeasurementError, match="but the log begins at 2026-03-14"):
-        read(table, tmp_path, "[flight]\ndate = 2026-03-15\n")
+    assert found.about.first_utc == begin.to_pydatetime()
+    assert found.about.last_utc == times[-1].to_pydatetime()
+    if begin == START:
+        with pytest.raises(MeasurementError, match="but the log begins at 2026-03-14"):
+            read(table, tmp_path, "[flight]\ndate = 2026-03-15\n")
 
 
-def test_times_of_day_are_of_the_date_of_the_flight_and_go_on_over_midnight(
-    table, expected, tmp_path
-):
-    late = pd.Timestamp("2026-03-14T23:58:00Z")
-    times = late + pd.to_timedelta(expected.readings.time, unit="s")
-    table["Zeit"] = times.strftime("%H:%M:%S")
-    found = read(table, tmp_path, "[flight]\ndate = 2026-03-14\n")
-    is_the_flight(found, expected)
-    assert found.about.first_utc == late.to_pydatetime()
-    assert found.about.last_utc.date().isoformat() == "2026-03-15"
-
-
-def test_a_row_of_units_and_lines_above_the_head_are_read(table, expected, tmp_path, logged):
-    names = ["Zeit", "SO2", "CO2", "NO", "NO2"]
-    table.columns = names
-    text = table.to_csv(index=False, sep="\t")
-    head, rest = text.split("\n", 1)
-    log, toml = tmp_path / "units.csv", tmp_path / "units.toml"
-    log.write_text(f"UAV 3\n# flight 7\n{head}\n\tppb\t%\tppb\tppb\n{rest}", encoding="utf-8")
-    toml.write_text(
-        'instrument = "electrochemical"\n[columns]\ntime = "Zeit"\nso2 = "SO2"\nco2 = "CO2"\n'
-        'no = "NO"\nno2 = "NO2"\n',
-        encoding="utf-8",
-    )
-    found = read_flight(log, read_config(toml))
+def test_a_row_of_units_and_lines_above_the_head_are_read(table, expected, logged):
+    head, rest = table.to_csv(index=False, sep="\t").split("\n", 1)
+    names = head.replace(" [ppb]", "").replace(" [%]", "")
+    logged.write_text(f"UAV 3\n# flight 7\n{names}\n\tppb\t%\tppb\tppb\n{rest}", encoding="utf-8")
+    toml = logged.parent / "units.toml"
+    config = NAMES.replace(" [ppb]", "").replace(" [%]", "")
+    toml.write_text(f'instrument = "electrochemical"\n{config}', encoding="utf-8")
+    found = read_flight(logged, read_config(toml))
     is_the_flight(found, expected)
     assert found.about.scale == {"co2": 1e4}
-    assert len(GASES) == found.readings.values.shape[1]
 
 
 def test_a_leap_second_is_left_out_and_said(table, tmp_path, expected):
     begin = pd.Timestamp("2016-12-31T23:59:00Z")
-    times = (begin + pd.to_timedelta(expected.readings.time, unit="s")).strftime(
-        "%Y-%m-%dT%H:%M:%SZ"
-    )
-    cells = times.to_list()
-    cells[60:61] = ["2016-12-31T23:59:60Z"]
+    times = begin + pd.to_timedelta(expected.readings.time, unit="s")
+    cells = times.strftime("%Y-%m-%dT%H:%M:%SZ").to_list()
+    cells[60] = "2016-12-31T23:59:60Z"
     table["Zeit"] = cells
     found = read(table, tmp_path)
     assert len(found.readings.time) == len(expected.readings.time) - 1
     assert "leap seconds left out: 1" in found.about.table
-
-
-def test_longitudes_from_0_to_360_are_places_as_those_from_minus_180(table, tmp_path):
-    table["lat"], table["lon"] = 27.5, 269.0
-    found = read(table, tmp_path, 'latitude = "lat"\nlongitude = "lon"\n')
-    assert found.about.first_position == (27.5, -91.0)

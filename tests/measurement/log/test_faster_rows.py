@@ -3,65 +3,47 @@
 import json
 
 import numpy as np
-import pandas as pd
 import pytest
 from crossings import crossings, plain_sniffer, read
-from logged_flights import run
+from logged_flights import flight_table, run
 
+from measurement.estimate.estimator import estimate
 from measurement.gases import GASES
-from measurement.log.read import new_readings, rows_per_reading
+from measurement.log.config import LogConfig
+from measurement.log.read import new_readings, read_flight, rows_per_reading
 from measurement.sniffer.sniffer import Readings
+from measurement.sniffer.spec import sensor_preset
 
 pytestmark = pytest.mark.slow
 
 COLUMNS = ["so2_ppb", "co2_ppm", "no_ppb", "no2_ppb"]
 
 
-def estimated(logged, capsys, table):
-    """Estimate a table; return what its directory and the console say."""
-    table.to_csv(logged, index=False)
-    assert run(logged) == 0
-    return json.loads(
-        (logged.parent / "out" / "estimate.json").read_text(encoding="utf-8")
-    ), capsys.readouterr().out
-
-
-def held(table, rows):
-    """Return a table of a row per second with so many rows a second, each with the last reading."""
-    faster = table.loc[np.floor(np.arange(rows * len(table)) / rows).astype(int)].reset_index(
-        drop=True
-    )
-    return faster.assign(time_s=np.arange(len(faster)) / rows)
-
-
-@pytest.mark.usefixtures("briefly")
 @pytest.mark.parametrize(("rows", "between"), [(2, "empty"), (10, "repeated")])
 def test_a_log_that_is_faster_than_its_sensors_has_the_estimate_of_their_readings(
     logged, capsys, rows, between
 ):
-    table = pd.read_csv(logged)
-    expected, words = estimated(logged, capsys, table)
-    assert "rows:" not in words
-    assert expected["gaps"]["log_rows"] == expected["gaps"]["rows"] == 301
-    faster = held(table, rows)
+    # A row per second, each with the last reading in all of the faster ones.
+    table = flight_table(rows=121).loc[np.repeat(np.arange(121), rows)]
+    table = table.reset_index(drop=True).assign(time_s=np.arange(121 * rows) / rows)
     if between == "empty":
-        faster.loc[np.arange(len(faster)) % rows != 0, COLUMNS] = np.nan
-    found, words = estimated(logged, capsys, faster)
+        table.loc[table.index % rows != 0, COLUMNS] = np.nan
+    # Two readings of NO2 are missing, each once.
+    table.loc[np.arange(70 * rows, 72 * rows), "no2_ppb"] = np.nan
+    table.to_csv(logged, index=False)
+    assert run(logged) == 0
+    words = capsys.readouterr().out
+    assert f"rows: {121 * rows:,}, of which 121 have a new reading" in words
+    assert "missing readings: 2 of NO2 in 121 rows" in words
+    found = json.loads((logged.parent / "out" / "estimate.json").read_text(encoding="utf-8"))
+    assert found["gaps"]["gaps"] == [[69.0, 72.0]]
+    plain = flight_table(rows=121)
+    plain.loc[[70, 71], "no2_ppb"] = np.nan
+    plain.to_csv(logged, index=False)
+    readings = read_flight(logged, LogConfig()).readings
+    expected = estimate(readings, sensor_preset("electrochemical")).record()
     # Readings and times are the same numbers.
-    assert found["estimate"] == expected["estimate"]
-    assert found["estimate"]["quality"] == "B"
-    assert f"rows: {301 * rows:,}, of which 301 have a new reading" in words
-    assert found["gaps"]["missing"] == expected["gaps"]["missing"]
-    assert found["gaps"]["gaps"] == []
-
-
-@pytest.mark.usefixtures("briefly")
-def test_a_reading_that_is_missing_between_faster_rows_is_missing_once(logged, capsys):
-    faster = held(pd.read_csv(logged), 10)
-    faster.loc[1000:1019, "so2_ppb"] = np.nan
-    found, words = estimated(logged, capsys, faster)
-    assert found["gaps"]["missing"]["so2"] == 2
-    assert "missing readings: 2 of SO2 in 301 rows" in words
+    assert found["estimate"] == json.loads(json.dumps(expected))
 
 
 @pytest.mark.parametrize("slow", ["so2", "co2"])

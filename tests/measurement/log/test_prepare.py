@@ -1,5 +1,6 @@
 """What is known beside a log: the speed of its ship, calibrations of gases that it has, humid air."""
 
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
 import numpy as np
@@ -10,7 +11,7 @@ from measurement.log.config import read_config
 from measurement.log.prepare import prepare
 from measurement.log.read import read_flight
 from measurement.log.ship import ShipTrack, speed_of
-from tests.measurement.log.test_calibration import calibrated
+from tests.measurement.log.zero_and_span import calibrated
 
 START = datetime(2026, 6, 1, 10, 0, tzinfo=UTC)
 METRES_PER_DEGREE = 111_195.0  # of latitude; other radii of the Earth differ by 0.13 %
@@ -45,24 +46,13 @@ def with_methane(logged, **columns):
 def test_the_speed_by_ais_is_that_of_the_track_during_the_log():
     begin = START.timestamp()
     assert speed_of(track(6.0), begin, begin + 300.0) == pytest.approx(6.0, rel=2e-3)
-    # A ship that slows down at the end of its track: only the log's time counts.
+    # A ship that stops at the end of its track: only the log's time counts.
     both = track(6.0, seconds=1800.0)
-    still = np.where(both.time > begin + 400.0, both.latitude[both.time <= begin + 400.0][-1], 0.0)
-    late = ShipTrack(
-        name="ship",
-        latitude=np.where(still > 0.0, still, both.latitude),
-        longitude=both.longitude,
-        time=both.time,
-    )
+    stopped = np.minimum(both.latitude, np.interp(begin + 400.0, both.time, both.latitude))
+    late = replace(both, latitude=stopped)
     assert speed_of(late, begin, begin + 300.0) == pytest.approx(6.0, rel=2e-3)
     assert speed_of(late, begin + 600.0, begin + 900.0) == pytest.approx(0.0, abs=1e-3)
-
-
-def test_a_track_of_another_time_or_a_single_place_has_no_speed():
-    begin = START.timestamp()
-    assert speed_of(track(6.0), begin + 9000.0, begin + 9300.0) is None
-    place = ShipTrack(name="berth", latitude=np.zeros(1), longitude=np.zeros(1), time=np.empty(0))
-    assert speed_of(place, begin, begin + 300.0) is None
+    assert speed_of(late, begin + 9000.0, begin + 9300.0) is None
 
 
 def test_an_engine_gets_the_speed_of_its_ship_unless_it_is_stated(logged):

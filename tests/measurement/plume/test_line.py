@@ -43,13 +43,3 @@ def test_parcels_are_where_the_realisation_has_its_centre():
     assert sample.age == pytest.approx(age, abs=0.05)
     assert sample.across == pytest.approx(sample.centre_across, abs=0.2)
     assert up == pytest.approx(sample.centre_height, abs=0.2)
-
-
-def test_the_line_begins_with_the_oldest_parcel_that_is_seen_at_the_start():
-    plume = plume_behind(turning(8.0, 4.0, 1.0, rate=0.0, until=300.0), **STILL)
-    line = plume.line(250.0, length=300.0, spacing=6.0)
-    assert np.diff(line.emitted) == pytest.approx(line.step)
-    assert -line.age_max <= line.emitted[0] < -line.age_max + line.step
-    assert 250.0 - line.step < line.emitted[-1] <= 250.0
-    # Length and spacing over the mean apparent wind.
-    assert line.age_max / line.step == pytest.approx(50.0)

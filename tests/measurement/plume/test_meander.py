@@ -33,39 +33,6 @@ def test_the_process_has_the_covariance_that_it_should():
     assert np.mean(values**4) == pytest.approx(3.0, abs=0.2)
 
 
-def test_means_over_long_ways_vary_as_the_integral_scale_says():
-    block, step = 40.0 * SCALE, 15.0
-    length = 2000 * block
-    values = Meander(length, SCALE, np.random.default_rng(6)).at(np.arange(0.0, length, step))
-    means = values.reshape(2000, -1).mean(axis=1)
-    # 2 SCALE/B (1 - 3 SCALE/4 B): the integral over the covariance, less what its tail loses at the
-    # ends. 2,000 variances are known to sqrt(2/2000) = 3.2 %; three times that.
-    assert np.var(means) == pytest.approx(
-        2.0 * SCALE / block * (1.0 - 0.75 * SCALE / block), rel=0.1
-    )
-
-
-def test_the_process_is_smooth_between_its_steps():
-    process = Meander(2000.0, SCALE, np.random.default_rng(1))
-    place = np.linspace(0.0, 1999.0, 200001)
-    slope = np.diff(process.at(place)) / np.diff(place)
-    # No corner: from one centimetre to the next the slope changes by what white noise of its
-    # stationary strength gives; it has a standard deviation of 1/L = 0.022 and changes by 4
-    # noise^(1/2) at most, of which a corner would be a hundred times as much.
-    assert np.abs(np.diff(slope)).max() < 5e-4
-    # Stationary slope: variance 1/L^2 (about 22 independent stretches).
-    assert np.std(slope) == pytest.approx(2.0 / SCALE, rel=0.4)
-
-
-def test_it_is_stationary_from_its_first_place_on():
-    first = np.array(
-        [Meander(10.0, SCALE, np.random.default_rng(k)).at(np.zeros(1))[0] for k in range(2000)]
-    )
-    # Standard errors of 2,000: 0.022 and 0.032; three of them.
-    assert np.mean(first) == pytest.approx(0.0, abs=0.07)
-    assert np.var(first) == pytest.approx(1.0, abs=0.1)
-
-
 @pytest.mark.parametrize(("name", "scale"), [("across", 2.5 * HEIGHT), ("up", 0.5 * HEIGHT)])
 def test_successive_crossings_are_correlated_as_the_integral_scale_says(name, scale):
     wind, interval, until = 3.0, 9.5, 60000.0

@@ -66,29 +66,6 @@ def test_both_arms_of_a_folded_line_are_added():
     assert np.ptp(sample.age) > 60.0
 
 
-def test_the_axis_is_where_its_parcels_are():
-    of = plume_behind(turning(8.0, 5.0, 1.5), **SETTINGS)
-    age = np.linspace(5.0, 240.0, 48)
-    north, east, up = of.axis(200.0, age)
-    sample = of.sample(np.full(48, 200.0), north, east, up)
-    # Where no other arm is nearer in its spreads.
-    own = np.abs(sample.age - age) < 1e-3
-    assert own.mean() > 0.9
-    np.testing.assert_allclose(sample.across[own], 0.0, atol=1e-5)
-    np.testing.assert_allclose(sample.axis_height[own], up[own], rtol=1e-6)
-
-
-def test_mass_per_length_of_the_line_follows_the_wind_that_the_parcel_met():
-    # The ship steams at 8 m/s in 4 m/s of wind from ahead and, after its turn, from astern: 12 and
-    # then 4 m/s of apparent wind.
-    track = turning(8.0, 4.0, np.pi, rate=0.05)
-    parcels = Parcels(*track, 1.0)
-    _, _, wind = parcels.at(np.array([-100.0, 200.0]))
-    np.testing.assert_allclose(wind, [12.0, 4.0], rtol=1e-9)
-    path = parcels.path(np.array([-100.0, 0.0, 150.0, 250.0]))
-    np.testing.assert_allclose(path[[1, 3]] - path[[0, 2]], [1200.0, 400.0], rtol=1e-3)
-
-
 def test_every_nearest_parcel_is_found_once():
     """Against a search over a fine grid: places about a line that folds, and what an exhaustive
     search finds.
@@ -107,17 +84,3 @@ def test_every_nearest_parcel_is_found_once():
         times = np.sort(found.emitted[found.place == i])
         # To the grid's step.
         np.testing.assert_allclose(times, lowest, atol=0.06)
-
-
-def test_smoke_of_a_course_that_jumps_still_has_a_nearest_parcel_everywhere():
-    # A track of two legs with a corner of 60 degrees, given as three points.
-    track = (
-        np.array([-200.0, 0.0, 100.0]),
-        np.array([-1600.0, 0.0, 400.0]),
-        np.array([0.0, 0.0, 692.8]),
-    )
-    of = plume_behind(track, **SETTINGS)
-    north, east, up = of.axis(90.0, np.linspace(0.5, 200.0, 400))
-    sample = of.sample(np.full(400, 90.0), north, east, up)
-    assert np.isfinite(sample.age).all()
-    assert (sample.dilution > 0.0).all()

@@ -130,12 +130,16 @@ def _per_ppm(kind: str, truth: float, carbon: float, burnt: float, air_c: float)
     return truth * kilograms * (1e15 / 1e6 if kind == "pn" else 1e9)
 
 
-def simulate_gas(kind: str, seed: int, number: int) -> GasLog:
+LONGEST_S = 360.0
+"""Longest log [s]."""
+
+
+def simulate_gas(kind: str, seed: int, number: int, longest_s: float = LONGEST_S) -> GasLog:
     """Return a log of a gas of ``KINDS``."""
     streams = (np.random.default_rng([seed, number, 10 + stream]) for stream in range(3))
     flight_numbers, ship, noise = streams
     flight = random_flight(flight_numbers, REGIMES["quiet"])
-    flight = replace(flight, duration_s=min(flight.duration_s, 360.0))
+    flight = replace(flight, duration_s=min(flight.duration_s, longest_s))
     stated = _channels(kind, ship)
     carbon = ship.uniform(0.85, 0.875) if kind != "ch4" else ship.uniform(0.74, 0.76)
     known: dict[str, Any] = {}
@@ -191,11 +195,11 @@ def _read(
 # Estimates
 
 
-def estimated(kind: str, seed: int, number: int) -> dict[str, Any]:
+def estimated(kind: str, seed: int, number: int, longest_s: float = LONGEST_S) -> dict[str, Any]:
     """Return the estimate of a log beside its truth, as a row of a table."""
     from tests.measurement.simulator.gas_estimate import estimate_log
 
-    log = simulate_gas(kind, seed, number)
+    log = simulate_gas(kind, seed, number, longest_s)
     found = estimate_log(kind, log)
     verdict = "" if found.verdict is None else found.verdict.verdict
     above = log.truth > log.limit
@@ -216,9 +220,9 @@ def estimated(kind: str, seed: int, number: int) -> dict[str, Any]:
     }
 
 
-def run(kind: str, numbers: Iterable[int], seed: int) -> pd.DataFrame:
+def run(kind: str, numbers: Iterable[int], seed: int, longest_s: float = LONGEST_S) -> pd.DataFrame:
     """Return the estimates of logs, a row for each number."""
-    return pd.DataFrame([estimated(kind, seed, number) for number in numbers])
+    return pd.DataFrame([estimated(kind, seed, number, longest_s) for number in numbers])
 
 
 def summary(table: pd.DataFrame) -> dict[str, Any]:
