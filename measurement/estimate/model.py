@@ -324,8 +324,9 @@ class Property:
 _UNITS = {"t90_s": 0.05, "delay_s": 0.1}
 """Units of properties that are not stated: of log(t90), and of the delay [s]."""
 
-_NOT_STATED = 300.0
-"""Standard deviation of such a property [units]."""
+_NOT_STATED = {"t90_s": 32.0, "delay_s": 100.0}
+"""Standard deviation of such a property [units]: of a log(t90) and a delay that may lie anywhere in
+the ranges of the search."""
 
 
 def with_delay(instrument: SnifferSpec, gas: str, delay_s: float) -> SnifferSpec:
@@ -349,7 +350,9 @@ def uncertain_properties(instrument: SnifferSpec) -> list[Property]:
         channel = instrument.known(gas)
         for name, deviation in (("t90_s", channel.t90_sd), ("delay_s", channel.delay_sd_s)):
             if math.isinf(deviation):
-                found.append(Property(gas=gas, name=name, unit=_UNITS[name], prior=_NOT_STATED))
+                found.append(
+                    Property(gas=gas, name=name, unit=_UNITS[name], prior=_NOT_STATED[name])
+                )
             elif deviation > 0.0:
                 found.append(Property(gas=gas, name=name, unit=deviation, prior=1.0))
     return found
