@@ -540,8 +540,10 @@ def _least(cost_of_t90: Callable[[float], float], log_t90: float) -> float:
     best = float(grid[np.argmin([cost(value) for value in grid])])
     step = float(np.diff(_T90_GRID)[0])
     beside = max(least, best - step), min(most, best + step)
-    options = {"xatol": _T90_TOLERANCE}
-    return float(minimize_scalar(cost, bounds=beside, method="bounded", options=options).x)
+    found = minimize_scalar(
+        cost, bounds=beside, method="bounded", options={"xatol": _T90_TOLERANCE}
+    )
+    return float(found.x)
 
 
 def _of_passes_that_stand_out(
