@@ -1,5 +1,5 @@
 """The run of a flight at a place on earth, which the tests of exports share."""
 
-from tests.reports.export.conftest import run_path, sniffed, truth
+from tests.reports.export.conftest import run_path, truth
 
-__all__ = ["run_path", "sniffed", "truth"]
+__all__ = ["run_path", "truth"]
