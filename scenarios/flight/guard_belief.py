@@ -20,8 +20,8 @@ class GuardBelief:
     Parameters
     ----------
     guidance, guard : of the flight
-    vessel : true motion of the vessel; of the guard's discs, the one is recorded in which the
-        vessel has least room
+    vessel : true motion of the vessel; the recorded disc is the one of the guard's discs in which
+        the vessel has least room
     time_step : of the guidance [s]
     """
 
