@@ -164,7 +164,7 @@ def _check_reports(vessel: AisVessel, limits: VesselLimits, duration: float) -> 
 
     Parameters
     ----------
-    vessel : its reports, and the track
+    vessel : vessel with its reports and its smooth track
     limits : declared limits of both, including the errors
     duration : of the longest flight [s]
     """

@@ -1,6 +1,6 @@
 """The keep-out margin of a flight in operational conditions: the distance of its orbit from the
-keep-out area at which errors very rarely carry the aircraft into the area, and the guard does not
-act.
+keep-out area. At this distance errors carry the aircraft into the area very rarely, and the guard
+does not act.
 
 The margin has three parts.
 
