@@ -130,7 +130,9 @@ class Findings:
         return {key: self.row[key] for key in ("flight_id", "trial", "variant")}
 
     def add_request(self, request: FlightRequest, labels: Mapping[str, str]) -> None:
-        """Add what is known before the flight is planned; ``labels`` are those of its task."""
+        """Add the entries that are known before the flight is planned; ``labels`` are those of its
+        task.
+        """
         self.row |= _request_row(request)
         inputs = {key: _cell(value) for key, value in request.inputs.items()}
         self.tables[DRAWS] = [{**self.named, "nu": self.row.get("nu"), **labels, **inputs}]
@@ -330,7 +332,7 @@ class FlightRunner:
         return replace(self._result(task, findings), lost=True)
 
     def setup_of(self, request: FlightRequest) -> VehicleSetup:
-        """Return what a flight needs of its vehicle."""
+        """Return the vehicle's data that a flight needs."""
         if self.setup is None or request.scenario.fidelity == "kinematic":
             return kinematic_setup(request.scenario)
         return self.setup

@@ -243,7 +243,7 @@ class Companion:
         return 0.01 * value if name == "LIM_ROLL_CD" else value
 
     def check_limits(self, setup: VehicleSetup, heading_rate_max: float, altitude: float) -> None:
-        """Refuse a vehicle whose limits are narrower than what the guidance may command.
+        """Refuse a vehicle whose limits are narrower than the range of the guidance's commands.
 
         Raises
         ------

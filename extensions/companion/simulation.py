@@ -406,7 +406,7 @@ class Server:
         return "time is up"
 
     def answer(self, timeout: float) -> str:
-        """Take the messages in lockstep, after waiting for at most a time [s], and go on to the
+        """Receive the messages in lockstep, waiting for at most a time [s], and advance to the
         requested time; return why the aircraft is lost, or an empty text.
         """
         self._serve(timeout)
@@ -451,7 +451,7 @@ class Server:
         return mavlink.MAVLink_system_time_message(self._request, round(1e3 * self._asked_for))
 
     def _serve(self, timeout: float) -> None:
-        """Take the arriving messages, after waiting for at most a time [s]."""
+        """Receive the arriving messages, waiting for at most a time [s]."""
         for peer, message in self._port.receive(timeout):
             self._take(peer, message)
 

@@ -1,5 +1,5 @@
-"""The report of patrols: how many ships were served, with what verdicts, when, and what an oracle
-would have done.
+"""The report of patrols: the number of ships served, the verdicts and their times, and the results
+of an oracle.
 """
 
 import math

@@ -1,5 +1,5 @@
-"""Random variables: the sample of each flight, from the trial's seed and the flight's number
-alone.
+"""Random variables: the sample of each flight, which follows only from the trial's seed and the
+flight's number.
 """
 
 import math
@@ -127,8 +127,8 @@ def speed_ratios(flight: Scenario) -> tuple[float, float]:
 
 
 def has_speed_ratio(flight: Scenario) -> bool:
-    """Return whether a flight's speed ratios lie within those that are declared: otherwise it is
-    sampled again.
+    """Return whether a flight's speed ratios lie within the declared range; otherwise it is sampled
+    again.
     """
     (low, high), (least, most) = flight.speed_ratio, speed_ratios(flight)
     return low <= least and most <= high

@@ -118,7 +118,7 @@ class Settling:
         y: float,
         axis: float,
     ) -> bool:
-        """Take note of a sample; return whether the flight was complete at the sample before.
+        """Record a sample; return whether the flight was complete at the sample before.
 
         Parameters
         ----------

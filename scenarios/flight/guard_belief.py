@@ -66,7 +66,7 @@ class GuardBelief:
         self._commanded = 0.0
 
     def command(self, heading_rate: float) -> None:
-        """Take note of the heading rate over the mean air that is flown for a step [rad/s]."""
+        """Record the heading rate over the mean air that is flown for a step [rad/s]."""
         self._commanded += self._time_step * heading_rate
 
     def read(

@@ -30,8 +30,8 @@ class Instrument(Protocol):
 
     Attributes
     ----------
-    COLUMNS : of the time history that it fills: a mapping from their names to ``Column`` of
-        ``common.columns``, or to their meanings, or their names alone, which end in their units, as
+    COLUMNS : columns of the time history that it fills: a mapping from their names to ``Column`` of
+        ``common.columns`` or to their meanings, or only their names, which end in their units, as
         in ``so2_ppb``. Reports of a flight have a panel for each
     """
 

@@ -288,7 +288,7 @@ def flown_presets() -> tuple[str, ...]:
 
 
 def _choices() -> tuple[str, ...]:
-    """Return what a sensor may be, in words."""
+    """Return the possible values of a sensor, in words."""
     return (*flown_presets(), "a table")
 
 

@@ -3,7 +3,7 @@ empty cell.
 
 A new column is one entry here, or in the part that fills it (``scenarios.instruments``,
 ``scenarios.measures.window``, ``scenarios.studies``): the header of the file, ``columns.json``, the
-page of the reference, and names and units in reports follow. "Settled" is said of the flight from
+page of the reference, and names and units in reports follow. "Settled" refers to the flight from
 its settling time on.
 """
 

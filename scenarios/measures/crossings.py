@@ -86,7 +86,8 @@ def find_crossings(
 
 
 def _roots(time: Array, across: Array, rate: Array) -> Array:
-    """Return when the cubic through values and their rates is 0 [s], in order; all shapes (n,).
+    """Return the times at which the cubic through values and their rates is 0 [s], in order; all
+    shapes (n,).
 
     Between samples a cubic stays within its Bernstein coefficients; roots are computed only where
     these have both signs.

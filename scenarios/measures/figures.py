@@ -119,7 +119,7 @@ def _fault_row(faults: Faults) -> Row:
 
 
 def _place_row(place: Place) -> Row:
-    """Return where and when the flight began, as far as that is known."""
+    """Return place and time of the flight's start, as far as they are known."""
     row: Row = {}
     if math.isfinite(place.latitude):
         row |= {
@@ -201,7 +201,8 @@ def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Cr
 
 
 def _yielded(record: FlightRecord, to_reference: Array, band: float) -> Mask:
-    """Return when a flight gives way to other ships, or is on its way back from there.
+    """Return the samples at which a flight gives way to other ships, or is on its way back
+    afterwards.
 
     Parameters
     ----------
@@ -243,7 +244,7 @@ def _modes(record: FlightRecord) -> list[str]:
 def _tracking_figures(
     plan: FlightPlan, record: FlightRecord, beside: Mask, to_reference: Array
 ) -> Row:
-    """Measure what a settled flight does until it leaves, with a vessel or without."""
+    """Measure a settled flight until it leaves, with a vessel or without."""
     column = record.column
     airspeed_error = (column("airspeed_mps") - column("airspeed_command_mps"))[beside]
     altitude_error = (column("altitude_m") - column("altitude_command_m"))[beside]
