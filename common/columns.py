@@ -1,7 +1,8 @@
 """Description of the columns of a run's tables: titles, units and meanings.
 
 The code that fills a column declares it once, by name, with a ``Column``. A user's instrument or
-study does the same. A run keeps its columns in ``columns.json``, which reports and exports read.
+study declares its columns in the same way. A run keeps its columns in ``columns.json``, which
+reports and exports read.
 """
 
 import math

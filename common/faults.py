@@ -1,4 +1,4 @@
-"""The columns of a flight's faults in the summary, for the rooms that fill and that read them."""
+"""The columns of a flight's faults in the summary, for the packages that fill and read them."""
 
 import math
 from collections.abc import Mapping

@@ -83,11 +83,11 @@ class ShipHull:
         return distance
 
     def around(self, radius: float, bearing: Array) -> tuple[Array, Array]:
-        """Return the edge of all that is within a radius of the outline, ahead of the funnel and to
-        starboard of it: on each bearing, clockwise from the bow, where it is farthest out [m].
+        """Return the edge of the area within a radius of the outline, as points ahead of the funnel
+        and to starboard of it: the farthest point on each bearing, clockwise from the bow [m].
 
-        Between two corners the edge is straight: with the first point again at the end, bearings
-        once round make it whole.
+        Between two corners the edge is straight. The first point is repeated at the end, so that
+        bearings once round give a closed curve.
         """
         ahead, right = np.cos(bearing), np.sin(bearing)
         corners = self.corners()

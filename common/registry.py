@@ -103,7 +103,9 @@ class Registry(Generic[Part]):
         return sorted({*builtin, *announced(self.kind)})
 
     def __contains__(self, name: str) -> bool:
-        """Return whether a name is known; installed packages are searched last, because of time."""
+        """Return whether a name is known; installed packages are searched last, because that takes
+        time.
+        """
         return name in self._known() or name in announced(self.kind)
 
     def get(self, name: str) -> Part:

@@ -1,8 +1,8 @@
-"""The one reader of tables that people give: AIS reports, winds and logs of sniffers.
+"""The reader of all tables that users give: AIS reports, winds and logs of sniffers.
 
-A table is text: a head that names the columns, perhaps below lines of its own, and rows.
-Separator, decimal mark, encoding, comment lines and a row of units are found, or are given where
-they cannot be (``TableFormat``). ``Table.described`` says in one line what was found.
+A table is text: a head with the names of the columns, perhaps below other lines, and rows.
+Separator, decimal mark, encoding, comment lines and a row of units are found automatically, or the
+user gives them (``TableFormat``). ``Table.described`` says in one line what was found.
 
 Lines are counted as in an editor, from 1.
 """
@@ -41,7 +41,8 @@ class TableError(ValueError):
 
 @dataclass(frozen=True, kw_only=True)
 class TableFormat:
-    """How a table is written, as far as it is given; what is None is found.
+    """The format of a table, as far as it is given; an attribute that is None is found
+    automatically.
 
     Attributes
     ----------
@@ -59,7 +60,7 @@ class TableFormat:
     time_unit: str | None = None
 
     def given(self) -> list[str]:
-        """Return the names of what is not None."""
+        """Return the names of the attributes that are not None."""
         return [each.name for each in fields(self) if getattr(self, each.name) is not None]
 
 
@@ -72,7 +73,7 @@ def table_format(given: Mapping[str, Any]) -> TableFormat:
 
     Raises
     ------
-    TableError : it has an unknown key or a value of no use
+    TableError : it has an unknown key or an unusable value
     """
     known = [each.name for each in fields(TableFormat)]
     for key, value in given.items():
@@ -106,12 +107,12 @@ def table_format(given: Mapping[str, Any]) -> TableFormat:
 
 
 def _is_mark(separator: str) -> bool:
-    """Return whether a text can stand between columns, and in no number."""
+    """Return whether a text can separate columns and is not part of a number."""
     return len(separator) == 1 and not separator.isalnum() and separator not in "\"'.-+"
 
 
 def _check_dated(pattern: str) -> None:
-    """Raise a TableError for a format of times by which days or years are the same."""
+    """Raise a TableError for a format of times that has no day, month or year."""
     try:
         days = {datetime(*day, tzinfo=UTC).strftime(pattern) for day in _DAYS}
     except ValueError:
@@ -136,10 +137,10 @@ class Moments:
     seconds : since 1970 in UTC, or since the table's own zero, shape (n,) [s]; NaN where a row has
         none, and where it names a leap second
     dated : whether they are since 1970
-    offset : whether the table says what they are off UTC; those without are taken as UTC
+    offset : whether the table gives their offset from UTC; times without one are taken as UTC
     leap : number of rows with a leap second
-    plain : whether they are numbers of seconds in the table
-    numeric : whether they are numbers
+    plain : whether the table has them as numbers of seconds
+    numeric : whether the table has them as numbers
     """
 
     seconds: Array
@@ -158,11 +159,11 @@ class Table:
     ----------
     names : of the columns as they stand in the head, without blanks around them
     rows : cells without blanks around them, as many as there are names; short rows end empty
-    lines : of the file that the rows stand in, shape (n,)
-    head_line : that the head stands in
+    lines : line of the file for each row, shape (n,)
+    head_line : line of the head
     units : of columns, by their names, from a row of units or from the head
-    format : by which it was read: nothing in it is None but what no column needed
-    decimal_given : whether the mark of decimals was given: the other one is then of thousands
+    format : format by which it was read; an attribute is None only if no column needed it
+    decimal_given : whether the decimal mark was given; the other mark then separates thousands
     """
 
     names: list[str]
@@ -211,7 +212,7 @@ class Table:
         Parameters
         ----------
         name : of the column
-        words : whether words are NaN as well, in a table whose rows may say nothing
+        words : whether words count as NaN, for a table whose rows may have no value
 
         Raises
         ------
@@ -239,7 +240,7 @@ class Table:
         """Return cells as numbers, NaN where a cell is no number, shape (n,)."""
         decimal = self.format.decimal
         other = "." if decimal == "," else ","
-        # A column that has the other mark anywhere but at thousands has it for decimals.
+        # A column that has the other mark anywhere except at thousands uses it for decimals.
         given = self.decimal_given and all(
             _GROUPED.fullmatch(cell) for cell in cells if other in cell
         )
@@ -248,10 +249,10 @@ class Table:
     def times(self, name: str, *, day: date | None = None, usual: str = "") -> Moments:
         """Return a column as times.
 
-        Numbers are seconds, or what ``time_unit`` or the column's own unit says; from 1979 on they
-        are since 1970, as far as the unit is known or they are milliseconds or microseconds by
-        their size. A time of day is of the ``day``, and goes on over midnight.
-        ``usual`` is the format of tables of this kind, used where the user gives none.
+        Numbers are seconds, or have the unit of ``time_unit`` or of the column. Times from 1979 on
+        count since 1970, if the unit is known or their size shows milliseconds or microseconds.
+        Times of day belong to ``day``, and continue over midnight. ``usual`` is the format of
+        tables of this kind, used if the user gives none.
 
         Raises
         ------
@@ -317,14 +318,14 @@ def read_table(
     Parameters
     ----------
     path : of the file
-    given : how it is written, as far as that is known
-    keep : which lines below the head are read; all if not given. Of files of a day with millions of
-        lines those of others are passed over as they are
-    head : names of columns; the head has some of them, and lines above it have not
+    given : format of the table, as far as it is known
+    keep : test whether to read a line below the head; by default all lines are read. In a day's
+        file with millions of lines, the lines of other ships are skipped unread
+    head : names of columns, some of which are in the head and not in lines above it
 
     Raises
     ------
-    TableError : the file is no table as text. The message does not name the file
+    TableError : the file is not a table in text. The message does not name the file
     OSError : it cannot be opened
     """
     encoding, text = _opened(path, given.encoding)
@@ -417,7 +418,7 @@ def _chained(
     yield from rest
 
 
-# What the file is made of
+# The bytes of the file
 
 
 def _unzipped(path: Path) -> Any:
@@ -435,10 +436,10 @@ _PACKED: Mapping[bytes, Callable[[Path], Any]] = {
 
 
 def _opened(path: Path, given: str | None) -> tuple[str, io.TextIOWrapper]:
-    """Return a file's encoding and its text, unpacked where it is packed."""
+    """Return a file's encoding and its text, unpacked if it is compressed."""
     with path.open("rb") as file:
         begins = file.read(4)
-    # Whoever gets the text closes it, and with it the file.
+    # The caller closes the text, and with it the file.
     unpack: Callable[[Path], Any] = next(
         (how for magic, how in _PACKED.items() if begins.startswith(magic)),
         lambda plain: plain.open("rb"),
@@ -460,13 +461,15 @@ def _opened(path: Path, given: str | None) -> tuple[str, io.TextIOWrapper]:
 
 
 def _encoding(begin: bytes) -> str:
-    """Return the encoding of a text by its first bytes: Latin-1 is what is not UTF-8."""
+    """Return the encoding of a text by its first bytes; a text that is not UTF-8 is taken as
+    Latin-1.
+    """
     if begin.startswith(codecs.BOM_UTF8):
         return "utf-8-sig"
     if begin.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return "utf-16"
     if begin and len(begin) > 3:
-        # Of text in Latin letters every second byte is 0.
+        # In UTF-16, every second byte of text in Latin letters is 0.
         for start, name in ((1, "utf-16-le"), (0, "utf-16-be")):
             if begin[start::2].count(0) > 0.4 * len(begin):
                 return name
@@ -489,7 +492,7 @@ def _cells(line: str, separator: str, number: int = 0) -> list[str]:
 
 
 def _loose_cells(line: str, separator: str) -> list[str]:
-    """Return the cells of a line without regard to quotation marks that are not closed."""
+    """Return the cells of a line; quotation marks that are not closed are ignored."""
     if separator == "whitespace":
         return line.split()
     _refuse_endless(line)
@@ -514,10 +517,11 @@ def _uncommented(line: str) -> str:
 
 
 def _layout(lines: list[str], given: str | None, head: Sequence[str]) -> tuple[str, int]:
-    """Return the separator, and the place of the head among the first lines.
+    """Return the separator, and the index of the head among the first lines.
 
-    Those are taken by which most lines have as many cells as the head; where several do, the one
-    with more columns. A head with a name that is looked for comes before any other.
+    Most of the following lines have as many cells as the head; if several separators or heads are
+    equally good, the one with more columns is taken. A head with one of the requested names is
+    preferred to any other.
     """
     wanted = {name.lower() for name in head}
     best = (-1.0, 0, 0, ",")
@@ -533,7 +537,7 @@ def _layout(lines: list[str], given: str | None, head: Sequence[str]) -> tuple[s
                 for is_row, row in zip(rows[place + 1 :], cells[place + 1 :], strict=True)
             )
             named = bool(wanted & {name.strip().lower() for name in names})
-            # A comment is a head only if nothing else would be one: of rows it is the first.
+            # A comment is taken as the head only if no other line can be the head.
             score = named + (fitting + rows[place] + 0.5) / (sum(rows) + 1.0)
             best = max(best, (score, -place, count, separator), key=lambda of: of[:3])
     if given and best[0] < 0.0:
@@ -550,7 +554,7 @@ def _filled(cells: Sequence[str]) -> int:
 
 
 def _fits_head(row: Sequence[str], count: int) -> bool:
-    """Return whether a row has as many cells as the head, but for separators at its end."""
+    """Return whether a row has as many cells as the head; separators at its end do not count."""
     return len(row) >= count >= _filled(row)
 
 
@@ -577,11 +581,11 @@ _GROUPED = re.compile(
 
 
 def _decimal(rows: Sequence[Sequence[str]], separator: str) -> str:
-    """Return the mark of decimals: a comma where numbers have one, and none has a point alone.
+    """Return the decimal mark: a comma if some numbers have a comma, and none has only a point.
 
     Raises
     ------
-    TableError : every comma may as well stand for thousands
+    TableError : every comma might also separate thousands
     """
     commas = points = ambiguous = 0
     for row in rows[: 25 * _LOOKED_AT]:
@@ -610,7 +614,7 @@ def _decimal(rows: Sequence[Sequence[str]], separator: str) -> str:
 
 
 def _number(cell: str, decimal: str | None, *, given: bool = False) -> float:
-    """Return the number in a cell; NaN where it holds none.
+    """Return the number in a cell; NaN if it has none.
 
     ``given`` is whether the mark of decimals was given, and not found: only then a lone group of
     three digits behind the other mark is sure to be of thousands.
@@ -631,7 +635,7 @@ def _number(cell: str, decimal: str | None, *, given: bool = False) -> float:
 
 
 def _has_thousands(grouped: re.Match[str], decimal: str, *, given: bool) -> bool:
-    """Return whether the mark between groups of three digits can be that of thousands alone."""
+    """Return whether the mark between groups of three digits can only separate thousands."""
     mark, rest = grouped["mark"], grouped["rest"]
     if mark == decimal or (rest is not None and rest[0] != decimal):
         return False
@@ -639,7 +643,7 @@ def _has_thousands(grouped: re.Match[str], decimal: str, *, given: bool) -> bool
 
 
 def _other_decimal(cell: str, decimal: str | None) -> str:
-    """Return the remedy for a number with the other decimal mark; empty for other words."""
+    """Return the remedy for a number with the other decimal mark; empty for any other text."""
     if decimal == "." and _WITH_COMMA.fullmatch(cell):
         return f"; write decimals with one mark, as in {cell.replace(',', '.')}"
     return ""
@@ -728,7 +732,9 @@ def _times(table: Table, name: str, day: date | None, pattern: str) -> Moments:
 
 
 def _since_1970(moments: Any) -> Array:
-    """Return the seconds since 1970 of moments that pandas has read, NaN for those it has not."""
+    """Return the seconds since 1970 of times that pandas has read; NaN for times that it could not
+    read.
+    """
     # Nanoseconds would end in the year 2262, and begin again in 1677.
     whole = moments.to_numpy(dtype="datetime64[us]")
     seconds: Array = whole.astype(np.int64) / 1e6
@@ -773,7 +779,7 @@ def _numeric_times(table: Table, name: str, numbers: Array) -> Moments:
         )
     if unit is None:
         unit, other = (_time_unit_by_size(of) for of in (least, float(np.max(known))))
-        # Times of the table's own zero may be as large as they like.
+        # Times since the table's own zero may have any size.
         if unit != other and least >= _UNIX_FROM:
             raise TableError(
                 f"times in column '{name}' go from {least:.10g} to {np.max(known):.16g}, {unit} and"
@@ -786,12 +792,12 @@ def _numeric_times(table: Table, name: str, numbers: Array) -> Moments:
 
 
 def _time_unit_by_size(number: float) -> str:
-    """Return the unit of a time since 1970, or of a table of its own, by how large it is."""
+    """Return the unit of a time since 1970, or since the table's own zero, from its size."""
     return next((unit for size, unit in _BY_SIZE if number >= size), "s")
 
 
 def _time_unit_in(table: Table, name: str) -> str | None:
-    """Return the unit of a column of times, as its name or the row of units has it."""
+    """Return the unit of a column of times, from its name or from the row of units."""
     unit = table.units.get(name, "").replace("µ", "u")
     return unit if unit in _TIME_UNITS and unit != "s" else None
 
@@ -883,18 +889,18 @@ def unit_factor(
     temperature_c: float = MASS_TEMPERATURE_C,
     pressure_hpa: float = MASS_PRESSURE_HPA,
 ) -> float:
-    """Return by what a value in a unit is multiplied to be in another one.
+    """Return the factor that converts a value from one unit to another.
 
     Parameters
     ----------
-    unit, to : as "ppb", "m s**-1", "m s-1", "meters/second", "ug/m3"; "ppb", "ppm" and "%" are mole
-        fractions
-    gas : of a mass per volume of air, as in "so2"
-    temperature_c, pressure_hpa : of the air that such a mass is in
+    unit, to : such as "ppb", "m s**-1", "m s-1", "meters/second", "ug/m3"; "ppb", "ppm" and "%" are
+        mole fractions
+    gas : gas of a mass per volume of air, such as "so2"
+    temperature_c, pressure_hpa : of the air with such a mass
 
     Raises
     ------
-    TableError : it is no unit, or one of another quantity
+    TableError : a text is not a unit, or the units are of different quantities
     """
     if unit == to:
         return 1.0
@@ -910,7 +916,7 @@ def unit_factor(
             moles = given.to("g/m**3").magnitude / _MOLAR_MASS[gas]
             share = moles * _GAS_CONSTANT * kelvin / pascal
             given = registry.Quantity(share, "dimensionless")
-        # Powers of ten without what their floating point leaves.
+        # Powers of ten without rounding errors.
         return float(f"{given.to(wanted.units).magnitude:.12g}")
     except pint.DimensionalityError:
         raise TableError(f"'{unit}' is no unit of this quantity, which is in {to}") from None
@@ -936,7 +942,7 @@ _registries: list[Any] = []
 
 
 def _registry() -> Any:
-    """Return the registry of units, made once: to load it takes half a second."""
+    """Return the registry of units, made once, because loading it takes half a second."""
     if not _registries:
         import pint
 
@@ -974,9 +980,9 @@ def _unit_row(
 
 
 def longitude_within(degrees: Array) -> Array:
-    """Return longitudes from -180 up to 180; given are those, or 0 to 360 [deg].
+    """Return longitudes from -180 up to 180, from such longitudes or from 0 to 360 [deg].
 
-    What is beyond both stays as it is.
+    Values beyond both ranges stay unchanged.
     """
     values = np.asarray(degrees, dtype=np.float64)
     return np.where((values >= 180.0) & (values <= 360.0), values - 360.0, values)
@@ -992,16 +998,16 @@ MISTAKES: Mapping[str, Callable[[Any, Any], tuple[Any, Any]]] = {
 
 
 class Jump(NamedTuple):
-    """A way between two rows that is too long for the time between them.
+    """A distance between two rows that is too long for the time between them.
 
     Attributes
     ----------
     before, after : indices of the rows
     distance, seconds : between them [m, s]
     speed_max : fastest that was allowed [m/s]
-    number : of such jumps in the table
-    mistake : what makes the later place fit to the earlier one, as "latitude and longitude
-        exchanged"; empty if nothing of the kind does
+    number : number of such jumps in the table
+    mistake : probable mistake, such as "latitude and longitude exchanged"; without it the later
+        place would fit to the earlier one. Empty if no known mistake explains the jump
     """
 
     before: int
@@ -1013,7 +1019,7 @@ class Jump(NamedTuple):
     mistake: str
 
     def described(self, lines: Sequence[Any] | npt.NDArray[Any]) -> str:
-        """Return in words what is wrong; ``lines`` of the file are those that rows stand in."""
+        """Return the error in words; ``lines`` has the line of the file for each row."""
         more = f" (1 of {self.number} such jumps)" if self.number > 1 else ""
         fits = f"; the two fit together with {self.mistake}" if self.mistake else ""
         return (
@@ -1031,15 +1037,15 @@ def find_jumps(
     error: float,
     degrees: tuple[Array, Array] | None = None,
 ) -> list[Jump]:
-    """Return the jumps of a track: ways between rows that are longer than the fastest go.
+    """Return the jumps of a track: distances between rows that are too long for ``speed_max``.
 
     Parameters
     ----------
     time : of the rows, rising, shape (n,) [s]
     place : in any metres, on a plane or Earth-fixed, NaN where there is none, shape (n, 2 or 3) [m]
-    speed_max : that ships or aircraft have [m/s]
+    speed_max : largest speed of ships or aircraft [m/s]
     error : largest error of a place [m]
-    degrees : latitude and longitude, shape (n,) each, by which a mistake is recognised [deg]
+    degrees : latitude and longitude, shape (n,) each, from which a mistake is recognised [deg]
     """
     rows = np.flatnonzero(np.isfinite(place).all(axis=1))
     # A receiver may be slower than the table: only the first row of a new place counts.
@@ -1064,7 +1070,9 @@ def find_jumps(
 
 
 def _mistake(degrees: tuple[Array, Array], before: int, after: int, reach: float) -> str:
-    """Return what brings a place within reach [m] of the one before it, empty if nothing does."""
+    """Return the mistake that explains why a place is beyond reach [m] of the one before it; empty
+    if none does.
+    """
     latitude, longitude = (float(values[after]) for values in degrees)
     if not math.isfinite(latitude + longitude):
         return ""

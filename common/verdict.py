@@ -124,7 +124,7 @@ class Counts:
 
     @property
     def beside(self) -> int:
-        """Number of done flights beside a vessel: flights with a keep-out area."""
+        """Number of done flights that have a keep-out area, because they are beside a vessel."""
         return self.done - self.no_area
 
 

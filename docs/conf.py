@@ -15,7 +15,7 @@ sys.path[:0] = [str(ROOT), str(Path(__file__).parent / "_ext")]
 os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))
 # Signatures and docstrings are those of the sources.
 os.environ["PLUME_FLIGHT_SOURCES"] = "1"
-# They are the same whatever a user has set up for IPython, and say nothing that is no error.
+# The tutorials do not depend on the user's settings of IPython, and their log has only errors.
 _ipython = tempfile.TemporaryDirectory(prefix="ipython-")
 os.environ["IPYTHONDIR"] = _ipython.name
 _profile = Path(_ipython.name) / "profile_default"

@@ -31,7 +31,7 @@ class Discovered:
 
 
 def look_up(name: str, altitude: float) -> Discovered:
-    """Return what is known about an aircraft at ``altitude`` [m] without a new design."""
+    """Return the cached result for an aircraft at ``altitude`` [m], without a new design."""
     try:
         known = is_cached(find_spec(name), altitude)
     except AircraftError:

@@ -5,8 +5,8 @@ responses of the autopilot and of the aircraft with servos, engine and computing
 exponential). The delay allows for an on-board computer (``innerloop.schedule.loop_delay``); in
 JSBSim the fast loops have more margin.
 
-With every loop closed, the sensitivity at a break is S = 1/(1 + L), where L is the loop opened
-there and closed elsewhere. One matrix inverse thus gives L = 1/S - 1 at all breaks.
+With every loop closed, the sensitivity at a break is S = 1/(1 + L), where L is the loop gain at
+that break, with all other loops closed. One matrix inverse thus gives L = 1/S - 1 at all breaks.
 
 python-control and slycot are imported only where they are used: a flight with a cached design does
 not need them.

@@ -1,5 +1,5 @@
-"""From a scenario to results: the world, the closed loop, the studies; and the programming
-interface, ``docs/reference/api.md``.
+"""From a scenario to results: world, closed loop and studies. ``docs/reference/api.md`` describes
+the programming interface:
 
 ``from scenarios import fly, run, load, read_ais, Scenario``. A name is loaded at its first use:
 importing the package is light.
@@ -37,8 +37,8 @@ __all__ = [
 
 
 class _Package(ModuleType):
-    """This package, in which ``run`` is the function: importing the command line ``scenarios.run``
-    would put its module there.
+    """This package, with ``run`` kept as the function: importing the command line ``scenarios.run``
+    would otherwise replace it by that module.
     """
 
     def __setattr__(self, name: str, value: object) -> None:
@@ -48,7 +48,7 @@ class _Package(ModuleType):
 
 sys.modules[__name__].__class__ = _Package
 
-# Before any module of this package: it has those found that are compiled.
+# This import comes before any module of this package, so that compiled modules are found.
 importlib.import_module("gnc.compiled")
 
 

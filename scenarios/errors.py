@@ -4,6 +4,6 @@ from common.errors import RefusedError
 
 
 class InputError(RefusedError):
-    """The user asked for something that cannot be run. The message is one line: what, its value,
+    """The input cannot be run. The message is one line: what, its value,
     the limit, the remedy.
     """

@@ -70,7 +70,8 @@ class Flown:
     request, plan : what was to be flown
     instruments : on board, in the order of ``plan.payload``
     record : what was recorded
-    every_step : whether every step of the guidance was, and not only the samples of the log
+    every_step : whether every step of the guidance was recorded, and not only the samples of the
+        log
     """
 
     request: FlightRequest
@@ -89,8 +90,8 @@ class Flown:
         *,
         every_step: bool,
     ) -> "Flown":
-        """Return a flight by what flies it, given the instruments of each step and the one that is
-        read in flight.
+        """Return a flight flown by ``fly``, which is given the instruments that are read at each
+        step, and the gas reader.
         """
         each_step = [each for each in instruments if isinstance(each, Instrument)]
         return cls(
@@ -104,14 +105,14 @@ class Flown:
 
 @dataclass(slots=True)
 class Findings:
-    """What is known of a flight, step by step: it stays known where a later step fails.
+    """The results of a flight so far; they are kept if a later step fails.
 
     Attributes
     ----------
     row : of the flight in the summary
     tables : its rows in other tables
     history : its time history, once it was flown
-    document : what an instrument says of it beside its columns and figures
+    document : further results of an instrument, beside its columns and figures
     smoke : parcels of the exhaust that it was flown in, if there was any
     traffic : tracks of other ships, if there were any
     """
@@ -129,23 +130,25 @@ class Findings:
         return {key: self.row[key] for key in ("flight_id", "trial", "variant")}
 
     def add_request(self, request: FlightRequest, labels: Mapping[str, str]) -> None:
-        """Add what is known before the flight is planned; ``labels`` are those of its task."""
+        """Add the entries that are known before the flight is planned; ``labels`` are those of its
+        task.
+        """
         self.row |= _request_row(request)
         inputs = {key: _cell(value) for key, value in request.inputs.items()}
         self.tables[DRAWS] = [{**self.named, "nu": self.row.get("nu"), **labels, **inputs}]
 
     def add_overrides(self, overrides: Mapping[str, object]) -> None:
-        """Add the keys that the flight has otherwise than the scenario of its trial."""
+        """Add the keys whose values differ from those in the scenario of the flight's trial."""
         cells = {key: as_json_cell(value) for key, value in overrides.items()}
         self.tables[OVERRIDES] = [self.named | cells]
 
     def add_plan(self, plan: FlightPlan) -> None:
-        """Add what the plan says."""
+        """Add the figures of the plan."""
         self.row |= plan_row(plan)
         self.tables[DRAWS][0]["nu"] = self.row.get("nu")
 
     def add_record(self, flown: Flown) -> None:
-        """Add the time history, and what is measured without any instrument."""
+        """Add the time history, and the figures that need no instrument."""
         plan, record = flown.plan, flown.record
         self.history = flight_history(plan, record)
         self.smoke = smoke_record(
@@ -159,7 +162,7 @@ class Findings:
             rows = traffic_rows(plan, record)
             self.tables[TRAFFIC] = [self.named | of for of in rows]
             self.traffic = traffic_record(plan, float(self.history["time_s"].iloc[-1]))
-        # How many manoeuvres of the vessel begin after the end of the flight.
+        # Number of the vessel's manoeuvres that begin after the end of the flight.
         if begins := [each.at_s for each in flown.request.scenario.vessel.manoeuvres]:
             self.row["manoeuvres_unflown"] = sum(at >= figures["duration_s"] for at in begins)
         if "keepout_violations" in self.row:
@@ -171,7 +174,7 @@ class Findings:
         self.tables[INTERVENTIONS] = [self.named | each._asdict() for each in record.interventions]
 
     def add_evaluations(self, flown: Flown) -> None:
-        """Add what instruments make of the flight, once it is over."""
+        """Add the results of the instruments, after the flight."""
         record, history = flown.record, self.history
         for name, instrument in zip(flown.plan.payload, flown.instruments, strict=True):
             if not isinstance(instrument, EvaluatedInstrument) or history is None:
@@ -187,10 +190,12 @@ class Findings:
             self.document = found.document or self.document
 
     def add_search(self, flown: Flown) -> None:
-        """Add how the plume was searched for and the fuel judged, in a flight with a gas reader."""
+        """Add the figures of the search for the plume and the verdict on the fuel, for a flight
+        with a gas reader.
+        """
         plan, record, history = flown.plan, flown.record, self.history
         reader = next((each for each in flown.instruments if isinstance(each, GasReader)), None)
-        # What was in the air is known of a simulated one alone.
+        # Only a simulated flight knows the true gases in the air.
         if reader is not None and history is not None and TRUE_CO2 in history:
             self.row |= finding_figures(
                 history[:: plan.log_interval] if flown.every_step else history,
@@ -203,10 +208,10 @@ class Findings:
             self.document = with_verdict(self.document, str(self.row["sulphur_verdict"]))
 
     def add_failure(self, error: Exception) -> None:
-        """Add what ended the flight before its row was complete.
+        """Add the error that ended the flight before its row was complete.
 
-        After its flight an aircraft stays lost, whatever fails then, and what was flown is not
-        infeasible.
+        An error after the flight does not change that its aircraft was lost, and a flight that was
+        flown does not become infeasible.
         """
         before = self.row.get("outcome")
         self.row |= failure(error)
@@ -236,7 +241,7 @@ class FlightRunner:
     viewer: Viewer | None = None
 
     def run(self, task: Task) -> Result:
-        """Return the result of one flight, also of one that fails."""
+        """Return the result of one flight, even if it fails."""
         began = time.perf_counter()
         findings = Findings(self._identity(task))
         try:
@@ -298,7 +303,7 @@ class FlightRunner:
         return Flown.by(flown, request, plan, instruments, every_step=every_step)
 
     def measure(self, flown: Flown, findings: Findings) -> None:
-        """Add what a flight shows: figures of its own, of its instruments and of its study."""
+        """Add the figures of a flight, of its instruments and of its study."""
         findings.add_record(flown)
         findings.add_evaluations(flown)
         findings.add_search(flown)
@@ -312,8 +317,8 @@ class FlightRunner:
         record: FlightRecord,  # noqa: ARG002
         row: Row,  # noqa: ARG002
     ) -> Tables:
-        """Return rows of tables that a study of its own adds to a flight's row, by the file name of
-        the table.
+        """Return the rows that a user's study adds in further tables, by the file name of the
+        table.
         """
         return {}
 
@@ -321,25 +326,25 @@ class FlightRunner:
         """Return the result of a flight whose process was lost."""
         findings = Findings(self._identity(task))
         if task.labels:
-            # What the study says of a flight is known without it.
+            # The study's labels of a flight are known without flying it.
             findings.tables[DRAWS] = [findings.row | dict(task.labels)]
         findings.row = findings.row | unflown(Outcome.FAILED, reason)
         return replace(self._result(task, findings), lost=True)
 
     def setup_of(self, request: FlightRequest) -> VehicleSetup:
-        """Return what a flight needs of its vehicle."""
+        """Return the vehicle's data that a flight needs."""
         if self.setup is None or request.scenario.fidelity == "kinematic":
             return kinematic_setup(request.scenario)
         return self.setup
 
     @cached_property
     def columns(self) -> Table:
-        """What the columns of time histories are."""
+        """Descriptions of the columns of time histories."""
         return history_columns(self.experiments)
 
     @property
     def model(self) -> Path | None:
-        """Return the JSBSim root of the aircraft with its autopilot, if it is to fly."""
+        """Return the JSBSim root of the aircraft with its autopilot, if there is an aircraft."""
         return self.setup.aircraft.model if self.setup and self.setup.aircraft else None
 
     def moved(self, model: Path) -> "FlightRunner":
@@ -423,8 +428,8 @@ def _request_row(request: FlightRequest) -> Row:
 
 
 def _measured_from(flown: Flown) -> float:
-    """Return when instruments begin to be evaluated, from settling on if nothing else is said; not
-    a number if never [s].
+    """Return the time from which instruments are evaluated [s]: settling, unless the scenario gives
+    another; NaN if never.
     """
     measured = flown.request.scenario.flight.measured_s
     if measured is None:
@@ -437,8 +442,9 @@ def payload_of(request: FlightRequest, plan: FlightPlan) -> list[Instrument | Ev
 
     Raises
     ------
-    PluginError : one cannot be made
-    InputError : one fills a column, a figure or a table that the flight or another one fills
+    PluginError : an instrument cannot be made
+    InputError : an instrument fills a column, a figure or a table that the flight or another
+        instrument fills
     """
     given = request.scenario, plan.world, own_generator(request.noise, PAYLOAD)
     instruments: list[Any] = [
@@ -451,7 +457,7 @@ def payload_of(request: FlightRequest, plan: FlightPlan) -> list[Instrument | Ev
 def reader_of(
     plan: FlightPlan, instruments: list[Instrument | EvaluatedInstrument]
 ) -> GasReader | None:
-    """Return the instrument that is read in flight, of a flight that reads one."""
+    """Return the instrument that is read in flight, or None."""
     if plan.sensing is None or not plan.sensing.reads_plume:
         return None
     return next(
@@ -460,7 +466,7 @@ def reader_of(
 
 
 def _cell(value: object) -> object:
-    """Return an input as it goes into a table: a number or a word, a time in ISO 8601, or JSON."""
+    """Return an input as a cell of a table: a number or a word, a time in ISO 8601, or JSON."""
     if isinstance(value, datetime):
         return value.isoformat()
     return value if isinstance(value, str | float | int) else json.dumps(value)

@@ -132,7 +132,7 @@ def command(
     Exit status: 0 every flight kept out, completed and met its criteria (or kept out, where the
     scenario requires no more; or every trajectory converged), 1 some did not, 2 bad input, 3 a
     flight entered the keep-out area although every premise of its guard held, 130 interrupted, by
-    Ctrl-C or SIGTERM. Of a flight that is replayed: 0 its row is identical, 1 it is not.
+    Ctrl-C or SIGTERM. For a replay: 0 the row of the flight is identical, 1 it is not.
     """
     from scenarios.engine.runner import ExecutorFactory
     from scenarios.engine.task import Limits
@@ -272,7 +272,8 @@ def _run(
         )
         return verdict.exit_status
     status = _report(directory, changed=result.changed, wanted=not no_report)
-    # What contradicts the theorem of the guard stands before a report that could not be built.
+    # A flight that contradicts the guard's theorem has priority over a report that could not be
+    # built.
     return (
         verdict.exit_status if verdict.exit_status == UNEXPLAINED else status or verdict.exit_status
     )
@@ -298,7 +299,7 @@ def _are_left(number: int) -> str:
 
 
 def _again(directory: Path, *, out: Path | None, resume: bool) -> str:
-    """Return the command that continues an interrupted run: what was typed, with the run's
+    """Return the command that continues an interrupted run: the user's command, with the run's
     directory and --resume.
     """
     from common.command_line import PROGRAM
@@ -333,7 +334,7 @@ def _viewer(addresses: Mapping[str, str | None], *, replayed: bool) -> "Viewer |
 
 
 def _report(directory: Path, *, changed: bool, wanted: bool) -> int:
-    """Write the reports, if they are wanted and not there as they are to be; return the exit
+    """Write the reports if the user wants them and they are missing or outdated; return the exit
     status.
     """
     reports = [directory / name for name in (REPORT_HTML, REPORT_PDF)]

@@ -91,6 +91,6 @@ def _process(
 
 
 def setup(app: "Sphinx") -> dict[str, bool]:
-    """Have every docstring read so."""
+    """Let Sphinx convert every docstring in this way."""
     app.connect("autodoc-process-docstring", _process)
     return {"parallel_read_safe": True}

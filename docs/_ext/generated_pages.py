@@ -48,7 +48,7 @@ def _write(app: "Sphinx") -> None:
             path.unlink()
     for name, text in made.items():
         path = folder / name
-        # What has not changed is not read again.
+        # An unchanged page is not read again.
         if not path.exists() or path.read_text(encoding="utf-8") != text:
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(text, encoding="utf-8")

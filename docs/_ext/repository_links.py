@@ -1,5 +1,5 @@
-"""Links from pages to the repository: a file is handed to the reader, a folder is named, and a page
-is the page.
+"""Links from pages to the repository: a link to a file becomes a download, a link to a folder
+becomes its name, and a link to a page leads to that page.
 """
 
 import re
@@ -71,7 +71,7 @@ def with_links(text: str, folder: Path, root: Path) -> str:
 
 
 def setup(app: "Sphinx") -> dict[str, bool]:
-    """Have the links of every page followed so."""
+    """Let Sphinx convert the links of every page in this way."""
 
     def read(app: "Sphinx", name: str, source: list[str]) -> None:
         root = Path(app.srcdir).resolve()

@@ -1,4 +1,4 @@
-"""Fly a Monte Carlo study on two processes, and ask what it has shown."""
+"""Fly a Monte Carlo study on two processes, and print its statistics."""
 
 from scenarios import run
 

@@ -203,9 +203,8 @@ class Companion:
     ) -> None:
         """Wait for something.
 
-        In lockstep the vehicle has reported everything up to its time when it reaches that time.
-        Its clock goes on only if that is necessary, so that a flight always begins at the same
-        step.
+        In lockstep, a vehicle that has reached a time has reported everything up to it. Its clock
+        advances only if that is necessary, so that a flight always begins at the same step.
         """
         link, waited, requested = self.link, 0.0, 0.0
         while not there():
@@ -228,8 +227,8 @@ class Companion:
             )
 
     def _listen_for_rivals(self) -> None:
-        """Refuse a vehicle that another companion flies, which says so once a second of real time,
-        also where the vehicle's clock waits.
+        """Refuse a vehicle that another companion flies. That companion announces itself once a
+        second of real time, even if the vehicle's clock waits.
         """
         until = time.monotonic() + RIVALS_SEEN_IN
         while time.monotonic() < until:
@@ -244,7 +243,7 @@ class Companion:
         return 0.01 * value if name == "LIM_ROLL_CD" else value
 
     def check_limits(self, setup: VehicleSetup, heading_rate_max: float, altitude: float) -> None:
-        """Refuse a vehicle whose limits are narrower than what the guidance may command.
+        """Refuse a vehicle whose limits are narrower than the range of the guidance's commands.
 
         Raises
         ------
@@ -531,7 +530,8 @@ class Companion:
         )
 
     def _beside(self, plan: FlightPlan, others: OtherShips) -> FlightPlan:
-        """Return the plan with the ships that report themselves in place of the scenario's.
+        """Return the plan with the ships that report their positions in place of the scenario's
+        ships.
 
         Raises
         ------
@@ -576,7 +576,8 @@ def _others_of(plan: FlightPlan, radius: float) -> OtherShips | None:
     """Return the other ships of a flight, all of them still unknown; None where the guidance does
     not use them.
 
-    The scenario does not give the MMSI of its ships: the largest of their radii is kept.
+    The scenario does not give the MMSI of its ships, so the largest of their radii is kept from
+    each of them.
     """
     traffic, vessel = plan.guidance.traffic, plan.guidance.vessel
     if traffic is None or not isinstance(vessel, ReportedVessel):
@@ -695,8 +696,9 @@ def _record(
 ) -> FlightRecord:
     """Fly; the flight ends where the vehicle is given back.
 
-    This is the case where the guidance detects a fault, before its next command is flown: a study's
-    aircraft would glide to the sea. A pilot and the vehicle's failsafes know better.
+    The vehicle is also given back if the guidance detects a fault, before the next command is
+    flown. In a study the aircraft would glide to the sea; a real vehicle is left to its pilot and
+    its failsafes.
     """
     monitor = loop.guidance.monitor
     steps = loop.steps()

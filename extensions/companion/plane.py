@@ -150,7 +150,7 @@ class Plane:
             self._guided.roll, self._guided.roll_at = roll, self.time
 
     def ground_station_seen(self) -> None:
-        """Take note of a heartbeat of the ground station whose silence is a failsafe."""
+        """Record a heartbeat of the ground station whose silence triggers a failsafe."""
         self._ground_station_at, self._failsafe = self.time, False
 
     def command(self, message: Any) -> int:

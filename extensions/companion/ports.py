@@ -1,8 +1,7 @@
 """Ports for MAVLink: UDP, TCP or a serial line, with a telemetry log of both directions.
 
-Addresses are ``udp://HOST:PORT`` and ``tcp://HOST:PORT``, which a vehicle listens at and a
-companion sends to; ``udpin://HOST:PORT``, at which a companion listens; and
-``serial://DEVICE:BAUD``.
+Addresses are ``udp://HOST:PORT`` and ``tcp://HOST:PORT``, at which a vehicle listens and to which a
+companion sends; ``udpin://HOST:PORT``, at which a companion listens; and ``serial://DEVICE:BAUD``.
 """
 
 import contextlib
@@ -48,14 +47,14 @@ class Line(Protocol):
         """Send to a peer; one that is gone gets nothing."""
 
     def connected(self) -> Sequence[Peer]:
-        """Return the peers that are known even if they have sent nothing yet."""
+        """Return the peers that are known even before they have sent anything."""
 
     def close(self) -> None:
         """Let the line go."""
 
 
 class Udp:
-    """Datagrams, at an address of this machine or to one other.
+    """Datagrams, received at an address of this machine or sent to one other address.
 
     Parameters
     ----------
@@ -96,7 +95,7 @@ class Udp:
 
 
 class Tcp:
-    """Streams, to those who connect here, or to one other.
+    """Streams, to programs that connect to this machine, or to one other address.
 
     Parameters
     ----------
@@ -157,7 +156,7 @@ class Tcp:
         try:
             stream.sendall(data)
         except OSError:
-            # A peer that does not read would delay the vehicle.
+            # Waiting for a peer that does not read would delay the vehicle.
             self._drop(peer)
 
     def _drop(self, peer: Peer) -> None:
@@ -291,7 +290,7 @@ class Port:
     ----------
     line : to send over
     system, component : of the sender
-    log : telemetry log of both directions, or none
+    log : telemetry log of both directions, or None
 
     Attributes
     ----------

@@ -115,7 +115,7 @@ class SimulatedLink:
         heapq.heappush(self._under_way, (arrives, next(self._number), message))
 
     def due(self, time: float) -> Iterator[Any]:
-        """Yield what has arrived by a time [s], in order of arrival."""
+        """Yield the messages that have arrived by a time [s], in order of arrival."""
         while self._under_way and self._under_way[0][0] <= time + 1e-9:
             yield heapq.heappop(self._under_way)[2]
 

@@ -3,7 +3,7 @@ long as its mode is GUIDED.
 
 A step of the guidance belongs to a time of the vehicle's clock. It is computed once the telemetry
 of that time has arrived, or after the declared time of the link; missing telemetry is extrapolated
-from the last. So the loop has one dead time, which guard and preview know.
+from the last. So the loop has one constant dead time, for which guard and preview allow.
 """
 
 import itertools
@@ -209,7 +209,7 @@ class RemoteVehicle:
         return self._true_airspeed, self._heading(), self._state.roll
 
     def engine(self) -> None:
-        """Return nothing: accelerations are not read."""
+        """Return None: accelerations are not read."""
 
     def sample(self) -> tuple[float, ...]:
         """Return ``SAMPLE_COLUMNS``; angles of the air and control surfaces are not reported."""
@@ -237,7 +237,7 @@ class RemoteVehicle:
         """Do nothing: the vehicle's own autopilot has the elevator."""
 
     def fail(self, name: str) -> None:
-        """Raise ValueError: nothing of a vehicle is made to fail from here."""
+        """Raise ValueError: a companion cannot make parts of a vehicle fail."""
         raise ValueError(f"'{name}' of a vehicle over a link cannot be made to fail")
 
     def fault(self, sample: tuple[float, ...]) -> str:
@@ -311,7 +311,7 @@ class RemoteVehicle:
         self._wanted_altitude = altitude
 
     def advance(self, heading_rate: float, airspeed: float) -> None:
-        """Have a step flown with these commands [rad/s, m/s]; wait for the next one."""
+        """Command a step [rad/s, m/s], and wait for the next one."""
         if not self.given_back:
             if self._by == ATTITUDE:
                 # A heading is sticky: the vehicle would not fall back to the retreat, and a
@@ -349,8 +349,8 @@ class RemoteVehicle:
         )
 
     def _coming(self) -> float:
-        """Return the course that the vehicle turns by earlier commands until a command of now
-        arrives [rad].
+        """Return the change of course that earlier commands cause until a present command arrives
+        [rad].
         """
         rate, turned = self._heading_rate(), 0.0
         follows = 1.0 - math.exp(-self._time_step / self._limits.lag) if self._limits.lag else 1.0
@@ -398,7 +398,7 @@ class RemoteVehicle:
     # ------------------------------------------------------------ giving back
 
     def _judge_link(self) -> None:
-        """Give the vehicle back where the companion may no longer fly it."""
+        """Give the vehicle back if the companion may no longer fly it."""
         if self.given_back:
             return
         link = self._link
@@ -422,7 +422,7 @@ class RemoteVehicle:
             self._leave(reason)
 
     def _leave(self, reason: str) -> None:
-        """Send the vehicle to its retreat, and turn it away until that is what it flies."""
+        """Send the vehicle to its retreat, and turn it away until it flies there."""
         self.given_back = reason
         motion, link = self.motion(), self._link
         self._retreat_at = -math.inf

@@ -78,7 +78,7 @@ class ReceivedVessel:
         self._courses: list[float] = []
 
     def report(self, report: VesselReport) -> None:
-        """Take in a report, which is later than all earlier ones."""
+        """Add a report, which is later than all earlier ones."""
         course = math.atan2(report.velocity_east, report.velocity_north)
         if self._courses:
             last = self._courses[-1]
@@ -165,8 +165,8 @@ class OtherShips:
         return OtherVessel(name=ship.name, radius=ship.radius, limits=self._limits)
 
     def report(self, mmsi: int, report: VesselReport, own: tuple[float, float]) -> None:
-        """Take in a report of a ship; one that is not known yet has to be within ``KNOWN_WITHIN``
-        of the vehicle.
+        """Add a report of a ship; a ship that is not known yet has to be within ``KNOWN_WITHIN`` of
+        the vehicle.
 
         Parameters
         ----------
@@ -184,7 +184,7 @@ class OtherShips:
             self._traffic.report(number, report)
 
     def _add(self, mmsi: int, time: float) -> None:
-        """Take in a ship that becomes known at a time [s]."""
+        """Add a ship that becomes known at a time [s]."""
         self._numbers[mmsi] = len(self.ships)
         self._tracks.append(ReceivedVessel())
         ship = OtherShip(

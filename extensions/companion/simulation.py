@@ -277,7 +277,7 @@ class Simulation:
         return self._plan.world.weather.wind.now(self.time, altitude)
 
     def _ships(self) -> Iterator["_Reporting"]:
-        """Yield the ships that report themselves, the measured one first."""
+        """Yield the ships that send reports, the measured one first."""
         plan = self._plan
         if plan.world is None:
             return
@@ -314,7 +314,7 @@ class Simulation:
 
 
 class _Reporting:
-    """A ship that reports itself.
+    """A ship that sends reports.
 
     Parameters
     ----------
@@ -406,7 +406,7 @@ class Server:
         return "time is up"
 
     def answer(self, timeout: float) -> str:
-        """Take the messages in lockstep, after waiting for at most a time [s], and go on to the
+        """Receive the messages in lockstep, waiting for at most a time [s], and advance to the
         requested time; return why the aircraft is lost, or an empty text.
         """
         self._serve(timeout)
@@ -426,12 +426,12 @@ class Server:
         return fault
 
     def _tell(self) -> None:
-        """Send what is due."""
+        """Send the messages that are due."""
         simulation = self._simulation
         now = simulation.time
         for name, interval in self._intervals.items():
             if interval > 0.0 and now >= self._due[name] - 1e-6:
-                # On the grid of its interval, even where some were missed.
+                # The next time is on the grid of the interval, even if messages were missed.
                 missed = math.floor((now - self._due[name]) / interval + 1e-6)
                 self._due[name] += (missed + 1) * interval
                 self._port.send(simulation.message(name))
@@ -451,7 +451,7 @@ class Server:
         return mavlink.MAVLink_system_time_message(self._request, round(1e3 * self._asked_for))
 
     def _serve(self, timeout: float) -> None:
-        """Take the arriving messages, after waiting for at most a time [s]."""
+        """Receive the arriving messages, waiting for at most a time [s]."""
         for peer, message in self._port.receive(timeout):
             self._take(peer, message)
 

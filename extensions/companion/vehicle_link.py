@@ -5,7 +5,7 @@ Times are those of the vehicle's clock. In lockstep the companion sets that cloc
 that it wants as SYSTEM_TIME, and the vehicle answers with the same time when it has reached it and
 has reported everything up to it. ``time_unix_usec`` numbers the request and its answer. These
 messages do not count as traffic of the link, and take no time. Otherwise the clock is estimated
-from the telemetry's time stamps, by the one that came fastest.
+from the telemetry's time stamps, by the message with the shortest delay.
 """
 
 import math
@@ -49,7 +49,7 @@ class VehicleLink:
     port : to the vehicle
     link : declared quality of the link
     lockstep : whether the vehicle's clock waits for this one
-    simulated : seed of a bad link that is simulated, or None for the one that there is
+    simulated : seed of a simulated bad link, or None for the real link
     receiver : AIS receiver on board, in place of the AIS_VESSEL of the vehicle, or None
 
     Attributes
@@ -168,7 +168,9 @@ class VehicleLink:
     # ------------------------------------------------------------ the clock
 
     def advance(self, until: float, enough: Callable[[], bool] = lambda: False) -> None:
-        """Go on to a time of the vehicle's clock [s], or until it is ``enough``; take messages."""
+        """Receive messages until a time of the vehicle's clock [s], or, outside of lockstep, until
+        ``enough`` returns true.
+        """
         self._heartbeat()
         if self._lockstep:
             while True:
@@ -263,7 +265,7 @@ class VehicleLink:
             self._hear_of(self.now - vessel.age, vessel)
 
     def _hear_of(self, true_at: float, vessel: VesselState) -> None:
-        """Take a vessel's report, which was true at a time [s], unless a newer one has come."""
+        """Store a vessel's report, valid at a time [s], unless a newer one has arrived."""
         known = self._lockstep or self._offset is not None
         last = self.vessels.get(vessel.mmsi)
         if known and (last is None or true_at > last[0]):
@@ -295,13 +297,13 @@ class VehicleLink:
                     self._hear_of(self.now - self._link.latency - vessel.age, vessel)
 
     def _place(self, message: Any) -> None:
-        """Take a place, which completes the state; 0/0 is not a place."""
+        """Store a position, which completes the state; 0/0 is not a position."""
         attitude, hud = self._attitude, self._hud
         if attitude is None or hud is None or (message.lat == 0 and message.lon == 0):
             return
         stamp = 1e-3 * message.time_boot_ms
         if self.state is not None and stamp < self.state.time:
-            # A newer place has overtaken it.
+            # A newer position has arrived before it.
             return
         rates = attitude.rollspeed, attitude.pitchspeed, attitude.yawspeed
         # The last attitude may be older than the place: one was lost, or sent at another time.

@@ -1,8 +1,8 @@
 """Motion of many vehicles relative to their references, under each steering law.
 
-The variables are not stiff. Positions are d = p_r - p, from the vehicle to its reference. Where the
-law cancels omega_rho, the course is no state: with chi = chi_rho + phi the rate of d depends on
-chi_r, z and phi alone, and phi has a closed form.
+The variables are not stiff. Positions are d = p_r - p, from the vehicle to its reference. If the
+law cancels omega_rho, the course is not a state: with chi = chi_rho + phi the rate of d depends
+only on chi_r, z and phi, and phi has a closed form.
 """
 
 from abc import ABC, abstractmethod
@@ -28,7 +28,7 @@ class Steering(Enum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Vehicle:
-    """What the vehicles of an ensemble have in common.
+    """The common properties of the vehicles in an ensemble.
 
     Attributes
     ----------

@@ -1,5 +1,5 @@
-"""The report of a convergence study: when trajectories settle under each law, and which did not
-converge.
+"""The report of a convergence study: when trajectories settle under each law, and the trajectories
+that did not converge.
 """
 
 import math
@@ -67,8 +67,8 @@ class Convergence:
 
     @cached_property
     def rows(self) -> pd.DataFrame:
-        """Return a row per trajectory and law that was flown; those whose process was lost say
-        nothing of the theory.
+        """Return a row per trajectory and law that was flown; those whose process was lost are left
+        out, because they show nothing about the theory.
         """
         rows = self.run.summary
         for name, known in (("law", [law.key for law in LAWS]), ("reference", list(REFERENCES))):
@@ -98,19 +98,19 @@ class Convergence:
         return {f"{name[1]}_{int(name[2])}" for name in names if name}
 
     def of(self, law: Law, reference: str | None = None) -> pd.DataFrame:
-        """Return the rows of a law, about one kind of reference or all."""
+        """Return the rows of a law, for one kind of reference or for all."""
         rows = self.rows[self.rows["law"] == law.key]
         return rows if reference is None else rows[rows["reference"] == reference]
 
     @property
     def proven(self) -> pd.DataFrame:
-        """Return the rows of the laws that the theory is about."""
+        """Return the rows of the laws that the theory covers."""
         return self.rows[self.rows["law"].isin([law.key for law in self.laws if law.proven])]
 
     @property
     def planned(self) -> int:
-        """Return the number of trajectories under the laws that the theory is about, once the run
-        is complete.
+        """Return the number of trajectories under the laws that the theory covers in the complete
+        run.
         """
         config = self.run.manifest["config"]
         proven = [law.key for law in LAWS if law.proven]
@@ -125,8 +125,8 @@ def failed(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def predicted(rows: pd.DataFrame) -> "pd.Series[float]":
-    """Return settling times over those predicted, where these are neither 0, of a start that is
-    settled, nor infinite.
+    """Return settling times over the predicted ones, without predictions of 0 (starts that are
+    settled) and of infinity.
     """
     rows = rows[rows["settling_time_predicted_s"].between(0.0, math.inf, inclusive="neither")]
     return rows["settling_time_s"] / rows["settling_time_predicted_s"]
@@ -298,7 +298,9 @@ def command_words(rows: pd.DataFrame) -> str:
 
 
 def settled_time(times: "pd.Series[float]", fraction: float) -> str:
-    """Return when so many of all had settled, and a dash if never."""
+    """Return the time by which a fraction of all trajectories had settled, or a dash if it never
+    did.
+    """
     when = (
         float(np.quantile(times.fillna(np.inf), fraction, method="inverted_cdf"))
         if len(times)
@@ -308,7 +310,7 @@ def settled_time(times: "pd.Series[float]", fraction: float) -> str:
 
 
 def _verdict(data: Convergence) -> Verdict:
-    """Judge a study by the laws that the theory is about, if it flew any: it holds if every
+    """Judge a study by the laws that the theory covers, if it flew any: the theory holds if every
     trajectory under them converged.
     """
     rows, planned = data.proven, data.planned
@@ -416,8 +418,8 @@ def _figures(data: Convergence) -> list[Card]:
 
 
 def _by_law(name: str, caption: str, curves: dict[Law, list[Line]], **axes: Any) -> list[Chart]:
-    """Return a chart with a panel per law that has curves, whose logarithmic axis has the same
-    limits in all; none without any.
+    """Return a chart with a panel for each law that has curves, or None; the logarithmic axis has
+    the same limits in all panels.
     """
     axis = "x" if axes.get("log_x") else "y"
     limits = _around([getattr(line, axis) for lines in curves.values() for line in lines])
@@ -444,7 +446,7 @@ def _line(reference: str, x: Array, y: Array) -> Line:
 
 
 def _settling_charts(data: Convergence) -> list[Chart]:
-    """Return the figures of when trajectories settle, for the laws of which any did."""
+    """Return the charts of settling times, for each law under which some trajectories settled."""
     laws = [law for law in data.laws if data.of(law)["settling_time_s"].notna().any()]
     return _by_law(
         "settling",
@@ -470,10 +472,10 @@ def _settled_shares(data: Convergence, law: Law) -> list[Line]:
 
 
 def cumulative(values: Array) -> tuple[Array, Array]:
-    """Return some of the values in rising order, and which fraction of all is no larger.
+    """Return some of the values in rising order, and for each the fraction of all values up to it.
 
-    What is not a number counts among all. The first value comes twice, first with 0, for the curve
-    to rise from there.
+    NaN counts among all values. The first value comes twice, first with the fraction 0, so that the
+    curve rises from there.
     """
     known = np.sort(values[np.isfinite(values)])
     ranks = _thinned(len(known), CURVE_POINTS)
@@ -482,8 +484,8 @@ def cumulative(values: Array) -> tuple[Array, Array]:
 
 
 def _history_charts(data: Convergence, name: str, caption: str, *, converged: bool) -> list[Block]:
-    """Return distances over time, of some of the trajectories that were kept: of those that
-    converged, or of those that did not.
+    """Return distances over time for some of the recorded trajectories: those that converged, or
+    those that did not.
     """
     curves = {law: _histories(data, law, converged=converged) for law in data.laws}
     return [*_by_law(name, caption, curves, x_label="Time [s]", y_label="Distance [m]", log_y=True)]
@@ -508,13 +510,13 @@ def _histories(data: Convergence, law: Law, *, converged: bool) -> list[Line]:
 
 
 def _thinned(count: int, most: int) -> npt.NDArray[np.int64]:
-    """Return indices of so many values at most, the first and the last among them."""
+    """Return at most ``most`` of ``count`` indices, the first and the last among them."""
     return np.unique(np.round(np.linspace(0, count - 1, min(most, count))).astype(np.int64))
 
 
 def _around(curves: Sequence[Array]) -> tuple[float, float] | None:
-    """Return the powers of ten that lie around all values, as limits of a logarithmic axis; none
-    without values.
+    """Return the powers of ten around all values, as limits of a logarithmic axis; None without
+    values.
     """
     values = np.concatenate([*curves, np.empty(0)])
     known = values[np.isfinite(values)]

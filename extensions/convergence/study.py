@@ -271,8 +271,8 @@ def _blocks(
         )
         limit *= TIME_FACTOR_CUT if law is Steering.CASCADE_CUT else TIME_FACTOR
         if law is Steering.CASCADE_CUT:
-            # Turning once at omega_max leaves 1 - omega_r/omega_max of the reference's time of turn
-            # to fly straight.
+            # While the reference turns once, the vehicle turns once at omega_max; the fraction 1 -
+            # omega_r/omega_max of that time remains to fly straight.
             straight = vehicle.speed * (1.0 - np.abs(references.rate) / vehicle.heading_rate_max)
             limit = np.maximum(limit, TIME_FACTOR_STRAIGHT * np.hypot(*to_reference) / straight)
         limit = np.maximum(limit, time_max)

@@ -1,9 +1,8 @@
 """``gymnasium.make("PlumeCrossing-v0")``: flights as an environment for reinforcement learning.
 Needs the extra ``gym``.
 
-Importing this package makes the environment known. Gymnasium has no entry points since its version
-1.0: a package registers what it has when it is imported, by the user or by
-``gymnasium.make("extensions.gym:PlumeCrossing-v0")``.
+Importing this package registers the environment, because gymnasium has no entry points since its
+version 1.0. The user imports it, or ``gymnasium.make("extensions.gym:PlumeCrossing-v0")`` does.
 """
 
 from common.text import install_words

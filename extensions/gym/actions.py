@@ -18,8 +18,8 @@ from scenarios.vehicles.vehicle_setup import VehicleSetup
 
 
 def action_box(work: FlightRunner) -> "spaces.Box[np.float64]":
-    """Return heading rates [rad/s] and airspeeds [m/s] that flights of a scenario may be commanded,
-    of all of them together.
+    """Return the ranges of heading rate [rad/s] and airspeed [m/s] that cover the commands of all
+    flights of a scenario.
 
     Raises
     ------
@@ -50,8 +50,8 @@ def limits_of(plan: FlightPlan, setup: VehicleSetup) -> tuple[Array, Array]:
 
 
 def _settings(work: FlightRunner) -> Iterator[Scenario]:
-    """Yield scenarios among which every flight's guidance is, or has its largest and least heading
-    rates.
+    """Yield scenarios that cover the guidance of every flight, or at least the largest and the
+    least heading rates.
     """
     for experiment in work.experiments:
         for setting in experiment.settings():

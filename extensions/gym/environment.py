@@ -50,7 +50,7 @@ class _Episode:
     loop, steps : the flight, and its steps
     commands : of the guidance, at the last step
     observer, reward : of the agent
-    low, high : least and largest heading rate [rad/s] and airspeed [m/s] that it may be commanded
+    low, high : least and largest commands of heading rate [rad/s] and airspeed [m/s]
     step : number of the last step
     over : whether the episode has ended
     record : of the flight, where that has ended
@@ -74,7 +74,7 @@ class _Episode:
 
     @property
     def time_is_up(self) -> bool:
-        """Return whether the last step was the last that the flight may have."""
+        """Return whether the flight's time is up after the last step."""
         return self.step > round(self.loop.plan.duration_max / self.loop.plan.time_step)
 
     @property
@@ -162,9 +162,9 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
         Parameters
         ----------
         seed : of the flight, of its start, its air and its errors; further episodes follow from it
-        options : ``{"flight_id": ...}`` begins that flight of the scenario with the seed that a run
-            of it has, in a separate simulation, so that it is the run's to the last bit; other
-            episodes use one simulation again, which is true to 1e-9 m
+        options : ``{"flight_id": ...}`` begins that flight of the scenario with its seed in a run,
+            in a separate simulation, so that it is identical to the run's flight to the last bit.
+            Other episodes share one simulation, which repeats flights to 1e-9 m
 
         Raises
         ------
@@ -190,9 +190,7 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
         return self._episode.observer.observe(0.0), self._info()
 
     def step(self, action: Array) -> tuple[Array, SupportsFloat, bool, bool, dict[str, Any]]:
-        """Fly one step of the guidance with an action; one outside of what this flight may be
-        commanded is cut.
-        """
+        """Fly one step of the guidance with an action, cut at the limits of this flight."""
         episode = self._episode
         if episode.over:
             raise InputError("the episode is over; reset the environment")
@@ -228,7 +226,7 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
         return observed, reward, terminated, truncated, self._info()
 
     def close(self) -> None:
-        """Let the simulation go."""
+        """Release the simulation."""
         self._episode.steps.close()
         self._aircraft.clear()
 
@@ -252,7 +250,7 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
             raise InputError(str(error)) from None
 
     def _begun_at_random(self) -> "_Episode":
-        """Begin a flight at random, and another one where that has no solution."""
+        """Begin a random flight; if it has no solution, begin another one."""
         numbers = list(self._numbers.values())
         for _ in range(_TRIES):
             task = self._study.task(numbers[int(self.np_random.integers(len(numbers)))])
@@ -264,7 +262,7 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
         raise InputError(f"{_TRIES} flights at random had no solution; the last one: {reason}")
 
     def _begin(self, request: FlightRequest) -> "_Episode":
-        """Place the vehicle at the start of a flight, and have the guidance compute its first
+        """Place the vehicle at the start of a flight, and let the guidance compute its first
         commands.
         """
         plan, setup = self._work.plan(request), self._work.setup_of(request)

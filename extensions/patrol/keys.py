@@ -1,5 +1,5 @@
-"""The keys of a patrol in a scenario file: how many ships, where, for how long, and what is
-expected of serving them.
+"""The keys of a patrol in a scenario file: number and places of ships, endurance, and the expected
+results of serving them.
 """
 
 from collections.abc import Mapping

@@ -29,8 +29,8 @@ _GAIN = 0.02
 
 
 class _State(NamedTuple):
-    """A part of a patrol: place [m] and time [s] at its end, ships served, and the verdicts that
-    are expected of them.
+    """A part of a patrol: place [m] and time [s] at its end, ships served, and the number of
+    verdicts expected from them.
     """
 
     place: complex
@@ -56,12 +56,12 @@ class Prospect:
     Attributes
     ----------
     ships : their places and motion
-    service : time for each from the end of the way to it to the verdict [s]
+    service : time for each ship, from the end of the way to it until the verdict [s]
     deviation : standard deviation of that time for each ship; 0 where it is known [s]
     chance : probability of a verdict on each ship [-]
-    radius : from a ship at which the way to it ends [m]
+    radius : distance from a ship at which the way to it ends [m]
     air : wind and airspeed
-    endurance : time by which everything has to be done [s]
+    endurance : time by which the patrol has to end [s]
     """
 
     ships: Sequence[Mover]
@@ -73,7 +73,7 @@ class Prospect:
     endurance: float
 
     def after(self, state: _State, ship: int) -> _State:
-        """Return a part of a patrol with one more ship; its end is infinite where it cannot be
+        """Return a part of a patrol with one more ship; its end is infinite if the ship cannot be
         reached.
         """
         leg = straight_leg(state.place, state.time, self.ships[ship], self.radius, self.air)
@@ -111,7 +111,7 @@ class Prospect:
 
 
 def best_order(prospect: Prospect, start: complex, time: float, ships: Sequence[int]) -> Order:
-    """Return the best of all orders from a place at a time [m, s]; of many ships a good one, by
+    """Return the best of all orders from a place at a time [m, s]; for many ships, a good order by
     insertion.
     """
     return (exact_order if len(ships) <= EXACT_MAX else inserted_order)(
@@ -122,9 +122,9 @@ def best_order(prospect: Prospect, start: complex, time: float, ships: Sequence[
 def inserted_order(prospect: Prospect, start: complex, time: float, ships: Sequence[int]) -> Order:
     """Return an order by insertion and improvement, from a place at a time [m, s].
 
-    From each ship as the first, the ship and the place in the order that gain most are inserted
-    until none gains; then parts of up to three ships are moved, parts reversed and ships exchanged
-    for others as long as the order improves. The best of these orders is the result.
+    Each ship is tried as the first one. The ship that gains most is inserted at its best position,
+    until no ship gains. Then parts of up to three ships are moved, parts are reversed, and ships
+    are exchanged for others, as long as the order improves. The result is the best of these orders.
     """
     best = prospect.judged(start, time, ())
     for first in ships:
@@ -171,7 +171,7 @@ def ends_of(prospect: Prospect, start: complex, time: float, ships: Sequence[int
 
 
 def _better(prospect: Prospect, one: Order, other: Order) -> Order:
-    """Return the better one of two orders, the first where they are alike."""
+    """Return the better one of two orders; the first if they are equally good."""
     return other if prospect.score_of(other) > prospect.score_of(one) + 1e-12 else one
 
 

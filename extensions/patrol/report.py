@@ -1,5 +1,5 @@
-"""The report of patrols: how many ships were served, with what verdicts, when, and what an oracle
-would have done.
+"""The report of patrols: the number of ships served, the verdicts and their times, and the results
+of an oracle.
 """
 
 import math
@@ -71,12 +71,12 @@ class Patrol:
 
     @property
     def title(self) -> str:
-        """What it is called in the report."""
+        """Name in the report."""
         return f"Patrol {self.number}"
 
     def track(self, ship: "pd.Series[Any]") -> tuple[Any, Any]:
-        """Return north and east of a ship at the start, and when it was measured or the patrol
-        ended, shape (2,) each [m].
+        """Return north and east of a ship at two times, shape (2,) each [m]: at the start, and when
+        it was measured or the patrol ended.
         """
         ends = float(
             ship["ended_s"]
@@ -190,8 +190,8 @@ _DETAIL = (
 
 
 def _matters(patrol: Patrol) -> tuple[bool, float, float, float]:
-    """Return the place of a patrol: first what must not happen, wrong and open verdicts, and then
-    the closest approach.
+    """Return the sort key of a patrol: first events that must not happen, then wrong and open
+    verdicts, and then the closest approach.
     """
     row = patrol.row
     nearest = row[["min_distance_m", "others_distance_min_m"]].min()
@@ -228,8 +228,8 @@ def _headline(run: RunData, counts: PatrolCounts) -> str:
 
 
 def _figures(run: RunData, counts: PatrolCounts) -> list[Card]:
-    """Return what the verdict rests on. What nothing was flown or judged for has no criterion:
-    nothing would meet it.
+    """Return the criteria on which the verdict rests. If nothing was flown or judged for a
+    criterion, it is left out: nothing would meet it.
     """
     enough = f"≥ {100.0 * counts.oracle_share_min:g} % of the oracle's {counts.oracle}"
     right = f"≤ {100.0 * counts.wrong_share_max:g} % of {counts.verdicts}"
@@ -258,8 +258,8 @@ def _lost(run: RunData) -> int:
 
 
 def _closest(run: RunData, ship: str, figure: str) -> Card:
-    """Return how near any ship came, with the keep-out radius, which holds for one that was not
-    served just then, too.
+    """Return the closest approach to any ship, with the keep-out radius, which also holds for ships
+    that were not served at that time.
     """
     name, nearest = f"Closest approach to {ship}", least(column(run.summary, figure))
     if nearest is None:
@@ -269,7 +269,7 @@ def _closest(run: RunData, ship: str, figure: str) -> Card:
 
 
 def oracle_table(patrols: Sequence[Patrol]) -> Table:
-    """Return what each patrol achieved, beside the oracle."""
+    """Return the results of each patrol, compared with the oracle."""
     cells = [
         Cell("Patrol", "number", "{:.0f}", 0.7),
         Cell("Ships", "ships", "{:.0f}", 0.6),
@@ -302,7 +302,7 @@ def _minutes(seconds: float | None) -> float | None:
 
 
 def ship_table(patrol: Patrol) -> Table:
-    """Return the verdict on each ship of a patrol, by its number, and when it came."""
+    """Return the verdict on each ship of a patrol, by its number, and the time of the verdict."""
     cells = [
         Cell("Ship", "ship", "{:.0f}", 0.5),
         Cell("Speed [m/s]", "vessel_speed_mps", "{:.1f}", 0.7),
@@ -337,7 +337,7 @@ def _verdict(ship: Mapping[Any, Any]) -> str:
 
 
 def patrol_chart(patrol: Patrol) -> Chart:
-    """Return the map of a patrol, and what was done beside which ship when."""
+    """Return the map of a patrol, and a chart of the phases beside each ship over time."""
     count, done = len(patrol.ships), patrol.ships[patrol.ships["oracle_ended_s"].notna()]
     x, y = column(done, "oracle_ended_s") / _MINUTE, count - column(done, "ship")
     oracle = Line(x=x, y=y, label="done by the oracle", colour=Meaning.SHIP, style="diamonds")
@@ -389,7 +389,7 @@ def _map(patrol: Patrol) -> Panel:
 
 
 def _time_panel(phases: pd.DataFrame, count: int, marks: list[Line]) -> Panel:
-    """Return bars over time, a row for each ship: one curve a phase, with gaps."""
+    """Return bars over time, with a row for each ship and a curve with gaps for each phase."""
     lines = []
     for phase, colour in _PHASES.items():
         rows = phases[phases["phase"] == phase].assign(row=count - phases["ship"], gap=np.nan)

@@ -76,7 +76,7 @@ class Leg:
 
     @property
     def velocity(self) -> complex:
-        """Return the velocity over the ground [m/s]; 0 of a leg without a length."""
+        """Return the velocity over the ground [m/s]; 0 for a leg without length."""
         return (
             (self.end - self.start) / (self.ends - self.begins) if self.ends > self.begins else 0j
         )
@@ -167,12 +167,13 @@ def route(
     """Return the way to within a radius of a goal that keeps clear of ships: straight, or by
     corners round them.
 
-    The corners move along with the ships. Of all ways by corners it is the quickest (Dijkstra; who
-    leaves later arrives no sooner, as the UAV is faster than every corner).
+    The corners move along with the ships. Of all ways by corners it is the quickest. Dijkstra's
+    algorithm finds it, because a later departure never arrives earlier: the UAV is faster than
+    every corner.
 
     Parameters
     ----------
-    start, time : from where, and when [m, s]
+    start, time : place and time of the departure [m, s]
     goal, radius : target, and distance from it that has to be reached [m]
     air : wind and airspeed
     ships, clearance : ships to keep clear of, and the distance to keep [m]

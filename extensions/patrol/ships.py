@@ -75,7 +75,7 @@ def sampled_patrol(study: str, scenario: Scenario, number: int) -> Patrol:
 
     Parameters
     ----------
-    study, scenario : the study's name, and what its patrols are sampled from
+    study, scenario : the study's name, and the scenario from which its patrols are sampled
     number : of the patrol, from 0
 
     Raises

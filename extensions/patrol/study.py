@@ -1,7 +1,8 @@
 """Patrols as a study: several ships, one UAV with an endurance, and an oracle to compare with.
 
-A patrol is a task. Ships are served one after the other, each by a flight of the closed loop; then
-each is flown alone with the plume's axis known, from which an oracle's order follows.
+A patrol is a task. Ships are served one after the other, each by a flight of the closed loop. Then
+a further flight beside each ship knows the plume's axis; the oracle's order follows from these
+flights.
 """
 
 import io
@@ -317,7 +318,7 @@ class PatrolWork(FlightRunner):
         )
 
     def _patrolled(self, patrol: Patrol, ships: list[Row]) -> _Uav:
-        """Serve ships until none can be served any more; their rows are completed."""
+        """Serve ships until no further ship can be served; their rows are completed."""
         config = PatrolKeys.of(self._scenario).patrol
         uav, left = _Uav(), list(range(len(ships)))
         count = len(ships)
@@ -399,7 +400,7 @@ class PatrolWork(FlightRunner):
         uav.lost = flown.row["outcome"] in LOST
 
     def _flown(self, patrol: Patrol, ship: int, name: str, values: dict[str, object]) -> _Flown:
-        """Fly beside a ship, by the work of any flight."""
+        """Fly beside a ship in the same way as any other flight."""
         scenario = with_values(patrol.ships[ship].scenario, values)
         work = FlightRunner(
             experiments=(Experiment(name, scenario),),
@@ -430,7 +431,7 @@ class PatrolWork(FlightRunner):
             verdict = verdict_of(flown)
             row |= {"known_axis_verdict": verdict, "known_axis_service_s": flown.get("duration_s")}
             known = [flown["duration_s"]] if verdict == row["truth"] else []
-            # The oracle also knows a shorter time of the patrol's flight.
+            # The oracle also knows the patrol's own flight, if that is shorter.
             known += [row["ended_s"] - row["reached_s"]] if row.get("correct") else []
             service.append(min(known, default=math.inf))
             chance.append(float(bool(known)))

@@ -22,7 +22,7 @@ _FLIGHT = SUMMARY_COLUMNS | FINDING_COLUMNS | FUEL_COLUMNS
 
 
 def _as_flights(*names: str) -> dict[str, Column]:
-    """Return columns that mean the same as those of any flight."""
+    """Return columns with the same meaning as in studies of flights."""
     return {name: _FLIGHT[name] for name in names}
 
 
@@ -177,7 +177,7 @@ def verdict_of(row: Row) -> str:
 
 
 def wind_row(patrol: Patrol) -> Row:
-    """Return the wind of a patrol, as it is given: one for all of its ships."""
+    """Return the given wind of a patrol, the same for all of its ships."""
     wind = patrol.ships[0].scenario.wind
     return {
         "wind_speed_mps": wind.speed_mps,

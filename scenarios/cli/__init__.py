@@ -1,3 +1,3 @@
-"""The console command ``plume-flight``: every command line of the project by one name, and what is
-known of the keys.
+"""The console command ``plume-flight``: every command line of the project under one name, and the
+description of the keys.
 """

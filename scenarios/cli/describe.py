@@ -1,4 +1,4 @@
-"""What ``plume-flight describe`` says of keys and sections, in lines of text."""
+"""The text of ``plume-flight describe`` on keys and sections."""
 
 import re
 import textwrap
@@ -27,7 +27,7 @@ _TOP = "(top)"
 
 
 def described(name: str | None = None) -> list[str]:
-    """Return what is known of a key or a section; of nothing given, the sections.
+    """Return the description of a key or a section; without a name, the list of sections.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def described(name: str | None = None) -> list[str]:
 
     Raises
     ------
-    InputError : there is neither
+    InputError : there is no such key or section
     """
     if name is None:
         return list(_all_sections())
@@ -45,7 +45,7 @@ def described(name: str | None = None) -> list[str]:
     if name in (_TOP, _TOP.strip("()")):
         return list(_section(documented_sections()[0]))
     plain = re.sub(r"\.\d+(?=\.|$)", "", name)
-    # What is swept is a key of its own, and nu is one of sweep alone.
+    # Swept keys have their own descriptions, and only sweep has the key nu.
     plain = plain.removeprefix("sweep.")
     tables = (key.key for key in documented_keys() if key.range.endswith(" a table"))
     if table := next((table for table in tables if plain.startswith(f"{table}.")), None):
@@ -113,7 +113,7 @@ def _section(section: DocumentedSection) -> Iterator[str]:
 
 def _entry(key: DocumentedKey) -> list[str]:
     default = "required" if key.required else value_text(key.default)
-    # A criterion that is off has no number that a unit could follow.
+    # A criterion that is off has no number, and so no unit.
     unit = (
         f" {key.unit}"
         if key.unit not in ("", "-") and not (key.default is None or key.default is False)
@@ -123,7 +123,7 @@ def _entry(key: DocumentedKey) -> list[str]:
 
 
 def _of_parts(section: DocumentedSection) -> Iterator[str]:
-    """Yield the keys that the parts bring which a section names."""
+    """Yield the keys of the parts that a section names."""
     for part, keys in groupby(documented_part_keys(), key=lambda key: key.conditions):
         listed = [key for key in keys if key.key.partition(".")[0] == section.name]
         if listed:

@@ -1,6 +1,6 @@
 """Console command: ``plume-flight
-run|design|estimate|calibrate|report|export|compare|describe|new|schema``. Each hands on to what
-does the work.
+run|design|estimate|calibrate|report|export|compare|describe|new|schema``. Each command calls the
+module that does the work.
 """
 
 import importlib
@@ -117,7 +117,7 @@ def estimate(
         *(("--picture", path) for path in picture or ()),
     ]
     given = [f"{name}={value}" for name, value in options if value is not None]
-    # A name that begins with a dash is no option.
+    # A name may begin with a dash; it is not an option.
     words = [*given, *(["--no-report"] if no_report else []), "--", str(flight)]
     raise typer.Exit(estimate_logged(words, read_ship=read_ship))
 

@@ -1,5 +1,5 @@
-"""What ``plume-flight schema`` prints: scenario files as JSON Schema, draft 4, with which an editor
-completes and checks them.
+"""The output of ``plume-flight schema``: a JSON Schema (draft 4) of scenario files, with which an
+editor completes and checks them.
 
 It is made from the schema that reads the files. Taplo knows draft 4 alone; it checks TOML in Visual
 Studio Code (Even Better TOML) and other editors.
@@ -32,9 +32,9 @@ _OF_SCHEMAS = ("anyOf", "oneOf", "allOf", "not", "additionalProperties")
 def file_schema() -> Schema:
     """Return the schema of scenario files of every kind, with what installed packages add.
 
-    It accepts what the program accepts, in so far as numbers and truth values are written as such:
-    the program also takes "5" for 5, 2.0 for a whole number, and 1 for true. It does not know what
-    the program checks beyond types, limits and names of keys.
+    It accepts the files that the program accepts, with one difference: the program also takes "5"
+    for 5, 2.0 for a whole number, and 1 for true. It does not know what the program checks beyond
+    types, limits and names of keys.
     """
     schema = functools.reduce(
         _either,
@@ -46,7 +46,7 @@ def file_schema() -> Schema:
     keys = schema["properties"]
     for key in documented_part_keys():
         section, _, name = key.key.partition(".")
-        # A part of somebody else may have a key of this name and of another type.
+        # A user's part may have a key of this name and of another type.
         keys[section]["properties"].setdefault(name, {"description": key.meaning})
     studies = sorted({*KINDS, *announced("study")})
     keys["study"]["anyOf"] = [{"enum": studies}, {"type": "string"}]
@@ -60,8 +60,8 @@ def file_schema() -> Schema:
 
 
 class _OfToml(GenerateJsonSchema):
-    """As pydantic's, without null, which TOML does not have, and with numbers where they are taken
-    for text.
+    """Pydantic's schema, without null, which TOML does not have, and with numbers allowed where the
+    program takes them as text.
     """
 
     def nullable_schema(self, schema: core_schema.NullableSchema) -> Schema:
@@ -75,19 +75,19 @@ class _OfToml(GenerateJsonSchema):
 
 
 def _draft_4(given: Schema, definitions: Schema, *, whole: bool = False) -> Schema:
-    """Return a schema of draft 2020-12 in draft 4, with definitions in the place of references to
-    them; what draft 4 does not know is left out.
+    """Return a schema of draft 2020-12 as one of draft 4, with definitions in place of references;
+    keywords unknown to draft 4 are left out.
 
     Parameters
     ----------
     given : the schema, as pydantic makes it
-    definitions : that it refers to
-    whole : whether keys that have to be given stand in this file: in an entry of a list they do,
-        those of other tables may stand in the file that this one extends
+    definitions : definitions to which it refers
+    whole : whether required keys have to be in this file. In an entry of a list they have to; those
+        of other tables may be in the file that this one extends
     """
     if "$ref" in given:
         referred = definitions[given["$ref"].rpartition("/")[2]]
-        # A default of a whole table says no more than those of its keys.
+        # The default of a whole table is the same as those of its keys.
         given = {**referred, **given, "default": None}
         del given["$ref"]
     made: Schema = {
@@ -119,8 +119,8 @@ def _draft_4(given: Schema, definitions: Schema, *, whole: bool = False) -> Sche
 
 
 def _either(one: Schema, other: Schema) -> Schema:
-    """Return a schema of what one or the other accepts, and a little more: of two tables one that
-    may have the keys of both, so that an editor can point to the key that is wrong.
+    """Return a schema that accepts everything that one of two schemas accepts, and a little more:
+    two tables become one with the keys of both, so that an editor can mark the wrong key.
     """
     if _without_words(one) == _without_words(other):
         return one
@@ -139,7 +139,7 @@ def _either(one: Schema, other: Schema) -> Schema:
         elif _is_closed(lacking):
             keys[name] = key
         else:
-            # A part may bring a key of this name and of another type.
+            # A part may add a key of this name and of another type.
             keys[name] = {"description": key.get("description", "")}
     return {
         **one,

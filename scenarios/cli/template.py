@@ -42,8 +42,8 @@ the first line of this file is #:schema ./scenario.schema.json
 
 
 def write_template(path: Path, name: str) -> None:
-    """Write a complete scenario file with the values of another scenario; a file that is there is
-    left as it is.
+    """Write a complete scenario file with the values of another scenario; an existing file is not
+    changed.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def write_template(path: Path, name: str) -> None:
             f"'{path}' is there already, and is not overwritten; choose another name"
         ) from None
     except OSError as error:
-        # What a full disk has left of it would be in the way of the next try.
+        # Remove a file that a full disk has truncated, so that the user can try again.
         with contextlib.suppress(OSError):
             path.unlink(missing_ok=True)
         raise InputError(
@@ -76,8 +76,8 @@ def template(name: str, file: str) -> str:
 
     Parameters
     ----------
-    name : of the scenario that it is made from
-    file : what it will be called
+    name : name of the scenario from which it is made
+    file : name of the new file
     """
     document, config = load_document(name), load_study(name)
     if isinstance(config, Scenario) and compares(config):
@@ -93,15 +93,15 @@ def template(name: str, file: str) -> str:
             "",
         ]
     for section in sections.values():
-        # A list, and what is in its entries, stands with the section that has it.
+        # A list and its entries are written with their section.
         if not section.listed and ".0." not in section.name:
             lines += _section(section, document, config, sections)
     return "\n".join(lines)
 
 
 def _at_swept_ratios(document: Document, config: Scenario) -> tuple[Document, Scenario]:
-    """Return both with those ratios of ``comparison.nu`` that are swept: of others a file of its
-    own must not speak.
+    """Return both documents with only those ratios of ``comparison.nu`` that are swept; a file by
+    itself must not name others.
     """
     swept = [nu for nu in config.comparison.nu if nu in config.sweep.nu]
     if not swept:
@@ -119,7 +119,7 @@ def _section(
 ) -> Iterator[str]:
     values: Any = document.get(section.name, {}) if section.name else document
     if section.name and (entries := sections_of(config, section.name))[1:]:
-        # A list of tables: each is written as one alone.
+        # In a list of tables each table is written like a single one.
         for number, (name, _) in enumerate(entries):
             yield from _head(f"[[{section.name}]]", section)
             for key in section.keys:
@@ -172,7 +172,7 @@ def _key(key: DocumentedKey, values: Mapping[str, Any], config: BaseModel) -> It
             "",
         )
     elif isinstance(config, Scenario) and unused(config, key.key):
-        # It comes from a scenario that this one extends, which may hold more than acts here.
+        # It comes from a scenario that this one extends, which may have keys without effect here.
         yield from (f"# {name} = {as_toml(values[name])}", "")
     else:
         yield from (f"{name} = {as_toml(values[name])}", "")

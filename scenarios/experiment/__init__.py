@@ -1,1 +1,1 @@
-"""Which flights: sweep, cases, variants, draws."""
+"""The flights of an experiment: sweep, cases, variants, draws."""

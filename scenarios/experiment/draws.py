@@ -1,5 +1,5 @@
-"""Random variables: the sample of each flight, from the trial's seed and the flight's number
-alone.
+"""Random variables: the sample of each flight, which follows only from the trial's seed and the
+flight's number.
 """
 
 import math
@@ -65,15 +65,15 @@ def sampled_flight(
     trial : its name
     scenario : the trial
     number : of the flight, from 0
-    point : position of each random variable in its distribution, from 0 to 1, in their order; at
-        random if it is empty. Where that has no speed ratio within ``scenario.speed_ratio``, the
-        flight is sampled again at random. More numbers after these are those of its noise
-        (``Noise.at``); otherwise it has a seed of its own.
-    given : keys that the scenario sets for each of its flights: the samples that give way to them
-        keep their places, so that all others are what they are without them
+    point : position of each random variable in its distribution, from 0 to 1, in the order of the
+        variables; random if empty. Where that has no speed ratio within ``scenario.speed_ratio``,
+        the flight is sampled again at random. Further numbers are those of its noise
+        (``Noise.at``); without them the noise has its own seed.
+    given : keys that the scenario sets for each of its flights. The draws of these keys keep their
+        places among the random numbers, so that all other samples stay the same
     stream : number of the random numbers of the flight's point, 0 for those of all points
-    paired : makes the flight whose speed ratio says whether to sample again, of the samples; the
-        flight itself if not given
+    paired : returns, for samples, the flight whose speed ratio decides whether to sample again; by
+        default the flight itself
 
     Raises
     ------
@@ -103,7 +103,7 @@ def sampled_flight(
 
 
 def entropy_of(seed: int, trial: str, number: int, stream: int) -> list[int]:
-    """Return what the random numbers of a flight follow from.
+    """Return the numbers that seed a flight's random generator.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def entropy_of(seed: int, trial: str, number: int, stream: int) -> list[int]:
 
 
 def not_displaced(values: Mapping[str, object], given: Collection[str]) -> Values:
-    """Return samples, by key, without those that give way to given keys."""
+    """Return samples, by key, without those that given keys replace."""
     return {key: value for key, value in values.items() if not displaced(key, given)}
 
 
@@ -127,8 +127,8 @@ def speed_ratios(flight: Scenario) -> tuple[float, float]:
 
 
 def has_speed_ratio(flight: Scenario) -> bool:
-    """Return whether a flight's speed ratios lie within those that are declared: otherwise it is
-    sampled again.
+    """Return whether a flight's speed ratios lie within the declared range; otherwise it is sampled
+    again.
     """
     (low, high), (least, most) = flight.speed_ratio, speed_ratios(flight)
     return low <= least and most <= high
@@ -173,7 +173,7 @@ def _share_below(draw: DrawConfig, limit: float) -> float:
 def _tried(
     draws: Sequence[DrawConfig], generator: np.random.Generator, number: int, point: Sequence[float]
 ) -> Iterator[Values]:
-    """Yield what to try for a flight, one after the other."""
+    """Yield samples for a flight, to be tried one after the other."""
     if point:
         yield values_at(draws, point)
     for _ in range(_TRIES):

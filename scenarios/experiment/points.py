@@ -1,6 +1,4 @@
-"""The points of an experiment: which flights there are, by sweep, cases, comparisons and random
-variables.
-"""
+"""The points of an experiment, from its sweep, cases, comparisons and random variables."""
 
 import itertools
 import zlib
@@ -18,7 +16,7 @@ Values = dict[str, object]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Point:
-    """A point of an experiment, of one flight or of several that differ in what is random.
+    """A point of an experiment: one flight, or several flights that differ only at random.
 
     Attributes
     ----------
@@ -28,11 +26,10 @@ class Point:
     nu : speed ratio that is swept, or none [-]
     inputs : swept keys and their values
     flights : number of flights
-    paired_point : number of the study's point whose flights a comparison has with some keys set
-        otherwise; None of others
-    given : keys that its case and its comparison set: what is random of these keeps what they set
-    stream : number that tells its random numbers from those of other points; 0 where points share
-        them
+    paired_point : for a point of a comparison, the number of the study's point with which it is
+        compared; otherwise None
+    given : keys that its case and its comparison set; they replace the draws of these keys
+    stream : number of its random numbers, different for each point; 0 if points share them
     """
 
     label: str
@@ -95,10 +92,10 @@ def _grid(scenario: Scenario) -> Iterator[Point]:
 
 
 def _stream(scenario: Scenario, nu: float | None, inputs: Values) -> int:
-    """Return the number of a point's random numbers, which follows from its values alone: another
-    value that is swept leaves it, and both vehicles have the same.
+    """Return the number of a point's random numbers. It follows from the point's values only:
+    adding a value to the sweep does not change it, and both vehicles have the same.
 
-    Where speed ratios of one flight each are all that varies, their seeds follow from them.
+    If only speed ratios vary, with one flight each, the seeds follow from the speed ratios instead.
     """
     ratio_alone = nu is not None and len(inputs) == scenario.flights == 1 and not scenario.draws
     if not (scenario.own_random_numbers and inputs) or ratio_alone:
@@ -107,7 +104,7 @@ def _stream(scenario: Scenario, nu: float | None, inputs: Values) -> int:
 
 
 def _same(value: object) -> object:
-    """Return a value as one that equals it, as 5 equals 5.0, has it."""
+    """Return a value in a form that is the same for equal values, such as 5 and 5.0."""
     return float(value) if isinstance(value, int) and not isinstance(value, bool) else value
 
 
@@ -190,8 +187,8 @@ def _varied(
 
 
 def _names_of(keys: Iterable[str]) -> dict[str, str]:
-    """Return what swept keys are called in the names of flights: by their last part, or by as many
-    as tell them apart.
+    """Return the short names of swept keys for the names of flights: the last part of each key, or
+    as many parts as make it unique.
     """
     parts = {key: key.split(".") for key in keys}
     return {
@@ -201,8 +198,8 @@ def _names_of(keys: Iterable[str]) -> dict[str, str]:
 
 
 def _parts_apart(own: list[str], others: list[list[str]]) -> int:
-    """Return how many of the last parts of a key tell it apart from others; the first of them is
-    not the number of an entry.
+    """Return the number of last parts that distinguish a key from others; the first of these parts
+    is not the number of an entry.
     """
     apart = (
         n

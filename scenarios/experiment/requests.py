@@ -1,5 +1,5 @@
-"""The flights of an experiment, by number: each with its scenario and its seed, from the experiment
-and the number alone.
+"""The flights of an experiment, by number. Scenario and seed of a flight follow from the experiment
+and the number only.
 """
 
 import bisect
@@ -70,7 +70,7 @@ class FlightRequest:
 
 
 def table_of(variant: str) -> str:
-    """Return the file that the rows of a variant's flights are in."""
+    """Return the name of the file with the rows of a variant's flights."""
     return SUMMARY if variant == STUDY else COMPARISON
 
 
@@ -81,8 +81,8 @@ class Experiment:
     ----------
     name : of the scenario, the trial's in a list
     scenario : scaled to its aircraft
-    alone : whether it is the only one of its run: then its name is not part of the names of swept
-        flights
+    alone : whether it is the only experiment of its run; then its name is not part of the names of
+        swept flights
 
     Raises
     ------
@@ -110,10 +110,11 @@ class Experiment:
         return _without_variation(self.scenario)
 
     def overrides(self, flown: Scenario) -> Values:
-        """Return the keys that a flight has otherwise than the scenario, and their values as the
-        manifest would have them: a list as a whole, and so a table that lacks a key.
+        """Return the keys whose values differ between a flight and the scenario, with the flight's
+        values in the form of the manifest. A list counts as one value, and so does a table that
+        lacks a key.
 
-        They hold all that was set: by its case, the sweep, a comparison, samples, the study.
+        They include everything that case, sweep, comparison, samples and study have set.
         """
         return differing_keys(self._configuration, _without_variation(flown))
 
@@ -153,8 +154,8 @@ class Experiment:
         )[0]
 
     def names(self) -> list[str]:
-        """Return the name of one flight of each point: those of the others differ in their number
-        alone.
+        """Return the name of one flight of each point; the names of the others differ only in their
+        number.
         """
         return [self.named(end - 1)[0] for end in self._ends]
 
@@ -205,8 +206,8 @@ class Experiment:
         return map(self.request, range(self.flights))
 
     def settings(self) -> Iterator[Scenario]:
-        """Yield every kind of flight, as far as autopilot and margins depend on it: by points and
-        by choices.
+        """Yield the different scenarios for which autopilot and margins are computed: one for each
+        point and choice.
         """
         for point in self.points:
             choices = [
@@ -224,7 +225,7 @@ class Experiment:
 
         Raises
         ------
-        InputError : these have no limit
+        InputError : turns or climbs have no limit
         """
         yield from self.settings()
         for point in self.points:
@@ -264,8 +265,8 @@ class Experiment:
     def _seed(self, point: Point, index: int) -> int:
         """Return the seed of a flight; variants of a point start alike.
 
-        In a sweep of nu with one flight a point it depends on nu alone, unless the points are to
-        share their random numbers, or each has a stream of its own.
+        In a sweep of nu with one flight a point it depends on nu alone, unless the points share
+        their random numbers, or each has its own stream.
         """
         common = self.scenario.common_random_numbers is True and bool(point.inputs)
         if point.nu is not None and point.flights == 1 and not (point.stream or common):
@@ -276,12 +277,16 @@ class Experiment:
 
 
 def _without_variation(scenario: Scenario) -> dict[str, Any]:
-    """Return the configuration of a flight: a scenario without what makes several of it."""
+    """Return the configuration of a flight: a scenario without the sections that make several
+    flights of it.
+    """
     return scenario.model_dump(mode="json", exclude={*_VARIATION, "report"})
 
 
 def differing_keys(before: Mapping[str, Any], now: Mapping[str, Any], above: str = "") -> Values:
-    """Return by dotted keys what nested tables have otherwise than others, which may lack keys."""
+    """Return the values of nested tables that differ from those of other tables, by dotted keys;
+    the others may lack keys.
+    """
     found: Values = {}
     for key, value in now.items():
         was: Any = before.get(key)
@@ -308,15 +313,15 @@ def _used(scenario: Scenario, section: str, values: Mapping[str, Any]) -> dict[s
 def scenario_file(request: FlightRequest, *, title: str) -> bytes:
     """Return a scenario that replays a flight, to the last bit.
 
-    But where an experiment varies the bank beyond the design's, or the climb with a part that may
-    fail: the vehicle is measured for the steepest of all its flights, and here for that of this
-    one.
+    There is one exception: an experiment varies the bank beyond the design's, or the climb with a
+    part that may fail. Then its vehicle is measured for the steepest of all its flights, and the
+    replay's vehicle for this flight only.
     """
     import tomli_w
 
     document = request.scenario.model_dump(mode="json", exclude_none=True)
-    # The margin is planned for every fault that the experiment may bring, also for those that this
-    # flight does not have.
+    # The margin is planned for every fault that the experiment may have, even if this flight does
+    # not have it.
     own = {fault.kind for fault in request.scenario.faults}
     faults = document["fault"]
     (faults[0] if isinstance(faults, list) else faults)["declared"] = sorted(
@@ -345,7 +350,7 @@ def scenario_file(request: FlightRequest, *, title: str) -> bytes:
         *(name for keys in ADDED for name in keys.names()),
     ):
         document.pop(experiment, None)
-    # It is of the experiment, and not of this flight.
+    # It belongs to the experiment, and not to this flight.
     document.pop("description")
     # The random variables have their values, and nothing is sampled again.
     document.pop("speed_ratio")

@@ -1,5 +1,5 @@
-"""The space of an experiment's random variables: points that spread evenly over it, the space that
-a search goes through, and whether flights are a random sample of it, from which a bound follows.
+"""The space of an experiment's random variables: points spread evenly over it, the space for a
+search, and whether flights are a random sample of it, so that a bound follows from them.
 """
 
 import functools
@@ -36,8 +36,8 @@ has a side.
 
 @dataclass(frozen=True, slots=True)
 class SamplingDesign:
-    """Points that spread evenly over the unit cube of the random variables, by the numbers of
-    flights.
+    """Points spread evenly over the unit cube of the random variables, one for each flight's
+    number.
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ class SamplingDesign:
     seed: int
 
     def at(self, number: int) -> tuple[float, ...]:
-        """Return the point of a flight, which depends on its number and the attributes alone; empty
+        """Return the point of a flight, which depends only on its number and the attributes; empty
         if it has none.
         """
         if self.sampling == "random" or not self.dimension:
@@ -82,20 +82,20 @@ def _block(design: SamplingDesign, block: int) -> list[list[float]]:
 
 
 def is_random_sample(scenario: Scenario) -> bool:
-    """Return whether flights are a random sample: of the random variables, or of what follows from
-    seeds of their own.
+    """Return whether flights are a random sample, of the random variables or of noise from
+    different seeds.
 
-    Those of a search and of subset simulation are not: each depends on what was flown before. Nor
-    are copies of a flight, which come where nothing random tells flights apart: values that are
-    swept, or chosen in turn, come again and again.
+    Flights of a search and of subset simulation are not: each depends on earlier flights. Copies of
+    a flight are not either. There are copies if flights differ in nothing random: swept values, and
+    values chosen in turn, repeat.
     """
     if scenario.study == "falsify" or scenario.method == "subset" or scenario.cases:
         return False
     read = not scenario.finds and any(key.startswith(_READ) for key in scenario.sweep.root)
     if read and flights_per_sample(scenario) > 1:
-        # Some are the same flight, read otherwise.
+        # Some are the same flight with other readings.
         return False
-    # What is drawn of these tells no two flights apart either.
+    # Draws of these keys do not make flights different either.
     draws = [draw for draw in scenario.draws if scenario.finds or not draw.key.startswith(_READ)]
     in_turn = {
         draw.key: without_repetitions(draw.choice)
@@ -106,8 +106,8 @@ def is_random_sample(scenario: Scenario) -> bool:
         return True
     listed = {*scenario.sweep.root, *in_turn}
     if "flight_seed" in listed:
-        # Of what is chosen in turn the first is another one in each flight; a seed behind it comes
-        # again, beside other values.
+        # The first key that is chosen in turn changes from flight to flight; a seed in a later
+        # place repeats, with other values of the first key.
         first = next(iter(in_turn), "")
         different = len(in_turn[first]) if first == "flight_seed" else 1
         return scenario.flights <= different and _depends_on_seed(scenario, listed)
@@ -118,9 +118,9 @@ def flights_per_sample(scenario: Scenario) -> int:
     """Return how many flights have the same seed and random variables: a bound on a probability
     counts them as one.
 
-    Those of two vehicles have, and those of all points of a sweep, unless each has random numbers
-    of its own. Without random variables seeds that are swept tell flights apart, and so do speed
-    ratios of one flight each, if the scenario does not ask for common numbers.
+    The flights of two vehicles share them, and so do those of all points of a sweep, unless each
+    point has its own random numbers. Without random variables, swept seeds make flights different,
+    and so do speed ratios with one flight each, unless the scenario sets common random numbers.
     """
     sweep, drawn = scenario.sweep.root, bool(scenario.draws)
     seeded = "flight_seed" in sweep or scenario.flight_seed is not None
@@ -138,8 +138,8 @@ def flights_per_sample(scenario: Scenario) -> int:
 
 
 def random_numbers_of_points(scenario: Scenario) -> str:
-    """Return whether the points of a sweep have ``own`` or ``common`` random numbers; no word of a
-    scenario that sweeps nothing.
+    """Return whether the points of a sweep have ``own`` or ``common`` random numbers; an empty text
+    without a sweep.
     """
     if not any(len(without_repetitions(values)) > 1 for values in scenario.sweep.root.values()):
         return ""
@@ -149,8 +149,8 @@ def random_numbers_of_points(scenario: Scenario) -> str:
 
 
 def _varies(draw: DrawConfig) -> bool:
-    """Return whether a random variable has several values: a range of no width, or one choice of
-    some weight, has one.
+    """Return whether a random variable has several values; a range without width has one value, and
+    so has a choice with a single value of positive weight.
     """
     if draw.uniform is not None:
         return draw.uniform[0] < draw.uniform[1]
@@ -158,8 +158,8 @@ def _varies(draw: DrawConfig) -> bool:
 
 
 def _depends_on_seed(scenario: Scenario, listed: Collection[str]) -> bool:
-    """Return whether every flight depends on its seed, by its start or by noise, beside the keys
-    whose values are listed.
+    """Return whether every flight depends on its seed, by its start or by noise; the values of the
+    listed keys do not count.
     """
 
     def given(key: str) -> bool:

@@ -166,7 +166,7 @@ def fly(
     reader: GasReader | None = None,
     every_step: bool = False,
 ) -> FlightRecord:
-    """Fly ``plan`` with a vehicle that stands at its start as its guidance commands; parameters
+    """Fly ``plan`` by the commands of its guidance, with a vehicle that is at the start; parameters
     are those of ``ClosedLoop``.
     """
     steps = ClosedLoop(plan, vehicle, payload, reader=reader, every_step=every_step).steps()

@@ -1,6 +1,6 @@
 """When a flight has settled, when it is over, and how it ended.
 
-A flight may end early: with a verdict on the fuel, or with the knowledge that there will be none.
+A flight may end early: with a verdict on the fuel, or because no verdict can be reached.
 Each look at the readings could be wrong, and a flight ends at the first that finds a verdict. So
 the guard band allows for the looks before and after it (``measurement.estimate.repeated``).
 """
@@ -118,7 +118,7 @@ class Settling:
         y: float,
         axis: float,
     ) -> bool:
-        """Take note of a sample; return whether the flight was complete at the sample before.
+        """Record a sample; return whether the flight was complete at the sample before.
 
         Parameters
         ----------

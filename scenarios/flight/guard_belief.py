@@ -20,8 +20,8 @@ class GuardBelief:
     Parameters
     ----------
     guidance, guard : of the flight
-    vessel : true motion of the vessel; of the guard's discs, the one is recorded in which the
-        vessel has least room
+    vessel : true motion of the vessel; the recorded disc is the one of the guard's discs in which
+        the vessel has least room
     time_step : of the guidance [s]
     """
 
@@ -66,7 +66,7 @@ class GuardBelief:
         self._commanded = 0.0
 
     def command(self, heading_rate: float) -> None:
-        """Take note of the heading rate over the mean air that is flown for a step [rad/s]."""
+        """Record the heading rate over the mean air that is flown for a step [rad/s]."""
         self._commanded += self._time_step * heading_rate
 
     def read(

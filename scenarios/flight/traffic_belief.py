@@ -13,7 +13,8 @@ _RESOLUTION = 0.05
 
 
 class TrafficBelief:
-    """The premise that each of the other ships is in its discs, as a column of the time history.
+    """The premise that each of the other ships is within its discs, as a column of the time
+    history.
 
     Parameters
     ----------

@@ -14,12 +14,12 @@ Array = npt.NDArray[np.float64]
 
 
 class FailingSniffer:
-    """A sniffer in flight, as its fault leaves it.
+    """A sniffer in flight, with the effect of its fault.
 
     Parameters
     ----------
     spec : the instrument
-    fault : of it
+    fault : fault of the sniffer
     generator, time_step : same as for ``Sniffer``
     """
 

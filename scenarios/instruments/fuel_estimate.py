@@ -1,5 +1,5 @@
-"""What a sniffer's readings say of the fuel: figures of a flight, a table over time, and what a
-report draws.
+"""Estimate the fuel's sulphur from a sniffer's readings: figures of a flight, a table over time,
+and data for the report.
 """
 
 import math
@@ -115,7 +115,7 @@ TABLES = {
 
 @dataclass(frozen=True, kw_only=True)
 class FuelEstimate:
-    """What is known of the fuel after a flight.
+    """The estimate of the fuel after a flight.
 
     Attributes
     ----------
@@ -136,15 +136,15 @@ def fuel_estimate(
     expected: float,
     rule: "DecisionRule | None" = None,
 ) -> FuelEstimate:
-    """Return what readings say of the fuel, by regression and by areas.
+    """Return the estimate of the fuel from readings, by regression and by areas.
 
     Parameters
     ----------
     readings : from settling on
-    instrument : as its data sheet says, which is all that the analyst knows
-    limit : that the verdict is on [% m/m]
-    expected : what a perfect instrument reads [% m/m]
-    rule : by which the ship is reported, if there is one
+    instrument : instrument by its data sheet; the analyst knows nothing else
+    limit : limit for the verdict [% m/m]
+    expected : sulphur content that a perfect instrument would read [% m/m]
+    rule : rule by which the ship is reported, or None
     """
     from measurement.estimate.estimator import time_to_verdict
     from measurement.estimate.verdict import OPEN
@@ -192,12 +192,12 @@ def fuel_estimate(
 
 
 def repeated_figures(verdict: "RepeatedVerdict", row: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the figures of a flight that looked at its verdict repeatedly; its end is the last
-    look.
+    """Return the figures of a flight that evaluated its verdict repeatedly; the last look is at its
+    end.
 
     Parameters
     ----------
-    verdict : by the looks in flight
+    verdict : verdict from the looks in flight
     row : figures of the flight, those of ``fuel_estimate`` among them
     """
     from measurement.estimate.verdict import OPEN
@@ -212,7 +212,7 @@ def repeated_figures(verdict: "RepeatedVerdict", row: Mapping[str, Any]) -> dict
             last=True,
         )
     return {
-        # A verdict found on the way does not stand if the whole record is refused.
+        # An earlier verdict is not valid if the whole record is refused.
         "sulphur_verdict": verdict.verdict if admitted else OPEN,
         "verdict_looks": verdict.looks,
         "verdict_guard": verdict.guard if admitted else math.nan,
@@ -229,7 +229,7 @@ def with_verdict(document: Mapping[str, Any] | None, verdict: str) -> Mapping[st
 
 
 def _points(readings: Readings) -> int:
-    """Return at how many even times the estimate is made anew."""
+    """Return the number of evenly spaced times at which the estimate is repeated."""
     return (
         max(1, round(float(readings.time[-1] - readings.time[0]) / _INTERVAL))
         if len(readings)

@@ -1,7 +1,8 @@
 """Channels of a sniffer for gases and particles that a ship emits beside SO2, CO2 and NOx.
 
-They disperse with the exhaust: what is above clean air is the ship's ratio times the excess of CO2.
-Each channel is read, and its figure estimated, in the place of SO2, as of a log.
+They disperse with the exhaust: the excess over clean air is the ship's ratio to CO2 times the
+excess of CO2. Each channel is read, and its figure estimated, by the code for SO2, as in the
+analysis of a log.
 """
 
 import math
@@ -52,8 +53,8 @@ def channels_of(given: Mapping[str, Any]) -> dict[str, Channel]:
 
     Raises
     ------
-    MeasurementError : a gas or key is not known, a value is not of its kind or range, or response,
-        delay or noise are missing
+    MeasurementError : a gas or key is unknown, a value has a wrong type or is out of range, or
+        response, delay or noise are missing
     """
     check_keys(given, tuple(GAS_KEYS), "channels")
     found = {gas: channel_of(gas, given[gas]) for gas in GAS_KEYS if gas in given}
@@ -66,7 +67,7 @@ def channels_of(given: Mapping[str, Any]) -> dict[str, Channel]:
 
 
 def gas_columns(gases: Iterable[str]) -> Declarations:
-    """Return what the channels of some gases fill."""
+    """Return the columns and figures that the channels of some gases fill."""
     found = Declarations()
     for gas in gases:
         species = SPECIES[gas]
@@ -110,14 +111,16 @@ def gas_columns(gases: Iterable[str]) -> Declarations:
 
 
 def _names(species: Species) -> tuple[str, str]:
-    """Return the columns of the truth and of the readings of a gas."""
+    """Return the columns with the true and the read values of a gas."""
     end = _ENDS[species.unit]
     return f"{species.name}_{end}", f"{species.name}_reading_{end}"
 
 
 @dataclass(frozen=True, kw_only=True)
 class _GasChannel:
-    """A channel in flight: as stated, as it is, and what it has met and read."""
+    """A channel in flight: its data sheet, its sampled properties, the air that it met, and its
+    readings.
+    """
 
     species: Species
     stated: Channel
@@ -133,9 +136,9 @@ class GasChannels:
     ----------
     channels : of ``channels_of``
     ratios : of ``Exhaust``
-    scenario : whose fuel is known, and the air
-    spec : the sniffer that they belong to
-    exact : whether they are as stated
+    scenario : scenario with the fuel and the air
+    spec : the sniffer to which the channels belong
+    exact : whether the channels are exactly as on their data sheets
     fault : of the sniffer
     generator : of the sniffer; not used without channels
     time_step : between samples of the air [s]
@@ -159,7 +162,8 @@ class GasChannels:
         self._air = air_of_particles(scenario)
         self._each = []
         for gas, channel in channels.items():
-            # Numbers of each channel, so that readings do not depend on how the air is split.
+            # Each channel has its own random numbers, so that readings do not depend on the parts
+            # in which the air is given.
             own = np.random.default_rng(int(generator.integers(2**63)))
             alone = SnifferSpec(name=gas, title=gas, rate_hz=spec.rate_hz, channels=(channel,))
             sniffer = FailingSniffer(
@@ -190,7 +194,7 @@ class GasChannels:
         ----------
         time : of the rows, shape (m,) [s]
         at : of the samples, shape (n,) [s]
-        held : which reading stands in each row, shape (m,)
+        held : index of the reading that each row shows, shape (m,)
         """
         found = []
         for each in self._each:
@@ -201,14 +205,14 @@ class GasChannels:
     def estimates(
         self, readings: Readings, kept: npt.NDArray[np.bool_]
     ) -> tuple[dict[str, Any], list[dict[str, Any]]]:
-        """Return figures of the summary, and records as a report takes them.
+        """Return figures of the summary, and records for a report.
 
-        The carbon of the fuel is taken as that of the ship's: a log's configuration states it.
+        The carbon of the fuel is taken as known, as a log's configuration would state it.
 
         Parameters
         ----------
-        readings : of the sniffer, those that the estimate of the fuel is made of
-        kept : which of all these are
+        readings : readings of the sniffer that the estimate of the fuel uses
+        kept : mask of the used readings among all readings
         """
         from measurement.estimate.gas import estimate_gas, placed
 

@@ -1,4 +1,4 @@
-"""Instruments on board: what they read goes into the time history."""
+"""Instruments on board; their readings go into the time history."""
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -30,8 +30,8 @@ class Instrument(Protocol):
 
     Attributes
     ----------
-    COLUMNS : of the time history that it fills: a mapping from their names to ``Column`` of
-        ``common.columns``, or to their meanings, or their names alone, which end in their units, as
+    COLUMNS : columns of the time history that it fills: a mapping from their names to ``Column`` of
+        ``common.columns`` or to their meanings, or only their names, which end in their units, as
         in ``so2_ppb``. Reports of a flight have a panel for each
     """
 
@@ -54,15 +54,14 @@ class Instrument(Protocol):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Evaluation:
-    """What an instrument makes of a flight.
+    """An instrument's results of a flight.
 
     Attributes
     ----------
     columns : values of ``COLUMNS``, shape (samples, columns)
     figures : of the flight's row in the summary
     tables : rows by file
-    document : what a report shows beside all this, or none; it is written as JSON beside the time
-        history
+    document : further data for the report, or None; it is written as JSON beside the time history
     """
 
     columns: Array
@@ -79,8 +78,8 @@ class EvaluatedInstrument(Protocol):
     It may have ``FIGURES``, the columns of the summary that it fills, and ``TABLES``, the columns
     of the tables that it fills, by file, beside those that name the flight. Both are declared as
     ``COLUMNS`` are; reports and comparisons show the figures. A figure that it does not return is
-    empty. ``FILLED_BY`` may have, by a key of its settings that is a table, what returns the
-    ``Declarations`` of what such a table adds.
+    empty. If a key of its settings is a table that adds columns, ``FILLED_BY`` has a function under
+    that key, which returns the ``Declarations`` of the added columns.
 
     Attributes
     ----------
@@ -92,24 +91,23 @@ class EvaluatedInstrument(Protocol):
         """Return the columns that it fills."""
 
     def evaluate(self, column: Callable[[str], Array], since: float, /) -> Evaluation:
-        """Return what it makes of the flight.
+        """Return its results of the flight.
 
         Parameters
         ----------
         column : returns a column of the flight's record by name, shape (samples,)
-        since : when the measurement begins: where the flight has settled; NaN if it never
-            does [s]
+        since : begin of the measurement, when the flight has settled; NaN if it never settles [s]
         """
 
 
 @runtime_checkable
 class GasReader(Protocol):
-    """An instrument that says in flight what it reads of CO2; otherwise as ``EvaluatedInstrument``.
+    """An instrument whose readings of CO2 are used in flight; otherwise as ``EvaluatedInstrument``.
 
     Attributes
     ----------
-    spec : as its data sheet says
-    limit_percent : sulphur content that a verdict is on [% m/m]
+    spec : its data sheet
+    limit_percent : limit of the sulphur content for the verdict [% m/m]
     """
 
     spec: SnifferSpec
@@ -121,23 +119,24 @@ class GasReader(Protocol):
     def follow(
         self, time: float, motion: MeasuredMotion, sample: tuple[float, ...], /
     ) -> Sequence[tuple[float, float]]:
-        """Return times [s] and CO2 [ppm] of the readings that have come; called for each row of the
+        """Return times [s] and CO2 [ppm] of the readings so far; called for each row of the
         flight's record.
 
         Parameters are those of ``Instrument.read``.
         """
 
     def readings(self, since: float, /) -> Readings:
-        """Return what has been read since a time [s]."""
+        """Return the readings since a time [s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Declarations:
-    """What the instruments of some scenarios fill: columns that bear the instrument's name.
+    """Declared columns of the instruments of some scenarios; each column has its instrument's name
+    as ``part``.
 
     Attributes
     ----------
-    histories : of time histories, but those that objects alone have
+    histories : columns of time histories, without those that only objects declare
     figures : of the summary
     tables : by file
     """
@@ -148,7 +147,7 @@ class Declarations:
 
 
 def declarations(scenarios: Iterable[Scenario]) -> Declarations:
-    """Return what the instruments of scenarios fill, each instrument once.
+    """Return the declared columns of the instruments of scenarios, each instrument once.
 
     Raises
     ------
@@ -171,11 +170,12 @@ def declarations(scenarios: Iterable[Scenario]) -> Declarations:
 
 
 def declared_by(name: str, instrument: Any) -> Declarations:
-    """Return what an instrument, or a class of instruments, fills.
+    """Return the columns that an instrument, or a class of instruments, declares.
 
     Raises
     ------
-    PluginError : it declares what are no columns, or tables that are no files of the run
+    PluginError : it declares something other than columns, or a table whose name cannot be a file
+        of the run
     """
     part = without_folders(name)
 
@@ -197,7 +197,7 @@ def declared_by(name: str, instrument: Any) -> Declarations:
                 raise ValueError(f"names of files that end in .csv, without a folder; not {file!r}")
         return {file: columns(of) for file, of in declared.items()}
 
-    # Objects may have columns of their own: a property of a class says nothing yet.
+    # A property has columns only for an object, not for the class.
     declared = {
         what: {} if isinstance(of := getattr(instrument, what, {}), property) else of
         for what in ("COLUMNS", "FIGURES", "TABLES")

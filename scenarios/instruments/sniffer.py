@@ -1,8 +1,8 @@
-"""A sniffer on board: the air along the flight, what it reads of the exhaust, in flight or after
-it, and how well the plume was hit.
+"""A sniffer on board: the air along the flight, the readings in flight or after it, and how well
+the passes hit the plume.
 
-The air is sampled at even times between samples of the flight: the same in parts, while the flight
-goes on, as at once.
+The air is sampled at even times between samples of the flight. The result is the same in parts,
+during the flight, as all at once after it.
 """
 
 import math
@@ -83,7 +83,7 @@ class AirSamples:
     time : shape (n,) [s]
     air : gases, shape (n, 4), in the order and the units of ``measurement.gases``
     background_co2 : CO2 without the exhaust of the measured ship, shape (n,) [ppm]
-    pressure : in the sensors less that at the sea [hPa], shape (n,)
+    pressure : pressure in the sensors minus that at sea level [hPa], shape (n,)
     above : height over the plume's mean axis [m], shape (n,)
     foreign : whether the plume of another ship may be there, shape (n,)
     plume : there
@@ -99,7 +99,7 @@ class AirSamples:
 
     @classmethod
     def joined(cls, parts: "list[AirSamples]") -> "AirSamples":
-        """Return parts that follow each other as one."""
+        """Join successive parts into one."""
         if len(parts) == 1:
             return parts[0]
 
@@ -120,9 +120,10 @@ class AirSampler:
 
     Parameters
     ----------
-    exhaust, background : in the air
+    exhaust, background : exhaust of the measured ship, and CO2 of the other air
     others : exhausts of other ships
-    dynamic_pressure_fraction : of the dynamic pressure that the inlet passes on to the sensors [-]
+    dynamic_pressure_fraction : fraction of the dynamic pressure that the inlet passes on to the
+        sensors [-]
     """
 
     def __init__(
@@ -138,12 +139,12 @@ class AirSampler:
         self._clean = np.array([CLEAN_AIR[gas] for gas in GASES])
 
     def advance(self, time: Array, place: Array, rate: Array, airspeed: Array) -> AirSamples:
-        """Return the samples whose time has come, before the last time given.
+        """Return the samples that are complete, those before the last given time.
 
         Parameters
         ----------
-        time : from the last one given before on, shape (n,) [s]
-        place, rate : north, east and altitude, shape (n, 3) [m], and what they change by [m/s]
+        time : times from the last one of the previous call on, shape (n,) [s]
+        place, rate : north, east and altitude, shape (n, 3) [m], and their rates [m/s]
         airspeed : shape (n,) [m/s]
         """
         from scipy.interpolate import CubicHermiteSpline
@@ -233,10 +234,10 @@ def pass_figures(
 ) -> dict[str, float]:
     """Return figures of the passes of a flight.
 
-    A change of sides of the plume's mean axis, seen from above, is a crossing, with smoke there or
-    without: the UAV may be above or below the plume, and the plume may have meandered away. Of
-    these passes those count as passes through smoke in which the UAV was inside the plume, as
-    ``INSIDE`` says, at one sample at least.
+    If the UAV changes sides of the plume's mean axis, seen from above, that is a crossing, even
+    without smoke: the UAV may be above or below the plume, and the plume may have meandered away. A
+    pass counts as a pass through smoke if the UAV was inside the plume (``INSIDE``) at one sample
+    or more.
 
     Parameters
     ----------
@@ -287,7 +288,7 @@ def flown_presets() -> tuple[str, ...]:
 
 
 def _choices() -> tuple[str, ...]:
-    """Return what a sensor may be, in words."""
+    """Return the possible values of a sensor, in words."""
     return (*flown_presets(), "a table")
 
 
@@ -308,8 +309,8 @@ class SnifferSettings:
     sensor : a preset of measurement/sniffer/presets, or an inline table with the same keys
     channels : further channels, a table by gas, ch4, bc or pn, with the keys of those of a sensor:
         methane, black carbon and the number of particles that the ship emits
-    exact : whether the instrument is as its data sheet says; otherwise gains, zeros, responses and
-        cross-sensitivities are sampled within what is stated
+    exact : whether the instrument is exactly as its data sheet says; otherwise gains, zeros,
+        responses and cross-sensitivities are sampled within the stated uncertainties
     limit_percent : sulphur content that the verdict is on [% m/m]: 0.1 in an emission control area,
         0.5 elsewhere
     rule : of measurement/estimate/verdict.py, by which a ship is reported as suspect; none for no
@@ -427,8 +428,7 @@ class SnifferOnBoard:
         self._air: list[AirSamples] = []
         self._read: list[Readings] = []
         self._methane = scenario.emission.methane
-        # What is known of the flight since the air was last sampled: time, place, rates and
-        # airspeed.
+        # The flight since the air was last sampled: time, place, rates and airspeed.
         self._path: list[tuple[float, ...]] = []
         self._count = 0
 
@@ -439,13 +439,13 @@ class SnifferOnBoard:
         return limit
 
     def readings(self, since: float) -> Readings:
-        """Return what has been read since a time [s], but for what the plume of another ship may be
-        in: where that lies is known by the ship's reports and the wind.
+        """Return the readings since a time [s], without those that the plume of another ship may
+        have affected. The place of that plume is known from the ship's reports and the wind.
         """
         return self._kept(since)[0]
 
     def _kept(self, since: float) -> tuple[Readings, npt.NDArray[np.bool_]]:
-        """Return those readings, and which of all they are."""
+        """Return those readings, and their mask among all readings."""
         read = _joined(self._read)
         kept = read.time >= since
         if self._others:
@@ -453,8 +453,8 @@ class SnifferOnBoard:
         return Readings(read.time[kept], read.values[kept]), kept
 
     def _foreign(self, time: Array) -> npt.NDArray[np.bool_]:
-        """Return whether readings at some times [s] may have the plume of another ship in them, or
-        lie between two such.
+        """Return whether readings at some times [s] may contain the plume of another ship, or lie
+        between two such readings.
         """
         met = [part.time[part.foreign] for part in self._air]
         times = np.concatenate([np.full(1, -np.inf), *met])
@@ -466,8 +466,8 @@ class SnifferOnBoard:
     def follow(
         self, time: float, motion: MeasuredMotion, sample: tuple[float, ...]
     ) -> Sequence[tuple[float, float]]:
-        """Return the times [s] and the CO2 [ppm] of the readings that have come; called for each
-        row of the flight's record.
+        """Return the times [s] and the CO2 [ppm] of the readings so far; called for each row of the
+        flight's record.
 
         Parameters are those of ``scenarios.instruments.instrument.Instrument.read``.
         """
@@ -482,7 +482,7 @@ class SnifferOnBoard:
         return list(zip(new.time.tolist(), new.values[:, CO2].tolist(), strict=True))
 
     def _advance(self, time: Array, place: Array, rate: Array, airspeed: Array) -> Readings:
-        """Go on along a path; return what is read of it."""
+        """Continue along a path; return the readings on it."""
         air = self._sampler.advance(time, place, rate, airspeed)
         new = self._sniffer.advance(air.air, air.pressure)
         self._gases.advance(air.air[:, CO2] - air.background_co2, air.pressure)
@@ -553,8 +553,8 @@ class SnifferOnBoard:
         )
 
     def _left_out(self, since: float, known: Mapping[str, Any]) -> dict[str, Any]:
-        """Return figures of the readings that are left out for the plumes of other ships, beside
-        those of the estimate.
+        """Return the figures of the estimate, and of the readings that are left out because of
+        other ships' plumes.
         """
         time = _joined(self._read).time
         time = time[time >= since]
@@ -568,7 +568,7 @@ class SnifferOnBoard:
 
 
 def _joined(parts: list[Readings]) -> Readings:
-    """Return readings that follow each other as one, and keep them so."""
+    """Join successive parts of readings into one, and keep the result."""
     if len(parts) > 1:
         parts[:] = [
             Readings(

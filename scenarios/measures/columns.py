@@ -1,9 +1,9 @@
-"""Columns of a run's tables, each with what is known of it. A figure that a flight does not have is
-empty.
+"""The columns of a run's tables and their descriptions. A figure that a flight does not have is an
+empty cell.
 
 A new column is one entry here, or in the part that fills it (``scenarios.instruments``,
 ``scenarios.measures.window``, ``scenarios.studies``): the header of the file, ``columns.json``, the
-page of the reference, and names and units in reports follow. "Settled" is said of the flight from
+page of the reference, and names and units in reports follow. "Settled" refers to the flight from
 its settling time on.
 """
 
@@ -378,7 +378,7 @@ HULL_COLUMNS = described(
 
 
 def further_faults(most: int) -> dict[str, Column]:
-    """Return the columns that the summary has besides where flights have up to ``most`` faults."""
+    """Return the summary's additional columns if flights have up to ``most`` faults."""
     declared: dict[str, Column | str] = {}
     for number in range(2, most + 1):
         kind, begins = fault_columns(number)

@@ -1,4 +1,4 @@
-"""What each flight is judged by: its figures beside the limits of its criteria."""
+"""Judges each flight: compares its figures with the limits of its criteria."""
 
 import math
 from collections.abc import Iterator
@@ -37,12 +37,12 @@ class Judged(NamedTuple):
     Attributes
     ----------
     key, column : as in ``common.verdict.Criterion``
-    value : of the figure, not a number where the flight has none; or a word
+    value : of the figure, NaN if the flight has none; or a word
     limit : of the flight; None where its scenario sets none
     worse : how bad the value is, larger is worse, comparable between limits; NaN without a value
-    of_limit : the larger, the worse the value is for its limit
-    message : what to say of a flight that fails the criterion; empty where it is met
-    judges : whether the criterion has a say in the flight
+    of_limit : how bad the value is relative to its limit; larger is worse
+    message : message about a flight that fails the criterion; empty if it is met
+    judges : whether the criterion applies to the flight
     """
 
     key: str
@@ -56,17 +56,18 @@ class Judged(NamedTuple):
 
 
 def failed_criteria(row: Row, criteria: CriteriaConfig) -> list[str]:
-    """Return what a flight's row fails, each as a short sentence; empty when all is met.
+    """Return the criteria that a flight's row fails, each as a short sentence; empty if all are
+    met.
 
-    Beside the criteria every flight has to keep out and to complete: an aircraft that is lost meets
-    nothing, also where its fault is flown on purpose.
+    In addition to the criteria, every flight has to keep out and to complete its mission. A flight
+    that loses its aircraft meets nothing, even if its scenario declares the fault.
     """
     return [of.message for of in judged_criteria(row, criteria) if of.judges and of.message]
 
 
 def judged_criteria(row: Row, criteria: CriteriaConfig) -> Iterator[Judged]:
-    """Yield every criterion with the figure of a flight, those too that have no say in it: of a
-    flight that did not complete only keeping out and completing are judged.
+    """Yield every criterion with the figure of a flight, also criteria that do not apply to it: a
+    flight that did not complete is judged only by keeping out and completing.
     """
     measured = "keepout_violations" in row
     if measured:
@@ -103,9 +104,7 @@ def _keeps_out(row: Row) -> Judged:
 
 
 def _clearance(row: Row) -> float:
-    """Return how far from the keep-out area, or from that of another ship, a flight stayed at its
-    closest [m].
-    """
+    """Return a flight's closest approach to the keep-out area, or to that of another ship [m]."""
     nearest, radius = (row.get(name, math.nan) for name in ("min_distance_m", "keepout_radius_m"))
     return min(float(nearest - radius), float(row.get("others_clearance_min_m", math.inf)))
 
@@ -121,8 +120,8 @@ def _completes(row: Row) -> Judged:
 
 
 def _part_failed(row: Row) -> bool:
-    """Return whether a part of the aircraft had failed; otherwise it was given up on a false
-    alarm.
+    """Return whether a part of the aircraft had failed; if not, the aircraft was given up after a
+    false alarm.
     """
     return any(
         kind not in NOT_OF_AIRCRAFT and row["duration_s"] >= begins
@@ -143,14 +142,14 @@ def _tracking(row: Row, criteria: CriteriaConfig) -> Iterator[Judged]:
         "" if settled else "did not settle",
         judges=criteria.settles,
     )
-    # A flight is settled while errors still die out: in a short one they count for more.
+    # At settling, errors still decay: in a short flight they weigh more.
     since = f", in the {row['duration_s'] - settling:.0f} s since it settled"
     for key, name, limit, unit in (
         ("tracking_error_rms_m", "rms tracking error", criteria.tracking_error_rms_m, "m"),
         ("airspeed_error_rms_mps", "rms airspeed error", criteria.airspeed_error_rms_mps, "m/s"),
         ("altitude_error_max_m", "largest altitude error", criteria.altitude_error_max_m, "m"),
     ):
-        # One that settled with its last sample has none of these figures, and shows nothing.
+        # A flight that settled at its last sample has none of these figures, and proves nothing.
         judges = criteria.settles and settled
         yield _at_most(
             key, key, row, limit if criteria.settles else False, name, unit, since, judges
@@ -271,7 +270,7 @@ def _at_most(
     since: str = "",
     judges: bool = True,
 ) -> Judged:
-    """Return a criterion that a figure has an upper limit; none where that is 0 or false."""
+    """Return the criterion for an upper limit of a figure; a limit of 0 or false gives none."""
     value = row.get(column, math.nan)
     message = ""
     if limit and not value <= limit:

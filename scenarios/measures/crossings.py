@@ -19,7 +19,8 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Crossing:
-    """One cut of the vertical plane through the plume's axis, on the plume's side of the vessel.
+    """A point at which the path cuts the vertical plane through the plume's axis, on the plume's
+    side of the vessel.
 
     Attributes
     ----------
@@ -28,8 +29,8 @@ class Crossing:
     distance, horizontal_distance : to the plume's origin, three-dimensional, and seen from above
         [m]
     angle : between the path in the vessel's frame and the axis, 90 degrees for a square cut [rad]
-    height : above the straight axis from the plume's origin, which is level for smoke: that rises
-        above it [m]
+    height : above the straight axis from the plume's origin [m]; for smoke that axis is level, and
+        the smoke rises above it
     """
 
     time: float
@@ -85,7 +86,8 @@ def find_crossings(
 
 
 def _roots(time: Array, across: Array, rate: Array) -> Array:
-    """Return when the cubic through values and their rates is 0 [s], in order; all shapes (n,).
+    """Return the times at which the cubic through values and their rates is 0 [s], in order; all
+    shapes (n,).
 
     Between samples a cubic stays within its Bernstein coefficients; roots are computed only where
     these have both signs.
@@ -96,7 +98,8 @@ def _roots(time: Array, across: Array, rate: Array) -> Array:
         (coefficients.min(axis=0) <= rounding) & (coefficients.max(axis=0) >= -rounding)
     )
     found = [np.empty(0)]
-    # Pieces that follow each other go together: a root at the sample between two is one.
+    # Neighbouring pieces are searched together, so that a root at the sample between two counts
+    # once.
     for run in np.split(pieces, np.flatnonzero(np.diff(pieces) > 1) + 1):
         if len(run):
             part = PPoly.construct_fast(

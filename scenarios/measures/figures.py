@@ -94,7 +94,7 @@ def plan_row(plan: FlightPlan) -> Row:
 
 
 def _hull_row(plan: FlightPlan) -> Row:
-    """Return what is known of the vessel's hull, and what the guard makes of it."""
+    """Return the figures of the hull, and the radius that the guard keeps because of it."""
     hull = plan.world.hull if plan.world else None
     if hull is None:
         return {}
@@ -119,7 +119,7 @@ def _fault_row(faults: Faults) -> Row:
 
 
 def _place_row(place: Place) -> Row:
-    """Return where and when the flight began, as far as that is known."""
+    """Return place and time of the flight's start, as far as they are known."""
     row: Row = {}
     if math.isfinite(place.latitude):
         row |= {
@@ -135,9 +135,9 @@ def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Cr
     """Measure a flight.
 
     Keep-out, guard and limits count from the first second, and crossings from settling. Tracking,
-    airspeed and altitude count from settling until the vehicle leaves for good, but not while it
-    gives way to other ships, until it is back within the settling band. Intervals between crossings
-    count until it first does so.
+    airspeed and altitude count from settling until the vehicle leaves for good. The time in which
+    it gives way to other ships does not count, until it is back within the settling band. Intervals
+    between crossings count until it first gives way.
 
     Returns
     -------
@@ -201,7 +201,8 @@ def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Cr
 
 
 def _yielded(record: FlightRecord, to_reference: Array, band: float) -> Mask:
-    """Return when a flight gives way to other ships, or is on its way back from there.
+    """Return the samples at which a flight gives way to other ships, or is on its way back
+    afterwards.
 
     Parameters
     ----------
@@ -243,7 +244,7 @@ def _modes(record: FlightRecord) -> list[str]:
 def _tracking_figures(
     plan: FlightPlan, record: FlightRecord, beside: Mask, to_reference: Array
 ) -> Row:
-    """Measure what a settled flight does until it leaves, with a vessel or without."""
+    """Measure a settled flight until it leaves, with a vessel or without."""
     column = record.column
     airspeed_error = (column("airspeed_mps") - column("airspeed_command_mps"))[beside]
     altitude_error = (column("altitude_m") - column("altitude_command_m"))[beside]
@@ -300,7 +301,7 @@ def _keepout_figures(
 
 
 def _vessel_error(record: FlightRecord) -> Array:
-    """Return how far the vessel is from where the guidance takes it to be [m]."""
+    """Return the error of the guidance's estimate of the vessel's place [m]."""
     column = record.column
     return np.hypot(
         *(
@@ -323,8 +324,8 @@ def _spread(record: FlightRecord, beside: Mask, position: Array) -> float:
 
 
 def _estimation_figures(plan: FlightPlan, record: FlightRecord, settled: Mask) -> Row:
-    """Measure what the guidance knows, and how often it had to be guarded, once the flight has
-    settled.
+    """Measure the errors of the guidance's estimates, and how often the guard acted, after
+    settling.
     """
 
     def column(name: str) -> Array:
@@ -376,7 +377,9 @@ def crossings_of(
 def _nearest_crossing(
     plan: FlightPlan, time: Array, position: Array, velocity: Array, crossings: list[Crossing]
 ) -> float:
-    """Return the least distance of a crossing from what the keep-out area is about [m]."""
+    """Return the least distance of a crossing from the point or the hull about which the keep-out
+    area lies [m].
+    """
     if plan.keepout_hull is None or plan.world is None:
         return min(
             crossing.horizontal_distance if plan.keepout_shape == "cylinder" else crossing.distance
@@ -393,9 +396,9 @@ def _crossing_figures(
 ) -> Row:
     """Measure the crossings of a settled flight; means are over whole periods of the orbit.
 
-    From one crossing of a period to the next, interval and distance may differ. A flight with less
-    than a period has no mean interval where the orbit's halves differ; else its one interval is off
-    by as much as the centre is beside the axis.
+    Interval and distance may differ between the crossings of one period. If a flight has less than
+    a period and the halves of the orbit differ, it has no mean interval; if the halves are equal,
+    the error of its only interval is in proportion to the distance of the centre from the axis.
     """
     row: Row = {"crossing_count": len(crossings)}
     alike = _crossings_until_alike(plan, record)
@@ -440,11 +443,12 @@ def _crossing_figures(
 
 
 def _crossings_until_alike(plan: FlightPlan, record: FlightRecord) -> int:
-    """Return after how many crossings one is like the first, in its interval and distance [-].
+    """Return the number of crossings after which interval and distance repeat [-].
 
-    That is after a period of the orbit; or after half of it, where one half mirrors the other and
-    each has a crossing, its passage through a centre on the plume's axis. A centre that follows
-    estimates is beside the axis most of the time, and then the two intervals of a period differ.
+    They repeat after a period of the orbit, or after half a period if one half mirrors the other
+    and the orbit's centre is on the plume's axis, so that each half has one crossing. A centre that
+    follows estimates is beside the axis most of the time, and then the two intervals of a period
+    differ.
     """
     orbit, mission = plan.oscillation, plan.guidance.mission
     if orbit is None:
@@ -461,8 +465,9 @@ def _predicted_interval(plan: FlightPlan, record: FlightRecord, first: float, la
     """Return the mean crossing interval over a vessel's changes of course and speed, between two
     crossings [s].
 
-    Where the period changes with time, crossings come at a rate that is their number per period
-    over it, omega_0/pi of an oscillation: their number between two times is its integral.
+    If the period changes with time, the rate of crossings is their number per period over the
+    period, omega_0/pi for an oscillation. The number of crossings between two times is the integral
+    of that rate.
     """
     time = np.linspace(first, last, max(2, math.ceil(last - first)))
     wind = (plan.world.weather.wind if plan.world else CALM).at(time, plan.source_height)

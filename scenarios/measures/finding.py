@@ -43,7 +43,7 @@ def finding_figures(
     history : of the flight, with the columns of its sniffer
     flight : its limits of the altitude
     noise : standard deviation of a reading of CO2 [ppm]
-    stop_reason : why it left before its time, or nothing
+    stop_reason : why it left early, or an empty text
     """
     time, altitude = (
         np.asarray(history[name], dtype=np.float64) for name in ("time_s", "altitude_m")
@@ -76,7 +76,7 @@ def finding_figures(
 
 
 def _detected(history: pd.DataFrame, noise: float, step: float) -> npt.NDArray[np.bool_]:
-    """Return the samples at which the reading shows the plume, and there was plume shortly
+    """Return the samples at which the reading shows the plume and the UAV was in the plume shortly
     before.
     """
     reading = history["co2_reading_ppm"]

@@ -1,5 +1,5 @@
-"""How a path keeps out of a sphere or an upright cylinder about a moving point, or of what is near
-to a hull that moves and turns.
+"""Measures how a path keeps out of a sphere or an upright cylinder about a moving point, or of the
+surroundings of a hull that moves and turns.
 """
 
 import math
@@ -24,7 +24,7 @@ _BINOMIAL = [math.comb(3, i) for i in range(4)]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KeepoutFigures:
-    """What happened to the keep-out area over a path.
+    """Figures of the keep-out area along a path.
 
     Attributes
     ----------
@@ -46,11 +46,11 @@ def keepout_figures(
     """Measure a path against a sphere about the origin, or a cylinder of any height about the
     vertical through it.
 
-    Between samples the path is the cubic through their positions and velocities, and so is its
-    closest approach: at 10 Hz and 45 degrees of bank true to a micrometre, where a chord would be
-    optimistic by up to 1.2 cm, and to 6 mm where the turn is reversed at once in between.
-    ``check_recorded`` in ``scenarios.planning.limits`` refuses flights for which this is more than
-    5 cm.
+    Between samples the path is the cubic through their positions and velocities, and the closest
+    approach is that of the cubic. At 10 Hz and 45 degrees of bank it is true to a micrometre, and
+    to 6 mm if the turn is reversed at once between two samples; a chord would be optimistic by up
+    to 1.2 cm. ``check_recorded`` in ``scenarios.planning.limits`` refuses flights for which this is
+    more than 5 cm.
 
     Parameters
     ----------
@@ -96,10 +96,10 @@ def hull_keepout_figures(
     hull: ShipHull,
     heading: Callable[[Array], Array],
 ) -> KeepoutFigures:
-    """Measure a path against all that is within a radius of a hull's outline, at the height of the
+    """Measure a path against the area within a radius of a hull's outline, at the height of the
     funnel's mouth (sphere) or at every height (cylinder).
 
-    The path between samples is looked at ``_LOOKS`` times: at 10 Hz and 30 m/s its closest approach
+    The path between samples is evaluated ``_LOOKS`` times: at 10 Hz and 30 m/s its closest approach
     to a corner at 200 m is true to 0.1 mm.
 
     Parameters
@@ -114,7 +114,7 @@ def hull_keepout_figures(
     distance = hull_distance(hull, place, heading(fine), shape)
     inside = distance < radius
     excess, step = distance - radius, np.diff(fine)
-    # Where the edge is crossed between two looks, the share of the time that is inside.
+    # If the edge is crossed between two looks, the share of that time spent inside.
     before, after = excess[:-1], excess[1:]
     crossed = inside[:-1] != inside[1:]
     within = np.minimum(before, after) / np.where(crossed, -np.abs(after - before), 1.0)
@@ -190,7 +190,7 @@ def _roots(coefficients: Array) -> list[float]:
     for k in range(degree + 1):
         differences = [(-1) ** (k - i) * math.comb(k, i) * coefficients[i] for i in range(k + 1)]
         power[k] = math.comb(degree, k) * float(np.sum(differences))
-    # What is rounding alone would be leading coefficients of any size.
+    # Leading coefficients that are only rounding errors could become arbitrarily large.
     power[np.abs(power) < 1e-14 * np.abs(power).max(initial=0.0)] = 0.0
     found = np.roots(power[::-1])
     real = found.real[np.abs(found.imag) < 1e-9]

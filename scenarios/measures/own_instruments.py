@@ -1,5 +1,5 @@
-"""What instruments fill and find: columns, figures and tables of their own, and none of the
-flight's or of each other's.
+"""Results of instruments: columns, figures and tables, which must not be those of the flight or of
+another instrument.
 """
 
 from collections.abc import Callable, Iterable
@@ -24,8 +24,8 @@ _FIGURE = (str, bool, int, float, np.generic, type(None))
 
 
 def check_instruments(named: Iterable[tuple[str, Any]]) -> None:
-    """Refuse instruments that fill what the flight or another one fills: a safety figure could be
-    any number.
+    """Refuse instruments that fill a column, a figure or a table of the flight or of another
+    instrument: one could overwrite a safety figure.
 
     Parameters
     ----------
@@ -33,7 +33,8 @@ def check_instruments(named: Iterable[tuple[str, Any]]) -> None:
 
     Raises
     ------
-    PluginError : one fills what is filled already, or declares what are no names
+    PluginError : an instrument fills a name that is taken already, or declares something other than
+        names
     """
     histories = {*HISTORY_COLUMNS, *PlumeBelief.COLUMNS, *GuardBelief.COLUMNS}
     figures, tables = {*SUMMARY_COLUMNS, *FINDING_COLUMNS}, {*TABLES}
@@ -59,7 +60,7 @@ def check_instruments(named: Iterable[tuple[str, Any]]) -> None:
 def evaluated(
     name: str, instrument: EvaluatedInstrument, column: Callable[[str], Array], since: float
 ) -> Evaluation:
-    """Return what an instrument makes of a flight, with nothing that it does not declare.
+    """Return an instrument's results of a flight; all of them have to be declared.
 
     Parameters
     ----------

@@ -1,9 +1,9 @@
-"""How the premises of the keep-out theorem held in a flight: for each term of the error budget the
-largest ratio of the actual error to what is reckoned with, and when.
+"""Measures whether the premises of the keep-out theorem held in a flight: for each term of the
+error budget, the largest ratio of the actual error to the allowance for it, and its time.
 
-Ratios follow from the flight's record: what is true, and what the guidance believed and reckoned
-with (``scenarios.flight.guard_belief``). Above 1 a premise did not hold. A violation of the
-keep-out area in a flight with no ratio above 1 is an error of the theorem or of its code.
+Ratios follow from the flight's record: the truth, and the guidance's estimates and allowances
+(``scenarios.flight.guard_belief``). Above 1 a premise did not hold. A violation of the keep-out
+area in a flight with no ratio above 1 is an error of the theorem or of its code.
 
 With the error budget B, the place p, the velocity over the mean air u, the wind w, and estimates
 marked ^, the ratios are as follows; b is ``B.velocity`` and what is allowed for while few
@@ -24,21 +24,21 @@ drift      |(p^ - p)(t) - (p^ - p)(0)| / ((drift + allowance) t + k ``B.drift_si
            the first sample of dead reckoning: the last fix may have moved the estimate after the
            sample before it
 
-A turn is predicted as the guard does: lag and delay behind the commands that were given, course
-still to come of earlier ones, V_r commanded, at the speed that was flown; full commands for a
-radian or more are a turn. Its deviation counts in the directions in which the design's search takes
-it (``innerloop.flight.turn_reversal``): away from discs where a turn away comes closest to them,
-which is abeam of one at rest, later by an angle from one that closes in, and sooner from one that
-draws ahead. An aircraft that turns faster than predicted is nearer to what lies ahead on the inner
-side; it does not turn away from that, and no turn away comes closest there. In turbulence a turn is
-predicted over the wind as it was estimated at the start, since the speed is kept over that, and at
-a speed within the guard's range: what is beyond is displacement. A turn by satellite navigation
-ends where that is lost. Where a part of the aircraft has failed, what the budget has for that is
-added to c D.
+A turn is predicted as the guard predicts it: with the lag and delay behind the given commands, the
+pending course change of earlier commands, V_r commanded, and the speed that was flown. Full
+commands for a radian or more count as a turn. Its deviation counts in the directions in which the
+design's search takes it (``innerloop.flight.turn_reversal``): away from discs where a turn away
+comes closest to them, which is abeam of one at rest, later by an angle from one that closes in, and
+sooner from one that draws ahead. An aircraft that turns faster than predicted is nearer to what
+lies ahead on the inner side; it does not turn away from that, and no turn away comes closest there.
+In turbulence a turn is predicted over the wind as it was estimated at the start, since the speed is
+kept over that, and at a speed within the guard's range: what is beyond is displacement. A turn by
+satellite navigation ends where that is lost. If a part of the aircraft has failed, the budget's
+allowance for that is added to c D.
 
-A ratio is not a number where the flight has nothing to compare, where no turn deviates by more than
-the guard's resolution, or where a term is exact: where the budget does not exceed the guard's
-resolution, nor does the error.
+A ratio is NaN if the flight has nothing to compare, if no turn deviates by more than the guard's
+resolution, or if a term is exact, that is, if neither the budget nor the error exceeds the guard's
+resolution.
 """
 
 import itertools
@@ -99,12 +99,12 @@ _LOST = (Outcome.AIRCRAFT_LOST.value, Outcome.DIVERGED.value)
 
 
 class Ratios(NamedTuple):
-    """Ratios of actual errors to what is reckoned with, over time.
+    """Ratios of actual errors to the allowances for them, over time.
 
     Attributes
     ----------
     time : shape (n,) [s]
-    values : shape (n,), not a number where there is nothing to compare [-]
+    values : shape (n,), NaN if there is nothing to compare [-]
     """
 
     time: Array
@@ -119,8 +119,8 @@ class Ratios(NamedTuple):
 
 
 def premise_figures(plan: FlightPlan, record: FlightRecord) -> Row:
-    """Return the largest ratio of each premise and its time; nothing of a record without what a
-    guard believed.
+    """Return the largest ratio of each premise and its time; empty for a record without a guard's
+    estimates.
     """
     if not set(GuardBelief.COLUMNS) <= set(record.columns):
         return {}
@@ -138,8 +138,8 @@ def premise_figures(plan: FlightPlan, record: FlightRecord) -> Row:
 
 
 def is_unexplained(row: Row) -> bool:
-    """Return whether a guarded flight entered the keep-out area although every premise held, and
-    its aircraft was not lost: one that is lost does not fly its commands.
+    """Return whether a guarded flight entered the keep-out area although every premise held and its
+    aircraft was not lost. A lost aircraft does not fly its commands.
     """
     violated = row.get("keepout_violations", 0) > 0 and row["outcome"] not in _LOST
     return bool(violated and row.get(EXCEEDED) == HELD)
@@ -180,7 +180,7 @@ class _Flight:
     satellites : whether satellite navigation works
     last_fix : number of the last sample with satellite navigation
     allowance : error of the wind allowed for while few measurements are in it [m/s]
-    velocity_error : b, what is reckoned with for velocity and wind [m/s]
+    velocity_error : b, the allowance for errors of velocity and wind [m/s]
     """
 
     def __init__(self, plan: FlightPlan, record: FlightRecord) -> None:
@@ -221,14 +221,12 @@ class _Flight:
         return north, east
 
     def nothing(self) -> Ratios:
-        """Return that there is nothing to compare."""
+        """Return a ratio of NaN: there is nothing to compare."""
         return Ratios(self.time, np.full(len(self.time), math.nan))
 
 
 def _ratio(error: Array, reckoned: Array, resolution: float) -> Array:
-    """Return errors over what is reckoned with; not a number where neither exceeds the guard's
-    resolution.
-    """
+    """Return errors over the allowances for them; NaN if neither exceeds the guard's resolution."""
     ratio = error / np.maximum(reckoned, resolution)
     return np.where((reckoned > resolution) | (ratio > 1.0), ratio, math.nan)
 
@@ -291,8 +289,8 @@ def _airspeed_ratios(flight: _Flight) -> Ratios:
 
 
 def _speed_range(flight: _Flight) -> tuple[Array, Array]:
-    """Return slowest and fastest speed that turns are predicted with, the measured one among them
-    [m/s].
+    """Return the slowest and the fastest speed with which turns are predicted; the measured speed
+    lies between them [m/s].
     """
     measured = flight.column("own_seen_speed_mps")
     return (
@@ -326,7 +324,7 @@ class _Commands(NamedTuple):
     Attributes
     ----------
     given, acting : mean heading rate that is commanded, and that acts after the delay [rad/s]
-    full : whether it is that of a turn away all the time
+    full : whether the command is that of a turn away all the time
     """
 
     given: Array
@@ -335,8 +333,8 @@ class _Commands(NamedTuple):
 
 
 def _turn_ratios(flight: _Flight) -> Ratios:
-    """Return by how much less turns led away than predicted, over what is kept: the largest along
-    each turn, at the time of its start.
+    """Return by how much less turns led away than predicted, over the deviation that the guard
+    keeps: the largest ratio along each turn, at the time of its start.
     """
     guard, column = flight.guard, flight.column
     rate_max, n = guard.heading_rate_max, len(flight.time)
@@ -346,7 +344,7 @@ def _turn_ratios(flight: _Flight) -> Ratios:
     turn_time = _HALF_TURNS * math.pi / rate_max + guard.delay + guard.lag
     steps = math.ceil(turn_time / step)
     measured = column("own_seen_speed_mps")
-    # Of the rate of the course through the air, as navigation makes it one over the mean air.
+    # From the rate of the course through the air, converted to the mean air as navigation does.
     rates = column("heading_rate_rad_s") * _air_ratio(column("airspeed_mps"), measured)
     commands = _commands(flight, rates, step)
     pending = _pending_rates(guard, commands.acting, rates, step)
@@ -391,16 +389,16 @@ def _air_ratio(airspeed: Array, speed: Array) -> Array:
 
 
 def _commands(flight: _Flight, rates: Array, step: float) -> _Commands:
-    """Return what is commanded between samples, as far as the largest bank lets it be flown."""
+    """Return the commands between samples, as far as the largest bank allows them."""
     guard, column = flight.guard, flight.column
     rate_max, speed = guard.heading_rate_max, column("own_seen_speed_mps")[:-1]
     flyable = rate_max * np.minimum(1.0, guard.turn_speed / np.maximum(1.0, speed))
     time, course = flight.time, column("course_commanded_rad")
-    # Before the flight the turn was flown that is under way at its start.
+    # The turn at the start of the flight is assumed to have lasted before it.
     before = time - guard.delay
     delayed = np.interp(before, time, course) + np.minimum(0.0, before - time[0]) * rates[0]
     given = np.diff(course) / step
-    # The airspeed is commanded that keeps the pace in the gust of the moment (``gnc.airspeed``).
+    # The commanded airspeed keeps the pace in the present gust (``gnc.airspeed``).
     measured, turned_at = column("own_seen_speed_mps"), flight.plan.guidance.speed
     airspeed = column("airspeed_mps")
     gust = np.where(np.isfinite(airspeed), airspeed - measured, 0.0)
@@ -415,8 +413,8 @@ def _commands(flight: _Flight, rates: Array, step: float) -> _Commands:
 
 
 def _pending_rates(guard: GuardParameters, acting: Array, rates: Array, step: float) -> Array:
-    """Return the change of heading rate that stands for course still to come of earlier commands,
-    as the guard has it (``gnc.guard.guard.CommandHistory``), at each sample [rad/s].
+    """Return the change of heading rate by which the guard describes the pending course change of
+    earlier commands (``gnc.guard.guard.CommandHistory``), at each sample [rad/s].
     """
     found = np.zeros(len(rates))
     if guard.lag == 0.0:
@@ -433,9 +431,10 @@ def _pending_rates(guard: GuardParameters, acting: Array, rates: Array, step: fl
 
 
 def _turn_starts(commands: _Commands, *, shortest: float, spacing: int) -> Indices:
-    """Return the samples from which turns are predicted: where each begins, and then so far apart.
+    """Return the samples from which turns are predicted: the beginning of each turn, and further
+    ones at a fixed spacing.
 
-    Full commands for less than ``shortest`` samples are no turn.
+    Full commands for fewer than ``shortest`` samples do not count as a turn.
     """
     sides = np.where(commands.full, np.sign(commands.given), 0.0)
     edges = np.flatnonzero(np.diff(sides, prepend=0.0, append=0.0) != 0.0).tolist()
@@ -450,7 +449,9 @@ def _turn_starts(commands: _Commands, *, shortest: float, spacing: int) -> Indic
 def _kept_for_response(
     flight: _Flight, commands: _Commands, starts: Indices, sides: Array, rates: Array
 ) -> Callable[[Indices], Array]:
-    """Return what is kept for the response of turns, by the samples that they have come to [m]."""
+    """Return the deviation that the guard keeps for the response of turns, at the samples that they
+    have reached [m].
+    """
     rate_max, budget = flight.guard.heading_rate_max, flight.budget
     rolled = np.array(
         [rolled_change(side, rate, rate_max) for side, rate in zip(sides, rates, strict=True)]
@@ -472,14 +473,14 @@ class _PredictedTurns:
 
     Parameters
     ----------
-    flight : that they are of
+    flight : the flight in which they were flown
     starts : samples at which they begin
     rates : heading rates there [rad/s]
     sides : of the turns, 1 to the right and -1 to the left
 
     Attributes
     ----------
-    heading_rate : now, shape (turns,) [rad/s]
+    heading_rate : present heading rate of each turn, shape (turns,) [rad/s]
     """
 
     def __init__(self, flight: _Flight, starts: Indices, rates: Array, sides: Array) -> None:
@@ -509,9 +510,9 @@ class _PredictedTurns:
         return self._flight.wind_north[at], self._flight.wind_east[at]
 
     def _chord(self, now: Indices, wind_north: Array, wind_east: Array, step: float) -> Array:
-        """Return the length of the way over that wind from some samples to the next ones [m].
+        """Return the distance flown relative to that wind from some samples to the next ones [m].
 
-        It is taken from places: between two samples the speed need not change evenly.
+        It is computed from positions, because the speed need not change evenly between two samples.
         """
         column = self._flight.column
         north, east = column("north_m"), column("east_m")
@@ -524,7 +525,7 @@ class _PredictedTurns:
         return np.clip(chord, self._slowest * step, self._fastest * step)
 
     def advance(self, now: Indices, command: Array, step: float) -> None:
-        """Go on by a step [s] from some samples under commands [rad/s]."""
+        """Advance the turns by a step [s] from some samples under commands [rad/s]."""
         lag = self._flight.guard.lag
         decay = math.exp(-step / lag) if lag > 0.0 else 0.0
         off_command = self.heading_rate - command
@@ -551,7 +552,9 @@ class _PredictedTurns:
 
 
 def _displacement(flight: _Flight, starts: Indices, elapsed: float) -> Array:
-    """Return what is kept for turbulence some time [s] after starts of turns [m]."""
+    """Return the displacement by turbulence that the guard keeps, some time [s] after the starts of
+    turns [m].
+    """
     budget, column = flight.budget, flight.column
     found = np.zeros(len(starts))
     if budget.turbulence.sigma == 0.0:

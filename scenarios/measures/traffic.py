@@ -1,4 +1,4 @@
-"""How near a flight came to the ships besides the one that is measured."""
+"""Measures how near a flight came to ships other than the measured one."""
 
 import json
 import math
@@ -36,7 +36,7 @@ class _Approach(NamedTuple):
 
 
 def traffic_rows(plan: FlightPlan, record: FlightRecord) -> list[Row]:
-    """Return a row for each of the other ships, of those whose track is known in the flight."""
+    """Return a row for each of the other ships whose track is known during the flight."""
     return [approach.row for approach in _approaches(plan, record)]
 
 
@@ -152,7 +152,7 @@ def _approaches(plan: FlightPlan, record: FlightRecord) -> list[_Approach]:
 
 
 def _time_in_plume(plan: FlightPlan, record: FlightRecord, ship: OtherShip) -> float:
-    """Return the time in the plume of a ship [s]; NaN of one that emits nothing."""
+    """Return the time in the plume of a ship [s]; NaN for a ship without emissions."""
     if ship.exhaust is None:
         return math.nan
     path = (record.column(name) for name in ("time_s", *PLACE_COLUMNS))

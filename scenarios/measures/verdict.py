@@ -97,13 +97,13 @@ def bound_of(counts: Counts, samples: int) -> Bound:
     """Return the bound on the probability of a keep-out violation that follows from flights that
     are a random sample.
 
-    A flight whose end is not known counts as a violation, too.
+    A flight with an unknown end counts as a violation, too.
 
     Parameters
     ----------
     counts : of the flights
-    samples : number of those that differ in what is random: of others each counts as one, and each
-        violation as of another
+    samples : number of different random samples. Flights that share a sample count as one, and each
+        violation is assumed to be in another sample
     """
     return Bound(
         upper=upper_bound(min(counts.violated + counts.unknown, samples), samples),
@@ -117,7 +117,7 @@ def bound_of(counts: Counts, samples: int) -> Bound:
 
 @dataclass(slots=True)
 class _CriterionTally:
-    """What came of a criterion, flight by flight."""
+    """The result of a criterion, flight by flight."""
 
     column: str
     limits: list[Any] = field(default_factory=list)
@@ -128,7 +128,7 @@ class _CriterionTally:
 
     def add(self, flight: str, found: Judged) -> None:
         this = Worst(value=found.value, flight=flight, limit=found.limit)
-        # What is not a number is neither larger nor less.
+        # NaN is neither larger nor less.
         if self.worst_of_all[0] < found.worse < math.inf:
             self.worst_of_all = found.worse, this
         if not found.judges:
@@ -219,7 +219,7 @@ class Judge:
     def verdict(
         self, *, what: str = "flights", comparisons: Mapping[str, Counts] | None = None
     ) -> RunVerdict:
-        """Return what the flights so far have shown, and those of comparisons beside them."""
+        """Return the verdict on the flights so far, with the flights of comparisons."""
         whole, compared = self._whole.verdict(), dict(comparisons or {})
         left = sum(of.left for of in compared.values())
         return RunVerdict(

@@ -100,7 +100,7 @@ def check_declared(scenario: Scenario, vessel: VesselTruth) -> None:
     if acceleration > f.vessel_acceleration_mps2:
         raise InfeasibleError(
             f"the vessel accelerates by {_at_least(acceleration)} m/s2, changes of speed and course"
-            " together; declared are at most following.vessel_acceleration_mps2 ="
+            " together; the declared limit is following.vessel_acceleration_mps2 ="
             f" {f.vessel_acceleration_mps2:g}, {relied}"
         )
     _check_turn(scenario, vessel, duration)
@@ -145,7 +145,7 @@ def _check_turn(scenario: Scenario, vessel: VesselTruth, duration: float) -> Non
         raise InfeasibleError(
             f"the vessel turns at up to {math.degrees(rate):.2g} deg/s, which moves its antenna,"
             f" {distance:g} m from the funnel (vessel.antenna_from_bow_m), with"
-            f" {_at_least(rate**2 * distance)} m/s2; declared are at most"
+            f" {_at_least(rate**2 * distance)} m/s2; the declared limit is"
             f" following.vessel_acceleration_mps2 = {acceleration:g}: declare more"
         )
 
@@ -164,7 +164,7 @@ def _check_reports(vessel: AisVessel, limits: VesselLimits, duration: float) -> 
 
     Parameters
     ----------
-    vessel : its reports, and the track
+    vessel : vessel with its reports and its smooth track
     limits : declared limits of both, including the errors
     duration : of the longest flight [s]
     """

@@ -111,7 +111,7 @@ def oscillation_at(guidance: GuidanceConfig, reference: ReferenceConfig, nu: flo
 
 
 def _orbit(found: Any) -> Any:
-    """Return what a user's shape designs, which has to be an orbit."""
+    """Return the design of a user's shape, which has to be an orbit."""
     has_numbers = all(_is_number(getattr(found, name, None)) for name in _OF_ORBIT)
     if not has_numbers or not isinstance(getattr(found, "symmetric", None), bool | np.bool_):
         raise TypeError(

@@ -87,8 +87,8 @@ def scaled(scenario: Scenario, envelope: Envelope) -> Scenario:
 
 
 def scaled_keys(scenario: Scenario) -> list[str]:
-    """Return the keys that ``scaled`` scales: those that the scenario does not set itself, of those
-    with a length or a time.
+    """Return the keys that ``scaled`` scales: lengths and times that the scenario does not set
+    itself.
     """
     return [
         key for key in _SCALED if _default(scenario, key) is not None and not _is_set(scenario, key)

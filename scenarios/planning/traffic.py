@@ -145,8 +145,8 @@ def check_traffic_declared(scenario: Scenario, ships: Sequence[OtherShip]) -> No
         acceleration = largest_acceleration(ship.track, duration)
         if acceleration > f.vessel_acceleration_mps2:
             raise InfeasibleError(
-                f"{ship.name} ({ship.key}) accelerates by {acceleration:.3g} m/s2; declared are at"
-                f" most following.vessel_acceleration_mps2 = {f.vessel_acceleration_mps2:g}, on"
+                f"{ship.name} ({ship.key}) accelerates by {acceleration:.3g} m/s2; the declared"
+                f" limit is following.vessel_acceleration_mps2 = {f.vessel_acceleration_mps2:g}, on"
                 " which the keep-out guard relies: declare more, or let it turn more slowly"
             )
         speed = largest_speed(ship.track, duration)

@@ -1,1 +1,1 @@
-"""What a scenario file may say."""
+"""The keys of a scenario file, their checks and their documentation."""

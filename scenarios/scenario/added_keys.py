@@ -1,7 +1,7 @@
-"""What installed packages add to scenario files, loaded when the scenario's keys are put together.
+"""Keys that installed packages add to scenario files, loaded when the class of scenarios is made.
 
-It is apart from ``study_keys``, which the packages import: a package may be the first to be
-imported, as in a process that is given the work of a study.
+This module is separate from ``study_keys``, which the packages import: a package may be imported
+before this project, as in a process that receives the work of a study.
 """
 
 from collections.abc import Iterator
@@ -16,12 +16,13 @@ KEYS, FILES = "keys", "scenario"
 
 
 def _loaded(kind: str) -> Iterator[tuple[str, Any]]:
-    """Yield what installed packages announce in a group, by the names of studies."""
+    """Yield the entry points of installed packages in a group, by the names of studies."""
     for name in sorted(announced(kind)):
         try:
             yield name, load_announced(kind, name)
         except PluginError:
-            # Other studies are flown without it; `check_study` says why to whoever names this one.
+            # Other studies are flown without it; `check_study` gives the reason if a scenario names
+            # this one.
             continue
 
 

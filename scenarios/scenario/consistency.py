@@ -1,5 +1,5 @@
-"""Whether the keys of a scenario go together: mission and world, the experiment on it, what is
-sampled, what a search and subset simulation need.
+"""Checks that the keys of a scenario agree: mission and world, the experiment, the sampled keys,
+and the requirements of a search and of subset simulation.
 """
 
 import math
@@ -95,7 +95,7 @@ _UNSTEADY = (
 
 
 def check_consistency(scenario: "Scenario") -> None:
-    """Raise a ValueError where keys of a scenario do not go together."""
+    """Raise a ValueError where keys of a scenario contradict each other."""
     check_divides("flight.log_rate_hz", scenario.flight.log_rate_hz, scenario.guidance.rate_hz)
     check_ordered("speed_ratio", scenario.speed_ratio)
     for contradicts, words in _CONTRADICTIONS:
@@ -186,8 +186,8 @@ def _is_subset(scenario: "Scenario") -> bool:
 
 
 def unsteady(scenario: "Scenario") -> tuple[str, ...]:
-    """Return the keys by which air or vessel of a scenario, of each flight or as they vary, are not
-    steady and known.
+    """Return the keys that make air or vessel of a scenario unsteady or not exactly known, in all
+    or in some of its flights.
     """
     varied = (*scenario.sweep.root, *(draw.key for draw in scenario.draws))
     unsteadying = (key for key in varied if without_indices(key).startswith(_UNSTEADY))
@@ -227,15 +227,15 @@ def _check_start(scenario: "Scenario") -> None:
 
 
 def _is_scaled_later(scenario: "Scenario") -> bool:
-    """Return whether the distance of the start is a default, which is scaled to the aircraft and
-    checked then.
+    """Return whether the distance of the start is a default; it is checked after it has been scaled
+    to the aircraft.
     """
     default = type(scenario).model_fields["aircraft"].default
     return scenario.aircraft != default and "distance_m" not in scenario.start.model_fields_set
 
 
 def _check_duration(scenario: "Scenario") -> None:
-    """Refuse a fault, gusts and reports for which a flight is too short or too long."""
+    """Refuse a flight that is too short for its fault or gusts, or too long for its reports."""
     air, duration = scenario.turbulence, scenario.flight.duration_max_s
     for number, fault in enumerate(scenario.faults):
         if fault.kind != NO_FAULT and fault.at_s[1] >= duration:
@@ -258,9 +258,9 @@ def _check_duration(scenario: "Scenario") -> None:
 
 
 def _check_exhaust(scenario: "Scenario") -> None:
-    """Refuse a funnel that is lower than any, or higher than the exhaust of the project's own plume
-    may leave one, a start outside of the altitudes at which exhaust is crossed, and exhaust of
-    another ship that nothing reads.
+    """Refuse a funnel whose height is out of range for the project's own plume, a start outside of
+    the altitudes at which exhaust is crossed, and exhaust of another ship in a flight without a
+    sniffer.
     """
     for number, ship in enumerate(scenario.traffic):
         if ship.emission is not None and "sniffer" not in scenario.payload.instruments:
@@ -288,7 +288,7 @@ def _check_exhaust(scenario: "Scenario") -> None:
 
 
 def _check_experiment(scenario: "Scenario") -> None:
-    """Refuse points that are too many, and several of them in a study of one."""
+    """Refuse too many points, and several points in a study that takes only one."""
     sweep = scenario.sweep.root
     if scenario.cases and sweep:
         raise ValueError(
@@ -313,8 +313,8 @@ def _check_experiment(scenario: "Scenario") -> None:
 
 
 def _check_tables(scenario: "Scenario") -> None:
-    """Refuse cases and comparisons whose flights could not be distinguished, and tables that
-    set what no flight depends on.
+    """Refuse cases and comparisons whose flights would have the same names, and tables that set
+    keys on which no flight depends.
     """
     cases = [case.name for case in scenario.cases]
     apart = [of.name for of in scenario.comparison.variants]
@@ -345,7 +345,7 @@ def _tables_of(scenario: "Scenario") -> Iterator[tuple[str, str, Collection[str]
 
 
 def _is_of_run(scenario: "Scenario", key: str) -> bool:
-    """Return whether a key is outside of sections, or of a section on which no flight depends."""
+    """Return whether a key is outside of sections, or in a section on which no flight depends."""
     field = type(scenario).model_fields.get(key)
     if f"{key}.".startswith(_WITHOUT_EFFECT):
         return True
@@ -372,7 +372,7 @@ _DESIGNED_ONCE = "varies from flight to flight; autopilot and margins are worked
 
 def _check_varied(scenario: "Scenario", section: str, key: str) -> None:
     """Refuse to sweep or sample a key that is the same for all flights, or for which autopilot and
-    margins are worked out once; an unknown one, and the vehicle, are refused elsewhere.
+    margins are computed only once. Unknown keys, and the key of the vehicle, are refused elsewhere.
     """
     of_run = (
         key.startswith((*_WITHOUT_EFFECT, "draws.") if section == "draws" else _WITHOUT_EFFECT)

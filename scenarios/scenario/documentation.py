@@ -1,5 +1,5 @@
 """Every key of the scenario files with its meaning, unit, range and default, taken from the
-schemas: the one source of what is said about keys."""
+schemas: the only source of the texts about keys."""
 
 import functools
 import inspect
@@ -45,19 +45,19 @@ EXTENDS = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DocumentedKey:
-    """What is known of a key.
+    """Description of a key.
 
     Attributes
     ----------
     key : with dots; the entries of a list have the index 0
     meaning : a sentence or two
-    unit : of a number, ``DIMENSIONLESS`` where it has none; empty of what is no number
-    range : what it may be, in words
-    default : in plain values; None where nothing is the default, or where it has to be given
+    unit : of a number, or ``DIMENSIONLESS``; empty for a key that is not a number
+    range : its possible values, in words
+    default : as a plain value; None if the default is None, or if the key has to be given
     required : whether it has to be given
-    studies : that take it
-    conditions : what it needs to have an effect, each by the part that uses it; empty if it always
-        has one
+    studies : studies in which it can have an effect
+    conditions : conditions under which it has an effect, each with the part that uses it; empty if
+        it always has one
     """
 
     key: str
@@ -79,20 +79,20 @@ _KINDS: dict[type[BaseModel], tuple[str, ...]] = {
 
 
 def file_kinds() -> tuple[type[BaseModel], ...]:
-    """Return the kinds of scenario files, first that of flights."""
+    """Return the kinds of scenario files; the first is that of flights."""
     return tuple(_KINDS)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DocumentedSection:
-    """What is known of a section.
+    """Description of a section.
 
     Attributes
     ----------
     name : with dots; empty for the keys outside of any section
     meaning : in a sentence or two
     listed : whether it is a list of tables
-    keys : of its own, without those of sections below
+    keys : its keys, without those of sections inside it
     """
 
     name: str
@@ -113,21 +113,19 @@ sweep.
 
 @functools.cache
 def documented_sections(kind: type[BaseModel] = Scenario) -> tuple[DocumentedSection, ...]:
-    """Return the sections of a kind of scenario file, in their order; first the keys outside of any
-    section.
+    """Return the sections of a kind of scenario file, in their order; the first holds the keys
+    outside of any section.
     """
     studies = _KINDS[kind]
     return tuple(_sections(kind, "", kind.__doc__ or "", studies, listed=False))
 
 
 def documented_keys() -> list[DocumentedKey]:
-    """Return every key of every kind of scenario file, in the order of the files, and then those
-    that parts bring.
-    """
+    """Return every key of every kind of scenario file, followed by the keys that parts add."""
     of_schemas = [
         key for kind in _KINDS for section in documented_sections(kind) for key in section.keys
     ]
-    # What a part brings needs the part, and perhaps more.
+    # A part's key needs the part, and may have further conditions.
     of_parts = [
         replace(key, conditions=(*key.conditions, *_conditions(key.key, FLIGHT_STUDIES)))
         for key in documented_part_keys()
@@ -136,8 +134,8 @@ def documented_keys() -> list[DocumentedKey]:
 
 
 def similar_key(name: str) -> str | None:
-    """Return the key or section that an unknown name stands for: one with a similar spelling, or
-    with a similar last word.
+    """Return the key or section that an unknown name probably means: one with a similar spelling,
+    or with a similar last word.
     """
     documented = documented_keys()
     keys = [each.key for each in documented]
@@ -212,7 +210,7 @@ def _studies(key: str, studies: tuple[str, ...]) -> tuple[str, ...]:
     if refusing := _REFUSING.get(key.partition(".")[0]):
         return tuple(study for study in studies if study not in refusing)
     plain = {study: _plain_scenarios(study) for study in studies}
-    # A need that none of these has is of something else, which every study may have.
+    # A need that none of these scenarios meets does not depend on the study.
     needs = [
         need
         for need in needs_of(key)
@@ -227,8 +225,8 @@ def _studies(key: str, studies: tuple[str, ...]) -> tuple[str, ...]:
 
 @functools.cache
 def _plain_scenarios(study: str) -> tuple[Scenario, ...]:
-    """Return scenarios of a study without anything else, by both methods: a key may be of one of
-    them alone.
+    """Return scenarios of a study with nothing else set, one for each method: a key may need one of
+    the methods.
     """
     plain = Scenario(title=study, draws=(DrawConfig(key="wind.speed_mps", uniform=(0.0, 1.0)),))
     return tuple(
@@ -240,7 +238,7 @@ def _plain_scenarios(study: str) -> tuple[Scenario, ...]:
 def _conditions(key: str, studies: tuple[str, ...]) -> tuple[str, ...]:
     if studies != FLIGHT_STUDIES:
         return ()
-    # What a message says of the scenario at hand is not said of every one.
+    # This part of a message is about one scenario only.
     return tuple(dict.fromkeys(re.sub("; here [^:]*", "", need.user) for need in needs_of(key)))
 
 
@@ -251,7 +249,7 @@ def _is_number(annotation: Any) -> bool:
 
 
 def _range(annotation: Any, metadata: tuple[Any, ...] = ()) -> str:
-    """Return what a value of a type may be, in words."""
+    """Return the possible values of a type, in words."""
     origin, parts = typing.get_origin(annotation), typing.get_args(annotation)
     if origin is typing.Annotated:
         return _range(parts[0], (*metadata, *_constraints(parts[1:])))
@@ -325,9 +323,7 @@ PART_SECTIONS = tuple(key.partition(".")[0] for key in _REGISTRIES)
 
 @functools.cache
 def documented_part_keys() -> tuple[DocumentedKey, ...]:
-    """Return the keys that the project's own parts bring, as far as they are not those of the
-    schema.
-    """
+    """Return the keys that the project's own parts add to those of the schema."""
     found: dict[tuple[str, str], tuple[DocumentedKey, list[str]]] = {}
     for key_of_part, registry in _REGISTRIES.items():
         section = key_of_part.partition(".")[0]
@@ -372,8 +368,8 @@ def _part_key(key: str, of: "Field[Any]", described: str) -> DocumentedKey:
 
 
 def described_fields(made: type[Any]) -> dict[str, tuple[str, str]]:
-    """Return meaning and unit of each field of a dataclass, by its docstring; the unit of a number
-    without one is empty.
+    """Return meaning and unit of each field of a dataclass, by its docstring; a number whose
+    docstring has no unit gets an empty one.
     """
     documented = {name: split_unit(described) for name, described in _described(made).items()}
     return {
@@ -383,12 +379,16 @@ def described_fields(made: type[Any]) -> dict[str, tuple[str, str]]:
 
 
 def _sentence(text: str) -> str:
-    """Return what a docstring says of a field as a sentence, as the schema says it of its keys."""
+    """Return a field's description in a docstring as a sentence, in the form that the schema has
+    for its keys.
+    """
     return f"{text[0].upper()}{text[1:]}." if text else ""
 
 
 def _described(made: type[Any]) -> dict[str, str]:
-    """Return what the docstrings of a dataclass and its bases say of its fields, in a line each."""
+    """Return the descriptions of a dataclass's fields, in a line each, from its docstring and those
+    of its bases.
+    """
     found: dict[str, str] = {}
     for base in reversed(made.__mro__):
         text = inspect.cleandoc(base.__dict__.get("__doc__") or "")

@@ -1,5 +1,5 @@
-"""Which keys of a scenario act: one that no part of its flights uses is refused, with the part that
-would use it.
+"""Checks that every key of a scenario has an effect. A key that no part of the flights uses is
+refused; the message names the part that would use it.
 """
 
 import functools
@@ -27,22 +27,23 @@ _DISPLACED_BY = {
     "start.spread_deg": ("start.aspect_deg", "start.place_m"),
     "vessel.speed_mps": ("vessel.speed_ratio",),
 }
-"""Keys that other keys put aside, where flights have these."""
+"""Keys that have no effect in flights in which one of the other keys is given."""
 
 _OF_LAW = {"guidance.law", "guidance.tuning"}
-"""Keys whose value is looked at; others count as making what depends on them act.
+"""Keys whose varied values are examined. If any other key varies, the keys that depend on it are
+taken to have an effect.
 """
 
 
 class _Watched:
-    """A scenario, or a section of one, that notes which keys a need reads: keys that depend on
-    these act where flights differ in them.
+    """A scenario, or a section of one, that records which keys a need reads. If flights differ in
+    one of these, a key with this need may have an effect in some of them.
 
     Parameters
     ----------
     of : the scenario or the section
-    above : its key with a dot behind it; empty for the scenario
-    read : the keys, and beginnings of keys that end in a dot, that were read so far
+    above : key of the section, with a dot at its end; empty for the scenario
+    read : keys that were read so far; one that ends in a dot stands for all keys that begin with it
     """
 
     def __init__(self, of: BaseModel, above: str, read: set[str]) -> None:
@@ -51,10 +52,11 @@ class _Watched:
     def __getattr__(self, name: str) -> Any:
         declared = getattr(type(self._of), name, None)
         if isinstance(declared, property) and declared.fget:
-            # What follows from keys notes these, as it reads them here.
+            # A property reads its keys through this object, so they are recorded.
             return declared.fget(self)
         if name == "sweep":
-            # The same for all flights: what is swept differs, and is a key of its own.
+            # The section itself is the same for all flights; its swept keys differ, and are keys
+            # themselves.
             return self._of.sweep  # type: ignore[attr-defined]
         if isinstance(below := getattr(self._of, name, None), BaseModel):
             return _Watched(below, f"{self._above}{name}.", self._read)
@@ -65,17 +67,16 @@ class _Watched:
 def reject_unused_keys(
     scenario: Scenario, given: Iterable[str], *, overridden: Scenario | None = None
 ) -> None:
-    """Refuse keys that no part of a scenario's flights uses, those among them that are swept or
-    sampled.
+    """Refuse keys that no part of a scenario's flights uses, also if they are swept or sampled.
 
     Parameters
     ----------
-    scenario : as checked
+    scenario : the checked scenario
     given : dotted keys that its file or the command line sets
-    overridden : where the command line sets them, what it changes. Then another key that is swept
-        or sampled in every flight must not put them aside, and they may turn off what made air or
-        vessel unsteady; what a file says may be of other flights, such as those of a base that it
-        was made from
+    overridden : if the command line sets the keys, the scenario before its changes. Then a key that
+        is swept or sampled in every flight must not replace one of them, and they may make an
+        unsteady air or vessel steady. This is not checked for keys of a file, which may come from a
+        base with other flights
 
     Raises
     ------
@@ -97,14 +98,14 @@ def reject_unused_keys(
                 "key 'fidelity' has no effect in sweep; leave it out there, and set fidelity to"
                 " 'both'"
             )
-        # What is said of an unknown key comes when it is set.
+        # Setting an unknown key raises an error elsewhere.
         if _is_known(key) and (user := unused(scenario, key)):
             raise InputError(f"key '{key}' in {section} has no effect here: it is used by {user}")
 
 
 def _put_aside_by(scenario: Scenario, key: str) -> str | None:
-    """Return the swept or sampled key that puts a dotted key aside in every flight: one above it,
-    or one in its place.
+    """Return the swept or sampled key that replaces a dotted key in every flight: its section, or a
+    key that is used instead of it.
     """
     varied = (*scenario.sweep.root, *(draw.key for draw in scenario.draws))
     return next(
@@ -118,8 +119,8 @@ def _put_aside_by(scenario: Scenario, key: str) -> str | None:
 
 
 def unused(scenario: Scenario, key: str) -> str:
-    """Return the part that would use a dotted key, where no part of a scenario's flights does;
-    otherwise nothing.
+    """Return the part that would use a dotted key, if no part of a scenario's flights uses it;
+    otherwise an empty text.
     """
     seen, above = _alone(scenario, key)
     for need in needs_of(key):
@@ -136,7 +137,7 @@ def _acts(need: Need, scenario: Scenario) -> bool:
 
 
 def _several(scenario: BaseModel, section: str) -> tuple[BaseModel, ...]:
-    """Return the entries of a section that stands several times; none of any other."""
+    """Return the entries of a section that is a list of tables; empty for any other section."""
     field = type(scenario).model_fields.get(section)
     given = getattr(scenario, section, None)
     listed = field is not None and may_stand_several_times(field) and isinstance(given, tuple)
@@ -144,8 +145,8 @@ def _several(scenario: BaseModel, section: str) -> tuple[BaseModel, ...]:
 
 
 def sections_of(scenario: BaseModel, name: str) -> list[tuple[str, BaseModel]]:
-    """Return a section with its name, each entry of one that stands several times; nothing of what
-    is no section.
+    """Return a section with its name, or each entry of a list of tables; empty if it is not a
+    section.
     """
     section = getattr(scenario, name)
     if isinstance(section, BaseModel):
@@ -154,7 +155,7 @@ def sections_of(scenario: BaseModel, name: str) -> list[tuple[str, BaseModel]]:
 
 
 def _with_entries(scenario: Scenario, given: Iterable[str]) -> Iterator[str]:
-    """Yield keys, and those that are set in each entry of sections among them."""
+    """Yield keys; for a section that is a list of tables, also the keys that each entry sets."""
     for key in given:
         yield key
         for number, entry in enumerate(_several(scenario, key)):
@@ -162,8 +163,9 @@ def _with_entries(scenario: Scenario, given: Iterable[str]) -> Iterator[str]:
 
 
 def _alone(scenario: Scenario, key: str) -> tuple[list[Scenario], str]:
-    """Return a scenario as the needs of a key read it, which know a section that stands once, and
-    the entry that the key is in; where the key names none, a scenario for each entry.
+    """Return scenarios in the form that needs read, and the name of the entry that the key is in.
+    Needs do not know lists of tables: each scenario has one entry in place of the list. If the key
+    names no entry, there is a scenario for each of them.
     """
     section, _, rest = key.partition(".")
     entries = _several(scenario, section)
@@ -177,7 +179,9 @@ def _alone(scenario: Scenario, key: str) -> tuple[list[Scenario], str]:
 
 
 def _needs_by_study(key: str) -> Iterator[Need]:
-    """Yield what a key needs that a study adds, or that a study which adds keys does not use."""
+    """Yield the need of a key that a study adds, and the need of a key that such a study does not
+    use.
+    """
     for keys in ADDED:
         study = keys.STUDY
         if named_by(key, keys.prefixes()):
@@ -188,15 +192,15 @@ def _needs_by_study(key: str) -> Iterator[Need]:
 
 
 def named_by(key: str, names: Iterable[str]) -> bool:
-    """Return whether a dotted key is among the names; those that end in a dot begin keys."""
+    """Return whether a dotted key is among the names; one that ends in a dot stands for all keys
+    that begin with it.
+    """
     return any(key == name or (name.endswith(".") and key.startswith(name)) for name in names)
 
 
 @functools.lru_cache(maxsize=1024)
 def needs_of(key: str) -> tuple[Need, ...]:
-    """Return what a dotted key needs to act: first what stands at the key, then what stands at the
-    section that it is in.
-    """
+    """Return the needs of a dotted key: its own needs first, then those of its section."""
     needs = list(_needs_by_study(key))
     section: Any = Scenario
     parts = [part for part in key.split(".") if not part.isdecimal()]
@@ -212,7 +216,9 @@ def needs_of(key: str) -> tuple[Need, ...]:
 
 
 def _acts_in_some(need: Need, scenario: Scenario, read: set[str]) -> bool:
-    """Return whether flights that differ in keys that a need has read may have it."""
+    """Return whether the need may be met in some flights, because they differ in keys that it has
+    read.
+    """
     for values in differing(scenario):
         other = {key: value for key, value in values.items() if _is_read(key, read)}
         if any(key not in _OF_LAW or not isinstance(of, str) for key, of in other.items()):
@@ -223,13 +229,13 @@ def _acts_in_some(need: Need, scenario: Scenario, read: set[str]) -> bool:
             if other and need.acts(scenario.model_copy(update={"guidance": guidance})):
                 return True
         except PluginError:
-            # A law that is unknown is refused where it is named.
+            # Another check refuses an unknown law.
             return True
     return False
 
 
 def _is_read(key: str, read: set[str]) -> bool:
-    """Return whether a key, or one above or below it, is among those that were read."""
+    """Return whether a key, its section, or a key inside it is among those that were read."""
     key = without_indices(key)
     return any(
         key == of or key.startswith(f"{of.rstrip('.')}.") or of.startswith(f"{key}.") for of in read
@@ -237,7 +243,7 @@ def _is_read(key: str, read: set[str]) -> bool:
 
 
 def differing(scenario: Scenario) -> Iterator[Mapping[str, object]]:
-    """Yield what some flights of a scenario set beside it, by dotted keys."""
+    """Yield what sweep, draws, comparison and cases set in some flights, by dotted keys."""
     for key, swept in scenario.sweep.root.items():
         yield from ({key: value} for value in swept)
     for draw in scenario.draws:
@@ -252,15 +258,15 @@ def differing(scenario: Scenario) -> Iterator[Mapping[str, object]]:
 
 
 def compares(scenario: Scenario) -> bool:
-    """Return whether variants are flown at all: at every point, at one of a speed ratio that is
-    swept, or in cases.
-    """
+    """Return whether the scenario's comparison is flown at any point."""
     ratios = scenario.comparison.nu
     return not ratios or bool(scenario.cases) or not {*ratios}.isdisjoint(scenario.sweep.nu)
 
 
 def _varied_by(scenario: Scenario, given: Iterable[str]) -> Iterator[tuple[str, str]]:
-    """Yield the keys that given keys sweep or sample, each with the section that does."""
+    """Yield the keys that the given keys sweep or sample, each with the name of the section, sweep
+    or draws.
+    """
     names = [key.replace('"', "") for key in given]
     for key in scenario.sweep.root:
         if "sweep" in names or f"sweep.{key}" in names:

@@ -1,4 +1,4 @@
-"""The dotted keys of a schema, and what is wrong with a document, in one line."""
+"""The dotted keys of a schema, and the error of a document in one line."""
 
 import re
 import typing
@@ -31,7 +31,7 @@ def known_keys(kind: type[BaseModel]) -> list[str]:
         return keys
     for name, field in kind.model_fields.items():
         keys.append(name)
-        # The keys of a section that may stand several times are those of one.
+        # The keys of a section that may be a list are those of its entries.
         several = may_stand_several_times(field)
         for model, listed in models_in(field.annotation):
             if not (several and listed):
@@ -41,7 +41,7 @@ def known_keys(kind: type[BaseModel]) -> list[str]:
 
 
 def may_stand_several_times(field: FieldInfo) -> bool:
-    """Return whether a section is a table or a list of tables, as it is given."""
+    """Return whether a section may be given as a table or as a list of tables."""
     return {False, True} <= {listed for _, listed in models_in(field.annotation)}
 
 
@@ -61,7 +61,7 @@ def models_in(annotation: Any) -> Iterator[tuple[type[BaseModel], bool]]:
 
 
 def fields_along(kind: type[BaseModel], parts: Sequence[str]) -> Iterator[FieldInfo | None]:
-    """Yield the field of each part of a key but of the indices of lists, None for one that the
+    """Yield the field of each part of a key, without the indices of lists; None for a part that the
     schema does not have.
     """
     model: type[BaseModel] | None = kind
@@ -73,7 +73,7 @@ def fields_along(kind: type[BaseModel], parts: Sequence[str]) -> Iterator[FieldI
 
 
 def entry_model(kind: type[BaseModel], parts: Sequence[str]) -> type[BaseModel] | None:
-    """Return the schema of the entries of the list that a key names; None if it is not a list of
+    """Return the schema of the entries in the list with this key; None if the key is not a list of
     sections.
     """
     *_, field = fields_along(kind, parts)
@@ -105,7 +105,7 @@ def suggestion(kind: type[BaseModel], key: str) -> str:
     *parents, last = key.split(".")
     section = ["0" if part.isdecimal() else part for part in parents]
     known = [name.split(".") for name in known_keys(kind)]
-    # The keys of a section that may stand several times are known without a number.
+    # Keys of a section that may be a list are known without a number, too.
     alone = [part for part in section if part != "0"]
     siblings = [name[-1] for name in known if name[:-1] == section] or [
         name[-1] for name in known if name[:-1] == alone
@@ -126,8 +126,8 @@ def suggestion(kind: type[BaseModel], key: str) -> str:
 
 
 def explanation(error: ValidationError, kind: type[BaseModel]) -> str:
-    """Return what is wrong with a document in one line: the first key, its value, the limit in
-    pydantic's words with the key's unit, and how many other keys are wrong.
+    """Return the error of a document in one line: the first wrong key, its value, the limit in
+    pydantic's words with the key's unit, and the number of further wrong keys.
     """
     entries = error.errors()
     key, others = key_of(entries[0]), {key_of(entry) for entry in entries[1:]}
@@ -147,7 +147,7 @@ def key_of(entry: ErrorDetails) -> str:
 
 
 def _explained(key: str, entry: ErrorDetails, text: str, kind: type[BaseModel]) -> str:
-    """Return what is wrong with a key, where pydantic's words are ``text``."""
+    """Return the error of a key, from pydantic's message ``text``."""
     value = entry["input"]
     match entry["type"]:
         case "extra_forbidden":
@@ -170,16 +170,16 @@ def _text(entry: ErrorDetails) -> str:
 
 
 def shown(value: object) -> str:
-    """Return a value for a message, on one line that is not too long; a truth value as a scenario
-    writes it.
+    """Return a value for a message, on one line of limited length; a truth value is written as in a
+    scenario.
     """
     text = str(value).lower() if isinstance(value, bool) else repr(value)
     return text if len(text) <= _LENGTH_MAX else f"{text[:_LENGTH_MAX]}..."
 
 
 def _of_section(key: str, text: str, section: object) -> str:
-    """Return what a section's own checks say, after its key; after that of a key in it where the
-    text begins with one.
+    """Return the message of a section's own check after the section's key, or after a key in it if
+    the text begins with one.
     """
     if not key or text.startswith("unknown key"):
         return text

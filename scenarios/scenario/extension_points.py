@@ -1,5 +1,5 @@
-"""Parts of a flight that others may add, by name: what a scenario file names and checks, and the
-world and the vehicles make.
+"""Registries of the parts of a flight that users may add. A scenario file names these parts; world
+and vehicles create them.
 """
 
 from collections.abc import Callable

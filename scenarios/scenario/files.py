@@ -1,4 +1,4 @@
-"""Find a scenario file, apply overrides and check it; what is wrong with it is one line."""
+"""Find a scenario file, apply overrides and check it; an error is one line."""
 
 import copy
 import functools
@@ -88,13 +88,12 @@ def load_study(
 
     Parameters
     ----------
-    name : name in the catalog, path of a TOML file, or what such a file would hold; files in it are
-        then relative to the current directory
+    name : name in the catalog, path of a TOML file, or the content of such a file; paths in a
+        content are relative to the current directory
     overrides : ``key=value`` with dotted keys and TOML values, e.g. ``guidance.preview=false``; a
         part's file, FILE.py:NAME, is relative to the current directory, in a scenario file to that
         file
-    refusing : whether keys of the file and of overrides are refused where no part of the flights
-        uses them
+    refusing : whether to refuse keys of the file and of overrides that no part of the flights uses
 
     Raises
     ------
@@ -109,8 +108,8 @@ def load_study(
         raise InputError(f"{name}: {error}" if of_file else str(error)) from None
     scenario = _overridden(alone, document, overrides) if overrides else alone
     if refusing and isinstance(alone, Scenario):
-        # Keys of the file have to act in what the file alone says: an override may well put one of
-        # them aside.
+        # Keys of the file need an effect without the overrides: an override may replace one of
+        # them.
         reject_unused_keys(alone, given_keys(own))
     if refusing and isinstance(scenario, Scenario):
         changed = {parse_override(override)[0] for override in overrides}
@@ -121,8 +120,8 @@ def load_study(
 
 
 def _overridden(alone: AnyStudy, document: Document, overrides: Sequence[str]) -> AnyStudy:
-    """Return what a document holds with overrides; sections that these leave as they are, are those
-    of ``alone``, what it holds without them.
+    """Return the scenario of a document with overrides. Sections without an override are taken from
+    ``alone``, the scenario without overrides.
     """
     changed = _with_overrides(document, overrides)
     kind = _kind(changed)
@@ -135,15 +134,16 @@ def _overridden(alone: AnyStudy, document: Document, overrides: Sequence[str]) -
 
 
 def _revised(scenario: Study, sections: Mapping[str, Any]) -> Study:
-    """Return a scenario with some sections read anew; for the others it is only checked whether
-    all go together.
+    """Return a scenario with some sections read again; the others are not read again, but all are
+    checked together.
     """
     kept = {name: getattr(scenario, name) for name in scenario.model_fields_set}
     return checked(kept | dict(sections), type(scenario))
 
 
 def load_document(name: str | Document, overrides: Sequence[str] = ()) -> Document:
-    """Return what ``load_study`` checks: the scenario, what it extends, and the overrides.
+    """Return the document that ``load_study`` checks: the scenario merged with the one that it
+    extends and with the overrides.
 
     Raises
     ------
@@ -174,7 +174,7 @@ def _with_overrides(document: Document, overrides: Sequence[str]) -> Document:
 
 
 def _refuse_unknown(sections: set[str]) -> None:
-    """Refuse what is neither a key of a list of trials nor one of its trials."""
+    """Refuse keys that belong neither to a list of trials nor to the scenario of a trial."""
     for section in sorted(sections - {*Scenario.model_fields, "nu"}):
         guess = did_you_mean(section, TrialList.model_fields) or did_you_mean(
             section, Scenario.model_fields
@@ -202,7 +202,7 @@ def scenario_path(name: str, folder: Path | None = None, *, extended: bool = Fal
     ----------
     name : name in the catalog, or path of a TOML file
     folder : directory that a path is relative to; the current one if not given
-    extended : whether it may be a base
+    extended : whether the name may be that of a base
 
     Raises
     ------
@@ -226,7 +226,7 @@ def scenario_path(name: str, folder: Path | None = None, *, extended: bool = Fal
 
 
 def _given(scenario: str | Document) -> tuple[Document, Document]:
-    """Return what a scenario itself says, and the same with what it extends."""
+    """Return the document of a scenario alone, and merged with the scenario that it extends."""
     if not isinstance(scenario, str):
         own, base = _resolved(copy.deepcopy(scenario), Path(), "scenario")
         return own, own if base is None else extended(_base(base, Path(), "scenario", ()), own)
@@ -235,7 +235,7 @@ def _given(scenario: str | Document) -> tuple[Document, Document]:
 
 
 def _read(path: Path, extended_by: tuple[Path, ...] = ()) -> Document:
-    """Return the document in a file, with that of the scenario that it extends."""
+    """Return the document in a file, merged with the scenario that it extends."""
     if path.resolve() in [other.resolve() for other in extended_by]:
         circle = " -> ".join(other.name for other in (*extended_by, path))
         raise InputError(
@@ -255,7 +255,7 @@ def _base(base: str, folder: Path, where: object, extended_by: tuple[Path, ...])
         path = scenario_path(base, folder, extended=True)
     except InputError as error:
         raise InputError(f"{where}: extends: {error}") from None
-    # What a description says of one scenario is not so of another that changes its keys.
+    # A description may be wrong for a scenario that changes keys.
     return tabled(
         {key: value for key, value in _read(path, extended_by).items() if key != "description"}
     )
@@ -276,8 +276,8 @@ def _own(path: Path) -> tuple[Document, str | None]:
 
 
 def _resolved(given: Document, folder: Path, where: object) -> tuple[Document, str | None]:
-    """Return a document with absolute files and the present words, and the name of the scenario
-    that it extends, if any.
+    """Return a document with absolute paths and the present names of keys, and the name of the
+    scenario that it extends, if any.
     """
     document: Document = with_absolute_files(given, folder)
     if isinstance(listed := document.get("set"), list):
@@ -350,8 +350,7 @@ def with_values(scenario: Scenario, values: Mapping[str, object]) -> Scenario:
     sections = {key.partition(".")[0] for key in values} & type(scenario).model_fields.keys()
     document = scenario.model_dump(include=sections)
     if "guidance.law" in values:
-        # Keys that only the other law has, such as those of a steering law that is added, go with
-        # it.
+        # Keys that only the former law has are removed with it.
         for key in scenario.guidance.keys_lost_with(values["guidance.law"]):
             del document["guidance"][key]
     for name in {"plume", "payload"} & sections:

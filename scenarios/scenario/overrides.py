@@ -1,5 +1,5 @@
-"""Changes to a scenario document: ``--set key=value`` with dotted keys, and which keys a document
-sets.
+"""Changes to a scenario document: ``--set key=value`` with dotted keys, and the keys that a
+document sets.
 """
 
 import json
@@ -46,7 +46,7 @@ def parse_override(override: str) -> tuple[str, object]:
             ) from None
         return key, text
     except (RecursionError, ValueError):
-        # Python reads neither brackets nor digits by the thousand.
+        # Python's parser fails at thousands of brackets or digits.
         raise InputError(f"--set {key}={start} has too many brackets or digits") from None
     value = document.pop("value")
     if document:
@@ -58,17 +58,18 @@ def parse_override(override: str) -> tuple[str, object]:
 
 
 def displaced(key: str, given: Iterable[str]) -> bool:
-    """Return whether what varies a dotted key gives way to given keys: to the key itself, to one
-    above it, or, for the vessel's speed and its speed ratio, to the other one of the two.
+    """Return whether a given key replaces the variation of a dotted key: the key itself, its
+    section, or, for the vessel's speed and its speed ratio, the other of the two.
     """
     return any(at_or_below(key, of) or {key, of} == SPEED_KEYS for of in given)
 
 
 def apply_override(document: Document, key: str, value: object, kind: type[BaseModel]) -> None:
-    """Set a key for every flight of a document: no case, no sweep and no random variable sets it,
-    or what is below it, otherwise.
+    """Set a key for every flight of a document: cases, sweep and random variables no longer set it
+    or a key inside it.
 
-    A speed of the vessel beside a sweep of the speed ratio is left to ``effect``, which refuses it.
+    If the vessel's speed is set and the speed ratio is swept, ``effect`` refuses the document
+    later.
 
     Parameters
     ----------
@@ -107,7 +108,7 @@ def apply_override(document: Document, key: str, value: object, kind: type[BaseM
 
 
 def _take_out_of_draws(document: Document, keys: list[str]) -> None:
-    """Remove the draws of keys, and of those below them, from a document, in place."""
+    """Remove the draws of keys, and of keys inside them, from a document, in place."""
     draws = document.get("draws")
     if isinstance(draws, list):
         document["draws"] = [
@@ -122,7 +123,7 @@ def _ends_sweep(key: str, swept: str) -> bool:
 
 
 def _set_or_swept(key: str, value: object) -> list[str]:
-    """Return the keys of flights that an override sets, those among them that it sweeps."""
+    """Return the keys of flights that an override sets or sweeps."""
     section, _, rest = key.partition(".")
     if section != "sweep":
         return [key]
@@ -131,9 +132,7 @@ def _set_or_swept(key: str, value: object) -> list[str]:
 
 
 def _without(values: Document, left_out: Callable[[str], bool], before: str = "") -> Document:
-    """Return the values of a sweep without those of dotted keys that are left out, which may stand
-    in tables of their own.
-    """
+    """Return a sweep without some dotted keys, which may be written as nested tables."""
     rest: Document = {}
     for name, value in values.items():
         if isinstance(value, dict):
@@ -145,8 +144,8 @@ def _without(values: Document, left_out: Callable[[str], bool], before: str = ""
 
 
 def tabled(document: Document) -> Document:
-    """Put the short form of the payload, a list of instruments, into a table, in place, so that
-    other keys find room beside it.
+    """Replace the short form of the payload, a list of instruments, by a table, in place, so that
+    other keys can be added.
     """
     if isinstance(names := document.get("payload"), list | tuple):
         document["payload"] = {"instruments": names}
@@ -182,8 +181,8 @@ def set_value(document: Document, dotted: str, value: object, kind: type[BaseMod
 
 
 def _parts(kind: type[BaseModel], dotted: str) -> list[str]:
-    """Return the parts of a dotted key; a section that has keys of other sections, such as sweep,
-    takes the rest whole.
+    """Return the parts of a dotted key. After a section such as sweep, which contains keys of other
+    sections, the rest is one part.
     """
     section, _, rest = dotted.partition(".")
     field = kind.model_fields.get(section)
@@ -213,11 +212,11 @@ def _index(entries: list[Any], parts: list[str], depth: int, kind: type[BaseMode
 
 
 def as_toml(value: object) -> str:
-    """Return a value as ``key=value`` has it: on one line.
+    """Return a value in the form that ``key=value`` needs: on one line.
 
     Raises
     ------
-    InputError : a value that TOML has no word for
+    InputError : TOML cannot express the value
     """
     if isinstance(value, bool):
         return str(value).lower()
@@ -239,7 +238,7 @@ def as_toml(value: object) -> str:
 
 
 def _toml_key(key: str) -> str:
-    """Return a key as it stands in a table; one with a dot in quotation marks."""
+    """Return a key as TOML writes it in a table: a key with a dot has quotation marks."""
     return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else json.dumps(key, ensure_ascii=False)
 
 

@@ -30,8 +30,8 @@ _OVERRIDES = "set"
 
 
 def part_names(scenario: Scenario) -> Iterator[tuple[str, str]]:
-    """Yield the key and the name of each part of a scenario, those that its random variables may
-    choose among them.
+    """Yield the key and the name of each part of a scenario, including those among which its random
+    variables choose.
     """
     named: dict[str, object] = {
         _AIRCRAFT: scenario.aircraft,
@@ -59,19 +59,19 @@ def part_names(scenario: Scenario) -> Iterator[tuple[str, str]]:
 
 
 def with_absolute_files(value: Any, folder: Path, key: str = "") -> Any:
-    """Return a document, or a value of one, in which the files of parts, data and trials, and
-    folders of aircraft, have absolute paths.
+    """Return a document, or a value of one, with absolute paths of the files of parts, data and
+    trials, and of the folders of aircraft.
 
     Parameters
     ----------
     value : the document, a table, a list or a single value
     folder : directory that the files are relative to
-    key : whose value it is; files of data are those of ``_DATA`` alone, and of pictures that of
-        ``_PICTURE``
+    key : key of the value; only the keys in ``_DATA`` name files of data, and only ``_PICTURE``
+        names a picture
 
     Raises
     ------
-    InputError : a key is no text, as a mapping from a program may have; a TOML file has no others
+    InputError : a key is not text, which is possible in a program's mapping, but not in a TOML file
     """
     last = key.rpartition(".")[2]
     if last in _WORDS or (key == _OVERRIDES and isinstance(value, list)):
@@ -83,7 +83,7 @@ def with_absolute_files(value: Any, folder: Path, key: str = "") -> Any:
                 raise InputError(
                     f"{where} has the key {name!r}, a value of {kind}; keys are words in text"
                 )
-        # A random variable has its key beside its choices.
+        # In a random variable the key is an entry beside the choices.
         named = str(value.get("key", ""))
         return {
             name: with_absolute_files(below, folder, named if name == "choice" else name)
@@ -103,8 +103,8 @@ def with_absolute_files(value: Any, folder: Path, key: str = "") -> Any:
 
 
 def refuse_missing(key: str, value: Any, absolute: Any) -> None:
-    """Refuse a part whose file a program or the command line names relative to the current
-    directory, where there is none.
+    """Refuse a part whose file does not exist, if a program or the command line names it relative
+    to the current directory.
 
     Parameters
     ----------
@@ -130,12 +130,10 @@ def refuse_missing(key: str, value: Any, absolute: Any) -> None:
 
 
 def names_folder(key: str, name: str) -> bool:
-    """Return whether the name of the part of a key is that of a folder with an aircraft,
-    DIR/NAME.
-    """
+    """Return whether a key's value is the folder of an aircraft, DIR/NAME."""
     return key == _AIRCRAFT and is_path(name) and not is_file_part(name)
 
 
 def names_file(name: str) -> bool:
-    """Return whether the name of a part is that of a file: FILE.py:NAME, or a file of data."""
+    """Return whether the name of a part is a file: FILE.py:NAME, or a file of data."""
     return is_file_part(name) or is_data_file(name)

@@ -171,8 +171,8 @@ class Scenario(_AddedKeys):
 
     @property
     def own_random_numbers(self) -> bool:
-        """Return whether each point of a sweep has random numbers of its own: what one sample of an
-        instrument reads wrong would be wrong at all of them.
+        """Return whether each point of a sweep has random numbers of its own. With common numbers,
+        the errors of one sampled instrument would be the same at all points.
         """
         if self.common_random_numbers is not None:
             return not self.common_random_numbers
@@ -185,8 +185,8 @@ class Scenario(_AddedKeys):
 
     @property
     def follows(self) -> bool:
-        """Return whether the mission follows what it estimates: where that says so, or air or
-        vessel are not steady and known.
+        """Return whether the mission follows estimates of vessel and wind. If the mission is not
+        given, it does so unless air and vessel are steady and known.
         """
         if self.guidance.mission is not None:
             return self.guidance.mission != "track"
@@ -198,8 +198,8 @@ class Scenario(_AddedKeys):
 
     @property
     def unsteady_keys(self) -> tuple[str, ...]:
-        """Return the keys by which air or vessel are not steady and known, for all that is swept or
-        sampled beside.
+        """Return the keys that make air or vessel unsteady or not exactly known; sweep and draws
+        are not considered.
         """
         air, sensors = self.turbulence, self.sensors.model_dump()
         given = {
@@ -235,13 +235,15 @@ class Scenario(_AddedKeys):
 
     @property
     def finds(self) -> bool:
-        """Return whether a plume is searched for, given, or measured until there is a verdict."""
+        """Return whether the flight searches for the plume, is given its axis, or measures until
+        there is a verdict.
+        """
         return self.following.plume != "predicted" or self.flight.until == "verdict"
 
     @property
     def guarded_radius(self) -> float:
-        """Return the distance that has to be kept from the funnel, for every heading of the ship:
-        r_min, and, where that is measured from the hull, that of its farthest point [m].
+        """Return the distance to keep from the funnel [m], sufficient at every heading of the ship:
+        r_min, plus the distance of the hull's farthest point if r_min is measured from the hull.
         """
         hull = self.vessel.hull
         reach = hull.farthest if hull is not None and self.keepout.from_hull else 0.0
@@ -254,8 +256,8 @@ class Scenario(_AddedKeys):
 
     @property
     def source_height(self) -> float:
-        """Return the height of the funnel's mouth above the sea: as it is given, else that of the
-        ship [m].
+        """Return the height of the funnel's mouth above the sea [m]: the given one, or else that of
+        the ship.
         """
         return stack_height_of(self.plume.source_height_m, self.emission.ship)
 
@@ -280,7 +282,7 @@ class Scenario(_AddedKeys):
 
     @property
     def faults(self) -> tuple[FaultConfig, ...]:
-        """Return its faults, one at least: ``none`` is one, too."""
+        """Return its faults. There is at least one, which may be of the kind ``none``."""
         given = self.fault if isinstance(self.fault, tuple) else (self.fault,)
         return given or (FaultConfig(),)
 
@@ -289,8 +291,8 @@ class Scenario(_AddedKeys):
         return f"fault.{number}.{name}" if isinstance(self.fault, tuple) else f"fault.{name}"
 
     def kinds_of_fault(self, number: int) -> frozenset[str]:
-        """Return the kinds that a fault, by its number from 0, has in its flights: its own, and
-        those swept or sampled.
+        """Return the kinds of a fault, by its number from 0: the given one, and those that are
+        swept or sampled.
         """
         key = self.fault_key(number, "kind")
         drawn = [value for draw in self.draws if draw.key == key for value in draw.choice or ()]
@@ -318,8 +320,9 @@ class Scenario(_AddedKeys):
 
     @property
     def several_points(self) -> bool:
-        """Return whether its experiment has points that differ otherwise than at random: by a
-        sweep, cases, a comparison or two vehicles."""
+        """Return whether its experiment has points that differ by a sweep, cases, a comparison or
+        two vehicles, and not only at random.
+        """
         return (
             bool(self.sweep.root or self.cases or self.comparison.variants)
             or self.fidelity == "both"

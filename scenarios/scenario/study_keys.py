@@ -25,10 +25,10 @@ class StudyKeys(Section):
     Attributes
     ----------
     STUDY : the study that uses the keys
-    USED_BY : what the study does, as messages say it of a key that another study does not use
+    USED_BY : what uses the study's keys, for the message if another study is given one of them
     ONE_POINT : why the study refuses a sweep, cases and comparisons; empty if it takes them
-    UNUSED : keys of other sections that the study does not use, or beginnings of keys that end in a
-        dot, each with what it uses instead
+    UNUSED : keys that the study does not use, each with what it uses instead; a name that ends in a
+        dot stands for all keys that begin with it
     LAW_KEYS : its keys that name steering laws
     TRAFFIC : whether its flights have ships besides the one that is measured
     """
@@ -42,7 +42,7 @@ class StudyKeys(Section):
 
     @classmethod
     def of(cls, scenario: Any) -> Self:
-        """Return a scenario, whose keys these are among."""
+        """Return the object as a scenario, to which these keys belong."""
         keys: Self = scenario
         return keys
 
@@ -56,8 +56,8 @@ class StudyKeys(Section):
 
     @classmethod
     def tables(cls, scenario: Any) -> Iterator[tuple[str, str, Mapping[str, Any]]]:  # noqa: ARG003
-        """Yield the tables of the study's own sections that set keys for some of its flights: what
-        such a table is, its name, and the values by dotted keys.
+        """Yield the tables of the study's own sections that set keys for some of its flights: the
+        kind of the table, its name, and the values by dotted keys.
         """
         yield from ()
 
@@ -68,7 +68,7 @@ class StudyKeys(Section):
 
     @classmethod
     def prefixes(cls) -> tuple[str, ...]:
-        """Return the names of the fields; those of sections end in a dot."""
+        """Return the names of the fields; names of sections end in a dot."""
         return tuple(
             f"{name}." if isinstance(cls.model_fields[name].default, BaseModel) else name
             for name in cls.names()
@@ -76,7 +76,8 @@ class StudyKeys(Section):
 
 
 class StudyFile(Section):
-    """What every scenario file has, also of a study that flies nothing that ``Scenario`` describes.
+    """The keys that every scenario file has, also that of a study whose flights ``Scenario`` does
+    not describe.
 
     An installed package announces a subclass in the group ``plume_flight_study.scenario`` by the
     name of its study, whose class is called with it, its name, and the overrides.

@@ -1,5 +1,5 @@
-"""Studies of flights: what every study does, single flights, lists of trials, flights that are
-chosen on the way; and how the study that a scenario describes is found and run.
+"""Studies of flights: the steps that every study has, single flights, lists of trials, flights that
+are chosen during the study; and how the study of a scenario is found and run.
 """
 
 import math
@@ -130,7 +130,7 @@ study = STUDIES.register
 
 
 def frame(rows: Iterable[Row], columns: Sequence[str]) -> pd.DataFrame:
-    """Return some columns of rows; what a row does not have is None."""
+    """Return some columns of rows; a missing value is None."""
     return pd.DataFrame(
         [[row.get(name) for name in columns] for row in rows], columns=list(columns)
     )
@@ -141,7 +141,7 @@ def _has_hull(setting: Scenario) -> bool:
     try:
         return sized(setting).vessel.hull is not None
     except InputError:
-        # What is wrong with a file is said where it is flown.
+        # Errors of a file are raised when it is flown.
         return False
 
 
@@ -184,7 +184,7 @@ class FlightStudy:
     ) -> None:
         flown = self._make_flights(trials)
         if isinstance(scenario, Scenario):
-            # What the manifest says of it is what is flown.
+            # The manifest describes the flights.
             scenario = flown[name]
         self.histories, self._report = scenario.histories, scenario.report
         self.flights = {trial: each.counted for trial, each in self.experiments.items()}
@@ -246,7 +246,7 @@ class FlightStudy:
         return [point.scenario for each in self.experiments.values() for point in each.points]
 
     def _declared_tables(self, part: str) -> dict[str, dict[str, Column]]:
-        """Return the columns of each table; those that the study itself declares bear the name
+        """Return the columns of each table; columns that the study itself declares have its name as
         ``part``.
         """
         settings = self._settings_of_points()
@@ -283,13 +283,13 @@ class FlightStudy:
 
         Raises
         ------
-        InputError : a study that makes trials of its own cannot
+        InputError : the study cannot make its trials
         """
         return dict(trials)
 
     def name_by_trial(self) -> None:
-        """Have the names of flights begin with that of their trial, as those of a run of several
-        trials do.
+        """Let the names of flights begin with the name of their trial, as in a run of several
+        trials.
         """
         self._make_experiments(alone=False)
 
@@ -315,8 +315,8 @@ class FlightStudy:
         return self._manifest | self._sizes()
 
     def _sizes(self) -> dict[str, Any]:
-        """Return the entries of the manifest on how many flights there are, which a study may find
-        out as it goes.
+        """Return the manifest's entries on the number of flights, which some studies only know at
+        their end.
         """
         trials = {trial: flown_config(scenario) for trial, scenario in self.trials.items()}
         return {"trials": trials, "trial_flights": self.flights, "flights_planned": self.planned}
@@ -330,7 +330,7 @@ class FlightStudy:
         InputError : the aircraft cannot fly so, or the margin cannot be predicted
         """
         write_logo(self._report, run)
-        # Of a trial that has been scaled to the aircraft: its airspeed is where flights start.
+        # The trial has been scaled to the aircraft: flights start at its airspeed.
         first = next(iter(self.trials.values()))
         settings = [each for of in self.experiments.values() for each in of.steepest()]
         steepest = max(
@@ -359,14 +359,15 @@ class FlightStudy:
         )
 
     def run(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
-        """Fly every flight; then those again that have no time history, but should be looked at."""
+        """Fly every flight; then repeat flights without a time history that the report shows."""
         fly(Task(number=i) for i in range(self._numbers))
         fly(self.representative_flights(run, journal))
 
     def representative_flights(self, run: RunDirectory, journal: Journal) -> list[Task]:
-        """Return what is to be recorded of each trial: the closest flight, the median one, the
-        first unfinished mission, and those whose time history was deleted."""
-        # Figures alone: a hundred thousand rows would be too many.
+        """Return the flights to record for each trial: the closest, the median, the first
+        unfinished mission, and those whose time history was deleted.
+        """
+        # Only figures are kept: a hundred thousand whole rows would take too much memory.
         distances = {trial: (array("d"), array("q")) for trial in self.trials}
         unfinished: dict[str, int] = {}
         for number, row in journal.numbered(SUMMARY):
@@ -383,8 +384,8 @@ class FlightStudy:
         return self.unrecorded(chosen, run, journal)
 
     def unrecorded(self, numbers: Sequence[int], run: RunDirectory, journal: Journal) -> list[Task]:
-        """Return the tasks of those flights that have no time history yet, and of those that had
-        one, to be recorded.
+        """Return tasks to record the flights that have no time history yet, and those whose time
+        history was deleted.
         """
         unwritten = {
             number
@@ -415,14 +416,14 @@ class FlightStudy:
             run.write_json(run.path / SULPHUR, sulphur_statistics(rows, confidence=CONFIDENCE))
 
     def export(self, run: RunDirectory, journal: Journal) -> None:
-        """Write its tables, and what their columns are."""
+        """Write the tables and the descriptions of their columns."""
         overrides = self._overrides(journal)
         write_tables(run, journal, {**self.tables, **overrides})
         write_columns(run, {**self.columns(), **overrides})
 
     def _overrides(self, journal: Journal) -> dict[str, Table]:
-        """Return the columns of the table of what flights have otherwise than their trial, of a
-        study whose rows are flights.
+        """Return the columns of the table of differences between flights and their trial; a study
+        whose rows are not flights has none.
         """
         if DRAWS not in self.tables:
             return {}
@@ -433,7 +434,7 @@ class FlightStudy:
         }
 
     def columns(self) -> Mapping[str, Table]:
-        """Return what the columns of its tables are, by file."""
+        """Return the descriptions of its tables' columns, by file."""
         others = {DERIVED: DERIVED_COLUMNS, FLIGHTS: history_columns(self.experiments.values())}
         return {**self.tables, **others}
 
@@ -444,14 +445,14 @@ class FlightStudy:
         return bound_of(counts, samples)
 
     def judged(self, journal: Journal) -> RunVerdict:
-        """Return what the flights so far have shown."""
+        """Return the verdict on the flights so far."""
         judge, criteria = Judge(self.flights), self._criteria_of_flights(journal)
         for number, row in journal.numbered(SUMMARY):
             judge.add(row, criteria.get(number) or self.trials[row["trial"]].criteria)
         return self._bounded(judge.verdict(comparisons=self._comparisons(journal)), journal)
 
     def _criteria_of_flights(self, journal: Journal) -> dict[int, CriteriaConfig]:
-        """Return the criteria of flights by their numbers, where flights of a trial may differ in
+        """Return the criteria of flights by their numbers, if flights of a trial may differ in
         them.
         """
         differ = any(
@@ -544,8 +545,8 @@ def _same_scale(one: Envelope, other: Envelope) -> bool:
 
 
 def clearance(row: Row, *, unmeasured: float) -> float:
-    """Return how far from the keep-out area a flight stayed at its closest, or ``unmeasured`` if
-    that is not known [m].
+    """Return the closest approach of a flight to the keep-out area [m], or ``unmeasured`` if it is
+    not known.
     """
     if "min_distance_m" not in row:
         return unmeasured
@@ -554,14 +555,14 @@ def clearance(row: Row, *, unmeasured: float) -> float:
 
 
 class ChosenFlightsStudy(FlightStudy):
-    """Flights of one trial, at points of its draws that the study chooses; what runs it appends
-    their tasks.
+    """Flights of one trial, at points of its draws that the study chooses. The study appends their
+    tasks while it runs.
 
     Parameters
     ----------
     scenario, name : the scenario, and its name
     trials : the same by its name
-    numbers : that flights may have: so many at the most
+    numbers : largest number of flights
     overrides : overrides that were applied, recorded in the manifest
 
     Raises
@@ -594,19 +595,20 @@ class ChosenFlightsStudy(FlightStudy):
         return self._tasks[number]
 
     def depended_on(self, journal: Journal, *, below: int) -> bool:
-        """Return whether flights after those that are chosen so far, of numbers below ``below``,
-        are in the journal.
+        """Return whether the journal has flights with numbers below ``below`` that come after those
+        chosen so far.
 
-        They were chosen by these. So a lost one among these is tried again only as long as there
-        are none: otherwise a run that is resumed would choose others.
+        Such flights were chosen from the results of the earlier ones. A lost earlier flight is
+        therefore tried again only if there are no such flights: otherwise a resumed run would
+        choose different ones.
         """
         return (
             next(journal.numbered(SUMMARY, first=len(self._tasks), below=below), None) is not None
         )
 
     def postprocess(self, run: RunDirectory, journal: Journal, progress: Progress) -> None:
-        """Write nothing: flights that follow from others are not a sample that shows how well
-        sulphur is measured.
+        """Write nothing: flights that were chosen from the results of others are not a random
+        sample, and cannot show how well sulphur is measured.
         """
 
 
@@ -625,7 +627,7 @@ class TrialStudy(FlightStudy):
 
     Raises
     ------
-    InputError : a listed trial does not exist, or is not one of flights, or two have one name; and
+    InputError : a listed trial does not exist or has no flights, or two have the same name; and
         same as ``FlightStudy``
     """
 
@@ -648,7 +650,7 @@ def _trials(listed: TrialList) -> dict[str, Scenario]:
                 f"trials: two are called '{name}'; list each once, and give files names of their"
                 " own"
             )
-        # Of 100 flights 0.07 are 7, and not the eighth that rounding would add.
+        # A share of 0.07 of 100 flights is 7 flights; rounding errors must not make it 8.
         flights = math.ceil(listed.share * trial.flights * (1.0 - _ROUNDING))
         trials[name] = trial.model_copy(update={"flights": flights})
     for override in listed.set:
@@ -665,10 +667,10 @@ class SingleFlight:
 
     Parameters
     ----------
-    study : that it is a flight of
+    study : the study to which the flight belongs
     task : the flight
     flight_id, trial : its name, and that of its trial
-    table : the file that its row would be in
+    table : the file in which the study has its row
     """
 
     what = "flights"
@@ -699,7 +701,7 @@ class SingleFlight:
 
     def initial_manifest(self) -> dict[str, Any]:
         """Return the manifest as written before the flight."""
-        # A flight that was chosen is no random sample.
+        # Chosen flights are not a random sample.
         one = {
             "trial_flights": {self._trial: 1},
             "flights_planned": 1,
@@ -728,7 +730,7 @@ class SingleFlight:
             (run.path / self._table).replace(run.path / SUMMARY)
 
     def judged(self, journal: Journal) -> RunVerdict:
-        """Return what the flight has shown, beside a comparison's other flights or without."""
+        """Return the verdict on the flight, alone or as a flight of a comparison."""
         judge = Judge({self._trial: 1})
         overrides = dict(journal.numbered(OVERRIDES))
         for number, row in journal.numbered(self._table):
@@ -797,7 +799,8 @@ def run_study(
     if not resume:
         RunDirectory(directory).refuse_taken()
     elif isinstance(scenario, Scenario):
-        # Before an autopilot is designed for what is refused then.
+        # This check comes first, so that no autopilot is designed for flights that are then
+        # refused.
         then, now = RunDirectory(directory).plugins(), plugins([scenario])
         refuse_changed(then, {name: digest for name, digest in now.items() if name in then})
     progress("preparing", 0, 1)

@@ -1,4 +1,4 @@
-"""What can be checked of a study before anything is flown."""
+"""Checks of a study before its first flight."""
 
 import itertools
 import math
@@ -83,14 +83,14 @@ def check_flights(experiments: Iterable[Experiment], envelope: Envelope | None) 
 
 
 def check_without_design(scenario: Scenario) -> None:
-    """Check of flights what the aircraft's autopilot has no part in, so that nobody waits for its
-    design to be refused.
+    """Check flights for errors that do not depend on the autopilot, so that the user sees them
+    before its design, which takes time.
 
     Raises
     ------
     InputError : a part that does not exist, exhaust without smoke, a fault that it cannot have,
         turbulence at an altitude for which it is not known, limits of the altitude that leave no
-        room, a record that is too seldom, files of a track or of wind that are of no use
+        room, a record that is too seldom, files of a track or of wind that cannot be used
     """
     _check_parts(scenario)
     _check_sniffer(scenario)
@@ -104,8 +104,8 @@ def check_without_design(scenario: Scenario) -> None:
 
 @contextmanager
 def plugins_explained(what: str, scenarios: Iterable[Scenario]) -> Iterator[None]:
-    """Turn what a part from a file raises before any flight into an InputError that begins with
-    ``what``.
+    """Turn an error that a part from a file raises before any flight into an InputError that begins
+    with ``what``.
     """
     try:
         yield
@@ -120,7 +120,7 @@ def plugins_explained(what: str, scenarios: Iterable[Scenario]) -> Iterator[None
 
 
 def _check_names(experiment: Experiment) -> None:
-    """Refuse flights whose names cannot be part of the names of files."""
+    """Refuse flights whose names cannot be part of file names."""
     for name in (experiment.name, *experiment.names()):
         if not is_file_name(name):
             raise InputError(
@@ -143,7 +143,7 @@ def _check_turbulence(scenario: Scenario) -> None:
 
 
 def _check_margins(scenario: Scenario) -> None:
-    """Refuse guidance that is sampled continuously where there may be turbulence: margins are
+    """Refuse continuously sampled guidance where there may be turbulence, because margins are
     planned before it is sampled.
     """
     if scenario.fidelity == "kinematic":
@@ -161,8 +161,8 @@ def _check_margins(scenario: Scenario) -> None:
 
 
 def _check_altitudes(scenario: Scenario) -> None:
-    """Refuse limits of the altitude that leave no room in any flight; where flights differ in them,
-    each has its own result.
+    """Refuse limits of the altitude that leave no room in any flight. If only some flights have
+    such limits, these flights fail by themselves.
     """
     deciding = ["flight.", "following.", "emission.ship", "turbulence.level"]
     deciding += ["plume.source_height_m"] if scenario.flight.altitude_m is None else []
@@ -176,8 +176,8 @@ def _check_altitudes(scenario: Scenario) -> None:
 
 
 def _check_sniffer(scenario: Scenario) -> None:
-    """Refuse a sniffer without SO2 in flights that end with a verdict; where flights differ in it,
-    each has its own result.
+    """Refuse a sniffer without SO2 if all flights end with a verdict. If only some flights have it,
+    these flights fail by themselves.
     """
     if scenario.flight.until != "verdict" or "sniffer" not in scenario.payload.instruments:
         return
@@ -192,8 +192,8 @@ def _check_sniffer(scenario: Scenario) -> None:
 
 
 def _check_record(scenario: Scenario) -> None:
-    """Refuse a rate of the record that is too low in every flight; where flights differ, each has
-    its own result.
+    """Refuse a rate of the record that is too low in every flight. If it is too low only in some,
+    these flights fail by themselves.
     """
     if any(draw.key.startswith(("guidance.", "flight.", "kinematic.")) for draw in scenario.draws):
         return
@@ -251,7 +251,9 @@ def _between(begins: float, ends: float) -> str:
 
 
 def _may_fail(scenario: Scenario, number: int) -> dict[str, tuple[float, float]]:
-    """Return what may fail by a fault, each item with its earliest beginning and latest end [s]."""
+    """Return the items that may fail by a fault, each with its earliest beginning and latest end
+    [s].
+    """
     fault = scenario.faults[number]
     earliest, latest = _extremes(scenario, number, "at_s", fault.at_s)
     ends: dict[str, float] = {}
@@ -268,8 +270,8 @@ def _may_fail(scenario: Scenario, number: int) -> dict[str, tuple[float, float]]
 def _extremes(
     scenario: Scenario, number: int, name: str, own: Sequence[float]
 ) -> tuple[float, float]:
-    """Return the least and the largest value of a key of a fault: its own, or those that are
-    sampled; without limits where these have none.
+    """Return the least and the largest value of a key of a fault: the given value, or the limits of
+    the sampled ones, infinite for a distribution without limits.
     """
     key = scenario.fault_key(number, name)
     draw = next((draw for draw in scenario.draws if draw.key == key), None)
@@ -286,7 +288,7 @@ def _extremes(
 
 
 def _check_vessel(scenario: Scenario) -> None:
-    """Refuse manoeuvres that overlap, or are beyond what is declared, in every flight."""
+    """Refuse manoeuvres that overlap, or exceed the declared limits, in every flight."""
     if not _vessel_known(scenario):
         return
     declared = not any(draw.key.startswith("following.") for draw in scenario.draws)
@@ -299,8 +301,8 @@ def _check_vessel(scenario: Scenario) -> None:
 
 
 def _vessel_known(scenario: Scenario) -> bool:
-    """Return whether no flight has a vessel or a file of wind of its own; with one that is of no
-    use, it is not flown.
+    """Return whether neither the vessel nor the file of wind is sampled. If one is, a flight whose
+    vessel or file cannot be used fails by itself.
     """
     return not any(draw.key.startswith(("vessel.", "wind.table")) for draw in scenario.draws)
 
@@ -318,7 +320,7 @@ def _check_parts(scenario: Scenario) -> None:
                 PART_REGISTRIES[key].get(name)
         except PluginError as error:
             raise InputError(f"{key}: {error}") from None
-    # What another callable makes is checked before its flight.
+    # The vessel of any other callable is checked before its flight.
     classes = [of for of in scenario.payload.parts().items() if isinstance(of[1], type)]
     try:
         check_instruments(classes)

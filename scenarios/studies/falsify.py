@@ -1,5 +1,5 @@
-"""A search for the flight that comes closest to the vessel, within the declared ranges, and what it
-has found.
+"""A search for the flight that comes closest to the vessel, within the declared ranges, and its
+results.
 """
 
 import time
@@ -42,9 +42,10 @@ class SearchedFlight:
     Attributes
     ----------
     number, flight_id : of the flight
-    method : that proposed it, or ``CONFIRMATION``
-    confirms : flight that it repeats with fresh noise; empty for a flight of the search itself
-    clearance : how far from the keep-out area it stayed at its closest [m]
+    method : name of the method that proposed it, or ``CONFIRMATION``
+    confirms : name of the flight that it repeats with new noise; empty for a flight of the search
+        itself
+    clearance : closest approach to the keep-out area [m]
     violates : whether it violated the keep-out area
     """
 
@@ -57,8 +58,8 @@ class SearchedFlight:
 
     @property
     def measured(self) -> bool:
-        """Return whether its clearance is known: it is of no flight that could not be planned, or
-        was lost.
+        """Return whether its clearance is known; it is unknown if the flight could not be planned,
+        or its process was lost.
         """
         return self.clearance < UNFLOWN
 
@@ -71,9 +72,9 @@ class SearchedFlight:
 class FalsificationStudy(ChosenFlightsStudy):
     """Batches of flights that search methods propose; the worst are repeated with other noise.
 
-    Flights of the search are numbered from 0; after the largest number that one may have come the
-    confirmations, in the order of the flights that they repeat, so that a run that is resumed finds
-    them in any order of flights.
+    Flights of the search are numbered from 0. Numbers above the largest possible number of the
+    search belong to the confirmations, in the order of the flights that they repeat. A resumed run
+    therefore finds each flight by its number.
 
     Parameters and ``InputError`` are the same as those of ``FlightStudy``.
     """
@@ -90,14 +91,14 @@ class FalsificationStudy(ChosenFlightsStudy):
         numbers = self._search.flights_max * (1 + self._search.confirmations)
         super().__init__(scenario, name, trials, numbers=numbers, overrides=overrides)
         self._space = search_space(self._scenario)
-        # Most numbers stand for no flight, and so for no time history.
+        # Most numbers have no flight, and so no time history.
         self.histories *= 1 + self._search.confirmations
         self.tables[DRAWS] = INPUT_COLUMNS | SEARCH_COLUMNS | self.tables[DRAWS]
         self._proposed = 0
         self._plan(self._search.flights_max if self._search.time_s is None else 0)
 
     def _plan(self, searched: int) -> None:
-        """Take the number of flights that the search will have, as far as it is known."""
+        """Set the number of the search's flights, as far as it is known."""
         self.flights = {
             self._trial: searched + self._search.confirmations * min(self._search.kept, searched)
         }
@@ -149,8 +150,8 @@ class FalsificationStudy(ChosenFlightsStudy):
 
     @property
     def _has_room(self) -> bool:
-        """Return whether there are numbers for another batch of a search by time; one by
-        generations has them.
+        """Return whether there are numbers left for another batch of a search by time; a search by
+        generations always has enough.
         """
         return (
             self._search.time_s is None
@@ -160,9 +161,10 @@ class FalsificationStudy(ChosenFlightsStudy):
     def _clearances(
         self, method: str, points: Array, fly: Fly, journal: Journal, timer: "_Timer"
     ) -> Array:
-        """Return how far from the keep-out area flights at these points stay at their closest [m].
+        """Return the closest approaches of flights at these points to the keep-out area [m].
 
-        What leaves the declared ranges is not flown, and counts the worse the farther it does.
+        Points outside of the declared ranges are not flown; their clearance is larger the farther
+        outside they are.
         """
         chosen = [tuple(map(float, point)) for point in points]
         excesses = [self._space.beyond(np.array(point)) for point in chosen]
@@ -203,12 +205,10 @@ class FalsificationStudy(ChosenFlightsStudy):
     def _keep(
         self, worst: Sequence[SearchedFlight], fly: Fly, run: RunDirectory, journal: Journal
     ) -> None:
-        """Write scenario files of the worst flights, and have those recorded that have no time
-        history.
-        """
+        """Write scenario files of the worst flights, and record those that have no time history."""
         experiment = self.experiments[self._trial]
         for path in (run.path / WORST).glob("*.toml"):
-            # Of a run that is resumed: what was among the worst may not be any more.
+            # In a resumed run, a flight that was among the worst may no longer be.
             path.unlink()
         for rank, flight in enumerate(worst, start=1):
             request = experiment.request(flight.number, self._tasks[flight.number].point)
@@ -234,8 +234,7 @@ class FalsificationStudy(ChosenFlightsStudy):
             for flight in worst
             for i in range(repeats)
         ]
-        # Beside those that a run before this one has flown, of flights that are not among the worst
-        # any more.
+        # Earlier sessions may have repeated flights that are no longer among the worst.
         numbers = {task.number for task in confirming} | {
             number for number in journal.done() if number >= first
         }
@@ -243,7 +242,7 @@ class FalsificationStudy(ChosenFlightsStudy):
         fly(confirming)
 
     def summary(self, journal: Journal) -> StudySummary:
-        """Return what the search has found."""
+        """Return the result of the search."""
         found = super().summary(journal)
         flights = searched_flights(journal)
         if not flights:
@@ -259,14 +258,14 @@ class FalsificationStudy(ChosenFlightsStudy):
 
 
 class _Timer:
-    """The time that a search may take: it runs from the first batch that is not wholly in the
-    journal yet.
+    """The time limit of a search. Its time begins with the first batch that is not completely in
+    the journal.
 
     Parameters
     ----------
-    limit : how long it may take; None for any time [s]
-    journal : with the flights that a run before this one has flown
-    flights_max : numbers of the search's flights are below it
+    limit : longest time; None for no limit [s]
+    journal : journal with the flights of earlier sessions of the run
+    flights_max : upper limit of the numbers of the search's flights, exclusive
     """
 
     def __init__(self, limit: float | None, journal: Journal, flights_max: int) -> None:
@@ -275,8 +274,8 @@ class _Timer:
         self._began: float | None = None
 
     def before(self, first: int, tasks: Sequence[Task]) -> None:
-        """Take the tasks that are about to be flown, from number ``first`` on; none where no point
-        can be flown.
+        """Set the tasks that are about to be flown, from number ``first`` on; there are none if no
+        point can be flown.
         """
         if self._began is None and (
             first > self._last or any(task.number not in self._done for task in tasks)
@@ -294,7 +293,7 @@ class _Timer:
 
 
 def nearest(flights: Sequence[SearchedFlight]) -> SearchedFlight | None:
-    """Return the flight that came closest, or none where none was measured."""
+    """Return the flight that came closest; None if no flight was measured."""
     return min(
         (flight for flight in flights if flight.measured),
         key=lambda flight: flight.clearance,
@@ -322,8 +321,8 @@ def searched_flights(journal: Journal) -> list[SearchedFlight]:
 def worst_flights(
     flights: Sequence[SearchedFlight], space: Space, journal: Journal, kept: int
 ) -> list[SearchedFlight]:
-    """Return the flights of a search that came closest, no two of them alike; the rest by clearance
-    where too few differ.
+    """Return the flights of a search that came closest and differ from each other. If too few
+    differ, others are added in the order of their clearance.
     """
     searched = [flight for flight in flights if flight.measured and not flight.confirms]
     order = sorted(searched, key=lambda flight: (flight.clearance, flight.number))
@@ -343,8 +342,8 @@ def worst_flights(
 def search_manifest(
     flights: Sequence[SearchedFlight], worst: Sequence[SearchedFlight]
 ) -> dict[str, Any]:
-    """Return the entry of the manifest on a search: its methods, every violation, and the worst
-    flights confirmed.
+    """Return the manifest's entry on a search: its methods, every violation, and the worst flights
+    with their repeats.
     """
     methods = dict.fromkeys(flight.method for flight in flights)
     return {
@@ -390,7 +389,7 @@ def _outside(least: float | None) -> str:
 
 
 def search_lines(found: dict[str, Any]) -> Iterator[str]:
-    """Yield what a search has found in lines of text, from its entry in the manifest."""
+    """Yield the results of a search in lines of text, from its entry in the manifest."""
     for name, of in found["methods"].items():
         flights = f"{of['flights']} flight{'s' * (of['flights'] != 1)}"
         flights += (

@@ -83,11 +83,11 @@ def initial_manifest(scenario: AnyStudy, name: str, overrides: Sequence[str]) ->
 def trial_entries(
     trials: Mapping[str, Scenario], *, as_read: Mapping[str, Scenario]
 ) -> dict[str, Any]:
-    """Return what the manifest says of the trials of a study of flights.
+    """Return the manifest's entries on the trials of a study of flights.
 
     Parameters
     ----------
-    trials : that are flown, by name
+    trials : trials that are flown, by name
     as_read : the trials before they were scaled to an aircraft; empty if they were not
     """
 
@@ -107,12 +107,12 @@ def trial_entries(
 
 
 def flown_config(scenario: BaseModel) -> dict[str, Any]:
-    """Return the configuration of what is flown, to which its reports have nothing to add."""
+    """Return the configuration of the flights, without the section of the reports."""
     return scenario.model_dump(mode="json", exclude={"report"})
 
 
 def write_logo(report: ReportConfig, run: RunDirectory) -> None:
-    """Write the logo of the reports into the run directory, where they find it again.
+    """Write the logo into the run directory, from which reports read it.
 
     Raises
     ------
@@ -123,8 +123,8 @@ def write_logo(report: ReportConfig, run: RunDirectory) -> None:
 
 
 def plugins(scenarios: Iterable[Scenario]) -> dict[str, str]:
-    """Return a hash of each file, and of the files of each aircraft, that scenarios take parts
-    from, by the part: a resumed run and a replay have to find the same.
+    """Return, by part, a hash of its file, or of the files of an aircraft. A resumed run and a
+    replay need the same files.
 
     Raises
     ------
@@ -145,12 +145,11 @@ def plugins(scenarios: Iterable[Scenario]) -> dict[str, str]:
 
 
 def refuse_changed(then: Mapping[str, str], now: Mapping[str, str]) -> None:
-    """Refuse to go on with a run whose parts are not what they were, before an autopilot is
-    designed for them.
+    """Refuse to continue a run whose parts have changed, before an autopilot is designed for them.
 
     Parameters
     ----------
-    then, now : as ``plugins`` returned them
+    then, now : results of ``plugins`` at the start of the run, and now
 
     Raises
     ------
@@ -188,8 +187,8 @@ def wind_files(scenarios: Iterable[Scenario]) -> dict[str, TabledWind]:
 def config_hash(
     *scenarios: BaseModel, files: Mapping[str, str] | None = None, names: Sequence[str] = ()
 ) -> str:
-    """Return a hash of scenarios, of their names where seeds depend on them, and of the files that
-    they take parts from.
+    """Return a hash of scenarios, of their names if seeds depend on these, and of the files of
+    their parts.
     """
     documents: list[object] = [flown_config(scenario) for scenario in scenarios]
     text = "\n".join(
@@ -209,8 +208,8 @@ def parameters(scenario: BaseModel) -> list[dict[str, Any]]:
 
 
 def unused_parameters(scenario: BaseModel) -> list[dict[str, Any]]:
-    """Return the same of the keys that do not act though they have not their defaults: an
-    aircraft's, to which they are scaled.
+    """Return the same for keys without an effect whose values differ from the defaults, because
+    they were scaled to an aircraft.
     """
     return [
         of
@@ -254,8 +253,8 @@ def _of_section(name: str, section: BaseModel) -> list[dict[str, Any]]:
 
 
 def _varied_of_parts(scenario: BaseModel, listed: Collection[str]) -> list[dict[str, Any]]:
-    """Return the keys of parts that are swept or sampled, and of laws of some flights, that are set
-    nowhere else, with defaults.
+    """Return, with their defaults, the keys of parts that are swept or sampled, and the keys of
+    laws of some flights, that are not set elsewhere.
     """
     if not isinstance(scenario, Scenario):
         return []
@@ -281,8 +280,8 @@ def _varied_of_parts(scenario: BaseModel, listed: Collection[str]) -> list[dict[
 
 
 def _of_parts(name: str, section: BaseModel) -> list[dict[str, Any]]:
-    """Return the keys of the parts that a section names, set or not: they say which instrument, law
-    or plume was flown.
+    """Return the keys of the parts that a section names, set or not: they describe the instrument,
+    law or plume of the flights.
     """
     brought: dict[str, Any] = {}
     if isinstance(section, PartSection):

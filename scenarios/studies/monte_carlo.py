@@ -1,4 +1,4 @@
-"""Monte Carlo: how often, how much, what it depends on, and how sure that is."""
+"""Monte Carlo studies: probabilities, quantiles, sensitivities and their intervals."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -38,8 +38,8 @@ class MonteCarloStudy(FlightStudy):
 
     Raises
     ------
-    InputError : same as ``FlightStudy``; a study of several points that is to stop by itself, or
-        flights that are no random sample
+    InputError : same as ``FlightStudy``; a stopping rule in a study of several points, or flights
+        that are not a random sample
     """
 
     def __init__(
@@ -73,7 +73,7 @@ class MonteCarloStudy(FlightStudy):
         return Task(number=number, point=self._design_with(point.stream).at(index))
 
     def _design_with(self, stream: int) -> SamplingDesign:
-        """Return the samples at the points of a sweep that have a number of random numbers."""
+        """Return the samples for points of a sweep with the random numbers ``stream``."""
         scenario, seed = self._scenario, self._scenario.seed
         if stream:
             seed = int(np.random.SeedSequence([seed, stream]).generate_state(1)[0])
@@ -82,11 +82,11 @@ class MonteCarloStudy(FlightStudy):
         )
 
     def run(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
-        """Fly up to one look after the other, until one shows what was demanded; then the
-        comparisons.
+        """Fly from look to look, until the intervals of a look are as narrow as demanded; then fly
+        the comparisons.
 
-        A run that is resumed does not stop before what it has flown already: a lost flight, on
-        which it went on, may be flown now.
+        A resumed run does not stop before the flights that it already has: the repetition of a lost
+        flight might otherwise stop it earlier.
         """
         first, study = 0, self.planned
         stops = self._scenario.statistics.stops
@@ -134,8 +134,8 @@ class MonteCarloStudy(FlightStudy):
 
     @property
     def _look_number(self) -> int | None:
-        """Number of the look that intervals are of, the first where none was taken yet; None of a
-        study without any.
+        """Number of the look of the intervals, or of the first look before any was taken; None for
+        a study without looks.
         """
         return max(1, self._looks) if self._scenario.statistics.stops else None
 
@@ -157,7 +157,7 @@ class MonteCarloStudy(FlightStudy):
         )
 
     def summary(self, journal: Journal) -> StudySummary:
-        """Return what the flights have come to, and whether the study stopped by itself."""
+        """Return the result of the flights, and whether the study stopped by itself."""
         found = super().summary(journal)
         if not self._stopped:
             return found

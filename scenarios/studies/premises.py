@@ -1,4 +1,4 @@
-"""The premises of the keep-out guard in the corners of what may be declared, as a study."""
+"""A study of the keep-out guard's premises in the corners of the declared ranges."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -21,8 +21,8 @@ _COLUMNS = ("flight_id", "turbulence", "duration_s", *PREMISE_COLUMNS)
 
 @study("premises")
 class PremisesStudy(FlightStudy):
-    """Flights of cases; for each case and term of the error budget a table says how near errors
-    came to it, and in how many flights they were larger.
+    """Flights of cases. A table has the largest ratio of error to budget for each case and term of
+    the error budget, and the number of flights in which the error was larger.
     """
 
     def export(self, run: RunDirectory, journal: Journal) -> None:
@@ -31,7 +31,7 @@ class PremisesStudy(FlightStudy):
         run.write_frame(PREMISES, self._table(journal))
 
     def columns(self) -> Mapping[str, Table]:
-        """Return what the columns of its tables are, by file."""
+        """Return the descriptions of its tables' columns, by file."""
         return {**super().columns(), PREMISES: TABLE_COLUMNS}
 
     def summary(self, journal: Journal) -> StudySummary:

@@ -27,12 +27,12 @@ NOT_COMPARED = ("wall_time_s",)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OriginalFlight:
-    """A flight of an earlier run, as the run's manifest and journal have it.
+    """A flight of an earlier run, from the run's manifest and journal.
 
     Attributes
     ----------
     directory, manifest : of the run
-    task, table, row : of the flight: what was flown, and the file that has its row
+    task, table, row : the flight's task, the name of the file with its row, and the row
     """
 
     directory: Path
@@ -70,7 +70,7 @@ class OriginalFlight:
         return cls(directory=directory, manifest=manifest, task=task, table=table, row=row)
 
     def with_aircraft_in(self, folder: Path) -> Self:
-        """Return the same with the aircraft of its flights where it is now, in ``folder``."""
+        """Return the same trial with the aircraft in ``folder``, its present place."""
         then = str(self.manifest["trials"][self.row["trial"]]["aircraft"])
         if not names_folder("aircraft", then):
             raise InputError(
@@ -97,7 +97,7 @@ class OriginalFlight:
         """
         trial, trials = self.row["trial"], self.manifest["trials"]
         for name in (trial, *trials):
-            # It becomes part of the names of files.
+            # The name becomes part of file names.
             if not is_file_name(name) or name not in trials:
                 raise InputError(
                     f"'{self.directory}' names a trial {name!r}, which cannot be the name of a"
@@ -120,7 +120,7 @@ class OriginalFlight:
                 f"'{self.directory}': flight '{self.row['flight_id']}' has number"
                 f" {self.task.number}; '{trial}' has no such flight"
             )
-        # The study may have chosen the seed: the row has it.
+        # The study may have chosen the seed; it is in the row.
         return study, Task(
             number=number, point=self.task.point, seed=self.row.get("seed"), every_step=True
         )
@@ -160,9 +160,9 @@ class Replay(SingleFlight):
     Parameters
     ----------
     name : ``RUN_DIR/flights/ID``, with or without the suffix of one of its files
-    viewer : shows it in real time; none if not given
-    aircraft_dir : directory in which the folder of the user's own aircraft is now, if it was moved
-        since
+    viewer : shows it in real time; by default there is no viewer
+    aircraft_dir : directory with the folder of the user's own aircraft, if the folder was moved
+        since the run
 
     Raises
     ------
@@ -239,7 +239,8 @@ class Replay(SingleFlight):
                 f"differs from the flight in {where} in {len(differing)} values: {changes};"
                 f" {self._reason()}"
             )
-        # The exit status is about the repetition, and not about the flight.
+        # The exit status says whether the repetition is identical, not whether the flight met its
+        # criteria.
         verdict = replace(verdict, required_met=not differing)
         return StudySummary(verdict=verdict, lines=lines, manifest={"identical": not differing})
 

@@ -37,8 +37,8 @@ from scenarios.studies.base import ChosenFlightsStudy, clearance, frame
 
 
 class SubsetStudy(ChosenFlightsStudy):
-    """Repeated subset simulations of the distance kept beyond r_min, in step: each wave of all of
-    them is flown at once.
+    """Repeated subset simulations of the distance kept beyond r_min. They run in parallel: each
+    wave of all of them is flown at once.
 
     Points whose speed ratio leaves the declared range are not flown: the distribution is the
     declared one within that range, as in the plain study, which samples such flights again. A
@@ -62,7 +62,7 @@ class SubsetStudy(ChosenFlightsStudy):
         self._simulations: list[Simulation] = []
 
     def run(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
-        """Have wave after wave flown, until every simulation has ended."""
+        """Fly wave after wave, until every simulation has ended."""
         running = self._begun()
         waiting = {repeat: next(simulating) for repeat, simulating in running.items()}
         ended: dict[int, Simulation] = {}
@@ -101,10 +101,10 @@ class SubsetStudy(ChosenFlightsStudy):
         }
 
     def _allowed(self, inputs: Array) -> bool:
-        """Return whether the plain study would fly at these inputs, and not sample again.
+        """Return whether the plain study would fly at these inputs instead of sampling again.
 
-        It flies where values contradict each other, too, and where the vessel does more than is
-        declared: if that cannot be planned, the flight has no measurement and its end is unknown.
+        It also flies if values contradict each other, or if the vessel exceeds the declared limits.
+        If such a flight cannot be planned, it has no measurement and its end is unknown.
         """
         try:
             return has_speed_ratio(
@@ -114,8 +114,8 @@ class SubsetStudy(ChosenFlightsStudy):
             return True
 
     def _seeded(self, inputs: Array) -> bool:
-        """Return whether a flight depends on its seed: turbulence, and what exhaust and payload
-        read, cannot be blended.
+        """Return whether a flight depends on its seed: turbulence, exhaust and payload cannot have
+        blended noise.
         """
         drawn = values_at(self._scenario.draws, inputs.tolist())
         shaken = drawn.get("turbulence.level", self._scenario.turbulence.level) != "none"
@@ -126,7 +126,7 @@ class SubsetStudy(ChosenFlightsStudy):
         )
 
     def _clearances(self, points: Sequence[Point], fly: Fly, journal: Journal) -> Array:
-        """Return how far from the keep-out area flights at these points stay at their closest [m];
+        """Return the closest approaches of flights at these points to the keep-out area [m];
         infinite if not measured.
         """
         first = len(self._tasks)
@@ -167,9 +167,7 @@ class SubsetStudy(ChosenFlightsStudy):
         )
 
     def summary(self, journal: Journal) -> StudySummary:
-        """Return what the flights have come to, and the probability if every simulation has
-        ended.
-        """
+        """Return the result of the flights, and the probability if every simulation has ended."""
         found = super().summary(journal)
         if not self._simulations:
             return found
@@ -180,8 +178,8 @@ class SubsetStudy(ChosenFlightsStudy):
         )
 
     def _first_lines(self, journal: Journal, found: RareProbability) -> list[str]:
-        """Return what of the first levels, which are a plain sample, was sampled again, and what is
-        not known to its end.
+        """Return, for the first levels, which are a plain sample, the number of points that were
+        sampled again and of flights with an unknown end.
         """
         first = [simulation.levels[0] for simulation in self._simulations]
         flights, outside = (

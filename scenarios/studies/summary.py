@@ -1,4 +1,4 @@
-"""What the console says of a study of flights: its verdict in lines, and notes on its flights."""
+"""The console's lines on a study of flights: the verdict, and notes on the flights."""
 
 import math
 from collections import Counter
@@ -49,10 +49,10 @@ def plural(number: int, noun: str) -> str:
 
 
 def counts_line(counts: Counts) -> str:
-    """Return the counts in a line: planned, flown, completed, met, and who kept out.
+    """Return the numbers of flights planned, flown, completed, met, and kept out, in a line.
 
-    Of those that did not keep out each way is named: "kept out" is said of no flight that lost its
-    aircraft, failed, or is not known to its end.
+    Flights that did not keep out are listed by reason. A flight that lost its aircraft, failed, or
+    has an unknown end never counts as "kept out".
     """
     line = (
         f"{counts.planned} planned, {counts.flown} flown, {counts.completed} completed,"
@@ -89,7 +89,7 @@ def trial_line(trial: TrialVerdict) -> str:
 
 
 def unexplained_lines(verdict: RunVerdict) -> list[str]:
-    """Return that the theorem of the guard or its code is wrong, where a flight shows it."""
+    """Return the message that the guard's theorem or its code is wrong, if a flight shows it."""
     if not (wrong := verdict.counts.unexplained):
         return []
     flights = plural(wrong, "flight")
@@ -97,7 +97,9 @@ def unexplained_lines(verdict: RunVerdict) -> list[str]:
 
 
 def premise_lines(verdict: RunVerdict) -> list[str]:
-    """Return in how many flights a premise of the keep-out guard did not hold, and which."""
+    """Return the number of flights in which a premise of the keep-out guard did not hold, and the
+    premises.
+    """
     premises = verdict.premises
     if not premises.measured:
         return []
@@ -109,13 +111,13 @@ def premise_lines(verdict: RunVerdict) -> list[str]:
 
 
 def bound_line(bound: Bound, hours: float) -> str:
-    """Return what is known of keep-out violations, and the bound on their probability if that says
-    anything.
+    """Return a line on keep-out violations, with the bound on their probability unless it exceeds
+    ``TELLING``.
 
     Parameters
     ----------
-    bound : that follows from the flights
-    hours : of them, simulated [h]
+    bound : bound that follows from the flights
+    hours : simulated time of these flights [h]
     """
     flights = plural(bound.flights, "flight")
     known = (
@@ -177,7 +179,7 @@ def comparison_lines(verdict: RunVerdict, left_out: Sequence[float]) -> list[str
 
 @dataclass(slots=True, kw_only=True)
 class FlightNotes:
-    """What is said of flights beside their verdict.
+    """Notes on flights, in addition to their verdict.
 
     Attributes
     ----------
@@ -212,7 +214,7 @@ class FlightNotes:
         return notes
 
     def add(self, row: Row) -> None:
-        """Take note of a flight."""
+        """Add a flight to the notes."""
         self.done += 1
         self.flown += "duration_s" in row
         self.unflown_manoeuvres += row.get("manoeuvres_unflown", 0) > 0
@@ -232,10 +234,11 @@ class FlightNotes:
             self.not_met.append(row)
 
     def sulphur_lines(self) -> list[str]:
-        """Return what was measured of the fuel: of one flight content and verdict, of several how
-        many were called what.
+        """Return lines on the measured fuel: content and verdict of a single flight, or the number
+        of verdicts of several flights.
 
-        And in how many flights the sniffer failed: nothing else on the console says so.
+        A further line has the number of flights in which the sniffer failed, which no other line on
+        the console has.
         """
         faults = [
             f"a fault of the sniffer began in {count} of {self.flown}"
@@ -270,8 +273,8 @@ class FlightNotes:
         return [content, *([suspect] if suspect else [])]
 
     def warnings(self) -> list[str]:
-        """Return what of the scenario had no effect on flights, and where these missed what they
-        were to measure.
+        """Return lines on parts of the scenario that had no effect on flights, and on flights that
+        missed the smoke that they should measure.
         """
         lines = []
         if count := self.unflown_manoeuvres:

@@ -124,12 +124,13 @@ class JsbsimVehicle:
 
     Parameters
     ----------
-    aircraft : with its autopilot; its earlier flight is over. What is to fail on the way takes
-        one made ``failable``
+    aircraft : with its autopilot; its earlier flight is over. It has to be ``failable`` if a part
+        fails in the flight
     start : straight and level equilibrium
     envelope : where the autopilot may fly it
     north, east, altitude : where it is released [m]
-    course : of its velocity against the air, which without wind is that over the ground [rad]
+    course : course of its velocity relative to the air; without wind it is the course over the
+        ground [rad]
     time_step : of the guidance, a multiple of the simulation's [s]
     weather : the air it flies in; none for still air
     """

@@ -22,7 +22,7 @@ class KinematicVehicle:
     Parameters
     ----------
     north, east, altitude : where it starts [m]
-    course : against the air, which without wind is that over the ground [rad]
+    course : course relative to the air; without wind it is the course over the ground [rad]
     speed : against the air [m/s]
     time_step : of the guidance [s]
     lag : time constant of the heading rate behind its command [s]; 0 for equation (1) as it stands
@@ -112,8 +112,8 @@ class KinematicVehicle:
         )
 
     def fault(self, sample: tuple[float, ...]) -> str:
-        """Return nothing, unless the guidance commanded what is not a number: equation (1) is never
-        out of control.
+        """Return an empty text, unless the guidance commanded NaN: equation (1) is never out of
+        control.
         """
         return (
             ""

@@ -1,5 +1,5 @@
-"""What the sensors of the UAV measure: the truth, with errors that are sampled for a whole flight
-at once.
+"""The readings of the UAV's sensors: the truth, with errors that are sampled for a whole flight at
+once.
 """
 
 import math
@@ -68,7 +68,7 @@ class SensorErrors:
         *,
         satellites: bool,
     ) -> Reading:
-        """Return what is read at a step.
+        """Return the readings at a step.
 
         Parameters
         ----------

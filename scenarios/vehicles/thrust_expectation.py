@@ -1,4 +1,4 @@
-"""What thrust an aircraft is expected to have, and how well its accelerometers show it."""
+"""The expected thrust of an aircraft, and the accuracy with which its accelerometers show it."""
 
 import itertools
 import math
@@ -77,7 +77,7 @@ class ThrustErrors:
 
     Attributes
     ----------
-    lack : mean by which less is shown than there is [-]
+    lack : mean by which the shown thrust is less than the true thrust [-]
     density : rate at which the variance of their integral over time grows [s]
     """
 
@@ -87,14 +87,14 @@ class ThrustErrors:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ThrustTest:
-    """The test that thrust is lost, and how often and how late it says so.
+    """The test for a loss of thrust, with its rate of false alarms and its delay.
 
     Attributes
     ----------
     parameters : of the monitor
     airspeed : V_r [m/s]
     drift : at which the monitor's sum falls while the thrust is that of level flight [m/s]
-    density : rate at which the variance of what it sums up grows [m^2/s]
+    density : rate at which the variance of the monitor's sum grows [m^2/s]
     """
 
     parameters: ThrustParameters
@@ -112,8 +112,8 @@ class ThrustTest:
     def detection_time(self) -> float:
         """Time from the loss of all thrust of level flight until it counts as lost [s].
 
-        The height of energy that is missing grows by V times the thrust over the weight, less what
-        is allowed for; it is looked at in intervals.
+        The missing energy height grows at V times the missing thrust over the weight, minus the
+        allowance; it is checked at intervals.
         """
         rate = self.airspeed * (1.0 - EXPECTED_SHARE) * self.parameters.level
         return self.parameters.energy_height / rate + CHECK_INTERVAL
@@ -121,13 +121,13 @@ class ThrustTest:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ThrustExpectation:
-    """The thrust that is expected of an aircraft, and the errors of what is shown of it.
+    """The expected thrust of an aircraft, and the errors with which accelerometers show it.
 
     Attributes
     ----------
     model : of the aircraft
     calm, gusty : errors in calm air, and in gusts of some strength
-    gusts : standard deviation of those along the path [m/s]
+    gusts : standard deviation of these gusts along the path [m/s]
     """
 
     model: ThrustModel
@@ -136,8 +136,8 @@ class ThrustExpectation:
     gusts: float
 
     def errors(self, gusts: float) -> ThrustErrors:
-        """Return the errors in gusts of a standard deviation [m/s]: they grow with its square, the
-        mean as a drag that is quadratic in the incidence, the density as any variance.
+        """Return the errors in gusts of a standard deviation [m/s]. They grow with its square: the
+        mean because drag is quadratic in the incidence, the density because it is a variance.
         """
         share = (gusts / self.gusts) ** 2
         more_lack = max(0.0, self.gusty.lack - self.calm.lack)
@@ -156,22 +156,21 @@ class ThrustExpectation:
         airspeed_sigma: float,
         airspeed_bias: float,
     ) -> ThrustTest | None:
-        """Return the test that thrust is lost; None where the mean error alone reaches what is
-        allowed for.
+        """Return the test for a loss of thrust; None if the mean error alone reaches the allowance.
 
         Parameters
         ----------
         airspeed, slow_airspeed : V_r, and the airspeed above which the thrust of level flight is
             enough [m/s]
         gusts : standard deviation of gusts along the path [m/s]
-        airspeed_sigma, airspeed_bias : noise, and largest bias, of the airspeed that is read [m/s]
+        airspeed_sigma, airspeed_bias : noise and largest bias of the measured airspeed [m/s]
         """
         errors = self.errors(gusts)
         slope = abs(airspeed_slope(self.model, airspeed))
         density = errors.density + CHECK_INTERVAL * (slope * airspeed_sigma) ** 2
         level = self.model.drag(airspeed, 1.0)
         drift = EXPECTED_SHARE * level - errors.lack - slope * airspeed_bias
-        # Nor is there a drift if an aircraft that is flown so hard has left its envelope.
+        # There is no drift either if the aircraft has left its envelope in these abrupt manoeuvres.
         if not drift > 0.0:
             return None
         drift, density = airspeed * drift, airspeed**2 * density
@@ -193,8 +192,8 @@ class ThrustExpectation:
 def thrust_expectation(
     aircraft: AutopilotedAircraft, schedule: Schedule, start: Trim
 ) -> ThrustExpectation:
-    """Return what thrust to expect of an aircraft; measured with the body held still, and its
-    errors in two hard flights, in calm air and in turbulence.
+    """Return the expected thrust of an aircraft. It is measured with the body held still; its
+    errors are measured in two flights with abrupt commands, in calm air and in turbulence.
 
     Parameters
     ----------
@@ -223,13 +222,13 @@ def hard_flight(
 ) -> Iterator[float]:
     """Yield the airspeed [m/s] at each check of the health, in a flight whose commands jump.
 
-    Airspeed and bank go to the ends of their ranges, and back, before they have been reached or
-    long after.
+    The commands of airspeed and bank jump between the ends of their ranges, some before the
+    aircraft has reached an end, some long after.
 
     Parameters
     ----------
     aircraft : with its autopilot; its flight is ended
-    envelope : that is flown
+    envelope : range of the commands
     start : straight and level equilibrium
     weather : of the flight
     generator : of the commands
@@ -289,8 +288,8 @@ def _growth(scatter: Array, window: float) -> float:
 
 
 def airspeed_slope(model: ThrustModel, airspeed: float) -> float:
-    """Return by how much less thrust is shown than expected, per airspeed that is read too high, in
-    level flight [s/m].
+    """Return the lack of shown thrust in level flight per error of the airspeed, for an airspeed
+    that is read too high [s/m].
     """
     level = model.drag(airspeed, 1.0)
     throttle = float(np.interp(level, *_rising(model, airspeed)))

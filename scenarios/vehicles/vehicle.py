@@ -33,12 +33,14 @@ class Vehicle(Protocol):
         """Return the motion now."""
 
     def air_data(self) -> tuple[float, float, float]:
-        """Return what sensors on board measure: airspeed, gusts and all [m/s], heading, not
+        """Return the measurements of sensors on board: airspeed including gusts [m/s], heading, not
         wrapped, and roll [rad].
         """
 
     def engine(self) -> EngineReadings | None:
-        """Return what shows whether there is thrust; None for a vehicle without an engine."""
+        """Return the measurements that show whether there is thrust; None for a vehicle without an
+        engine.
+        """
 
     def sample(self) -> tuple[float, ...]:
         """Return ``SAMPLE_COLUMNS``."""
@@ -55,14 +57,12 @@ class Vehicle(Protocol):
         """
 
     def hold_elevator(self) -> object:
-        """Leave pitch to the vehicle's own stability from now on, so that turning has all the
-        control that is left.
+        """Leave pitch to the vehicle's own stability from now on, so that turns have all the
+        remaining control.
         """
 
     def fail(self, name: str) -> None:
-        """Let a part of it fail from now on; raises ValueError where there is no such part that
-        can.
-        """
+        """Let a part fail from now on; raises ValueError if there is no such part."""
 
     def fault(self, sample: tuple[float, ...]) -> str:
         """Return why a vehicle with this ``sample`` is out of control, or nothing."""

@@ -1,5 +1,5 @@
-"""What flights need of their vehicle beyond their scenario: an aircraft with its autopilot, or the
-kinematic vehicle.
+"""The vehicle's data that flights need in addition to their scenario: for an aircraft with its
+autopilot, or for the kinematic vehicle.
 """
 
 import math
@@ -67,29 +67,29 @@ class Aircraft:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VehicleSetup:
-    """What flights need of their vehicle.
+    """The vehicle's data that flights need.
 
     Attributes
     ----------
     lag : of the heading rate behind its command [s]
     reversal : how the heading rate follows a reversal of the turn
-    response_error : how much nearer a full reversal may come than with that response [m]
+    response_error : distance by which a full reversal may come nearer than that response predicts
+        [m]
     altitude_error : by which the altitude may differ from its command in a turn away [m]
     airspeed_bandwidth, airspeed_min, airspeed_max : of the airspeed behind its command, and its
         range [rad/s, m/s]
     airspeed_overshoot : of the airspeed over a step of its command [-]
-    failing_level, failing_climbing : what the failure of a part does in a turn, level, and also in
-        a climb; none if not measured
-    thrust : that is expected of the engine; None where no flight monitors it
-    altitude_reach : difference of the altitude from its command within which the autopilot removes
-        it for certain [m]
+    failing_level, failing_climbing : effect of a part's failure in a level turn, and in level and
+        climbing turns; None if not measured
+    thrust : expected thrust of the engine; None if no flight monitors it
+    altitude_reach : largest altitude error that the autopilot certainly removes [m]
     turn_airspeeds, turn_rates : the slower turn at the autopilot's largest bank over airspeed;
         empty without a limit [m/s, rad/s]
     crab_banks, crab_offsets : banks in steady turns, and course through the air minus heading at
         each [rad]
     weaves : in still air, as sensors see them; none if not measured
     aircraft : in six degrees of freedom, or none for the kinematic vehicle
-    meets_ships : whether ships besides the measured one may come to be known in flight
+    meets_ships : whether ships other than the measured one may become known in flight
     """
 
     lag: float
@@ -118,8 +118,8 @@ class VehicleSetup:
         """
         if not self.turn_airspeeds:
             return math.inf
-        # At one bank the time of a full turn is proportional to the airspeed, but for what the
-        # angle of attack changes.
+        # At a given bank the time of a full turn is proportional to the airspeed, apart from the
+        # effect of the angle of attack.
         return float(
             np.interp(
                 1.0 / heading_rate, [1.0 / turn for turn in self.turn_rates], self.turn_airspeeds
@@ -128,8 +128,8 @@ class VehicleSetup:
 
 
 def spec_of(scenario: Scenario) -> AircraftSpec | None:
-    """Return a scenario's aircraft, or the one that kinematic flights of it are scaled to; none
-    where there is neither.
+    """Return a scenario's aircraft, or the one to which its kinematic flights are scaled; None if
+    there is neither.
 
     Raises
     ------
@@ -155,7 +155,7 @@ def design_of(spec: AircraftSpec, altitude: float) -> tuple[Designed | None, str
 
 
 def kinematic_setup(scenario: Scenario) -> VehicleSetup:
-    """Return what kinematic flights of a scenario need."""
+    """Return the vehicle's data for kinematic flights of a scenario."""
     lag, speed = scenario.kinematic.heading_rate_lag_s, scenario.guidance.airspeed_mps
     slowest, fastest = _KINEMATIC_AIRSPEEDS
     return VehicleSetup(
@@ -176,15 +176,16 @@ def aircraft_setup(
     settings: Sequence[Scenario],
     bank: float = 0.0,
 ) -> VehicleSetup:
-    """Return what flights of the aircraft need; write its autopilot into the run directory.
+    """Return the data of the aircraft that flights need; write its autopilot into the run
+    directory.
 
     Parameters
     ----------
-    found : its autopilot
-    scenario : whose airspeed and height the flights start at
+    found : the aircraft's autopilot
+    scenario : scenario with the airspeed and the height at the start
     run : the run directory
     settings : of all the flights; in some a part of the aircraft may be declared to fail
-    bank : steepest that the guidance asks for [rad]
+    bank : steepest bank that the guidance commands [rad]
     """
     schedule = found.design.schedule
     with tempfile.TemporaryDirectory() as folder:

@@ -433,7 +433,7 @@ def _wind_at(
     if time is None or not (pairs or {"u", "v", "height"} <= {*data.variables}):
         raise InputError(
             f"wind.table: {path}: it has {', '.join(sorted(map(str, data.variables)))[:120]};"
-            " needed are a time and u10 with v10, or u and v over height"
+            " it needs a time and u10 with v10, or u and v over height"
         )
     data = data.rename(
         {

@@ -92,8 +92,8 @@ def vessel_of(scenario: Scenario) -> VesselTruth:
 
     Raises
     ------
-    PluginError : it has no such track, or it cannot be made, or its motion and course are unusable
-    InputError : its file cannot be read, or does not cover the longest flight
+    PluginError : the track does not exist or cannot be made, or its motion or course is unusable
+    InputError : the track's file cannot be read, or does not cover the longest flight
     """
     config, duration = sized(scenario).vessel, scenario.flight.duration_max_s
     if config.from_file:

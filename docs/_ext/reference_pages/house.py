@@ -114,8 +114,8 @@ def _rooms() -> Iterator[str]:
 
 
 def _imports() -> Iterator[str]:
-    """Yield an arrow from each room to those that it imports from. One that a room lower down on
-    the same way imports from as well has its arrow from there.
+    """Yield an arrow from each room to those that it imports from. If a room lower down on the same
+    way imports from it as well, the arrow begins there.
     """
     imports = {room: imported_rooms(room) for room in _ROOMS}
     for room, others in imports.items():

@@ -1,4 +1,4 @@
-"""The error budget of a flight beside a vessel, from what its scenario declares.
+"""The error budget of a flight beside a vessel, from the declarations of its scenario.
 
 The error of dead reckoning in steady air, by errors of sensors and of the estimated wind, is
 declared, or follows from the sensors and the airspeed if that is more. The scenario's air adds to

@@ -1,6 +1,6 @@
 """The keep-out margin of a flight in operational conditions: the distance of its orbit from the
-keep-out area at which errors very rarely carry the aircraft into the area, and the guard does not
-act.
+keep-out area. At this distance errors carry the aircraft into the area very rarely, and the guard
+does not act.
 
 The margin has three parts.
 
@@ -18,7 +18,7 @@ Tracking error in turbulence
 Room for the guard
     The orbit lies where a turn away from the vessel, as the guard predicts it, is always possible.
 Scatter of what is known
-    The orbit lies beside where the filter takes the vessel to be. The discs of
+    The orbit is placed beside the vessel's position as the filter estimates it. The discs of
     ``gnc.estimation.vessel`` are centred on single reports, which scatter more. So a disc that is
     no larger than planned may reach farther towards the orbit. Beside a vessel that is known
     exactly, the vehicle's own position and velocity are noisy. The vehicle follows its reference by
@@ -437,9 +437,9 @@ def scatter_allowance(
     """Return by how much a disc reaches farther than planned, ``GUARDED_PER_HOUR`` times an hour
     [m].
 
-    It is evaluated just before each report, when the earlier reports are oldest. Of the newest
-    discs, the one counts that reaches least far in a direction from the filter's estimate of the
-    vessel's place. Discs are compared at the end of a turn away.
+    It is evaluated just before each report, when the earlier reports are oldest. The disc that
+    counts is the one of the newest discs that reaches least far in a direction from the filter's
+    estimate of the vessel's place. Discs are compared at the end of a turn away.
 
     Parameters
     ----------

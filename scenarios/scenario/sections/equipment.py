@@ -1,5 +1,5 @@
-"""What a scenario file may say of equipment: the vessel's reports, sensors, faults, payload. What
-is absent is ideal.
+"""The sections of a scenario file on equipment: the vessel's reports, sensors, faults, payload.
+Equipment that is absent is ideal.
 """
 
 import functools
@@ -128,7 +128,7 @@ class FaultConfig(Section):
     @field_validator("at_s", mode="before")
     @classmethod
     def _one_time(cls, given: Any) -> Any:
-        """Take a number for the range that holds it alone, so that a random variable can set the
+        """Accept a number as a range with only this value, so that a random variable can set the
         time.
         """
         return (
@@ -149,7 +149,9 @@ def _several() -> TypeAdapter[tuple[FaultConfig, ...]]:
 
 
 def _one_or_several(given: Any, _: ValidatorFunctionWrapHandler) -> Any:
-    """Return a fault, or several from a list: what is wrong is said of the form that is given."""
+    """Return a fault, or several from a list; an error message names the key in the form that the
+    user has given.
+    """
     if isinstance(given, list | tuple):
         return _several().validate_python(given)
     return FaultConfig.model_validate(given)
@@ -177,7 +179,7 @@ class PayloadConfig(PartSection):
     @model_validator(mode="before")
     @classmethod
     def _names_alone(cls, given: Any) -> Any:
-        """Take a list for the instruments' names, without any settings."""
+        """Accept a list as the names of the instruments, without any settings."""
         return {"instruments": given} if isinstance(given, list | tuple) else given
 
     def parts(self) -> dict[str, Any]:

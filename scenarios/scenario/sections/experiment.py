@@ -1,4 +1,4 @@
-"""What a scenario file may say of an experiment: sweeps, cases, comparisons, random variables,
+"""The sections of a scenario file on an experiment: sweeps, cases, comparisons, random variables,
 statistics, a search.
 """
 
@@ -66,7 +66,7 @@ class SweepConfig(RootModel[dict[str, tuple[Any, ...]]]):
     @model_validator(mode="before")
     @classmethod
     def _dotted(cls, given: Any) -> Any:
-        """Take ``sweep.wind.speed_mps`` for the key ``wind.speed_mps``."""
+        """Accept ``sweep.wind.speed_mps`` for the key ``wind.speed_mps``."""
         return dict(_flat(given)) if isinstance(given, dict) else given
 
     @model_validator(mode="after")
@@ -206,7 +206,7 @@ class DrawConfig(Section):
 
     @property
     def largest(self) -> float | None:
-        """Return the largest number that may be sampled; None where there is none."""
+        """Return the largest number that may be sampled; None if there is no limit."""
         numbers = (
             self.uniform
             or self.within

@@ -1,4 +1,4 @@
-"""What a scenario file may say of a flight: its start, its end, and what it must show."""
+"""The sections of a scenario file on a flight: its start, its end, and its criteria."""
 
 from typing import Annotated, Any, Literal
 
@@ -229,7 +229,7 @@ class CriteriaConfig(Section):
     @model_validator(mode="before")
     @classmethod
     def _not_judged(cls, given: Any) -> Any:
-        """Take ``false`` for nothing where a list of two is expected."""
+        """Accept ``false`` as None where a list of two is expected."""
         if not isinstance(given, dict):
             return given
         return {

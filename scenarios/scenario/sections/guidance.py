@@ -1,5 +1,5 @@
-"""What a scenario file may say of the guidance: the reference, the steering law, following a vessel
-that is not known exactly.
+"""The sections of a scenario file on the guidance: the reference, the steering law, and how to
+follow a vessel that is not known exactly.
 """
 
 import sys
@@ -85,8 +85,9 @@ def _by_law(key: str, *laws: str, if_given: bool = False, paces: bool = False) -
     ----------
     key : of the section
     laws : that use it
-    if_given : whether they do where guidance.tuning is 'given' alone
-    paces : whether a steered reference is kept pace with by it, with any law (``gnc.airspeed``)
+    if_given : whether they use it only with guidance.tuning 'given'
+    paces : whether the key also sets how the airspeed keeps pace with a steered reference, with any
+        law (``gnc.airspeed``)
     """
 
     def acts(s: Any) -> object:
@@ -277,14 +278,14 @@ class GuidanceConfig(Section):
 
 
 def law_refusal(law: str, task: str) -> str:
-    """Return why a steering law cannot do a task, ``gnc.laws.ON_OSCILLATION`` or
-    ``ON_CIRCLE``; nothing if it can.
+    """Return why a steering law cannot do a task, ``gnc.laws.ON_OSCILLATION`` or ``ON_CIRCLE``; an
+    empty text if it can.
     """
     return _reasons(law).get(task, "")
 
 
 def _reasons(law: str) -> Mapping[str, str]:
-    """Return what a steering law cannot do, by the task."""
+    """Return the reasons why a steering law cannot do some tasks, by the task."""
     reasons: Any = getattr(STEERING_LAWS.get(law), "unsupported_tasks", {})
     tasks = (ON_OSCILLATION, ON_CIRCLE)
     if not isinstance(reasons, Mapping):
@@ -348,9 +349,7 @@ def _type_of(declared: Any, default: object) -> type[Any] | None:
 
 
 def _expected(of: type[Any] | None, value: Any) -> str | None:
-    """Return what a key of a type takes, in words, where a value is of another type; otherwise
-    None.
-    """
+    """Return the values that a key takes, in words, if a value has another type; otherwise None."""
     if of is float:
         # Whole numbers may be too large for a float.
         fits = type(value) in (int, float) and abs(value) <= sys.float_info.max

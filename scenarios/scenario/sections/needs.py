@@ -1,9 +1,9 @@
-"""What a key needs to have an effect: a part of the flights that reads it.
+"""The needs of keys: a key has an effect only if a part of the flights reads it.
 
-A need stands where the key does, as ``Annotated[Angle, BLOWS]``, or for a whole section as one of
-its ``NEEDS``. From that follow the refusal of a key that nothing uses, the conditions in
-``plume-flight describe`` and on the reference page, the keys behind a # in a new file, and the
-parameters that a manifest calls unused.
+A need is declared in the annotation of the key, as ``Annotated[Angle, BLOWS]``, or for a whole
+section in its ``NEEDS``. It is used to refuse a key that nothing reads, for the conditions in
+``plume-flight describe`` and on the reference page, for the keys behind a # in a new file, and for
+the parameters that a manifest calls unused.
 """
 
 from collections.abc import Callable
@@ -14,12 +14,13 @@ from typing import Any
 
 @dataclass(frozen=True, slots=True)
 class Need:
-    """What uses a key.
+    """The part of a flight that uses a key.
 
     Attributes
     ----------
-    acts : whether flights of a scenario have it; reads nothing but its keys and properties
-    user : the part that uses the key, and how to have it
+    acts : whether flights of a scenario have the part; reads only keys and properties of the
+        scenario
+    user : name of the part, and how to turn it on
     """
 
     acts: Callable[[Any], object]
@@ -32,8 +33,8 @@ def when(key: str, *values: str, user: str) -> Need:
     Parameters
     ----------
     key : the other one
-    values : by which it does, the first of them for the message; any but "none" and nothing if not
-        given
+    values : values of the other key that turn it on, the first of them for the message; by default
+        any value except "none" and an empty one
     user : the part that uses the key
     """
     value_of = attrgetter(key)
@@ -86,7 +87,7 @@ SNIFFER = Need(
 
 
 def channel_of_gas(gas: str) -> Need:
-    """Return the need of what a ship emits of a gas beside those that every sniffer knows."""
+    """Return the need of a key for the emission of a gas that not every sniffer knows."""
     return Need(
         lambda s: gas in (getattr(s.payload, "channels", None) or {}),
         f"a sniffer with a channel for it: add the table payload.channels.{gas}",

@@ -49,8 +49,8 @@ class PartSection(Section):
         )
 
     def __getattr__(self, name: str) -> Any:
-        """Say where the value of a part's key is, to a part that looks for it here: the section has
-        those alone that are given.
+        """Raise an error that says where the value of a part's key is. The section itself has only
+        the keys that are given.
         """
         try:
             return super().__getattr__(name)  # type: ignore[misc]
@@ -103,9 +103,7 @@ class PartSection(Section):
         reject_truth_values(self.model_extra or {}, made)
 
     def keys_lost_with(self, changed: Mapping[str, object]) -> list[str]:
-        """Return the keys given here that no part takes any more when fields of the section are
-        changed.
-        """
+        """Return the given keys that no part takes after fields of the section are changed."""
         given = self.model_extra or {}
         if not given:
             return []

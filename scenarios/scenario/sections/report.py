@@ -1,4 +1,4 @@
-"""What the reports of a study say of themselves: it has no effect on what is flown."""
+"""Title and sender of a study's reports, which have no effect on flights."""
 
 from pathlib import Path
 from typing import Annotated, Any
@@ -43,7 +43,7 @@ def read_logo(report: ReportConfig) -> Picture | None:
 
 
 def report_entry(report: ReportConfig) -> dict[str, Any]:
-    """Return what the manifest says of the reports: the logo by its name in the run directory and a
+    """Return the manifest's entries on the reports: the logo's name in the run directory, and a
     hash of its content.
 
     Raises

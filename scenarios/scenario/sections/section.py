@@ -1,4 +1,4 @@
-"""What sections of a scenario file are made of."""
+"""The base class of the sections of a scenario file, and the types of their keys."""
 
 from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Literal, Self
@@ -20,8 +20,8 @@ class Section(BaseModel):
     """Frozen; unknown keys, numbers that are not finite, and truth values in the place of numbers
     are refused.
 
-    A field is a key: its type has the limits and what the key needs to have an effect (``needs``),
-    its docstring the meaning and the unit, ``"Meaning [unit]."``.
+    A field is a key. Its type has the limits of the key and its needs (``needs``); its docstring
+    has the meaning and the unit, ``"Meaning [unit]."``.
     """
 
     model_config = ConfigDict(

@@ -1,4 +1,4 @@
-"""What a scenario file may say of ships besides the one that is measured."""
+"""The sections of a scenario file on ships other than the measured one."""
 
 from pathlib import Path
 from typing import Annotated, Any, ClassVar

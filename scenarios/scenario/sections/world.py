@@ -1,5 +1,5 @@
-"""What a scenario file may say of the world: vessel, plume, wind, turbulence, keep-out area. What
-is absent is ideal.
+"""The sections of a scenario file on the world: vessel, plume, wind, turbulence, keep-out area.
+Anything that is absent is ideal.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -246,8 +246,8 @@ class PlaceConfig(Section):
 
 
 def _has_smoke(setting: str) -> Callable[[Any], object]:
-    """Return whether the project's smoke has a setting; what another plume model means by one of
-    that name is its own.
+    """Return whether the project's smoke has a setting; another plume model may use the name for
+    something else.
     """
     return lambda s: (
         s.plume.model != "fluctuating" or getattr(s.plume, setting, getattr(PlumeSettings, setting))
@@ -322,7 +322,7 @@ class PlumeConfig(PartSection):
 
 
 def known_ship(given: Any) -> Any:
-    """Refuse a name of no ship, and a table that is of no use."""
+    """Refuse the name of an unknown ship, and an unusable table."""
     if not isinstance(given, str | dict | None):
         raise ValueError(
             f"value is {given!r}; give the name of a ship, or a table with its engine and funnel"
@@ -490,7 +490,7 @@ _NO_TABLES = (".nmea", ".nc")
 
 
 def _tables(s: Any) -> list[str]:
-    """Return the files of a scenario that may be tables, as far as their names say."""
+    """Return the files of a scenario that may be tables, judged by their names."""
     files = [s.vessel.track if s.vessel.from_file else "", s.wind.table or ""]
     return [name for name in files if name and not name.lower().endswith(_NO_TABLES)]
 
@@ -506,7 +506,9 @@ TableKey = Literal["vessel.track", "wind.table"]
 
 
 class TableConfig(Section):
-    """How the tables of AIS reports and of wind are written. What is left out is found."""
+    """How the tables of AIS reports and of wind are written. Keys that are left out are found
+    automatically.
+    """
 
     NEEDS: ClassVar[tuple[Need, ...]] = (_TABLE,)
 
@@ -536,8 +538,7 @@ class TableConfig(Section):
         return table_format(self.model_dump(exclude={"file"}, exclude_none=True))
 
     def of(self, key: TableKey, name: str) -> TableFormat:
-        """Return how a file is written, as far as that is given; nothing is of one that is no
-        table.
+        """Return the given format of a file; it is empty for a file that is not a table.
 
         Parameters
         ----------

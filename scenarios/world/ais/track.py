@@ -186,12 +186,12 @@ def ais_vessel(
 
 
 def with_size_of_file(config: VesselConfig, written: TableFormat = FOUND) -> VesselConfig:
-    """Return the section with the size that the reports of its file say, and the place
-    of the antenna, where it does not give them. ``written`` is that of ``ais_vessel``.
+    """Return the section, completed by the size and the place of the antenna from the reports of
+    its file where it does not give them. ``written`` is that of ``ais_vessel``.
 
     Raises
     ------
-    InputError : the file is not usable, or its size and what is given do not go together
+    InputError : the file is not usable, or its size contradicts a given key
     """
     said = _read(*_file_of(config), config.mmsi, written).size
     if said is None:
