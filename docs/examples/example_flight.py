@@ -1,5 +1,5 @@
-"""Writes example_flight.csv beside it: a simulated flight, read by the electrochemical sniffer, as
-a logged flight would be given.
+"""Writes example_flight.csv beside it: the log of a simulated flight with the electrochemical
+sniffer, in the form of a log of a real flight.
 
 The UAV swings across a plume every 9.5 s, 220 m behind a ship that sails north at 6 m/s. The plume
 is a Gaussian of 9 m that meanders by 8 m and 4 m between passes; the ratio of its SO2 to its CO2 is

@@ -311,8 +311,8 @@ class SnifferSettings:
         methane, black carbon and the number of particles that the ship emits
     exact : whether the instrument is exactly as its data sheet says; otherwise gains, zeros,
         responses and cross-sensitivities are sampled within the stated uncertainties
-    limit_percent : sulphur content that the verdict is on [% m/m]: 0.1 in an emission control area,
-        0.5 elsewhere
+    limit_percent : limit of the sulphur content for the verdict [% m/m]: 0.1 in an emission control
+        area, 0.5 elsewhere
     rule : of measurement/estimate/verdict.py, by which a ship is reported as suspect; none for no
         such rule
     dynamic_pressure_fraction : fraction of the dynamic pressure that the inlet passes on to the

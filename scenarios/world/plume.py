@@ -108,7 +108,7 @@ class StraightPlume:
 
 def _last_moving(velocity: Array) -> npt.NDArray[np.intp]:
     """Return for each row, shape (n, 2), the last row up to it that is not at rest: in still air a
-    plume stays in its place.
+    plume keeps its direction.
     """
     moving = np.hypot(velocity[:, 0], velocity[:, 1]) > _AT_REST
     return np.maximum.accumulate(np.where(moving, np.arange(len(velocity)), 0))
@@ -122,7 +122,7 @@ is a chord to 6 mm.
 
 @plume_model("fluctuating")
 class FluctuatingSmoke(StraightPlume):
-    """Gifford's fluctuating plume about an axis that is that of ``StraightPlume`` near the vessel.
+    """Gifford's fluctuating plume; near the vessel its axis is that of ``StraightPlume``.
 
     The vessel has come on its first course and at its first speed.
     """

@@ -99,7 +99,7 @@ def traffic_of(
     ----------
     scenario : the flight
     vessel, place : the measured ship, and where and when the flight begins
-    margin : for how long tracks go on after the longest flight [s]
+    margin : time for which tracks continue after the longest flight [s]
 
     Raises
     ------

@@ -35,8 +35,8 @@ Share = Annotated[float, Field(gt=0.0, le=1.0)]
 
 
 def known_law(law: str) -> str:
-    """Return the name of a steering law, or raise a ValueError where there is none, or none with
-    default parameters.
+    """Return the name of a steering law, or raise a ValueError if there is no such law, or if a
+    parameter of it has no default.
     """
     try:
         _law_keys(law)

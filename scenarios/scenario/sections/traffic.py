@@ -44,7 +44,7 @@ class TrafficEmissionConfig(Section):
 
 
 class TrafficConfig(Section):
-    """A ship besides the one that is measured, or all those of a file of AIS reports. The keep-out
+    """A ship other than the measured one, or all ships of a file of AIS reports. The keep-out
     guard keeps off every one of them.
 
     Of a ``vessel.track`` from a file, all other ships of that file are traffic as well.

@@ -366,7 +366,8 @@ def ships_of_file(
     key: str = "vessel",
     written: TableFormat = FOUND,
 ) -> list[FileShip]:
-    """Return the ships of a file of AIS reports but one that have reports during a flight.
+    """Return the ships of a file of AIS reports that have reports during a flight, without the
+    measured one.
 
     Parameters
     ----------
@@ -379,7 +380,8 @@ def ships_of_file(
 
     Raises
     ------
-    InputError : the file cannot be read, its layout is unknown, or it has not got the only one
+    InputError : the file cannot be read, its layout is unknown, or it does not have the ship
+        ``only``
     """
     path = Path(path)
     try:
