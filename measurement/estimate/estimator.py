@@ -30,7 +30,7 @@ from measurement.estimate.plausible import implausibilities
 from measurement.estimate.quality import (
     delay_problem,
     noise_explains,
-    pending_so2_problem,
+    pending_problem,
     quality_class,
     residual_problem,
 )
@@ -158,13 +158,15 @@ class Measured:
 
     def pending_problem(self, value: float, total: float) -> tuple[str, ...]:
         """Return the problem of a gas that may still arrive, where its delay is not stated."""
-        if not math.isinf(self.ratio.instrument.known("so2").delay_sd_s):
+        instrument = self.ratio.instrument
+        if not math.isinf(instrument.known("so2").delay_sd_s):
             return ()
         # Of the time in which the gas may arrive after each pass, the share that was read.
         after = [self.record.time - found.end_s for found in self.passes]
         samples = [np.count_nonzero((t > 0.0) & (t <= DELAY_MOST)) for t in after]
         read = [min(1.0, count * self.record.step / DELAY_MOST) for count in samples]
-        return pending_so2_problem(value, total, read, [found.dose_ppm_s for found in self.passes])
+        doses = [found.dose_ppm_s for found in self.passes]
+        return pending_problem(instrument.name_of("so2"), value, total, read, doses)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -260,8 +262,8 @@ def _too_short(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) 
     if record.duration >= needed:
         return ()
     return (
-        f"the record lasts {record.duration:.0f} s; a pass and the response of SO2 take"
-        f" {needed:.0f} s",
+        f"the record lasts {record.duration:.0f} s; a pass and the response of"
+        f" {instrument.name_of('so2')} take {needed:.0f} s",
     )
 
 
@@ -332,7 +334,8 @@ def _shown_delay_problem(record: Record, instrument: SnifferSpec, fit: Fit) -> t
     if not remaining < (1.0 - _EXPLAINED_LEAST) * whole:
         return ()
     deviation = math.hypot(so2.delay_sd_s, found.delay_sd_s)
-    return delay_problem(stated, so2_delay(found.instrument), deviation)
+    shown = so2_delay(found.instrument)
+    return delay_problem(instrument.name_of("so2"), stated, shown, deviation)
 
 
 def _by_areas(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> Ratio:

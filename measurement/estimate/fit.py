@@ -1,7 +1,8 @@
 """Fits a record: rounds of ``model``, passes of other fuels, and records that must not be judged.
 
 1. Properties of the instrument are linearised about the stated ones, then about those that the
-   record shows, with variances and slope found anew.
+   record shows, with variances and slope found anew. A t90 of SO2 that is not stated is sought by
+   its likelihood.
 2. A pass with a very different slope becomes a fixed column: it may be of another ship.
 3. Passes that do not stand out of the fitted background are dropped.
 4. The slopes of the other passes get a random effect.
@@ -76,8 +77,8 @@ _STANDS_OUT = 3.0
 """Least height of a pass over its line [standard deviations of the background over such a line]."""
 
 _ROUNDS, _ROUNDS_FREE = 5, 10
-"""Largest number of rounds of linearisation with a stated instrument, and with an unknown t90 or
-delay.
+"""Largest number of rounds of linearisation with a stated instrument, and with a delay that is not
+stated.
 """
 
 _SEARCHES = 6

@@ -75,10 +75,6 @@ class GasReadings:
     remarks: tuple[str, ...] = ()
     own_column: bool = True
 
-    def words(self, text: str) -> str:
-        """Return a sentence of the estimate with this gas in the place of SO2."""
-        return text.replace(SLOT.upper(), self.species.title)
-
 
 @dataclass(frozen=True, kw_only=True)
 class GasEstimate:
@@ -292,7 +288,7 @@ def estimate_gas(
     figures = figures_of(measured, snr)
     shown = replace(species, result=unit, most=species.most * _most_over_fuel(unit, species))
     quality, reasons = quality_class(
-        problems=[*(gas.words(problem) for problem in found), *problems],
+        problems=[*found, *problems],
         snr=figures.co2_snr,
         passes=len(measured.passes),
         fsc=value,

@@ -184,8 +184,8 @@ def _exchanged(record: Record, instrument: SnifferSpec) -> list[str]:
         return []
     return [
         f"NO2 varies by {no2:.0f} ppb in the plume and NO by {no:.0f} ppb: exhaust has more NO than"
-        f" NO2, and ozone makes at most {_OZONE_MOST:g} ppb of it; check which columns are SO2, NO"
-        " and NO2, and their units"
+        f" NO2, and ozone makes at most {_OZONE_MOST:g} ppb of it; check which columns are"
+        f" {instrument.name_of('so2')}, NO and NO2, and their units"
     ]
 
 

@@ -155,33 +155,35 @@ def _chance(residuals: Residuals) -> float:
     return 1.0 + STRANGE_SIGMA * math.sqrt(2.0 / residuals.freedom)
 
 
-def pending_so2_problem(
-    fsc: float, deviation: float, read: Sequence[float], doses: Sequence[float]
+def pending_problem(
+    gas: str, value: float, deviation: float, read: Sequence[float], doses: Sequence[float]
 ) -> tuple[str, ...]:
-    """Return the problem of SO2 that may not have arrived yet, where its delay is not stated.
+    """Return the problem of a gas that may not have arrived yet, where its delay is not stated.
 
     Parameters
     ----------
-    fsc, deviation : result and its standard uncertainty [% m/m]
-    read : for each pass, share that was read of the time in which its SO2 may arrive [-]
+    gas : its name, in words
+    value, deviation : result and its standard uncertainty, in the same unit
+    read : for each pass, share that was read of the time in which its gas may arrive [-]
     doses : of CO2 in each pass [ppm s]
     """
-    if not read or fsc > _ARRIVED_SIGMA * deviation:
+    if not read or value > _ARRIVED_SIGMA * deviation:
         return ()
     followed = sum(share * dose for share, dose in zip(read, doses, strict=True))
     if followed >= _ARRIVED_SHARE * sum(doses):
         return ()
     return (
-        f"SO2 does not stand out, and may still come: its delay is not stated, and may be up to"
+        f"{gas} does not stand out, and may still come: its delay is not stated, and may be up to"
         f" {DELAY_MOST:g} s; state it, or record longer after the passes",
     )
 
 
-def delay_problem(stated: float, shown: float, deviation: float) -> tuple[str, ...]:
-    """Return the problem of a delay of SO2 after CO2 that is not the stated one.
+def delay_problem(gas: str, stated: float, shown: float, deviation: float) -> tuple[str, ...]:
+    """Return the problem of a delay of a gas after CO2 that is not the stated one.
 
     Parameters
     ----------
+    gas : its name, in words
     stated, shown : delay by the instrument's figures, and the one that fits the readings best [s]
     deviation : standard deviation of the difference [s]
     """
@@ -189,7 +191,7 @@ def delay_problem(stated: float, shown: float, deviation: float) -> tuple[str, .
         return ()
     side = "later" if shown > stated else "earlier"
     return (
-        f"SO2 fits CO2 best {abs(shown - stated):.1f} s {side} than by the stated delays, with a"
+        f"{gas} fits CO2 best {abs(shown - stated):.1f} s {side} than by the stated delays, with a"
         f" standard deviation of {deviation:.1f} s: check t90 and delay of both, and that their"
         " columns were logged by one clock",
     )

@@ -9,9 +9,10 @@ from tests.run_tables import rows_of
 
 pytestmark = pytest.mark.slow
 
-# Of the issue, there with a c172p, here with the heavier one that other tests design anyway: in light turbulence a c172p is ordered from its slowest airspeed to 1.35 times that,
-# beside a ship that turns. After 61 s its mean airspeed was so far below the order, and was still
-# falling in the mean, that its thrust was taken for lost; it glided into the sea at 70.9 s.
+# A c172p was lost in this flight. The heavier Cessna flies it here, which other tests design anyway.
+# In light turbulence the c172p was ordered from its slowest airspeed to 1.35 times that, beside a
+# ship that turns. After 61 s its mean airspeed was so far below the order, and was still falling in
+# the mean, that its thrust was taken for lost; it glided into the sea at 70.9 s.
 MANOEUVRES = (
     "{at_s=22.2,turn_deg=96,turn_rate_deg_s=2.2331819573996654}",
     "{at_s=81.1,turn_deg=-49,turn_rate_deg_s=2.2331819573996654}",

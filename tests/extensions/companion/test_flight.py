@@ -55,8 +55,8 @@ def test_a_perfect_link_flies_the_flight_of_the_study_and_arms_nothing(tmp_path)
     keys = [word for key in STEADY for word in ("--set", key)]
     run_command("scenarios.run", "sim3", "--out", study, "--no-report", "--jobs", "1", *keys)
     # The study hands the guidance exact numbers; telemetry has a place in steps of 11 mm, velocities
-    # in steps of 1 cm/s, and the rate of yaw in place of that of the course. Of the issue: 2 % and
-    # 2 m. Measured over 30 crossings: 0.01 ms in the mean interval, 6 mm in the error.
+    # in steps of 1 cm/s, and the rate of yaw in place of that of the course. Required were 2 %
+    # and 2 m. Measured over 30 crossings: 0.01 ms in the mean interval, 6 mm in the error.
     for figure, tolerance in (
         ("crossing_interval_mean_s", 1e-3),
         ("tracking_error_rms_m", 0.05),
